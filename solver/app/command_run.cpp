@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/kappa_option.hpp"
+#include "app/machine.hpp"
+#include "app/progress.hpp"
+#include "app/workspace.hpp"
+#include "comparison/verdict.hpp"
+#include "io/case_file.hpp"
+#include "io/result_file.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/dynamic_relaxation.hpp"
+
+namespace sandglass {
+
+namespace {
+
+struct RunOptions {
+  std::string name;
+  std::string method = "tl-perturbation";
+  std::string kappa = "auto";
+  std::string output;
+  bool describe = false;
+};
+
+/// Writes frames and history to the result file, shows progress, and ends on Ctrl-C.
+class RunObserver final : public Observer {
+ public:
+  RunObserver(const std::string& title, ResultWriter* writer) : progress_(title), writer_(writer) {}
+
+  void frame(double time, const NodalField& u, const NodalField& v) override {
+    if (writer_ != nullptr) writer_->frame(time, u, v);
+  }
+  void history(const HistoryRow& row) override {
+    if (writer_ != nullptr) writer_->history(row);
+    last_ = row;
+  }
+  bool proceed(long step, double share, double residual) override {
+    progress_.show(share, fmt::format("step {}, residual {:.1e}", step, residual));
+    return !interrupted();
+  }
+  const HistoryRow& last() const { return last_; }
+
+ private:
+  Progress progress_;
+  ResultWriter* writer_;
+  HistoryRow last_{};
+};
+
+std::string kappa_text(const Model& model) {
+  const auto& choice = model.choice();
+  if (!takes_kappa(choice.method)) return "";
+  const double value = choice.kappa.value_or(auto_kappa(choice.method, model.scene().description.law).value_or(0.0));
+  return fmt::format("{:.6g}{}", value, choice.kappa ? "" : " (auto)");
+}
+
+Provenance provenance(const Model& model) {
+  Provenance attributes = build_provenance();
+  attributes.insert(attributes.end(),
+                    {{"method", model.choice().method}, {"kappa", kappa_text(model)}, {"precision", "double"}});
+  return attributes;
+}
+
+void print_energies(const HistoryRow& row) {
+  fmt::print("energies (J): strain {:.6g}, hourglass {:.6g}, work of the imposed displacements {:.6g}\n", row.strain,
+             row.hourglass, row.external_work);
+}
+
+void print_accuracy(const Scene& scene, const NodalField& u) {
+  const References references = read_references(scene);
+  const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
+  const auto print = [&](const char* name, const std::optional<NodalField>& reference) {
+    if (!reference) return;
+    const Accuracy figures = accuracy(u, *reference, profile, largest_imposed(scene));
+    fmt::print("against the {}: max {:.4g} %, rms {:.4g} % of the imposed displacement\n", name,
+               100.0 * figures.max_relative_error, 100.0 * figures.rms_relative_error);
+  };
+  print("golden", references.golden);
+  print("truth", references.truth);
+}
+
+int run_case(const RunOptions& options) {
+  const Scene scene = read_scene(find_case(options.name));
+  const Model model(scene, {options.method, parse_kappa(options.kappa)});
+  std::optional<ResultWriter> writer;
+  if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
+  std::string status;
+  long steps = 0;
+  double seconds = 0.0;
+  watch_for_interrupt();
+  {
+    RunObserver observer(scene.description.name, writer ? &*writer : nullptr);
+    NodalField u;
+    if (scene.description.quasi_static) {
+      Relaxation relaxation = relax(model, observer);
+      u = std::move(relaxation.u);
+      steps = relaxation.steps;
+      seconds = relaxation.seconds;
+      status = relaxation.converged     ? "complete"
+               : relaxation.interrupted ? fmt::format("interrupted at step {}", steps)
+                                        : fmt::format("not at rest after {} steps", steps);
+      fmt::print("{} {} {}: {} after {} steps, residual {:.2e}\n", scene.description.name, options.method,
+                 kappa_text(model), relaxation.converged ? "at rest" : status, steps, relaxation.residual);
+    } else {
+      Motion motion = integrate(model, observer);
+      u = std::move(motion.u);
+      steps = motion.steps;
+      seconds = motion.seconds;
+      status = motion.interrupted ? fmt::format("interrupted at step {}", steps) : "complete";
+      fmt::print("{} {} {}: {} s in {} steps of at least {:.4g} s, {}\n", scene.description.name, options.method,
+                 kappa_text(model), motion.time, steps, motion.smallest_step, status);
+    }
+    print_energies(observer.last());
+    if (scene.description.quasi_static && status == "complete") print_accuracy(scene, u);
+  }
+  fmt::print("wall time {:.3g} s, {:.4g} ns per element and step\n", seconds,
+             1e9 * seconds / static_cast<double>(std::max(steps, 1L)) / static_cast<double>(scene.mesh.cells.size()));
+  if (writer) {
+    writer->commit(status);
+    fmt::print("wrote {}\n", options.output);
+  }
+  if (status != "complete") {
+    throw ComputationError(fmt::format("{}: {}; what was complete is {}", scene.description.name, status,
+                                       writer ? "in " + options.output : "not kept (no --output)"));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "compute a case with a method");
+  command->add_option("CASE", options->name, "name or file of the case");
+  command->add_option("-m,--method", options->method, "method, see `sandglass methods`")->capture_default_str();
+  command->add_option("-k,--kappa", options->kappa, "hourglass stiffness, a number or 'auto'")->capture_default_str();
+  command->add_option("-o,--output", options->output, "result file (HDF5; an XDMF file for ParaView goes beside it)");
+  command->add_flag("--describe", options->describe, "print every key of a case file with unit, range and meaning");
+  command->callback([options, &exit_code] {
+    if (options->describe) {
+      fmt::print("{}", describe_case_keys());
+      return;
+    }
+    if (options->name.empty()) throw CLI::RequiredError("CASE");
+    exit_code = run_case(*options);
+  });
+}
+
+}  // namespace sandglass

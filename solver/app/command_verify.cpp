@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <atomic>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "app/commands.hpp"
+#include "app/machine.hpp"
+#include "app/progress.hpp"
+#include "app/workspace.hpp"
+#include "base/error.hpp"
+#include "comparison/verdict.hpp"
+#include "comparison/verdict_json.hpp"
+#include "element/methods.hpp"
+#include "io/case_file.hpp"
+#include "io/result_file.hpp"
+#include "io/text_file.hpp"
+
+namespace sandglass {
+
+namespace {
+
+struct VerifyOptions {
+  std::vector<std::string> names;
+  std::string json;
+  std::string results;
+  int threads = 0;
+};
+
+/// A scene with the answers it is compared with.
+struct Subject {
+  Scene scene;
+  References references;
+};
+
+/// One run to be made.
+struct Task {
+  const Subject* subject;
+  MethodChoice choice;
+};
+
+std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& name : names) files.push_back(find_case(name));
+  if (names.empty()) files = canonical_cases();
+  std::deque<Subject> subjects;  // a deque, because tasks point into it
+  for (const auto& file : files) {
+    Scene scene = read_scene(file);
+    if (!scene.description.quasi_static) {
+      if (names.empty()) continue;
+      throw InputError(fmt::format("{}: a dynamic case has no golden to be compared with", file.string()));
+    }
+    References references = read_references(scene);
+    subjects.push_back({std::move(scene), std::move(references)});
+  }
+  return subjects;
+}
+
+/// Every method of the list on every scene; those with a kappa at `auto` and along the case's curve.
+std::vector<Task> make_tasks(const std::deque<Subject>& subjects) {
+  std::vector<Task> tasks;
+  for (const auto& subject : subjects) {
+    for_each_type(Methods{}, [&]<class Method>() {
+      tasks.push_back({&subject, {std::string(Method::name), {}}});
+      if (!Method::Hourglass::takes_kappa) return;
+      for (const double kappa : subject.scene.description.kappas) {
+        tasks.push_back({&subject, {std::string(Method::name), kappa}});
+      }
+    });
+  }
+  return tasks;
+}
+
+/// The final state of a run as a result file, for pictures.
+void write_result(const Task& task, const NodalField& u, const std::string& folder) {
+  const Model model(task.subject->scene, task.choice);
+  const std::string kappa = task.choice.kappa ? fmt::format(".{}", *task.choice.kappa) : "";
+  const auto path = std::filesystem::path(folder) /
+                    fmt::format("{}.{}{}.h5", task.subject->scene.description.name, task.choice.method, kappa);
+  ResultWriter writer(model, path, build_provenance());
+  const NodalField rest(u.size());
+  writer.frame(0.0, rest, rest);
+  writer.frame(1.0, u, rest);
+  writer.commit("complete");
+}
+
+/// Runs all tasks on a few threads. Every run is by itself and deterministic; only their order in time is not.
+std::vector<Verdict> run_tasks(const std::vector<Task>& tasks, const VerifyOptions& options) {
+  std::vector<Verdict> verdicts(tasks.size());
+  std::vector<NodalField> answers(tasks.size());
+  std::atomic<std::size_t> next = 0;
+  std::atomic<std::size_t> done = 0;
+  const auto work = [&] {
+    for (std::size_t n = next++; n < tasks.size() && !interrupted(); n = next++) {
+      verdicts[n] = judge(tasks[n].subject->scene, tasks[n].subject->references, tasks[n].choice, answers[n]);
+      ++done;
+    }
+  };
+  const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < std::max(wanted, 1); ++t) threads.emplace_back(work);
+  Progress progress("verify");
+  while (done < tasks.size() && !interrupted()) {
+    progress.show(static_cast<double>(done) / static_cast<double>(tasks.size()),
+                  fmt::format("{} of {} runs", done.load(), tasks.size()));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  threads.clear();
+  if (interrupted()) throw ComputationError("verify: interrupted; nothing was written");
+  if (!options.results.empty()) {
+    std::filesystem::create_directories(options.results);
+    for (std::size_t n = 0; n < tasks.size(); ++n) {
+      if (!answers[n].empty()) write_result(tasks[n], answers[n], options.results);
+    }
+  }
+  return verdicts;
+}
+
+std::string percent(const std::optional<double>& fraction) {
+  return fraction ? fmt::format("{:.3g}", 100.0 * *fraction) : "-";
+}
+
+std::string percents(const std::optional<Accuracy>& accuracy) {
+  if (!accuracy) return fmt::format("{:>9}{:>9}{:>9}", "-", "-", "-");
+  return fmt::format("{:>9}{:>9}{:>9}", percent(accuracy->max_relative_error),
+                     percent(accuracy->profile_relative_error), percent(accuracy->rms_relative_error));
+}
+
+void print_verdicts(const std::vector<Verdict>& verdicts) {
+  fmt::print("errors in % of the imposed displacement: max over all nodes, max over the profile, rms\n"
+             "{:<22}{:<20}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
+             "case", "method", "kappa", "against the golden", "against the truth", "hg/int%", "steps", "residual", "wall s",
+             "ns/el", "status");
+  for (const auto& v : verdicts) {
+    const std::string kappa = v.kappa ? fmt::format("{}{:.4g}", v.kappa_is_auto ? "auto " : "", *v.kappa) : "";
+    fmt::print("{:<22}{:<20}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method, kappa,
+               percents(v.golden), percents(v.truth), percent(v.hourglass_energy_ratio), v.steps, v.residual,
+               v.wall_seconds, v.ns_per_element_step, v.status);
+  }
+}
+
+void print_limits(const std::vector<LimitCheck>& limits) {
+  if (limits.empty()) return;
+  fmt::print("\nlimits of the cases\n");
+  for (const auto& check : limits) {
+    const auto& e = check.expectation;
+    const std::string found = check.figure ? fmt::format("{} %", percent(check.figure)) : "no figure";
+    const std::string at = check.kappa && e.kappa == "best" ? fmt::format(" (kappa {:.4g})", *check.kappa) : "";
+    fmt::print("{} {} {} kappa {}: {} against the {} = {}{}, must be {} {} %\n", check.holds ? "holds " : "BROKEN",
+               check.case_name, e.method, e.kappa, e.figure, e.reference, found, at, e.below ? "at most" : "above",
+               percent(e.below ? e.below : e.above));
+  }
+}
+
+int verify(const VerifyOptions& options) {
+  watch_for_interrupt();
+  const auto subjects = read_subjects(options.names);
+  const auto verdicts = run_tasks(make_tasks(subjects), options);
+  std::vector<LimitCheck> limits;
+  for (const auto& subject : subjects) {
+    const auto checks = check_limits(subject.scene, verdicts);
+    limits.insert(limits.end(), checks.begin(), checks.end());
+  }
+  print_verdicts(verdicts);
+  print_limits(limits);
+  if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), verdicts, limits));
+  return std::all_of(limits.begin(), limits.end(), [](const auto& check) { return check.holds; }) ? 0 : 1;
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<VerifyOptions>();
+  CLI::App* command = app.add_subcommand("verify", "all methods against the references; exit code 1 when a limit is broken");
+  command->add_option("CASE", options->names, "names or files of cases; all canonical ones when left out");
+  command->add_option("--json", options->json, "write every figure to this file");
+  command->add_option("--results", options->results, "write the final state of every run to this folder");
+  command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = verify(*options); });
+}
+
+}  // namespace sandglass

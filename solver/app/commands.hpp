@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace sandglass {
+
+/// Each adds one subcommand to the command line. A command returns its exit code through `exit_code`.
+void add_cases_command(CLI::App& app);
+void add_methods_command(CLI::App& app);
+void add_mesh_command(CLI::App& app);
+void add_run_command(CLI::App& app, int& exit_code);
+void add_verify_command(CLI::App& app, int& exit_code);
+
+}  // namespace sandglass

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace sandglass {
+
+/// The user's input breaks a rule: bad usage, file, key or value. The command line exits with 2.
+/// The text names the file or key, the value, the rule and what is allowed.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The computation failed: it diverged, an element inverted, or it was interrupted. The command line exits with 3.
+/// The text names the step, the element and a remedy.
+class ComputationError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace sandglass

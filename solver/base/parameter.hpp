@@ -1,0 +1,47 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace sandglass {
+
+/// An interval of allowed values, each end open or closed.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = true;
+  bool high_open = true;
+
+  /// Whether `value` lies in the interval; NaN does not.
+  constexpr bool contains(double value) const {
+    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+  }
+
+  /// The interval as people write it: "(0, 0.5)", "[1, inf)".
+  std::string text() const {
+    return fmt::format("{}{}, {}{}", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
+  }
+
+  static constexpr Range positive() { return {.low = 0.0}; }
+  static constexpr Range at_least(double low) { return {.low = low, .low_open = false}; }
+  static constexpr Range between(double low, double high) { return {.low = low, .high = high}; }
+  static constexpr Range any() { return {}; }
+};
+
+/// The declaration of one parameter: where it lives, its name, unit, range and meaning. The reader of case files,
+/// the writer of help and the tests all iterate these declarations; there is no second place.
+/// An `Owner` lists its own in a static function `parameters()` that returns a tuple of them.
+template <class Owner, class Value>
+struct Parameter {
+  Value Owner::*member;
+  std::string_view name;
+  std::string_view unit;
+  Range range;
+  std::string_view meaning;
+  bool required = true;  ///< when false, the member's initial value is the default
+};
+
+}  // namespace sandglass

@@ -1,0 +1,91 @@
+#include "comparison/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "io/reference_file.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::optional<NodalField> read_if_present(const std::filesystem::path& path, const Scene& scene) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+  return read_reference(path, scene);
+}
+
+std::optional<double> figure_of(const Verdict& verdict, const Expectation& expected) {
+  const auto& accuracy = expected.reference == "golden" ? verdict.golden : verdict.truth;
+  if (!accuracy) return std::nullopt;
+  if (expected.figure == "max_relative_error") return accuracy->max_relative_error;
+  if (expected.figure == "rms_relative_error") return accuracy->rms_relative_error;
+  return accuracy->profile_relative_error;
+}
+
+bool concerns(const Expectation& expected, const Verdict& verdict) {
+  if (verdict.method != expected.method) return false;
+  if (!verdict.kappa || expected.kappa == "best") return true;
+  if (expected.kappa == "auto") return verdict.kappa_is_auto;
+  return !verdict.kappa_is_auto && fmt::to_string(*verdict.kappa) == expected.kappa;
+}
+
+}  // namespace
+
+References read_references(const Scene& scene) {
+  return {read_if_present(scene.description.golden, scene), read_if_present(scene.description.truth, scene)};
+}
+
+Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
+  Verdict verdict{.case_name = scene.description.name,
+                  .method = choice.method,
+                  .kappa = choice.kappa ? choice.kappa : auto_kappa(choice.method, scene.description.law),
+                  .kappa_is_auto = takes_kappa(choice.method) && !choice.kappa};
+  try {
+    const Model model(scene, choice);
+    Observer silent;
+    Relaxation relaxation = relax(model, silent);
+    u = std::move(relaxation.u);
+    const StrainEnergies energies = model.internal_force().energies(u);
+    verdict.status = relaxation.converged
+                         ? "ok"
+                         : fmt::format("failed: not at rest after {} steps, residual {:.1e}", relaxation.steps, relaxation.residual);
+    verdict.steps = relaxation.steps;
+    verdict.residual = relaxation.residual;
+    verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;
+    verdict.wall_seconds = relaxation.seconds;
+    verdict.ns_per_element_step = 1e9 * relaxation.seconds / static_cast<double>(relaxation.steps) /
+                                  static_cast<double>(scene.mesh.cells.size());
+  } catch (const ComputationError& error) {
+    const std::string_view text(error.what());
+    verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
+    return verdict;
+  }
+  const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
+  const double unit = largest_imposed(scene);
+  if (references.golden) verdict.golden = accuracy(u, *references.golden, profile, unit);
+  if (references.truth) verdict.truth = accuracy(u, *references.truth, profile, unit);
+  return verdict;
+}
+
+std::vector<LimitCheck> check_limits(const Scene& scene, const std::vector<Verdict>& verdicts) {
+  std::vector<LimitCheck> checks;
+  for (const auto& expected : scene.description.expectations) {
+    LimitCheck check{scene.description.name, expected, {}, {}, false};
+    for (const auto& verdict : verdicts) {
+      if (verdict.case_name != check.case_name || !concerns(expected, verdict)) continue;
+      const auto figure = figure_of(verdict, expected);
+      if (!figure || (check.figure && *check.figure <= *figure)) continue;
+      check.figure = figure;
+      check.kappa = verdict.kappa;
+      // A run that did not come to rest may show that a method fails, never that it is accurate.
+      check.holds = expected.below ? verdict.ok() && *figure <= *expected.below : *figure > *expected.above;
+    }
+    checks.push_back(check);
+  }
+  return checks;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,71 @@
+#include "comparison/verdict_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace sandglass {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json to_record(const std::optional<Accuracy>& accuracy) {
+  if (!accuracy) return nullptr;
+  return {{"max_relative_error", accuracy->max_relative_error},
+          {"profile_relative_error", or_null(accuracy->profile_relative_error)},
+          {"rms_relative_error", accuracy->rms_relative_error}};
+}
+
+Json to_record(const Verdict& verdict) {
+  return {{"case", verdict.case_name},
+          {"method", verdict.method},
+          {"kappa", or_null(verdict.kappa)},
+          {"kappa_is_auto", verdict.kappa_is_auto},
+          {"precision", verdict.precision},
+          {"status", verdict.status},
+          {"golden", to_record(verdict.golden)},
+          {"truth", to_record(verdict.truth)},
+          {"steps", verdict.steps},
+          {"residual", verdict.residual},
+          {"hourglass_energy_ratio", verdict.hourglass_energy_ratio},
+          {"ns_per_element_step", verdict.ns_per_element_step},
+          {"wall_seconds", verdict.wall_seconds}};
+}
+
+Json to_record(const LimitCheck& check) {
+  return {{"case", check.case_name},
+          {"method", check.expectation.method},
+          {"kappa", check.expectation.kappa},
+          {"reference", check.expectation.reference},
+          {"figure", check.expectation.figure},
+          {"below", or_null(check.expectation.below)},
+          {"above", or_null(check.expectation.above)},
+          {"found", or_null(check.figure)},
+          {"at_kappa", or_null(check.kappa)},
+          {"holds", check.holds},
+          {"reason", check.expectation.reason}};
+}
+
+template <class Entry>
+Json to_records(const std::vector<Entry>& entries) {
+  Json records = Json::array();
+  for (const auto& entry : entries) records.push_back(to_record(entry));
+  return records;
+}
+
+}  // namespace
+
+std::string to_json(const Provenance& provenance, const std::vector<Verdict>& verdicts,
+                    const std::vector<LimitCheck>& limits) {
+  Json document;
+  for (const auto& [name, value] : provenance) document[name] = value;
+  document["records"] = to_records(verdicts);
+  document["limits"] = to_records(limits);
+  return document.dump(1) + "\n";
+}
+
+}  // namespace sandglass

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+
+#include "math/matrix.hpp"
+
+/// Geometry of the trilinear hexahedron: nodes in VTK order, shape functions, hourglass base vectors, mean gradients.
+/// Set-up only, in double; kernels meet the results.
+namespace sandglass {
+
+/// Parent coordinates (xi, eta, zeta) of the eight nodes, VTK order.
+inline constexpr NodalVectors<double> corner_signs{{-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,  //
+                                                    -1, -1, 1,  1, -1, 1,  1, 1, 1,  -1, 1, 1}};
+
+/// Hourglass base vectors Gamma_Ia of Flanagan and Belytschko 1981: the nodal values of eta zeta, xi zeta, xi eta and
+/// xi eta zeta.
+constexpr Matrix<double, 8, 4> hourglass_base_vectors() {
+  Matrix<double, 8, 4> Gamma;
+  for (int I = 0; I < 8; ++I) {
+    const double xi = corner_signs(I, 0);
+    const double eta = corner_signs(I, 1);
+    const double zeta = corner_signs(I, 2);
+    Gamma(I, 0) = eta * zeta;
+    Gamma(I, 1) = xi * zeta;
+    Gamma(I, 2) = xi * eta;
+    Gamma(I, 3) = xi * eta * zeta;
+  }
+  return Gamma;
+}
+
+/// dN_I/dxi_j of the trilinear shape functions at a parent point.
+constexpr NodalVectors<double> parent_gradient(const std::array<double, 3>& xi) {
+  NodalVectors<double> gradient;
+  for (int I = 0; I < 8; ++I) {
+    const double a = 1.0 + corner_signs(I, 0) * xi[0];
+    const double b = 1.0 + corner_signs(I, 1) * xi[1];
+    const double c = 1.0 + corner_signs(I, 2) * xi[2];
+    gradient(I, 0) = corner_signs(I, 0) * b * c / 8.0;
+    gradient(I, 1) = corner_signs(I, 1) * a * c / 8.0;
+    gradient(I, 2) = corner_signs(I, 2) * a * b / 8.0;
+  }
+  return gradient;
+}
+
+/// The eight points of the 2x2x2 Gauss rule, one beside each corner; every weight is 1.
+constexpr std::array<std::array<double, 3>, 8> gauss_points() {
+  constexpr double g = 0.57735026918962576451;  // 1/sqrt(3)
+  std::array<std::array<double, 3>, 8> points{};
+  for (int q = 0; q < 8; ++q) {
+    for (int i = 0; i < 3; ++i) points[static_cast<std::size_t>(q)][static_cast<std::size_t>(i)] = g * corner_signs(q, i);
+  }
+  return points;
+}
+
+/// The Jacobian dX_i/dxi_j of the map from the parent cube, in m.
+constexpr Tensor<double> parent_jacobian(const NodalVectors<double>& X, const std::array<double, 3>& xi) {
+  return transpose(X) * parent_gradient(xi);
+}
+
+/// Gradients dN_I/dX_i (1/m) at a parent point and the measure det(dX/dxi) (m^3) there.
+struct PointGradient {
+  NodalVectors<double> gradient;
+  double measure;
+};
+
+constexpr PointGradient point_gradient(const NodalVectors<double>& X, const std::array<double, 3>& xi) {
+  const Tensor<double> jacobian = parent_jacobian(X, xi);
+  return {parent_gradient(xi) * inverse(jacobian), determinant(jacobian)};
+}
+
+/// The uniform strain hexahedron: mean gradients h_Ii = B_Ii / V (1/m) and exact volume V (m^3); paper, eq. 1.
+struct MeanGradient {
+  NodalVectors<double> h;
+  double volume;
+};
+
+/// B_Ii = integral of dN_I/dX_i over the element. 2x2x2 Gauss integrates it and V exactly, for the integrands
+/// dN/dX det(dX/dxi) are quadratic in each parent coordinate; gradients at the centre would fail the patch test.
+constexpr MeanGradient mean_gradient(const NodalVectors<double>& X) {
+  NodalVectors<double> B;
+  double V = 0.0;
+  for (const auto& xi : gauss_points()) {
+    const Tensor<double> jacobian = parent_jacobian(X, xi);
+    B += parent_gradient(xi) * transpose(cofactor(jacobian));
+    V += determinant(jacobian);
+  }
+  return {(1.0 / V) * B, V};
+}
+
+/// Hourglass shape vectors gamma_Ia = Gamma_Ia - h_Ii X_Ji Gamma_Ja, orthogonal to every linear field; paper, eq. 2.
+constexpr Matrix<double, 8, 4> hourglass_shape_vectors(const NodalVectors<double>& X, const NodalVectors<double>& h) {
+  constexpr auto Gamma = hourglass_base_vectors();
+  return Gamma - h * (transpose(X) * Gamma);
+}
+
+}  // namespace sandglass

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "element/hexahedron.hpp"
+#include "element/hourglass_settings.hpp"
+#include "material/laws.hpp"
+
+namespace sandglass {
+
+/// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (paper, eqs 2-14).
+/// gamma is orthogonal to linear fields, so rigid motions and uniform strains feel no force, however large.
+struct PerturbationHourglassControl {
+  static constexpr bool takes_kappa = true;
+
+  template <class T>
+  struct Element {
+    Matrix<T, 8, 4> gamma;  ///< hourglass shape vectors, - (eq. 2)
+    T k;                    ///< stiffness of the modes, N/m (eq. 12)
+  };
+
+  /// kappa = E / (9 (lambda + 2 mu)): with it a cube bends with its exact energy at every Poisson's ratio, where a fixed
+  /// kappa locks as nu -> 1/2 because lambda + 2 mu does.
+  template <class Law>
+  static double auto_kappa(const Law& law) {
+    const double mu = law.shear_modulus();
+    const double lambda = lame_lambda(law);
+    const double E = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+    return E / (9.0 * (lambda + 2.0 * mu));
+  }
+
+  template <class Law>
+  static Element<double> precompute(const NodalVectors<double>& X, const Law& law, const HourglassSettings& settings) {
+    const MeanGradient mean = mean_gradient(X);
+    const double P_modulus = lame_lambda(law) + 2.0 * law.shear_modulus();  // rho c_D^2, eq. 9
+    const double K_max = mean.volume * P_modulus * double_dot(mean.h, mean.h);  // eqs 6-8
+    const double kappa = settings.kappa.value_or(auto_kappa(law));
+    return {hourglass_shape_vectors(X, mean.h), kappa * K_max / 8.0};
+  }
+
+  /// f = k gamma gamma^T u (eq. 14), in N.
+  template <class T>
+  static NodalVectors<T> force(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element) {
+    const Matrix<T, 4, 3> q = transpose(element.gamma) * u;
+    return element.gamma * (element.k * q);
+  }
+
+  /// k/2 |gamma^T u|^2, in J.
+  template <class T>
+  static T energy(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element) {
+    const Matrix<T, 4, 3> q = transpose(element.gamma) * u;
+    return T(0.5) * element.k * double_dot(q, q);
+  }
+
+  /// k lambda_max(gamma^T gamma) in N/m, the eigenvalue bounded by the largest sum of absolute values in a row.
+  template <class T>
+  static T stiffness_bound(const Element<T>& element) {
+    const Matrix<T, 4, 4> product = transpose(element.gamma) * element.gamma;
+    T largest = T(0);
+    for (int a = 0; a < 4; ++a) {
+      T row = T(0);
+      for (int b = 0; b < 4; ++b) row = row + abs(product(a, b));
+      largest = max(largest, row);
+    }
+    return element.k * largest;
+  }
+};
+
+}  // namespace sandglass

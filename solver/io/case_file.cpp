@@ -1,0 +1,249 @@
+#include "io/case_file.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "element/methods.hpp"
+#include "io/mesh_file.hpp"
+#include "io/table_reader.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// The entry of a list of types that a key names, with its parameters read.
+template <class List>
+VariantOf<List> read_listed(TableReader& table, const std::string& key) {
+  VariantOf<List> chosen;
+  with_named_type(List{}, table.required_choice(key, names_of(List{})), [&]<class Type>() {
+    Type value{};
+    table.parameters(value);
+    chosen = value;
+  });
+  return chosen;
+}
+
+void read_mesh(TableReader table, Case& scene) {
+  if (const auto file = table.optional<std::string>("file")) {
+    scene.mesh = MeshFile{scene.file.parent_path() / *file};
+  } else {
+    scene.mesh = read_listed<Generators>(table, "generator");
+  }
+  table.finish();
+}
+
+void read_material(TableReader table, Case& scene) {
+  scene.law = read_listed<Laws>(table, "law");
+  scene.density = table.required<double>("density");
+  table.require_in_range("density", scene.density, Range::positive());
+  table.finish();
+}
+
+CylinderRegion read_cylinder(TableReader table) {
+  CylinderRegion region;
+  region.axis = table.required_choice("axis", {"x", "y", "z"})[0] - 'x';
+  region.center = table.required<std::array<double, 2>>("center");
+  region.semi_axes = table.required<std::array<double, 2>>("semi_axes");
+  for (const double a : region.semi_axes) table.require_in_range("semi_axes", a, Range::positive());
+  table.finish();
+  return region;
+}
+
+NodeSetRule read_set(TableReader table, const std::string& name) {
+  NodeSetRule rule;
+  rule.name = name;
+  rule.surface = table.optional<bool>("surface").value_or(false);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string key(1, "xyz"[i]);
+    const auto ends = table.optional<std::array<double, 2>>(key);
+    if (!ends) continue;
+    const auto [low, high] = *ends;
+    if (!(low <= high)) table.fail(key, fmt::format("= [{}, {}] must be an interval, low end first", low, high));
+    rule.within[i] = Interval{low, high};
+  }
+  if (auto cylinder = table.table("cylinder")) rule.cylinder = read_cylinder(*cylinder);
+  table.finish();
+  return rule;
+}
+
+ImposedDisplacement read_displacement(TableReader table) {
+  ImposedDisplacement imposed;
+  imposed.set = table.required<std::string>("set");
+  imposed.value = table.required<Vector>("value");
+  for (const double d : imposed.value) table.require_in_range("value", d, Range::any());
+  if (const auto components = table.optional<std::string>("components")) {
+    imposed.components = {};
+    for (const char c : *components) {
+      if (c < 'x' || c > 'z') table.fail("components", fmt::format("= '{}' must consist of x, y, z", *components));
+      imposed.components[static_cast<std::size_t>(c - 'x')] = true;
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!imposed.components[i]) imposed.value[i] = 0.0;
+  }
+  table.finish();
+  return imposed;
+}
+
+Profile read_profile(TableReader table) {
+  Profile profile{.set = table.required<std::string>("set"),
+                  .order = table.required_choice("order", {"x", "y", "z", "around-x", "around-y", "around-z"})};
+  table.finish();
+  return profile;
+}
+
+/// A kappa as written: a number, "auto" (also when absent) or "best".
+std::string read_kappa(TableReader& table) {
+  if (table.holds_number("kappa")) {
+    const auto kappa = table.required<double>("kappa");
+    table.require_in_range("kappa", kappa, Range::at_least(0.0));
+    return fmt::to_string(kappa);
+  }
+  return table.optional<std::string>("kappa") ? table.required_choice("kappa", {"auto", "best"}) : "auto";
+}
+
+Expectation read_expectation(TableReader table) {
+  Expectation expected;
+  expected.method = table.required_choice("method", names_of(Methods{}));
+  expected.kappa = read_kappa(table);
+  expected.reference = table.required_choice("reference", {"golden", "truth"});
+  expected.figure =
+      table.required_choice("figure", {"max_relative_error", "profile_relative_error", "rms_relative_error"});
+  expected.below = table.optional<double>("below");
+  expected.above = table.optional<double>("above");
+  if (expected.below.has_value() == expected.above.has_value()) {
+    table.fail("below", "or above must be given, one of the two");
+  }
+  expected.reason = table.required<std::string>("reason");
+  table.finish();
+  return expected;
+}
+
+void read_comparison(TableReader table, Case& scene) {
+  scene.kappas = table.optional<std::vector<double>>("kappas").value_or(std::vector<double>{});
+  for (const double kappa : scene.kappas) table.require_in_range("kappas", kappa, Range::at_least(0.0));
+  const auto folder = scene.file.parent_path();
+  if (const auto golden = table.optional<std::string>("golden")) scene.golden = folder / *golden;
+  if (const auto truth = table.optional<std::string>("truth")) scene.truth = folder / *truth;
+  table.finish();
+}
+
+void read_header(TableReader table, Case& scene) {
+  scene.name = table.required<std::string>("name");
+  scene.requirement = table.required<std::string>("requirement");
+  scene.quasi_static = table.required_choice("answer", {"quasi-static", "dynamic"}) == "quasi-static";
+  table.finish();
+}
+
+toml::table parse(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw InputError(fmt::format("{}: no such case file", path.string()));
+  }
+  try {
+    return toml::parse_file(path.string());
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: is not TOML: {}", path.string(), error.source().begin.line, error.description()));
+  }
+}
+
+/// Lines about the parameters of one aggregate, for people.
+template <class Aggregate>
+std::string described(const std::string& table) {
+  const Aggregate defaults{};
+  std::string text;
+  std::apply([&](const auto&... p) {
+    const auto line = [&](const auto& parameter) {
+      using Value = std::remove_cvref_t<decltype(defaults.*(parameter.member))>;
+      std::string fallback = "required";
+      if constexpr (std::is_arithmetic_v<Value>) {
+        if (!parameter.required) fallback = fmt::format("default {}", defaults.*(parameter.member));
+      }
+      text += fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", fmt::format("{}.{}", table, parameter.name),
+                          fmt::format("[{}]", parameter.unit), parameter.range.text(), fallback, parameter.meaning);
+    };
+    (line(p), ...);
+  }, Aggregate::parameters());
+  return text;
+}
+
+template <class... Types>
+std::string described_list(TypeList<Types...> /*list*/, const std::string& table, const std::string& key) {
+  std::string text;
+  ((text += fmt::format("\n{}.{} = \"{}\": {}\n{}", table, key, Types::name, Types::summary, described<Types>(table))), ...);
+  return text;
+}
+
+}  // namespace
+
+Case read_case_file(const std::filesystem::path& path) {
+  const toml::table root = parse(path);
+  Case scene;
+  scene.file = path;
+  TableReader reader(root, path, "");
+  read_header(reader.required_table("case"), scene);
+  scene.golden = path.parent_path() / ".." / "reference" / "golden" / (scene.name + ".h5");
+  scene.truth = path.parent_path() / ".." / "reference" / "truth" / (scene.name + ".h5");
+  read_mesh(reader.required_table("mesh"), scene);
+  read_material(reader.required_table("material"), scene);
+  if (auto sets = reader.table("sets")) {
+    for (const auto& name : sets->keys()) scene.sets.push_back(read_set(sets->required_table(name), name));
+  }
+  for (const auto& table : reader.tables("displacement")) scene.displacements.push_back(read_displacement(table));
+  if (auto initial = reader.table("initial")) {
+    scene.initial_velocity = initial->required<Vector>("velocity");
+    initial->finish();
+  }
+  if (auto profile = reader.table("profile")) scene.profile = read_profile(*profile);
+  if (auto relaxation = reader.table("relaxation")) {
+    relaxation->parameters(scene.relaxation);
+    relaxation->finish();
+  }
+  if (!scene.quasi_static) {
+    auto dynamics = reader.required_table("dynamics");
+    dynamics.parameters(scene.dynamics);
+    dynamics.finish();
+  }
+  if (auto comparison = reader.table("comparison")) read_comparison(*comparison, scene);
+  for (const auto& table : reader.tables("expect")) scene.expectations.push_back(read_expectation(table));
+  reader.finish();
+  if (scene.quasi_static && scene.displacements.empty()) {
+    reader.fail("displacement", "is missing; a quasi-static case needs at least one [[displacement]]");
+  }
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+  Case scene = read_case_file(path);
+  if (const auto* file = std::get_if<MeshFile>(&scene.mesh)) {
+    MeshWithSets read = read_mesh_file(file->path);
+    return make_scene(std::move(scene), std::move(read.mesh), std::move(read.sets));
+  }
+  Mesh mesh = generate_mesh(std::get<AnyGenerator>(scene.mesh));
+  return make_scene(std::move(scene), std::move(mesh));
+}
+
+std::string describe_case_keys() {
+  std::string text =
+      "Keys of a case file (TOML). Tables and their parameters: name, unit, range, default, meaning.\n"
+      "\n[case] name, requirement: texts; answer: \"quasi-static\" or \"dynamic\"\n";
+  text += described_list(Generators{}, "mesh", "generator");
+  text += "\nmesh.file = \"FILE.h5\": instead of a generator, a mesh as `sandglass mesh` writes it, with its node sets\n";
+  text += described_list(Laws{}, "material", "law");
+  text += fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", "material.density", "[kg/m^3]", Range::positive().text(),
+                      "required", "mass density at rest");
+  text +=
+      "\n[sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = \"z\", center = [x, y], "
+      "semi_axes = [a, b] } }\n  all conditions must hold; lengths in m; inf and -inf are allowed\n"
+      "\n[[displacement]] set = NAME, value = [x, y, z] in m, components = \"xyz\" (default: all)\n"
+      "[initial] velocity = [x, y, z] in m/s (dynamic answers)\n"
+      "[profile] set = NAME, order = \"x\" | \"y\" | \"z\" | \"around-x\" | \"around-y\" | \"around-z\"\n"
+      "[comparison] kappas = [numbers], golden = \"FILE.h5\", truth = \"FILE.h5\"\n"
+      "[[expect]] method, kappa (number, \"auto\" or \"best\"), reference (\"golden\" or \"truth\"), figure, below or above, "
+      "reason\n";
+  text += "\n[relaxation]: how a quasi-static answer is found\n" + described<RelaxationSettings>("relaxation");
+  text += "\n[dynamics]: how a dynamic answer is found\n" + described<DynamicsSettings>("dynamics");
+  return text;
+}
+
+}  // namespace sandglass

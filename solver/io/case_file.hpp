@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "model/model.hpp"
+
+namespace sandglass {
+
+/// Reads a case file, strictly: unknown keys, missing keys, wrong types and values out of range are InputErrors that
+/// name file, line, key, value and rule. `law`, `generator` and method names come from their lists.
+Case read_case_file(const std::filesystem::path& path);
+
+/// The scene of a case file: its mesh generated or read, its sets and constraints made.
+Scene read_scene(const std::filesystem::path& path);
+
+/// Every key that a case file may have, with type, unit, range, default and meaning.
+std::string describe_case_keys();
+
+}  // namespace sandglass

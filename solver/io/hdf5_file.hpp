@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sandglass {
+
+/// An array of a file: shape and entries by rows.
+template <class T>
+struct FileArray {
+  std::vector<std::size_t> shape;
+  std::vector<T> entries;
+};
+
+/// An HDF5 file that closes itself. Errors are InputError with the file, the name inside it and the rule.
+/// A file being written goes to a temporary beside its place and is renamed by `commit`; without it nothing is left.
+class Hdf5File {
+ public:
+  /// Starts a new file. Throws InputError when the place cannot be written.
+  static Hdf5File create(const std::filesystem::path& path);
+
+  /// Opens a file for reading. Throws InputError when it is missing, truncated or not HDF5.
+  static Hdf5File open(const std::filesystem::path& path);
+
+  Hdf5File(Hdf5File&&) noexcept;
+  Hdf5File& operator=(Hdf5File&&) = delete;
+  ~Hdf5File();
+
+  const std::filesystem::path& path() const;
+
+  /// Finishes a file made by `create`: flush, close, rename into place.
+  void commit();
+
+  bool contains(const std::string& name) const;
+
+  /// Names of the objects in a group, in alphabetical order; empty when there is no such group.
+  std::vector<std::string> names_in(const std::string& group) const;
+
+  /// Writes a dataset by rows, groups on the way made as needed; compressed when it is large.
+  void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const double> entries);
+  void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const std::int64_t> entries);
+
+  FileArray<double> read_doubles(const std::string& name) const;
+  FileArray<std::int64_t> read_integers(const std::string& name) const;
+
+  /// Attributes; `object` is "/" for the file itself.
+  void write_attribute(const std::string& object, const std::string& name, const std::string& value);
+  void write_attribute(const std::string& object, const std::string& name, double value);
+  std::string read_text_attribute(const std::string& object, const std::string& name) const;
+  double read_number_attribute(const std::string& object, const std::string& name) const;
+
+ private:
+  struct Handle;
+  explicit Hdf5File(std::unique_ptr<Handle> handle);
+  std::unique_ptr<Handle> handle_;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,88 @@
+#include "io/mesh_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace sandglass {
+
+namespace {
+
+void require_node(const Hdf5File& file, const std::string& name, std::int64_t node, std::size_t n_nodes) {
+  if (node >= 0 && node < static_cast<std::int64_t>(n_nodes)) return;
+  throw InputError(fmt::format("{}: {} names node {}; allowed are 0 to {}", file.path().string(), name, node, n_nodes - 1));
+}
+
+}  // namespace
+
+void write_mesh(const Scene& scene, Hdf5File& file) {
+  const Mesh& mesh = scene.mesh;
+  file.write("/mesh/points", {mesh.points.size(), 3},
+             std::span<const double>(mesh.points.front().data(), 3 * mesh.points.size()));
+  std::vector<std::int64_t> cells;
+  cells.reserve(8 * mesh.cells.size());
+  for (const auto& cell : mesh.cells) cells.insert(cells.end(), cell.begin(), cell.end());
+  file.write("/mesh/cells", {mesh.cells.size(), 8}, std::span<const std::int64_t>(cells));
+  for (const auto& [name, nodes] : scene.sets) {
+    const std::vector<std::int64_t> ids(nodes.begin(), nodes.end());
+    file.write("/mesh/sets/" + name, {ids.size()}, std::span<const std::int64_t>(ids));
+  }
+  file.write_attribute("/", "case", scene.description.name);
+  file.write_attribute("/", "case_hash", scene.case_hash);
+  file.write_attribute("/", "mesh_hash", scene.mesh_hash);
+}
+
+void write_mesh_file(const Scene& scene, const std::filesystem::path& path) {
+  auto file = Hdf5File::create(path);
+  write_mesh(scene, file);
+  file.commit();
+}
+
+NodalField read_nodal_field(const Hdf5File& file, const std::string& name, std::size_t n_nodes) {
+  const auto array = file.read_doubles(name);
+  if (array.shape != std::vector<std::size_t>{n_nodes, 3}) {
+    throw InputError(fmt::format("{}: dataset '{}' has shape {}; it must be [{}, 3], one row per node",
+                                 file.path().string(), name, array.shape, n_nodes));
+  }
+  NodalField field(n_nodes);
+  for (std::size_t k = 0; k < array.entries.size(); ++k) {
+    if (!std::isfinite(array.entries[k])) {
+      throw InputError(fmt::format("{}: dataset '{}' holds {} at node {}; every value must be finite",
+                                   file.path().string(), name, array.entries[k], k / 3));
+    }
+    field[k / 3][k % 3] = array.entries[k];
+  }
+  return field;
+}
+
+MeshWithSets read_mesh_file(const std::filesystem::path& path) {
+  const auto file = Hdf5File::open(path);
+  const auto cells = file.read_integers("/mesh/cells");
+  if (cells.shape.size() != 2 || cells.shape[1] != 8 || cells.shape[0] == 0) {
+    throw InputError(fmt::format("{}: dataset '/mesh/cells' has shape {}; it must be [elements, 8], hexahedra in VTK order",
+                                 path.string(), cells.shape));
+  }
+  const auto points = file.read_doubles("/mesh/points");
+  const std::size_t n_nodes = points.shape.empty() ? 0 : points.shape[0];
+  MeshWithSets result;
+  result.mesh.points = read_nodal_field(file, "/mesh/points", n_nodes);
+  result.mesh.cells.resize(cells.shape[0]);
+  for (std::size_t k = 0; k < cells.entries.size(); ++k) {
+    require_node(file, "/mesh/cells", cells.entries[k], n_nodes);
+    result.mesh.cells[k / 8][k % 8] = static_cast<int>(cells.entries[k]);
+  }
+  for (const auto& name : file.names_in("/mesh/sets")) {
+    auto& set = result.sets[name];
+    for (const auto node : file.read_integers("/mesh/sets/" + name).entries) {
+      require_node(file, "/mesh/sets/" + name, node, n_nodes);
+      set.push_back(static_cast<int>(node));
+    }
+    std::sort(set.begin(), set.end());
+  }
+  return result;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,97 @@
+#include "io/result_file.hpp"
+
+#include <fmt/format.h>
+
+#include "io/mesh_file.hpp"
+#include "io/text_file.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::string frame_group(std::size_t number) { return fmt::format("/frames/{:04}", number); }
+
+/// One DataItem element of an XDMF file that points into the HDF5 file.
+std::string data_item(const std::string& file, const std::string& dataset, const std::string& dimensions,
+                      const std::string& type) {
+  return fmt::format("<DataItem Format=\"HDF\" Dimensions=\"{}\" {}>{}:{}</DataItem>", dimensions, type, file, dataset);
+}
+
+}  // namespace
+
+ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path, const Provenance& provenance)
+    : model_(model), path_(path), file_(Hdf5File::create(path)) {
+  write_mesh(model.scene(), file_);
+  for (const auto& [name, value] : provenance) file_.write_attribute("/", name, value);
+}
+
+void ResultWriter::frame(double time, const NodalField& u, const NodalField& v) {
+  const std::string group = frame_group(times_.size());
+  const std::size_t n_nodes = u.size();
+  const std::size_t n_cells = model_.scene().mesh.cells.size();
+  std::vector<double> per_element(n_cells);
+  file_.write(group + "/displacement", {n_nodes, 3}, std::span<const double>(u.front().data(), 3 * n_nodes));
+  file_.write(group + "/velocity", {n_nodes, 3}, std::span<const double>(v.front().data(), 3 * n_nodes));
+  model_.internal_force().jacobians(u, per_element);
+  file_.write(group + "/jacobian", {n_cells}, std::span<const double>(per_element));
+  model_.internal_force().hourglass_energy_densities(u, per_element);
+  file_.write(group + "/hourglass_energy_density", {n_cells}, std::span<const double>(per_element));
+  file_.write_attribute(group + "/hourglass_energy_density", "unit", "J/m^3");
+  file_.write_attribute(group, "time", time);
+  times_.push_back(time);
+}
+
+void ResultWriter::write_history() {
+  const auto column = [&](const std::string& name, const std::string& unit, double HistoryRow::*member) {
+    std::vector<double> values;
+    for (const auto& row : history_) values.push_back(row.*member);
+    file_.write("/history/" + name, {values.size()}, std::span<const double>(values));
+    file_.write_attribute("/history/" + name, "unit", unit);
+  };
+  column("time", model_.scene().description.quasi_static ? "ramp" : "s", &HistoryRow::time);
+  column("kinetic_energy", "J", &HistoryRow::kinetic);
+  column("strain_energy", "J", &HistoryRow::strain);
+  column("hourglass_energy", "J", &HistoryRow::hourglass);
+  column("external_work", "J", &HistoryRow::external_work);
+  column("residual", "-", &HistoryRow::residual);
+  column("step_size", model_.scene().description.quasi_static ? "ramp" : "s", &HistoryRow::step_size);
+}
+
+std::string ResultWriter::xdmf() const {
+  const std::string file = path_.filename().string();
+  const std::size_t n_nodes = model_.scene().mesh.points.size();
+  const std::size_t n_cells = model_.scene().mesh.cells.size();
+  const std::string real = "NumberType=\"Float\" Precision=\"8\"";
+  const auto field = [&](const std::string& group, const std::string& name, const std::string& label, bool nodal) {
+    return fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", label,
+                       nodal ? "Vector" : "Scalar", nodal ? "Node" : "Cell",
+                       data_item(file, group + "/" + name, nodal ? fmt::format("{} 3", n_nodes) : fmt::to_string(n_cells),
+                                 real));
+  };
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
+      "    <Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t n = 0; n < times_.size(); ++n) {
+    const std::string group = frame_group(n);
+    text += fmt::format("      <Grid Name=\"frame {}\">\n        <Time Value=\"{}\"/>\n", n, times_[n]);
+    text += fmt::format("        <Topology TopologyType=\"Hexahedron\" NumberOfElements=\"{}\">{}</Topology>\n", n_cells,
+                        data_item(file, "/mesh/cells", fmt::format("{} 8", n_cells), "NumberType=\"Int\" Precision=\"8\""));
+    text += fmt::format("        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+                        data_item(file, "/mesh/points", fmt::format("{} 3", n_nodes), real));
+    text += field(group, "displacement", "displacement", true);
+    text += field(group, "velocity", "velocity", true);
+    text += field(group, "jacobian", "jacobian", false);
+    text += field(group, "hourglass_energy_density", "hourglass energy density [J/m^3]", false);
+    text += "      </Grid>\n";
+  }
+  return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+}
+
+void ResultWriter::commit(const std::string& status) {
+  write_history();
+  file_.write_attribute("/", "status", status);
+  file_.commit();
+  write_text_file(std::filesystem::path(path_).replace_extension(".xdmf"), xdmf());
+}
+
+}  // namespace sandglass

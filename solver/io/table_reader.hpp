@@ -1,0 +1,98 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <toml++/toml.h>
+#include <vector>
+
+#include "base/parameter.hpp"
+
+namespace sandglass {
+
+/// One TOML table read strictly: every read is checked, and `finish` refuses the keys that nobody asked for.
+/// All errors are InputErrors that name file, line, key, value and rule.
+class TableReader {
+ public:
+  /// `prefix` is the table's name in messages, such as "material".
+  TableReader(const toml::table& table, std::filesystem::path file, std::string prefix);
+
+  /// The value of a key; none when the key is absent. T: double, int, bool, std::string, a std::array or std::vector
+  /// of double or int.
+  template <class T>
+  std::optional<T> optional(const std::string& key) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return std::nullopt;
+    return convert<T>(*node, key);
+  }
+
+  template <class T>
+  T required(const std::string& key) {
+    if (auto value = optional<T>(key)) return *value;
+    fail_missing(key);
+  }
+
+  /// Whether the key is there and holds a number.
+  bool holds_number(const std::string& key);
+
+  /// One of a list of words.
+  std::string required_choice(const std::string& key, const std::vector<std::string>& allowed);
+
+  /// A table below this one; none when absent.
+  std::optional<TableReader> table(const std::string& key);
+  TableReader required_table(const std::string& key);
+
+  /// The tables of an array of tables [[key]]; empty when absent.
+  std::vector<TableReader> tables(const std::string& key);
+
+  /// All keys of this table; reading them counts as asking for them.
+  std::vector<std::string> keys() const;
+
+  /// Reads all declared parameters of an aggregate, each within its range.
+  template <class Aggregate>
+  void parameters(Aggregate& aggregate) {
+    std::apply([&](const auto&... parameter) { (read(aggregate, parameter), ...); }, Aggregate::parameters());
+  }
+
+  /// Throws when a value is out of range.
+  void require_in_range(const std::string& key, double value, const Range& range) const;
+
+  /// Throws when the table has a key that was not asked for; suggests the nearest that was.
+  void finish() const;
+
+  /// Throws an InputError about a key: "file:line: prefix.key message".
+  [[noreturn]] void fail(const std::string& key, const std::string& message) const;
+
+ private:
+  const toml::node* find(const std::string& key);
+  [[noreturn]] void fail_missing(const std::string& key) const;
+  [[noreturn]] void fail_type(const std::string& key, const toml::node& node, std::string_view expected) const;
+  std::string name_of(const std::string& key) const;
+
+  template <class T>
+  T convert(const toml::node& node, const std::string& key) const;
+
+  template <class Aggregate, class Value>
+  void read(Aggregate& aggregate, const Parameter<Aggregate, Value>& parameter) {
+    const std::string key(parameter.name);
+    const auto value = parameter.required ? required<Value>(key) : optional<Value>(key);
+    if (!value) return;
+    if constexpr (std::is_arithmetic_v<Value>) {
+      require_in_range(key, static_cast<double>(*value), parameter.range);
+    } else {
+      for (const auto entry : *value) require_in_range(key, static_cast<double>(entry), parameter.range);
+    }
+    aggregate.*(parameter.member) = *value;
+  }
+
+  const toml::table& table_;
+  std::filesystem::path file_;
+  std::string prefix_;
+  std::set<std::string> asked_;
+};
+
+}  // namespace sandglass

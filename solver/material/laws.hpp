@@ -1,0 +1,22 @@
+#pragma once
+
+#include "base/type_list.hpp"
+#include "material/neo_hookean.hpp"
+
+namespace sandglass {
+
+/// THE list of material laws. A new law is one header and one entry here.
+/// Each gives: name, summary, parameters(), shear_modulus(), bulk_modulus() at rest, and templated on the number type
+/// isochoric_energy, volumetric_energy, pressure, bulk_tangent, isochoric_piola, energy, piola, isochoric_tangent_bound.
+using Laws = TypeList<NeoHookean>;
+
+/// A law chosen at run time.
+using AnyLaw = VariantOf<Laws>;
+
+/// Lame's first parameter at rest, lambda = K - 2/3 mu, in Pa.
+template <class Law>
+constexpr double lame_lambda(const Law& law) {
+  return law.bulk_modulus() - 2.0 / 3.0 * law.shear_modulus();
+}
+
+}  // namespace sandglass

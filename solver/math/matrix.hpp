@@ -1,0 +1,126 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "math/scalar.hpp"
+
+namespace sandglass {
+
+/// A small dense matrix of R rows and C columns, stored by rows. An aggregate: `Matrix<double, 2, 2>{{1, 2, 3, 4}}`.
+template <class T, int R, int C>
+struct Matrix {
+  std::array<T, static_cast<std::size_t>(R* C)> entries{};
+
+  constexpr T& operator()(int i, int j) { return entries[static_cast<std::size_t>(i * C + j)]; }
+  constexpr const T& operator()(int i, int j) const { return entries[static_cast<std::size_t>(i * C + j)]; }
+
+  constexpr Matrix& operator+=(const Matrix& other) {
+    for (std::size_t n = 0; n < entries.size(); ++n) entries[n] = entries[n] + other.entries[n];
+    return *this;
+  }
+};
+
+/// Second-order tensor in three dimensions.
+template <class T>
+using Tensor = Matrix<T, 3, 3>;
+
+/// Three components at each of the eight nodes of a hexahedron: displacements, forces, coordinates.
+template <class T>
+using NodalVectors = Matrix<T, 8, 3>;
+
+template <class T>
+constexpr Tensor<T> identity() {
+  return {{T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1)}};
+}
+
+template <class T, int R, int C>
+constexpr Matrix<T, R, C> operator+(Matrix<T, R, C> a, const Matrix<T, R, C>& b) {
+  return a += b;
+}
+
+template <class T, int R, int C>
+constexpr Matrix<T, R, C> operator-(Matrix<T, R, C> a, const Matrix<T, R, C>& b) {
+  for (std::size_t n = 0; n < a.entries.size(); ++n) a.entries[n] = a.entries[n] - b.entries[n];
+  return a;
+}
+
+template <class T, int R, int C>
+constexpr Matrix<T, R, C> operator*(const T& s, Matrix<T, R, C> a) {
+  for (auto& entry : a.entries) entry = s * entry;
+  return a;
+}
+
+template <class T, int R, int N, int C>
+constexpr Matrix<T, R, C> operator*(const Matrix<T, R, N>& a, const Matrix<T, N, C>& b) {
+  Matrix<T, R, C> c;
+  for (int i = 0; i < R; ++i) {
+    for (int j = 0; j < C; ++j) {
+      T sum = a(i, 0) * b(0, j);
+      for (int n = 1; n < N; ++n) sum = sum + a(i, n) * b(n, j);
+      c(i, j) = sum;
+    }
+  }
+  return c;
+}
+
+template <class T, int R, int C>
+constexpr Matrix<T, C, R> transpose(const Matrix<T, R, C>& a) {
+  Matrix<T, C, R> t;
+  for (int i = 0; i < R; ++i) {
+    for (int j = 0; j < C; ++j) t(j, i) = a(i, j);
+  }
+  return t;
+}
+
+/// The product of all entries, a : b.
+template <class T, int R, int C>
+constexpr T double_dot(const Matrix<T, R, C>& a, const Matrix<T, R, C>& b) {
+  T sum = a.entries[0] * b.entries[0];
+  for (std::size_t n = 1; n < a.entries.size(); ++n) sum = sum + a.entries[n] * b.entries[n];
+  return sum;
+}
+
+template <class T>
+constexpr T trace(const Tensor<T>& a) {
+  return a(0, 0) + a(1, 1) + a(2, 2);
+}
+
+/// The part of a tensor without trace, a - tr(a)/3 I.
+template <class T>
+constexpr Tensor<T> deviator(Tensor<T> a) {
+  const T third = trace(a) * T(1.0 / 3.0);
+  for (int i = 0; i < 3; ++i) a(i, i) = a(i, i) - third;
+  return a;
+}
+
+/// The cofactor matrix, det(a) a^-T, without a division.
+template <class T>
+constexpr Tensor<T> cofactor(const Tensor<T>& a) {
+  return {{a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1), a(1, 2) * a(2, 0) - a(1, 0) * a(2, 2),
+           a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0), a(0, 2) * a(2, 1) - a(0, 1) * a(2, 2),
+           a(0, 0) * a(2, 2) - a(0, 2) * a(2, 0), a(0, 1) * a(2, 0) - a(0, 0) * a(2, 1),
+           a(0, 1) * a(1, 2) - a(0, 2) * a(1, 1), a(0, 2) * a(1, 0) - a(0, 0) * a(1, 2),
+           a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0)}};
+}
+
+template <class T>
+constexpr T determinant(const Tensor<T>& a) {
+  return a(0, 0) * (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)) + a(0, 1) * (a(1, 2) * a(2, 0) - a(1, 0) * a(2, 2)) +
+         a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
+}
+
+template <class T>
+constexpr Tensor<T> inverse(const Tensor<T>& a) {
+  return (T(1) / determinant(a)) * transpose(cofactor(a));
+}
+
+/// An upper bound of the largest eigenvalue of a symmetric tensor with non-negative eigenvalues, sharp when the two
+/// smaller ones are equal: tr/3 + sqrt(2/3) |dev|.
+template <class T>
+T largest_eigenvalue_bound(const Tensor<T>& symmetric) {
+  const Tensor<T> dev = deviator(symmetric);
+  return trace(symmetric) * T(1.0 / 3.0) + T(std::sqrt(2.0 / 3.0)) * sqrt(double_dot(dev, dev));
+}
+
+}  // namespace sandglass

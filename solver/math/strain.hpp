@@ -1,0 +1,28 @@
+#pragma once
+
+#include "math/matrix.hpp"
+
+namespace sandglass {
+
+/// det(I + H) - 1, expanded so that nothing cancels near rest.
+template <class T>
+constexpr T jacobian_minus_one(const Tensor<T>& H) {
+  const T second_invariant = (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0)) + (H(1, 1) * H(2, 2) - H(1, 2) * H(2, 1)) +
+                             (H(0, 0) * H(2, 2) - H(0, 2) * H(2, 0));
+  return trace(H) + (second_invariant + determinant(H));
+}
+
+/// F F^T - I = H + H^T + H H^T, the left Cauchy-Green tensor without its unit part.
+template <class T>
+constexpr Tensor<T> left_cauchy_green_minus_identity(const Tensor<T>& H) {
+  Tensor<T> e;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      e(i, j) = (H(i, j) + H(j, i)) + (H(i, 0) * H(j, 0) + H(i, 1) * H(j, 1) + H(i, 2) * H(j, 2));
+      e(j, i) = e(i, j);
+    }
+  }
+  return e;
+}
+
+}  // namespace sandglass

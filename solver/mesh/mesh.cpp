@@ -1,0 +1,69 @@
+#include "mesh/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sandglass {
+
+namespace {
+
+/// Faces of the hexahedron, counterclockwise seen from outside.
+constexpr std::array<std::array<std::size_t, 4>, 6> local_faces{
+    {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
+
+}  // namespace
+
+std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) {
+  struct Face {
+    Quadrilateral nodes;
+    int count;
+  };
+  std::vector<Face> faces;
+  std::map<Quadrilateral, std::size_t> known;  // sorted nodes -> index in faces
+  for (const auto& cell : cells) {
+    for (const auto& local : local_faces) {
+      const Quadrilateral nodes{cell[local[0]], cell[local[1]], cell[local[2]], cell[local[3]]};
+      Quadrilateral key = nodes;
+      std::sort(key.begin(), key.end());
+      const auto [entry, is_new] = known.try_emplace(key, faces.size());
+      if (is_new) {
+        faces.push_back({nodes, 1});
+      } else {
+        ++faces[entry->second].count;
+      }
+    }
+  }
+  std::vector<Quadrilateral> boundary;
+  for (const auto& face : faces) {
+    if (face.count == 1) boundary.push_back(face.nodes);
+  }
+  return boundary;
+}
+
+std::vector<bool> boundary_nodes(const Mesh& mesh) {
+  std::vector<bool> on_boundary(mesh.points.size(), false);
+  for (const auto& face : boundary_faces(mesh.cells)) {
+    for (const int node : face) on_boundary[static_cast<std::size_t>(node)] = true;
+  }
+  return on_boundary;
+}
+
+std::array<Vector, 2> bounding_box(const NodalField& points) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  std::array<Vector, 2> box{Vector{inf, inf, inf}, Vector{-inf, -inf, -inf}};
+  for (const auto& point : points) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      box[0][i] = std::min(box[0][i], point[i]);
+      box[1][i] = std::max(box[1][i], point[i]);
+    }
+  }
+  return box;
+}
+
+double diagonal(const NodalField& points) {
+  const auto [low, high] = bounding_box(points);
+  return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+}
+
+}  // namespace sandglass

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "math/matrix.hpp"
+
+namespace sandglass {
+
+/// A point, displacement, velocity or force in space.
+using Vector = std::array<double, 3>;
+
+/// One vector per node.
+using NodalField = std::vector<Vector>;
+
+/// The eight nodes of a hexahedron, VTK order.
+using Hexahedron = std::array<int, 8>;
+
+/// Four nodes of a face, counterclockwise seen from outside.
+using Quadrilateral = std::array<int, 4>;
+
+/// Nodes and hexahedra, in the numbering that every file and table uses.
+struct Mesh {
+  NodalField points;  ///< m
+  std::vector<Hexahedron> cells;
+};
+
+/// Named sets of nodes, each sorted.
+using NodeSets = std::map<std::string, std::vector<int>>;
+
+/// The rows of a nodal field at the nodes of one element: the gather at the edge of every kernel.
+inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& cell) {
+  NodalVectors<double> rows;
+  for (int I = 0; I < 8; ++I) {
+    const Vector& row = field[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])];
+    for (int i = 0; i < 3; ++i) rows(I, i) = row[static_cast<std::size_t>(i)];
+  }
+  return rows;
+}
+
+/// Adds the rows of one element to a nodal field: the scatter at the other edge.
+inline void scatter_add(const NodalVectors<double>& rows, const Hexahedron& cell, NodalField& field) {
+  for (int I = 0; I < 8; ++I) {
+    Vector& row = field[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])];
+    for (int i = 0; i < 3; ++i) row[static_cast<std::size_t>(i)] += rows(I, i);
+  }
+}
+
+/// The faces that belong to one hexahedron only, in the order of the cells.
+std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells);
+
+/// Which nodes lie on the boundary.
+std::vector<bool> boundary_nodes(const Mesh& mesh);
+
+/// The corners of the smallest box around the points; {low, high}, m.
+std::array<Vector, 2> bounding_box(const NodalField& points);
+
+/// Length of the diagonal of the bounding box, m: the mesh's own unit for tolerances.
+double diagonal(const NodalField& points);
+
+}  // namespace sandglass

@@ -1,0 +1,35 @@
+#include "mesh/node_set.hpp"
+
+namespace sandglass {
+
+namespace {
+
+bool inside(const CylinderRegion& region, const Vector& point, double tolerance) {
+  const std::size_t first = region.axis == 0 ? 1 : 0;
+  const std::size_t second = region.axis == 2 ? 1 : 2;
+  const double a = (point[first] - region.center[0]) / (region.semi_axes[0] + tolerance);
+  const double b = (point[second] - region.center[1]) / (region.semi_axes[1] + tolerance);
+  return a * a + b * b <= 1.0;
+}
+
+bool selects(const NodeSetRule& rule, const Vector& point, double tolerance) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!rule.within[i]) continue;
+    if (point[i] < rule.within[i]->low - tolerance || point[i] > rule.within[i]->high + tolerance) return false;
+  }
+  return !rule.cylinder || inside(*rule.cylinder, point, tolerance);
+}
+
+}  // namespace
+
+std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule) {
+  const double tolerance = 1e-9 * diagonal(mesh.points);
+  std::vector<int> nodes;
+  for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+    if (rule.surface && !on_boundary[n]) continue;
+    if (selects(rule, mesh.points[n], tolerance)) nodes.push_back(static_cast<int>(n));
+  }
+  return nodes;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,55 @@
+#include "mesh/quality.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "element/hexahedron.hpp"
+
+namespace sandglass {
+
+double scaled_jacobian(const NodalVectors<double>& X) {
+  double smallest = 1.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::array<double, 3> at{corner_signs(corner, 0), corner_signs(corner, 1), corner_signs(corner, 2)};
+    Tensor<double> edges = parent_jacobian(X, at);  // columns: half edge vectors at the corner
+    for (int j = 0; j < 3; ++j) {
+      const double length = std::hypot(edges(0, j), edges(1, j), edges(2, j));
+      for (int i = 0; i < 3; ++i) edges(i, j) /= length;
+    }
+    smallest = std::min(smallest, determinant(edges));
+  }
+  return smallest;
+}
+
+double smallest_measure(const NodalVectors<double>& X) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& xi : gauss_points()) smallest = std::min(smallest, determinant(parent_jacobian(X, xi)));
+  return smallest;
+}
+
+void require_positive_jacobians(const Mesh& mesh) {
+  std::string listed;
+  int inverted = 0;
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    const auto X = gather(mesh.points, mesh.cells[e]);
+    const double measure = smallest_measure(X);
+    if (measure > 0.0) continue;
+    if (++inverted > 10) continue;
+    Vector centre{};
+    for (int I = 0; I < 8; ++I) {
+      for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
+    }
+    listed += fmt::format("\n  element {}: centre ({:.6g}, {:.6g}, {:.6g}), det J = {:.6g}", e, centre[0], centre[1],
+                          centre[2], measure);
+  }
+  if (inverted > 0) {
+    throw InputError(fmt::format(
+        "mesh: {} of {} elements are inverted; det J must be positive at all eight Gauss points; the first {}:{}",
+        inverted, mesh.cells.size(), std::min(inverted, 10), listed));
+  }
+}
+
+}  // namespace sandglass

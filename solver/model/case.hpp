@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "element/hourglass_settings.hpp"
+#include "material/laws.hpp"
+#include "mesh/generators.hpp"
+#include "mesh/node_set.hpp"
+#include "model/settings.hpp"
+
+namespace sandglass {
+
+/// A mesh read from a file, as `sandglass mesh` writes it.
+struct MeshFile {
+  std::filesystem::path path;
+};
+
+/// Displacements imposed on a node set; they follow the loading curve.
+struct ImposedDisplacement {
+  std::string set;
+  Vector value{};                               ///< final value, m
+  std::array<bool, 3> components{true, true, true};  ///< which components are imposed
+};
+
+/// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.
+struct Profile {
+  std::string set;
+  std::string order;  ///< "x", "y", "z" along an axis; "around-x", ... by angle about an axis through the centroid
+};
+
+/// A limit that `sandglass verify` holds a method to.
+struct Expectation {
+  std::string method;
+  std::string kappa = "auto";      ///< a number, "auto", or "best": the smallest figure over the case's kappas
+  std::string reference;           ///< "golden" or "truth"
+  std::string figure;              ///< "max_relative_error", "profile_relative_error" or "rms_relative_error"
+  std::optional<double> below;     ///< the figure must be at most this, fraction
+  std::optional<double> above;     ///< the figure must be more than this: the method must fail visibly
+  std::string reason;
+};
+
+/// Everything a case file says, checked key by key; what is inside is plain data.
+struct Case {
+  std::filesystem::path file;
+  std::string name;
+  std::string requirement;
+  bool quasi_static = true;  ///< else dynamic
+  std::variant<AnyGenerator, MeshFile> mesh;
+  AnyLaw law;
+  double density = 0.0;  ///< kg/m^3
+  std::vector<NodeSetRule> sets;
+  std::vector<ImposedDisplacement> displacements;
+  Vector initial_velocity{};  ///< m/s, of every free node
+  std::optional<Profile> profile;
+  RelaxationSettings relaxation;
+  DynamicsSettings dynamics;
+  std::vector<double> kappas;  ///< the curve that `sandglass verify` computes beside `auto`
+  std::vector<Expectation> expectations;
+  std::filesystem::path golden;
+  std::filesystem::path truth;
+};
+
+/// A hash of what decides the static answer: mesh recipe, law, node sets and imposed displacements. Settings, limits
+/// and words do not enter.
+std::string case_hash(const Case& scene);
+
+}  // namespace sandglass

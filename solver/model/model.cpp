@@ -1,0 +1,135 @@
+#include "model/model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/names.hpp"
+#include "element/hexahedron.hpp"
+#include "mesh/hash.hpp"
+#include "mesh/quality.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::vector<std::string> names(const NodeSets& sets) {
+  std::vector<std::string> known;
+  for (const auto& [name, nodes] : sets) known.push_back(name);
+  return known;
+}
+
+const std::vector<int>& find_set(const Case& scene, const NodeSets& sets, const std::string& key,
+                                 const std::string& name) {
+  const auto found = sets.find(name);
+  if (found == sets.end()) {
+    throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}", scene.file.string(), key, name,
+                                 suggestion(name, names(sets))));
+  }
+  return found->second;
+}
+
+/// Node and component -> value; a second value must equal the first.
+std::vector<Constraint> make_constraints(const Case& scene, const NodeSets& sets) {
+  struct Origin {
+    double value;
+    std::string set;
+  };
+  std::map<std::pair<int, int>, Origin> imposed;
+  for (const auto& displacement : scene.displacements) {
+    for (const int node : find_set(scene, sets, "displacement.set", displacement.set)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!displacement.components[i]) continue;
+        const double value = displacement.value[i];
+        const auto [entry, is_new] =
+            imposed.try_emplace({node, static_cast<int>(i)}, Origin{value, displacement.set});
+        if (!is_new && entry->second.value != value) {
+          throw InputError(fmt::format(
+              "{}: node {} is given two displacements in {}: {} by set '{}' and {} by set '{}'; a node may be in two "
+              "sets only if both impose the same value",
+              scene.file.string(), node, "xyz"[i], entry->second.value, entry->second.set, value, displacement.set));
+        }
+      }
+    }
+  }
+  std::vector<Constraint> constraints;
+  for (const auto& [key, origin] : imposed) constraints.push_back({key.first, key.second, origin.value});
+  return constraints;
+}
+
+}  // namespace
+
+Mesh generate_mesh(const AnyGenerator& generator) {
+  return std::visit([](const auto& g) { return g.build(); }, generator);
+}
+
+Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file) {
+  Scene scene{.description = std::move(description),
+              .mesh = std::move(mesh),
+              .sets = std::move(sets_of_file),
+              .constraints = {},
+              .case_hash = {},
+              .mesh_hash = {}};
+  const std::string file = scene.description.file.string();
+  try {
+    require_positive_jacobians(scene.mesh);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+  const auto on_boundary = boundary_nodes(scene.mesh);
+  for (const auto& rule : scene.description.sets) {
+    auto nodes = select_nodes(scene.mesh, on_boundary, rule);
+    if (nodes.empty()) {
+      throw InputError(fmt::format(
+          "{}: sets.{} selects no node; its rule must hold for at least one of the {} nodes of the mesh", file,
+          rule.name, scene.mesh.points.size()));
+    }
+    scene.sets[rule.name] = std::move(nodes);
+  }
+  if (scene.description.profile) {
+    find_set(scene.description, scene.sets, "profile.set", scene.description.profile->set);
+  }
+  scene.constraints = make_constraints(scene.description, scene.sets);
+  scene.case_hash = case_hash(scene.description);
+  scene.mesh_hash = mesh_hash(scene.mesh, scene.sets);
+  return scene;
+}
+
+double largest_imposed(const Scene& scene) {
+  double largest = 0.0;
+  for (const auto& displacement : scene.description.displacements) {
+    const auto& d = displacement.value;
+    largest = std::max(largest, std::hypot(d[0], d[1], d[2]));
+  }
+  return largest;
+}
+
+Model::Model(const Scene& scene, MethodChoice choice)
+    : scene_(scene),
+      choice_(std::move(choice)),
+      internal_force_(
+          make_internal_force(scene.mesh, choice_.method, scene.description.law, HourglassSettings{choice_.kappa})),
+      masses_(scene.mesh.points.size(), 0.0) {
+  element_masses_.reserve(scene.mesh.cells.size());
+  for (const auto& cell : scene.mesh.cells) {
+    const double mass = scene.description.density * mean_gradient(gather(scene.mesh.points, cell)).volume;
+    element_masses_.push_back(mass);
+    for (const int node : cell) masses_[static_cast<std::size_t>(node)] += mass / 8.0;
+  }
+}
+
+void Model::impose(double factor, NodalField& u) const {
+  for (const auto& [node, component, value] : scene_.constraints) {
+    u[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = factor * value;
+  }
+}
+
+void Model::clear_constrained(NodalField& field) const {
+  for (const auto& [node, component, value] : scene_.constraints) {
+    field[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = 0.0;
+  }
+}
+
+}  // namespace sandglass

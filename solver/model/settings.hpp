@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <tuple>
+
+#include "base/parameter.hpp"
+
+namespace sandglass {
+
+/// How a quasi-static answer is found: ramp of the imposed displacements, then adaptive dynamic relaxation.
+struct RelaxationSettings {
+  double tolerance = 1e-8;
+  int ramp_steps = 0;
+  int max_steps = 200000;
+  double step_fraction = 0.9;
+  int check_interval = 50;
+  int frames = 10;
+
+  static constexpr auto parameters() {
+    using S = RelaxationSettings;
+    return std::tuple{
+        Parameter{&S::tolerance, "tolerance", "-", Range::positive(),
+                  "stop when |residual| / |reaction| falls below this", false},
+        Parameter{&S::ramp_steps, "ramp_steps", "-", Range::at_least(0),
+                  "steps of the ramp; 0 chooses them from shear wave speed and imposed displacement", false},
+        Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1), "give up after this many steps", false},
+        Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},
+                  "pseudo time step over the stable one", false},
+        Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
+                  "steps between checks for inversion, divergence and stiffening", false},
+        Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written during the ramp", false}};
+  }
+};
+
+/// How a dynamic answer is found: central differences with unscaled masses.
+struct DynamicsSettings {
+  double duration = 0.0;
+  double ramp_time = 0.0;
+  double time_step = 0.0;
+  double step_fraction = 0.9;
+  double damping = 0.0;
+  int check_interval = 20;
+  int frames = 20;
+
+  static constexpr auto parameters() {
+    using S = DynamicsSettings;
+    return std::tuple{
+        Parameter{&S::duration, "duration", "s", Range::positive(), "simulated time"},
+        Parameter{&S::ramp_time, "ramp_time", "s", Range::at_least(0.0),
+                  "time in which imposed displacements reach their value; 0 means the whole duration", false},
+        Parameter{&S::time_step, "time_step", "s", Range::at_least(0.0),
+                  "fixed step; refused above the stable one; 0 chooses step_fraction of the stable one", false},
+        Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},
+                  "chosen step over the stable one", false},
+        Parameter{&S::damping, "damping", "1/s", Range::at_least(0.0), "mass-proportional damping", false},
+        Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
+                  "steps between checks for inversion, divergence and stiffening", false},
+        Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written, beside the initial one", false}};
+  }
+};
+
+}  // namespace sandglass

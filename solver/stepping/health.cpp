@@ -1,0 +1,32 @@
+#include "stepping/health.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace sandglass {
+
+void require_healthy(const Model& model, const NodalField& u, long step) {
+  std::vector<double> jacobians(model.scene().mesh.cells.size());
+  model.internal_force().smallest_jacobians(u, jacobians);
+  std::string listed;
+  int ill = 0;
+  bool finite = true;
+  for (std::size_t e = 0; e < jacobians.size(); ++e) {
+    if (jacobians[e] > 0.0) continue;  // false for NaN too
+    finite = finite && std::isfinite(jacobians[e]);
+    if (++ill <= 10) listed += fmt::format("\n  element {}: det F = {:.4g}", e, jacobians[e]);
+  }
+  if (ill == 0) return;
+  throw ComputationError(fmt::format(
+      "step {}: {} of {} elements {}; det F must be positive; the first {}:{}\n"
+      "remedy: {}",
+      step, ill, jacobians.size(), finite ? "are inverted" : "hold no finite number any more", std::min(ill, 10), listed,
+      finite ? "impose less displacement or more slowly (ramp_steps, ramp_time), refine the mesh, or use an hourglass "
+               "control (method tl-perturbation or tl-mean-dilatation)"
+             : "take a smaller step (step_fraction, time_step) or check more often (check_interval)"));
+}
+
+}  // namespace sandglass

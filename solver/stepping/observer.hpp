@@ -1,0 +1,35 @@
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace sandglass {
+
+/// One row of the dense history.
+struct HistoryRow {
+  double time;           ///< s; relative time of the ramp in quasi-static runs, growing beyond 1 while relaxing
+  double kinetic;        ///< J; of the scaled masses in quasi-static runs
+  double strain;         ///< J
+  double hourglass;      ///< J
+  double external_work;  ///< J, done by the imposed displacements
+  double residual;       ///< |force on free components| / |force on constrained components|, -
+  double step_size;      ///< s; in quasi-static runs a share of the ramp
+};
+
+/// What a stepper tells while it runs. The base class listens to nothing.
+class Observer {
+ public:
+  Observer() = default;
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
+  virtual ~Observer() = default;
+
+  /// A state worth keeping: displacements (m) and velocities (m/s) that belong to the same time.
+  virtual void frame(double /*time*/, const NodalField& /*u*/, const NodalField& /*v*/) {}
+
+  virtual void history(const HistoryRow& /*row*/) {}
+
+  /// Called at every check with the share of the work done; returning false ends the run cleanly.
+  virtual bool proceed(long /*step*/, double /*share*/, double /*residual*/) { return true; }
+};
+
+}  // namespace sandglass
