@@ -10,7 +10,8 @@ void add_cases_command(CLI::App& app) {
   app.add_subcommand("cases", "list the canonical cases, one line each")->callback([] {
     for (const auto& file : canonical_cases()) {
       const Case scene = read_case_file(file);
-      fmt::print("{:<24} {:<12} {}\n", scene.name, scene.quasi_static ? "quasi-static" : "dynamic", scene.requirement);
+      fmt::print("{:<24} {:<12} {}\n", scene.name, scene.quasi_static ? "quasi-static" : "dynamic",
+                 scene.requirement);
     }
   });
 }

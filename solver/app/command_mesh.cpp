@@ -27,8 +27,8 @@ void add_mesh_command(CLI::App& app) {
     for (const auto& cell : scene.mesh.cells) {
       quality = std::min(quality, scaled_jacobian(gather(scene.mesh.points, cell)));
     }
-    fmt::print("{}: {} nodes, {} elements, smallest scaled Jacobian {:.3f}\n", options->output, scene.mesh.points.size(),
-               scene.mesh.cells.size(), quality);
+    fmt::print("{}: {} nodes, {} elements, smallest scaled Jacobian {:.3f}\n", options->output,
+               scene.mesh.points.size(), scene.mesh.cells.size(), quality);
     for (const auto& [name, nodes] : scene.sets) fmt::print("  set {}: {} nodes\n", name, nodes.size());
   });
 }

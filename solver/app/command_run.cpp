@@ -7,6 +7,7 @@
 #include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "app/workspace.hpp"
+#include "base/error.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
@@ -52,24 +53,41 @@ class RunObserver final : public Observer {
 std::string kappa_text(const Model& model) {
   const auto& choice = model.choice();
   if (!takes_kappa(choice.method)) return "";
-  const double value = choice.kappa.value_or(auto_kappa(choice.method, model.scene().description.law).value_or(0.0));
+  const double value =
+      choice.kappa.value_or(auto_kappa(choice.method, model.scene().description.law).value_or(0.0));
   return fmt::format("{:.6g}{}", value, choice.kappa ? "" : " (auto)");
 }
 
 Provenance provenance(const Model& model) {
   Provenance attributes = build_provenance();
-  attributes.insert(attributes.end(),
-                    {{"method", model.choice().method}, {"kappa", kappa_text(model)}, {"precision", "double"}});
+  attributes.insert(
+      attributes.end(),
+      {{"method", model.choice().method}, {"kappa", kappa_text(model)}, {"precision", "double"}});
   return attributes;
 }
 
-void print_energies(const HistoryRow& row) {
-  fmt::print("energies (J): strain {:.6g}, hourglass {:.6g}, work of the imposed displacements {:.6g}\n", row.strain,
-             row.hourglass, row.external_work);
+void print_energies(const Scene& scene, const HistoryRow& row) {
+  fmt::print("energies (J): strain {:.6g}, hourglass {:.6g}", row.strain, row.hourglass);
+  // In a relaxation part of the external work is damped away, so that there its sum tells nothing.
+  if (!scene.description.quasi_static) {
+    fmt::print(", kinetic {:.6g}, work of the imposed displacements {:.6g}", row.kinetic, row.external_work);
+  }
+  fmt::print("\n");
+}
+
+/// The references of a scene; one that belongs to another case is told, not fatal: a case may be edited and
+/// run.
+References references_to_show(const Scene& scene) {
+  try {
+    return read_references(scene);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "note: not compared: {}\n", error.what());
+    return {};
+  }
 }
 
 void print_accuracy(const Scene& scene, const NodalField& u) {
-  const References references = read_references(scene);
+  const References references = references_to_show(scene);
   const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
   const auto print = [&](const char* name, const std::optional<NodalField>& reference) {
     if (!reference) return;
@@ -109,14 +127,15 @@ int run_case(const RunOptions& options) {
       steps = motion.steps;
       seconds = motion.seconds;
       status = motion.interrupted ? fmt::format("interrupted at step {}", steps) : "complete";
-      fmt::print("{} {} {}: {} s in {} steps of at least {:.4g} s, {}\n", scene.description.name, options.method,
-                 kappa_text(model), motion.time, steps, motion.smallest_step, status);
+      fmt::print("{} {} {}: {} s in {} steps of at least {:.4g} s, {}\n", scene.description.name,
+                 options.method, kappa_text(model), motion.time, steps, motion.smallest_step, status);
     }
-    print_energies(observer.last());
+    print_energies(scene, observer.last());
     if (scene.description.quasi_static && status == "complete") print_accuracy(scene, u);
   }
   fmt::print("wall time {:.3g} s, {:.4g} ns per element and step\n", seconds,
-             1e9 * seconds / static_cast<double>(std::max(steps, 1L)) / static_cast<double>(scene.mesh.cells.size()));
+             1e9 * seconds / static_cast<double>(std::max(steps, 1L)) /
+                 static_cast<double>(scene.mesh.cells.size()));
   if (writer) {
     writer->commit(status);
     fmt::print("wrote {}\n", options.output);
@@ -134,10 +153,14 @@ void add_run_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "compute a case with a method");
   command->add_option("CASE", options->name, "name or file of the case");
-  command->add_option("-m,--method", options->method, "method, see `sandglass methods`")->capture_default_str();
-  command->add_option("-k,--kappa", options->kappa, "hourglass stiffness, a number or 'auto'")->capture_default_str();
-  command->add_option("-o,--output", options->output, "result file (HDF5; an XDMF file for ParaView goes beside it)");
-  command->add_flag("--describe", options->describe, "print every key of a case file with unit, range and meaning");
+  command->add_option("-m,--method", options->method, "method, see `sandglass methods`")
+      ->capture_default_str();
+  command->add_option("-k,--kappa", options->kappa, "hourglass stiffness, a number or 'auto'")
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output,
+                      "result file (HDF5; an XDMF file for ParaView goes beside it)");
+  command->add_flag("--describe", options->describe,
+                    "print every key of a case file with unit, range and meaning");
   command->callback([options, &exit_code] {
     if (options->describe) {
       fmt::print("{}", describe_case_keys());

@@ -77,8 +77,9 @@ std::vector<Task> make_tasks(const std::deque<Subject>& subjects) {
 void write_result(const Task& task, const NodalField& u, const std::string& folder) {
   const Model model(task.subject->scene, task.choice);
   const std::string kappa = task.choice.kappa ? fmt::format(".{}", *task.choice.kappa) : "";
-  const auto path = std::filesystem::path(folder) /
-                    fmt::format("{}.{}{}.h5", task.subject->scene.description.name, task.choice.method, kappa);
+  const auto path =
+      std::filesystem::path(folder) /
+      fmt::format("{}.{}{}.h5", task.subject->scene.description.name, task.choice.method, kappa);
   ResultWriter writer(model, path, build_provenance());
   const NodalField rest(u.size());
   writer.frame(0.0, rest, rest);
@@ -86,7 +87,8 @@ void write_result(const Task& task, const NodalField& u, const std::string& fold
   writer.commit("complete");
 }
 
-/// Runs all tasks on a few threads. Every run is by itself and deterministic; only their order in time is not.
+/// Runs all tasks on a few threads. Every run is by itself and deterministic; only their order in time is
+/// not.
 std::vector<Verdict> run_tasks(const std::vector<Task>& tasks, const VerifyOptions& options) {
   std::vector<Verdict> verdicts(tasks.size());
   std::vector<NodalField> answers(tasks.size());
@@ -98,7 +100,8 @@ std::vector<Verdict> run_tasks(const std::vector<Task>& tasks, const VerifyOptio
       ++done;
     }
   };
-  const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const int wanted =
+      options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   std::vector<std::jthread> threads;
   for (int t = 0; t < std::max(wanted, 1); ++t) threads.emplace_back(work);
   Progress progress("verify");
@@ -129,15 +132,17 @@ std::string percents(const std::optional<Accuracy>& accuracy) {
 }
 
 void print_verdicts(const std::vector<Verdict>& verdicts) {
-  fmt::print("errors in % of the imposed displacement: max over all nodes, max over the profile, rms\n"
-             "{:<22}{:<20}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
-             "case", "method", "kappa", "against the golden", "against the truth", "hg/int%", "steps", "residual", "wall s",
-             "ns/el", "status");
+  fmt::print(
+      "errors in % of the imposed displacement: max over all nodes, max over the profile, rms\n"
+      "{:<22}{:<20}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
+      "case", "method", "kappa", "against the golden", "against the truth", "hg/int%", "steps", "residual",
+      "wall s", "ns/el", "status");
   for (const auto& v : verdicts) {
-    const std::string kappa = v.kappa ? fmt::format("{}{:.4g}", v.kappa_is_auto ? "auto " : "", *v.kappa) : "";
-    fmt::print("{:<22}{:<20}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method, kappa,
-               percents(v.golden), percents(v.truth), percent(v.hourglass_energy_ratio), v.steps, v.residual,
-               v.wall_seconds, v.ns_per_element_step, v.status);
+    const std::string kappa =
+        v.kappa ? fmt::format("{}{:.4g}", v.kappa_is_auto ? "auto " : "", *v.kappa) : "";
+    fmt::print("{:<22}{:<20}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method,
+               kappa, percents(v.golden), percents(v.truth), percent(v.hourglass_energy_ratio), v.steps,
+               v.residual, v.wall_seconds, v.ns_per_element_step, v.status);
   }
 }
 
@@ -147,10 +152,11 @@ void print_limits(const std::vector<LimitCheck>& limits) {
   for (const auto& check : limits) {
     const auto& e = check.expectation;
     const std::string found = check.figure ? fmt::format("{} %", percent(check.figure)) : "no figure";
-    const std::string at = check.kappa && e.kappa == "best" ? fmt::format(" (kappa {:.4g})", *check.kappa) : "";
-    fmt::print("{} {} {} kappa {}: {} against the {} = {}{}, must be {} {} %\n", check.holds ? "holds " : "BROKEN",
-               check.case_name, e.method, e.kappa, e.figure, e.reference, found, at, e.below ? "at most" : "above",
-               percent(e.below ? e.below : e.above));
+    const std::string at =
+        check.kappa && e.kappa == "best" ? fmt::format(" (kappa {:.4g})", *check.kappa) : "";
+    fmt::print("{} {} {} kappa {}: {} against the {} = {}{}, must be {} {} %\n",
+               check.holds ? "holds " : "BROKEN", check.case_name, e.method, e.kappa, e.figure, e.reference,
+               found, at, e.below ? "at most" : "above", percent(e.below ? e.below : e.above));
   }
 }
 
@@ -173,7 +179,8 @@ int verify(const VerifyOptions& options) {
 
 void add_verify_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command = app.add_subcommand("verify", "all methods against the references; exit code 1 when a limit is broken");
+  CLI::App* command =
+      app.add_subcommand("verify", "all methods against the references; exit code 1 when a limit is broken");
   command->add_option("CASE", options->names, "names or files of cases; all canonical ones when left out");
   command->add_option("--json", options->json, "write every figure to this file");
   command->add_option("--results", options->results, "write the final state of every run to this folder");

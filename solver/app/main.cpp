@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <fmt/format.h>
-
 #include <exception>
 
 #include "app/build_info.hpp"
@@ -17,8 +17,10 @@ enum ExitCode { ok = 0, limit_broken = 1, bad_input = 2, computation_failed = 3 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Sandglass: explicit Total Lagrangian hexahedra with hourglass control, measured against a mixed reference.\n"
-               "Exit codes: 0 ok, 1 a limit is broken, 2 bad usage or input, 3 the computation failed."};
+  CLI::App app{
+      "Sandglass: explicit Total Lagrangian hexahedra with hourglass control, measured against a mixed "
+      "reference.\n"
+      "Exit codes: 0 ok, 1 a limit is broken, 2 bad usage or input, 3 the computation failed."};
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("sandglass {} ({})", sandglass::build_info::version,
                                                 sandglass::build_info::revision));

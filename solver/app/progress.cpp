@@ -39,12 +39,17 @@ void Progress::show(double share, const std::string& remark) {
   }
   constexpr int width = 30;
   const int full = std::clamp(static_cast<int>(share * width), 0, width);
-  fmt::print(stderr, "\r\x1b[K{} [{:=<{}}{:<{}}] {:3.0f} % {}", title_, "", full, "", width - full, 100.0 * share, remark);
+  fmt::print(stderr, "\r\x1b[K{} [{:=<{}}{:<{}}] {:3.0f} % {}", title_, "", full, "", width - full,
+             100.0 * share, remark);
   std::fflush(stderr);
 }
 
-void watch_for_interrupt() { std::signal(SIGINT, note_interrupt); }
+void watch_for_interrupt() {
+  std::signal(SIGINT, note_interrupt);
+}
 
-bool interrupted() { return interrupt_seen != 0; }
+bool interrupted() {
+  return interrupt_seen != 0;
+}
 
 }  // namespace sandglass

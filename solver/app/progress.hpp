@@ -5,8 +5,8 @@
 
 namespace sandglass {
 
-/// Shows how far long work is: a bar that redraws itself on a terminal, a plain line every few seconds elsewhere.
-/// Everything goes to standard error.
+/// Shows how far long work is: a bar that redraws itself on a terminal, a plain line every few seconds
+/// elsewhere. Everything goes to standard error.
 class Progress {
  public:
   explicit Progress(std::string title);

@@ -26,7 +26,8 @@ std::vector<fs::path> canonical_cases() {
   for (const auto& entry : fs::directory_iterator(case_folder(), error)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
-  if (error) throw InputError(fmt::format("{}: cannot list the cases: {}", case_folder().string(), error.message()));
+  if (error)
+    throw InputError(fmt::format("{}: cannot list the cases: {}", case_folder().string(), error.message()));
   std::sort(files.begin(), files.end());
   return files;
 }

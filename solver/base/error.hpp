@@ -11,8 +11,8 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The computation failed: it diverged, an element inverted, or it was interrupted. The command line exits with 3.
-/// The text names the step, the element and a remedy.
+/// The computation failed: it diverged, an element inverted, or it was interrupted. The command line exits
+/// with 3. The text names the step, the element and a remedy.
 class ComputationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -31,9 +31,9 @@ struct Range {
   static constexpr Range any() { return {}; }
 };
 
-/// The declaration of one parameter: where it lives, its name, unit, range and meaning. The reader of case files,
-/// the writer of help and the tests all iterate these declarations; there is no second place.
-/// An `Owner` lists its own in a static function `parameters()` that returns a tuple of them.
+/// The declaration of one parameter: where it lives, its name, unit, range and meaning. The reader of case
+/// files, the writer of help and the tests all iterate these declarations; there is no second place. An
+/// `Owner` lists its own in a static function `parameters()` that returns a tuple of them.
 template <class Owner, class Value>
 struct Parameter {
   Value Owner::*member;
@@ -43,5 +43,10 @@ struct Parameter {
   std::string_view meaning;
   bool required = true;  ///< when false, the member's initial value is the default
 };
+
+// Clang up to 16 does not deduce the arguments of an aggregate by itself.
+template <class Owner, class Value>
+Parameter(Value Owner::*, std::string_view, std::string_view, Range, std::string_view, bool = true)
+    -> Parameter<Owner, Value>;
 
 }  // namespace sandglass

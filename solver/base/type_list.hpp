@@ -8,8 +8,8 @@
 
 namespace sandglass {
 
-/// A list of types, each with a static `name` and `summary`. Laws, methods and mesh generators are such lists:
-/// everything that must know all of them iterates the list, so that a new entry is one line.
+/// A list of types, each with a static `name` and `summary`. Laws, methods and mesh generators are such
+/// lists: everything that must know all of them iterates the list, so that a new entry is one line.
 template <class... Types>
 struct TypeList {};
 
@@ -19,7 +19,8 @@ constexpr void for_each_type(TypeList<Types...> /*list*/, Visitor&& visit) {
   (visit.template operator()<Types>(), ...);
 }
 
-/// Calls `visit.template operator()<Type>()` for the type whose `name` is `name`; returns whether there is one.
+/// Calls `visit.template operator()<Type>()` for the type whose `name` is `name`; returns whether there is
+/// one.
 template <class... Types, class Visitor>
 bool with_named_type(TypeList<Types...> /*list*/, std::string_view name, Visitor&& visit) {
   return ((Types::name == name && (visit.template operator()<Types>(), true)) || ...);

@@ -5,7 +5,8 @@
 
 namespace sandglass {
 
-Accuracy accuracy(const NodalField& u, const NodalField& reference, const std::vector<int>* profile, double unit) {
+Accuracy accuracy(const NodalField& u, const NodalField& reference, const std::vector<int>* profile,
+                  double unit) {
   const auto distance = [&](std::size_t n) {
     return std::hypot(u[n][0] - reference[n][0], u[n][1] - reference[n][1], u[n][2] - reference[n][2]);
   };

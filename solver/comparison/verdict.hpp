@@ -16,7 +16,8 @@ struct References {
   std::optional<NodalField> truth;
 };
 
-/// Reads the scene's golden and truth where they exist. Throws InputError when one exists but belongs to another case.
+/// Reads the scene's golden and truth where they exist. Throws InputError when one exists but belongs to
+/// another case.
 References read_references(const Scene& scene);
 
 /// What came of one method on one case.

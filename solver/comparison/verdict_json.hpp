@@ -8,8 +8,8 @@
 
 namespace sandglass {
 
-/// verdicts.json: provenance once at the top, one record per (case, method, kappa, precision), one entry per limit.
-/// Figures that do not exist are null.
+/// verdicts.json: provenance once at the top, one record per (case, method, kappa, precision), one entry per
+/// limit. Figures that do not exist are null.
 std::string to_json(const Provenance& provenance, const std::vector<Verdict>& verdicts,
                     const std::vector<LimitCheck>& limits);
 

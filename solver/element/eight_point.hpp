@@ -12,8 +12,9 @@ T volume_average(const std::array<T, 8>& values, const Element& element) {
   return sum / element.V;
 }
 
-/// The hexahedron with 2x2x2 Gauss points. Pressure is a policy: `PointPressure` gives the displacement element, which
-/// locks as nu -> 1/2; `MeanPressure` the mean-dilatation element, the explicit twin of the mixed Q1-P0 element.
+/// The hexahedron with 2x2x2 Gauss points. Pressure is a policy: `PointPressure` gives the displacement
+/// element, which locks as nu -> 1/2; `MeanPressure` the mean-dilatation element, the explicit twin of the
+/// mixed Q1-P0 element.
 template <class Pressure>
 struct EightPoint {
   template <class T>
@@ -59,7 +60,8 @@ struct EightPoint {
 
   /// Strain energy (J).
   template <class T, class Law>
-  static T energy(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element, const Law& law) {
+  static T energy(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element,
+                  const Law& law) {
     const auto dilatation = Pressure::dilatations(point_dilatations(u, element), element);
     T W = T(0);
     for (std::size_t q = 0; q < 8; ++q) {
@@ -82,8 +84,8 @@ struct EightPoint {
     return T(1) + volume_average(point_dilatations(u, element), element);
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u: the points' bounds add up, and the
-  /// stiffness of a pressure that is one for the element acts on one mean spatial gradient.
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u: the points' bounds add up,
+  /// and the stiffness of a pressure that is one for the element acts on one mean spatial gradient.
   template <class T, class Law>
   static T stiffness_bound(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element,
                            const Law& law) {
@@ -132,8 +134,8 @@ struct PointPressure {
   }
 };
 
-/// One pressure from the element's volume change: Jbar - 1 = (1/V) sum_q w_q (J_q - 1). It is the Q1-P0 mixed element
-/// with its pressure eliminated.
+/// One pressure from the element's volume change: Jbar - 1 = (1/V) sum_q w_q (J_q - 1). It is the Q1-P0 mixed
+/// element with its pressure eliminated.
 struct MeanPressure {
   static constexpr bool shared = true;
   template <class T, class Element>

@@ -24,11 +24,13 @@ struct Formulation {
   };
 
   /// The constants of an element with reference coordinates X (m).
-  static Element<double> precompute(const NodalVectors<double>& X, const Law& law, const HourglassSettings& settings) {
+  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
+                                    const HourglassSettings& settings) {
     return {Kinematics::precompute(X), Hourglass::precompute(X, law, settings)};
   }
 
-  /// Internal nodal forces (N) at the nodal displacements u (m): the derivative of the energy with respect to u.
+  /// Internal nodal forces (N) at the nodal displacements u (m): the derivative of the energy with respect to
+  /// u.
   template <class T>
   static NodalVectors<T> force(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
     const Tensor<T> H = Kinematics::mean_gradient(u, element.body);
@@ -57,7 +59,8 @@ struct Formulation {
   template <class T>
   static T stiffness_bound(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
     const Tensor<T> H = Kinematics::mean_gradient(u, element.body);
-    return Kinematics::stiffness_bound(u, H, element.body, law) + Hourglass::stiffness_bound(element.hourglass);
+    return Kinematics::stiffness_bound(u, H, element.body, law) +
+           Hourglass::stiffness_bound(element.hourglass);
   }
 };
 

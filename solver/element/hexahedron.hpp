@@ -4,16 +4,16 @@
 
 #include "math/matrix.hpp"
 
-/// Geometry of the trilinear hexahedron: nodes in VTK order, shape functions, hourglass base vectors, mean gradients.
-/// Set-up only, in double; kernels meet the results.
+/// Geometry of the trilinear hexahedron: nodes in VTK order, shape functions, hourglass base vectors, mean
+/// gradients. Set-up only, in double; kernels meet the results.
 namespace sandglass {
 
 /// Parent coordinates (xi, eta, zeta) of the eight nodes, VTK order.
 inline constexpr NodalVectors<double> corner_signs{{-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,  //
                                                     -1, -1, 1,  1, -1, 1,  1, 1, 1,  -1, 1, 1}};
 
-/// Hourglass base vectors Gamma_Ia of Flanagan and Belytschko 1981: the nodal values of eta zeta, xi zeta, xi eta and
-/// xi eta zeta.
+/// Hourglass base vectors Gamma_Ia of Flanagan and Belytschko 1981: the nodal values of eta zeta, xi zeta, xi
+/// eta and xi eta zeta.
 constexpr Matrix<double, 8, 4> hourglass_base_vectors() {
   Matrix<double, 8, 4> Gamma;
   for (int I = 0; I < 8; ++I) {
@@ -47,7 +47,8 @@ constexpr std::array<std::array<double, 3>, 8> gauss_points() {
   constexpr double g = 0.57735026918962576451;  // 1/sqrt(3)
   std::array<std::array<double, 3>, 8> points{};
   for (int q = 0; q < 8; ++q) {
-    for (int i = 0; i < 3; ++i) points[static_cast<std::size_t>(q)][static_cast<std::size_t>(i)] = g * corner_signs(q, i);
+    for (int i = 0; i < 3; ++i)
+      points[static_cast<std::size_t>(q)][static_cast<std::size_t>(i)] = g * corner_signs(q, i);
   }
   return points;
 }
@@ -68,14 +69,16 @@ constexpr PointGradient point_gradient(const NodalVectors<double>& X, const std:
   return {parent_gradient(xi) * inverse(jacobian), determinant(jacobian)};
 }
 
-/// The uniform strain hexahedron: mean gradients h_Ii = B_Ii / V (1/m) and exact volume V (m^3); paper, eq. 1.
+/// The uniform strain hexahedron: mean gradients h_Ii = B_Ii / V (1/m) and exact volume V (m^3); paper,
+/// eq. 1.
 struct MeanGradient {
   NodalVectors<double> h;
   double volume;
 };
 
 /// B_Ii = integral of dN_I/dX_i over the element. 2x2x2 Gauss integrates it and V exactly, for the integrands
-/// dN/dX det(dX/dxi) are quadratic in each parent coordinate; gradients at the centre would fail the patch test.
+/// dN/dX det(dX/dxi) are quadratic in each parent coordinate; gradients at the centre would fail the patch
+/// test.
 constexpr MeanGradient mean_gradient(const NodalVectors<double>& X) {
   NodalVectors<double> B;
   double V = 0.0;
@@ -87,8 +90,10 @@ constexpr MeanGradient mean_gradient(const NodalVectors<double>& X) {
   return {(1.0 / V) * B, V};
 }
 
-/// Hourglass shape vectors gamma_Ia = Gamma_Ia - h_Ii X_Ji Gamma_Ja, orthogonal to every linear field; paper, eq. 2.
-constexpr Matrix<double, 8, 4> hourglass_shape_vectors(const NodalVectors<double>& X, const NodalVectors<double>& h) {
+/// Hourglass shape vectors gamma_Ia = Gamma_Ia - h_Ii X_Ji Gamma_Ja, orthogonal to every linear field; paper,
+/// eq. 2.
+constexpr Matrix<double, 8, 4> hourglass_shape_vectors(const NodalVectors<double>& X,
+                                                       const NodalVectors<double>& h) {
   constexpr auto Gamma = hourglass_base_vectors();
   return Gamma - h * (transpose(X) * Gamma);
 }

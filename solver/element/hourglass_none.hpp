@@ -19,7 +19,8 @@ struct NoHourglassControl {
   }
 
   template <class T>
-  static NodalVectors<T> force(const NodalVectors<T>& /*u*/, const Tensor<T>& /*H*/, const Element<T>& /*element*/) {
+  static NodalVectors<T> force(const NodalVectors<T>& /*u*/, const Tensor<T>& /*H*/,
+                               const Element<T>& /*element*/) {
     return {};
   }
 

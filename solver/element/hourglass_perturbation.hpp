@@ -9,8 +9,9 @@
 
 namespace sandglass {
 
-/// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (paper, eqs 2-14).
-/// gamma is orthogonal to linear fields, so rigid motions and uniform strains feel no force, however large.
+/// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (paper, eqs
+/// 2-14). gamma is orthogonal to linear fields, so rigid motions and uniform strains feel no force, however
+/// large.
 struct PerturbationHourglassControl {
   static constexpr bool takes_kappa = true;
 
@@ -20,8 +21,8 @@ struct PerturbationHourglassControl {
     T k;                    ///< stiffness of the modes, N/m (eq. 12)
   };
 
-  /// kappa = E / (9 (lambda + 2 mu)): with it a cube bends with its exact energy at every Poisson's ratio, where a fixed
-  /// kappa locks as nu -> 1/2 because lambda + 2 mu does.
+  /// kappa = E / (9 (lambda + 2 mu)): with it a cube bends with its exact energy at every Poisson's ratio,
+  /// where a fixed kappa locks as nu -> 1/2 because lambda + 2 mu does.
   template <class Law>
   static double auto_kappa(const Law& law) {
     const double mu = law.shear_modulus();
@@ -31,9 +32,10 @@ struct PerturbationHourglassControl {
   }
 
   template <class Law>
-  static Element<double> precompute(const NodalVectors<double>& X, const Law& law, const HourglassSettings& settings) {
+  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
+                                    const HourglassSettings& settings) {
     const MeanGradient mean = mean_gradient(X);
-    const double P_modulus = lame_lambda(law) + 2.0 * law.shear_modulus();  // rho c_D^2, eq. 9
+    const double P_modulus = lame_lambda(law) + 2.0 * law.shear_modulus();      // rho c_D^2, eq. 9
     const double K_max = mean.volume * P_modulus * double_dot(mean.h, mean.h);  // eqs 6-8
     const double kappa = settings.kappa.value_or(auto_kappa(law));
     return {hourglass_shape_vectors(X, mean.h), kappa * K_max / 8.0};
@@ -53,7 +55,8 @@ struct PerturbationHourglassControl {
     return T(0.5) * element.k * double_dot(q, q);
   }
 
-  /// k lambda_max(gamma^T gamma) in N/m, the eigenvalue bounded by the largest sum of absolute values in a row.
+  /// k lambda_max(gamma^T gamma) in N/m, the eigenvalue bounded by the largest sum of absolute values in a
+  /// row.
   template <class T>
   static T stiffness_bound(const Element<T>& element) {
     const Matrix<T, 4, 4> product = transpose(element.gamma) * element.gamma;

@@ -13,7 +13,8 @@ namespace sandglass {
 
 struct TlNone {
   static constexpr std::string_view name = "tl-none";
-  static constexpr std::string_view summary = "one point, Total Lagrangian, no hourglass control: fails visibly";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, no hourglass control: fails visibly";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = NoHourglassControl;
@@ -21,7 +22,8 @@ struct TlNone {
 
 struct TlPerturbation {
   static constexpr std::string_view name = "tl-perturbation";
-  static constexpr std::string_view summary = "one point, Total Lagrangian, perturbation hourglass control (the paper)";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, perturbation hourglass control (the paper)";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = PerturbationHourglassControl;
@@ -37,14 +39,15 @@ struct TlFull {
 
 struct TlMeanDilatation {
   static constexpr std::string_view name = "tl-mean-dilatation";
-  static constexpr std::string_view summary = "eight points, one pressure per element: the golden's own element";
+  static constexpr std::string_view summary =
+      "eight points, one pressure per element: the golden's own element";
   static constexpr int integration_points = 8;
   using Kinematics = EightPoint<MeanPressure>;
   using Hourglass = NoHourglassControl;
 };
 
-/// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests, tables,
-/// benchmarks and charts iterate the list.
+/// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
+/// tables, benchmarks and charts iterate the list.
 using Methods = TypeList<TlNone, TlPerturbation, TlFull, TlMeanDilatation>;
 
 /// A method with a law: the element that the assembly runs.

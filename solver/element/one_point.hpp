@@ -6,7 +6,8 @@
 
 namespace sandglass {
 
-/// The uniform strain hexahedron in the Total Lagrangian formulation: one stress from the mean displacement gradient.
+/// The uniform strain hexahedron in the Total Lagrangian formulation: one stress from the mean displacement
+/// gradient.
 struct OnePoint {
   /// What is constant in time.
   template <class T>
@@ -36,13 +37,15 @@ struct OnePoint {
 
   /// Strain energy (J).
   template <class T, class Law>
-  static T energy(const NodalVectors<T>& /*u*/, const Tensor<T>& H, const Element<T>& element, const Law& law) {
+  static T energy(const NodalVectors<T>& /*u*/, const Tensor<T>& H, const Element<T>& element,
+                  const Law& law) {
     return element.V * law.energy(H);
   }
 
   /// The smallest volume ratio det F at the integration points.
   template <class T>
-  static T smallest_jacobian(const NodalVectors<T>& /*u*/, const Tensor<T>& H, const Element<T>& /*element*/) {
+  static T smallest_jacobian(const NodalVectors<T>& /*u*/, const Tensor<T>& H,
+                             const Element<T>& /*element*/) {
     return T(1) + jacobian_minus_one(H);
   }
 
@@ -52,9 +55,10 @@ struct OnePoint {
     return smallest_jacobian(u, H, element);
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u. With spatial gradients h_c = h F^-1
-  /// and L = v^T h_c: (tr L)^2 <= |h_c|^2 |v|^2 and |L|^2 <= g |v|^2, g the largest eigenvalue of h_c^T h_c.
-  /// On a cube at rest it is the exact eigenvalue; paper's eq. 7 and 8 give (lambda + 2 mu) |h|^2 instead.
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u. With spatial gradients h_c
+  /// = h F^-1 and L = v^T h_c: (tr L)^2 <= |h_c|^2 |v|^2 and |L|^2 <= g |v|^2, g the largest eigenvalue of
+  /// h_c^T h_c. On a cube at rest it is the exact eigenvalue; paper's eq. 7 and 8 give (lambda + 2 mu) |h|^2
+  /// instead.
   template <class T, class Law>
   static T stiffness_bound(const NodalVectors<T>& /*u*/, const Tensor<T>& H, const Element<T>& element,
                            const Law& law) {
@@ -62,7 +66,8 @@ struct OnePoint {
     return element.V * gradient_bound(bound, element.h * inverse(identity<T>() + H));
   }
 
-  /// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): what a tangent bound costs per volume.
+  /// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): what a tangent bound costs
+  /// per volume.
   template <class T>
   static T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
     const Tensor<T> G = transpose(g) * g;

@@ -58,7 +58,8 @@ NodeSetRule read_set(TableReader table, const std::string& name) {
     const auto ends = table.optional<std::array<double, 2>>(key);
     if (!ends) continue;
     const auto [low, high] = *ends;
-    if (!(low <= high)) table.fail(key, fmt::format("= [{}, {}] must be an interval, low end first", low, high));
+    if (!(low <= high))
+      table.fail(key, fmt::format("= [{}, {}] must be an interval, low end first", low, high));
     rule.within[i] = Interval{low, high};
   }
   if (auto cylinder = table.table("cylinder")) rule.cylinder = read_cylinder(*cylinder);
@@ -74,7 +75,8 @@ ImposedDisplacement read_displacement(TableReader table) {
   if (const auto components = table.optional<std::string>("components")) {
     imposed.components = {};
     for (const char c : *components) {
-      if (c < 'x' || c > 'z') table.fail("components", fmt::format("= '{}' must consist of x, y, z", *components));
+      if (c < 'x' || c > 'z')
+        table.fail("components", fmt::format("= '{}' must consist of x, y, z", *components));
       imposed.components[static_cast<std::size_t>(c - 'x')] = true;
     }
   }
@@ -86,8 +88,9 @@ ImposedDisplacement read_displacement(TableReader table) {
 }
 
 Profile read_profile(TableReader table) {
-  Profile profile{.set = table.required<std::string>("set"),
-                  .order = table.required_choice("order", {"x", "y", "z", "around-x", "around-y", "around-z"})};
+  Profile profile{
+      .set = table.required<std::string>("set"),
+      .order = table.required_choice("order", {"x", "y", "z", "around-x", "around-y", "around-z"})};
   table.finish();
   return profile;
 }
@@ -143,7 +146,8 @@ toml::table parse(const std::filesystem::path& path) {
   try {
     return toml::parse_file(path.string());
   } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: is not TOML: {}", path.string(), error.source().begin.line, error.description()));
+    throw InputError(
+        fmt::format("{}:{}: is not TOML: {}", path.string(), error.source().begin.line, error.description()));
   }
 }
 
@@ -152,25 +156,30 @@ template <class Aggregate>
 std::string described(const std::string& table) {
   const Aggregate defaults{};
   std::string text;
-  std::apply([&](const auto&... p) {
-    const auto line = [&](const auto& parameter) {
-      using Value = std::remove_cvref_t<decltype(defaults.*(parameter.member))>;
-      std::string fallback = "required";
-      if constexpr (std::is_arithmetic_v<Value>) {
-        if (!parameter.required) fallback = fmt::format("default {}", defaults.*(parameter.member));
-      }
-      text += fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", fmt::format("{}.{}", table, parameter.name),
-                          fmt::format("[{}]", parameter.unit), parameter.range.text(), fallback, parameter.meaning);
-    };
-    (line(p), ...);
-  }, Aggregate::parameters());
+  std::apply(
+      [&](const auto&... p) {
+        const auto line = [&](const auto& parameter) {
+          using Value = std::remove_cvref_t<decltype(defaults.*(parameter.member))>;
+          std::string fallback = "required";
+          if constexpr (std::is_arithmetic_v<Value>) {
+            if (!parameter.required) fallback = fmt::format("default {}", defaults.*(parameter.member));
+          }
+          text += fmt::format(
+              "  {:<28} {:<6} {:<12} {:<16} {}\n", fmt::format("{}.{}", table, parameter.name),
+              fmt::format("[{}]", parameter.unit), parameter.range.text(), fallback, parameter.meaning);
+        };
+        (line(p), ...);
+      },
+      Aggregate::parameters());
   return text;
 }
 
 template <class... Types>
 std::string described_list(TypeList<Types...> /*list*/, const std::string& table, const std::string& key) {
   std::string text;
-  ((text += fmt::format("\n{}.{} = \"{}\": {}\n{}", table, key, Types::name, Types::summary, described<Types>(table))), ...);
+  ((text += fmt::format("\n{}.{} = \"{}\": {}\n{}", table, key, Types::name, Types::summary,
+                        described<Types>(table))),
+   ...);
   return text;
 }
 
@@ -189,7 +198,8 @@ Case read_case_file(const std::filesystem::path& path) {
   if (auto sets = reader.table("sets")) {
     for (const auto& name : sets->keys()) scene.sets.push_back(read_set(sets->required_table(name), name));
   }
-  for (const auto& table : reader.tables("displacement")) scene.displacements.push_back(read_displacement(table));
+  for (const auto& table : reader.tables("displacement"))
+    scene.displacements.push_back(read_displacement(table));
   if (auto initial = reader.table("initial")) {
     scene.initial_velocity = initial->required<Vector>("velocity");
     initial->finish();
@@ -228,20 +238,25 @@ std::string describe_case_keys() {
       "Keys of a case file (TOML). Tables and their parameters: name, unit, range, default, meaning.\n"
       "\n[case] name, requirement: texts; answer: \"quasi-static\" or \"dynamic\"\n";
   text += described_list(Generators{}, "mesh", "generator");
-  text += "\nmesh.file = \"FILE.h5\": instead of a generator, a mesh as `sandglass mesh` writes it, with its node sets\n";
-  text += described_list(Laws{}, "material", "law");
-  text += fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", "material.density", "[kg/m^3]", Range::positive().text(),
-                      "required", "mass density at rest");
   text +=
-      "\n[sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = \"z\", center = [x, y], "
+      "\nmesh.file = \"FILE.h5\": instead of a generator, a mesh as `sandglass mesh` writes it, with its "
+      "node sets\n";
+  text += described_list(Laws{}, "material", "law");
+  text += fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", "material.density", "[kg/m^3]",
+                      Range::positive().text(), "required", "mass density at rest");
+  text +=
+      "\n[sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = \"z\", "
+      "center = [x, y], "
       "semi_axes = [a, b] } }\n  all conditions must hold; lengths in m; inf and -inf are allowed\n"
       "\n[[displacement]] set = NAME, value = [x, y, z] in m, components = \"xyz\" (default: all)\n"
       "[initial] velocity = [x, y, z] in m/s (dynamic answers)\n"
       "[profile] set = NAME, order = \"x\" | \"y\" | \"z\" | \"around-x\" | \"around-y\" | \"around-z\"\n"
       "[comparison] kappas = [numbers], golden = \"FILE.h5\", truth = \"FILE.h5\"\n"
-      "[[expect]] method, kappa (number, \"auto\" or \"best\"), reference (\"golden\" or \"truth\"), figure, below or above, "
+      "[[expect]] method, kappa (number, \"auto\" or \"best\"), reference (\"golden\" or \"truth\"), figure, "
+      "below or above, "
       "reason\n";
-  text += "\n[relaxation]: how a quasi-static answer is found\n" + described<RelaxationSettings>("relaxation");
+  text +=
+      "\n[relaxation]: how a quasi-static answer is found\n" + described<RelaxationSettings>("relaxation");
   text += "\n[dynamics]: how a dynamic answer is found\n" + described<DynamicsSettings>("dynamics");
   return text;
 }

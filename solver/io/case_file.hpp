@@ -7,8 +7,9 @@
 
 namespace sandglass {
 
-/// Reads a case file, strictly: unknown keys, missing keys, wrong types and values out of range are InputErrors that
-/// name file, line, key, value and rule. `law`, `generator` and method names come from their lists.
+/// Reads a case file, strictly: unknown keys, missing keys, wrong types and values out of range are
+/// InputErrors that name file, line, key, value and rule. `law`, `generator` and method names come from their
+/// lists.
 Case read_case_file(const std::filesystem::path& path);
 
 /// The scene of a case file: its mesh generated or read, its sets and constraints made.

@@ -34,10 +34,16 @@ class Identifier {
 /// Datasets of at least this many entries are compressed; below, the filter costs more than it saves.
 constexpr std::size_t compress_from = 4096;
 
-std::vector<hsize_t> dimensions(const std::vector<std::size_t>& shape) { return {shape.begin(), shape.end()}; }
+std::vector<hsize_t> dimensions(const std::vector<std::size_t>& shape) {
+  return {shape.begin(), shape.end()};
+}
 
-hid_t native(double /*tag*/) { return H5T_NATIVE_DOUBLE; }
-hid_t native(std::int64_t /*tag*/) { return H5T_NATIVE_INT64; }
+hid_t native(double /*tag*/) {
+  return H5T_NATIVE_DOUBLE;
+}
+hid_t native(std::int64_t /*tag*/) {
+  return H5T_NATIVE_INT64;
+}
 
 }  // namespace
 
@@ -55,7 +61,9 @@ struct Hdf5File::Handle {
     if (!temporary.empty()) std::filesystem::remove(temporary, ignored);
   }
 
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(fmt::format("{}: {}", path.string(), what)); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}: {}", path.string(), what));
+  }
 
   void require(bool condition, const std::string& what) const {
     if (!condition) fail(what);
@@ -74,8 +82,9 @@ struct Hdf5File::Handle {
       H5Pset_shuffle(creation.get());
       H5Pset_deflate(creation.get(), 4);
     }
-    const Identifier set(H5Dcreate2(file, name.c_str(), native(T{}), space.get(), links.get(), creation.get(), H5P_DEFAULT),
-                         H5Dclose);
+    const Identifier set(
+        H5Dcreate2(file, name.c_str(), native(T{}), space.get(), links.get(), creation.get(), H5P_DEFAULT),
+        H5Dclose);
     require(set.valid(), fmt::format("cannot create dataset '{}'", name));
     require(H5Dwrite(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, entries.data()) >= 0,
             fmt::format("cannot write dataset '{}'; is the disk full?", name));
@@ -84,13 +93,17 @@ struct Hdf5File::Handle {
   template <class T>
   FileArray<T> read(const std::string& name) const {
     const Identifier set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
-    require(set.valid(), fmt::format("dataset '{}' is missing; this is not a file that this program or its reference wrote", name));
+    require(
+        set.valid(),
+        fmt::format("dataset '{}' is missing; this is not a file that this program or its reference wrote",
+                    name));
     const Identifier space(H5Dget_space(set.get()), H5Sclose);
     const int rank = H5Sget_simple_extent_ndims(space.get());
     std::vector<hsize_t> dims(static_cast<std::size_t>(std::max(rank, 0)));
     H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
     FileArray<T> array{{dims.begin(), dims.end()}, {}};
-    array.entries.resize(std::accumulate(array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>()));
+    array.entries.resize(
+        std::accumulate(array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>()));
     require(H5Dread(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, array.entries.data()) >= 0,
             fmt::format("dataset '{}' cannot be read; the file is damaged or holds another type", name));
     return array;
@@ -124,7 +137,9 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   return Hdf5File(std::move(handle));
 }
 
-const std::filesystem::path& Hdf5File::path() const { return handle_->path; }
+const std::filesystem::path& Hdf5File::path() const {
+  return handle_->path;
+}
 
 void Hdf5File::commit() {
   const bool flushed = H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0;
@@ -148,15 +163,18 @@ std::vector<std::string> Hdf5File::names_in(const std::string& group) const {
   H5G_info_t info{};
   H5Gget_info(id.get(), &info);
   for (hsize_t n = 0; n < info.nlinks; ++n) {
-    const auto length = H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, nullptr, 0, H5P_DEFAULT);
+    const auto length =
+        H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, nullptr, 0, H5P_DEFAULT);
     std::string name(static_cast<std::size_t>(length), '\0');
-    H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size() + 1, H5P_DEFAULT);
+    H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size() + 1,
+                       H5P_DEFAULT);
     names.push_back(name);
   }
   return names;
 }
 
-void Hdf5File::write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const double> entries) {
+void Hdf5File::write(const std::string& name, const std::vector<std::size_t>& shape,
+                     std::span<const double> entries) {
   handle_->write(name, shape, entries);
 }
 
@@ -165,7 +183,9 @@ void Hdf5File::write(const std::string& name, const std::vector<std::size_t>& sh
   handle_->write(name, shape, entries);
 }
 
-FileArray<double> Hdf5File::read_doubles(const std::string& name) const { return handle_->read<double>(name); }
+FileArray<double> Hdf5File::read_doubles(const std::string& name) const {
+  return handle_->read<double>(name);
+}
 
 FileArray<std::int64_t> Hdf5File::read_integers(const std::string& name) const {
   return handle_->read<std::int64_t>(name);
@@ -176,8 +196,8 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
   H5Tset_size(type.get(), std::max<std::size_t>(value.size(), 1));
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   const Identifier space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Identifier attribute(H5Acreate_by_name(handle_->file, object.c_str(), name.c_str(), type.get(), space.get(),
-                                               H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Identifier attribute(H5Acreate_by_name(handle_->file, object.c_str(), name.c_str(), type.get(),
+                                               space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                              H5Aclose);
   handle_->require(attribute.valid() && H5Awrite(attribute.get(), type.get(), value.c_str()) >= 0,
                    fmt::format("cannot write attribute '{}'", name));
@@ -193,11 +213,12 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
 }
 
 std::string Hdf5File::read_text_attribute(const std::string& object, const std::string& name) const {
-  const Identifier attribute(H5Aopen_by_name(handle_->file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                             H5Aclose);
+  const Identifier attribute(
+      H5Aopen_by_name(handle_->file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   handle_->require(attribute.valid(), fmt::format("attribute '{}' is missing", name));
   const Identifier type(H5Aget_type(attribute.get()), H5Tclose);
-  handle_->require(H5Tget_class(type.get()) == H5T_STRING, fmt::format("attribute '{}' must be a text", name));
+  handle_->require(H5Tget_class(type.get()) == H5T_STRING,
+                   fmt::format("attribute '{}' must be a text", name));
   if (H5Tis_variable_str(type.get()) > 0) {  // what h5py writes
     char* text = nullptr;
     handle_->require(H5Aread(attribute.get(), type.get(), &text) >= 0 && text != nullptr,
@@ -213,8 +234,8 @@ std::string Hdf5File::read_text_attribute(const std::string& object, const std::
 }
 
 double Hdf5File::read_number_attribute(const std::string& object, const std::string& name) const {
-  const Identifier attribute(H5Aopen_by_name(handle_->file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                             H5Aclose);
+  const Identifier attribute(
+      H5Aopen_by_name(handle_->file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   double value = 0.0;
   handle_->require(attribute.valid() && H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0,
                    fmt::format("attribute '{}' is missing or not a number", name));

@@ -17,7 +17,8 @@ struct FileArray {
 };
 
 /// An HDF5 file that closes itself. Errors are InputError with the file, the name inside it and the rule.
-/// A file being written goes to a temporary beside its place and is renamed by `commit`; without it nothing is left.
+/// A file being written goes to a temporary beside its place and is renamed by `commit`; without it nothing
+/// is left.
 class Hdf5File {
  public:
   /// Starts a new file. Throws InputError when the place cannot be written.
@@ -26,7 +27,9 @@ class Hdf5File {
   /// Opens a file for reading. Throws InputError when it is missing, truncated or not HDF5.
   static Hdf5File open(const std::filesystem::path& path);
 
+  Hdf5File(const Hdf5File&) = delete;
   Hdf5File(Hdf5File&&) noexcept;
+  Hdf5File& operator=(const Hdf5File&) = delete;
   Hdf5File& operator=(Hdf5File&&) = delete;
   ~Hdf5File();
 
@@ -42,7 +45,8 @@ class Hdf5File {
 
   /// Writes a dataset by rows, groups on the way made as needed; compressed when it is large.
   void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const double> entries);
-  void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const std::int64_t> entries);
+  void write(const std::string& name, const std::vector<std::size_t>& shape,
+             std::span<const std::int64_t> entries);
 
   FileArray<double> read_doubles(const std::string& name) const;
   FileArray<std::int64_t> read_integers(const std::string& name) const;

@@ -13,7 +13,8 @@ namespace {
 
 void require_node(const Hdf5File& file, const std::string& name, std::int64_t node, std::size_t n_nodes) {
   if (node >= 0 && node < static_cast<std::int64_t>(n_nodes)) return;
-  throw InputError(fmt::format("{}: {} names node {}; allowed are 0 to {}", file.path().string(), name, node, n_nodes - 1));
+  throw InputError(fmt::format("{}: {} names node {}; allowed are 0 to {}", file.path().string(), name, node,
+                               n_nodes - 1));
 }
 
 }  // namespace
@@ -62,8 +63,9 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   const auto file = Hdf5File::open(path);
   const auto cells = file.read_integers("/mesh/cells");
   if (cells.shape.size() != 2 || cells.shape[1] != 8 || cells.shape[0] == 0) {
-    throw InputError(fmt::format("{}: dataset '/mesh/cells' has shape {}; it must be [elements, 8], hexahedra in VTK order",
-                                 path.string(), cells.shape));
+    throw InputError(fmt::format(
+        "{}: dataset '/mesh/cells' has shape {}; it must be [elements, 8], hexahedra in VTK order",
+        path.string(), cells.shape));
   }
   const auto points = file.read_doubles("/mesh/points");
   const std::size_t n_nodes = points.shape.empty() ? 0 : points.shape[0];

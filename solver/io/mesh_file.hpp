@@ -7,7 +7,8 @@
 
 namespace sandglass {
 
-/// Writes mesh, node sets and hashes of a scene: /mesh/points, /mesh/cells, /mesh/sets/NAME. Throws InputError.
+/// Writes mesh, node sets and hashes of a scene: /mesh/points, /mesh/cells, /mesh/sets/NAME. Throws
+/// InputError.
 void write_mesh_file(const Scene& scene, const std::filesystem::path& path);
 
 /// The same into a file that is being written.
@@ -22,7 +23,8 @@ struct MeshWithSets {
 /// Reads /mesh of a file. Throws InputError when it is no mesh of hexahedra (shape, node numbers).
 MeshWithSets read_mesh_file(const std::filesystem::path& path);
 
-/// A nodal field of a file, one row per node. Throws InputError when it has another shape or a value is not finite.
+/// A nodal field of a file, one row per node. Throws InputError when it has another shape or a value is not
+/// finite.
 NodalField read_nodal_field(const Hdf5File& file, const std::string& name, std::size_t n_nodes);
 
 }  // namespace sandglass

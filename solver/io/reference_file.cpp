@@ -10,13 +10,15 @@ namespace sandglass {
 
 namespace {
 
-void require_hash(const Hdf5File& file, const std::string& attribute, const std::string& expected, const Scene& scene) {
+void require_hash(const Hdf5File& file, const std::string& attribute, const std::string& expected,
+                  const Scene& scene) {
   const std::string found = file.read_text_attribute("/", attribute);
   if (found == expected) return;
-  throw InputError(fmt::format(
-      "{}: {} is {}, but the case {} has {}; the file was made for another {}. Make it anew: reference/regenerate {}",
-      file.path().string(), attribute, found, scene.description.file.string(), expected,
-      attribute == "mesh_hash" ? "mesh" : "case", scene.description.name));
+  throw InputError(
+      fmt::format("{}: {} is {}, but the case {} has {}; the file was made for another {}. Make it anew: "
+                  "reference/regenerate {}",
+                  file.path().string(), attribute, found, scene.description.file.string(), expected,
+                  attribute == "mesh_hash" ? "mesh" : "case", scene.description.name));
 }
 
 }  // namespace

@@ -9,17 +9,21 @@ namespace sandglass {
 
 namespace {
 
-std::string frame_group(std::size_t number) { return fmt::format("/frames/{:04}", number); }
+std::string frame_group(std::size_t number) {
+  return fmt::format("/frames/{:04}", number);
+}
 
 /// One DataItem element of an XDMF file that points into the HDF5 file.
 std::string data_item(const std::string& file, const std::string& dataset, const std::string& dimensions,
                       const std::string& type) {
-  return fmt::format("<DataItem Format=\"HDF\" Dimensions=\"{}\" {}>{}:{}</DataItem>", dimensions, type, file, dataset);
+  return fmt::format("<DataItem Format=\"HDF\" Dimensions=\"{}\" {}>{}:{}</DataItem>", dimensions, type, file,
+                     dataset);
 }
 
 }  // namespace
 
-ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path, const Provenance& provenance)
+ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path,
+                           const Provenance& provenance)
     : model_(model), path_(path), file_(Hdf5File::create(path)) {
   write_mesh(model.scene(), file_);
   for (const auto& [name, value] : provenance) file_.write_attribute("/", name, value);
@@ -62,11 +66,12 @@ std::string ResultWriter::xdmf() const {
   const std::size_t n_nodes = model_.scene().mesh.points.size();
   const std::size_t n_cells = model_.scene().mesh.cells.size();
   const std::string real = "NumberType=\"Float\" Precision=\"8\"";
-  const auto field = [&](const std::string& group, const std::string& name, const std::string& label, bool nodal) {
-    return fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", label,
-                       nodal ? "Vector" : "Scalar", nodal ? "Node" : "Cell",
-                       data_item(file, group + "/" + name, nodal ? fmt::format("{} 3", n_nodes) : fmt::to_string(n_cells),
-                                 real));
+  const auto field = [&](const std::string& group, const std::string& name, const std::string& label,
+                         bool nodal) {
+    return fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
+                       label, nodal ? "Vector" : "Scalar", nodal ? "Node" : "Cell",
+                       data_item(file, group + "/" + name,
+                                 nodal ? fmt::format("{} 3", n_nodes) : fmt::to_string(n_cells), real));
   };
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
@@ -74,8 +79,9 @@ std::string ResultWriter::xdmf() const {
   for (std::size_t n = 0; n < times_.size(); ++n) {
     const std::string group = frame_group(n);
     text += fmt::format("      <Grid Name=\"frame {}\">\n        <Time Value=\"{}\"/>\n", n, times_[n]);
-    text += fmt::format("        <Topology TopologyType=\"Hexahedron\" NumberOfElements=\"{}\">{}</Topology>\n", n_cells,
-                        data_item(file, "/mesh/cells", fmt::format("{} 8", n_cells), "NumberType=\"Int\" Precision=\"8\""));
+    text += fmt::format(
+        "        <Topology TopologyType=\"Hexahedron\" NumberOfElements=\"{}\">{}</Topology>\n", n_cells,
+        data_item(file, "/mesh/cells", fmt::format("{} 8", n_cells), "NumberType=\"Int\" Precision=\"8\""));
     text += fmt::format("        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
                         data_item(file, "/mesh/points", fmt::format("{} 3", n_nodes), real));
     text += field(group, "displacement", "displacement", true);

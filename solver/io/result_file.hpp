@@ -12,9 +12,9 @@ namespace sandglass {
 /// Text attributes that tell where a result comes from: revision, flags, method and the like.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes a run: mesh and sets, /frames/NNNN/{displacement (m), velocity (m/s), jacobian (-), hourglass_energy_density
-/// (J/m^3)} with attribute `time`, and /history/*. Beside it, an XDMF file of the same stem opens in ParaView.
-/// Nothing is in place before `commit`.
+/// Writes a run: mesh and sets, /frames/NNNN/{displacement (m), velocity (m/s), jacobian (-),
+/// hourglass_energy_density (J/m^3)} with attribute `time`, and /history/*. Beside it, an XDMF file of the
+/// same stem opens in ParaView. Nothing is in place before `commit`.
 class ResultWriter {
  public:
   ResultWriter(const Model& model, const std::filesystem::path& path, const Provenance& provenance);

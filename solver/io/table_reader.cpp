@@ -31,13 +31,15 @@ constexpr std::string_view type_name() {
   if constexpr (std::is_same_v<T, std::string>) return "a text";
 }
 
-/// The value of a node as T, or none when it is of another type. Integers count as numbers, not the other way round.
+/// The value of a node as T, or none when it is of another type. Integers count as numbers, not the other way
+/// round.
 template <class T>
 std::optional<T> scalar(const toml::node& node) {
   if constexpr (std::is_same_v<T, int>) {
     if (!node.is_integer()) return std::nullopt;
     const auto value = *node.value<std::int64_t>();
-    if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) return std::nullopt;
+    if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max())
+      return std::nullopt;
     return static_cast<int>(value);
   } else if constexpr (std::is_same_v<T, double>) {
     if (!node.is_number()) return std::nullopt;
@@ -57,7 +59,9 @@ const toml::node* TableReader::find(const std::string& key) {
   return table_.get(key);
 }
 
-std::string TableReader::name_of(const std::string& key) const { return prefix_.empty() ? key : prefix_ + "." + key; }
+std::string TableReader::name_of(const std::string& key) const {
+  return prefix_.empty() ? key : prefix_ + "." + key;
+}
 
 void TableReader::fail(const std::string& key, const std::string& message) const {
   const toml::node* node = table_.get(key);
@@ -65,7 +69,9 @@ void TableReader::fail(const std::string& key, const std::string& message) const
   throw InputError(fmt::format("{}:{}: {} {}", file_.string(), line, name_of(key), message));
 }
 
-void TableReader::fail_missing(const std::string& key) const { fail(key, "is missing; this key must be given"); }
+void TableReader::fail_missing(const std::string& key) const {
+  fail(key, "is missing; this key must be given");
+}
 
 void TableReader::fail_type(const std::string& key, const toml::node& node, std::string_view expected) const {
   fail(key, fmt::format("= {} must be {}", written(node), expected));
@@ -81,7 +87,9 @@ T TableReader::convert(const toml::node& node, const std::string& key) const {
     using Entry = typename T::value_type;
     const toml::array* array = node.as_array();
     T values{};
-    constexpr bool fixed = requires { std::tuple_size<T>::value; };
+    constexpr bool fixed = requires {
+      std::tuple_size<T>::value;
+    };
     std::string expected = fmt::format("a list, each entry {}", type_name<Entry>());
     if constexpr (fixed) expected = fmt::format("a list of {}, each {}", values.size(), type_name<Entry>());
     if (array == nullptr) fail_type(key, node, expected);
@@ -107,10 +115,14 @@ template double TableReader::convert<double>(const toml::node&, const std::strin
 template int TableReader::convert<int>(const toml::node&, const std::string&) const;
 template bool TableReader::convert<bool>(const toml::node&, const std::string&) const;
 template std::string TableReader::convert<std::string>(const toml::node&, const std::string&) const;
-template std::array<double, 2> TableReader::convert<std::array<double, 2>>(const toml::node&, const std::string&) const;
-template std::array<double, 3> TableReader::convert<std::array<double, 3>>(const toml::node&, const std::string&) const;
-template std::array<int, 3> TableReader::convert<std::array<int, 3>>(const toml::node&, const std::string&) const;
-template std::vector<double> TableReader::convert<std::vector<double>>(const toml::node&, const std::string&) const;
+template std::array<double, 2> TableReader::convert<std::array<double, 2>>(const toml::node&,
+                                                                           const std::string&) const;
+template std::array<double, 3> TableReader::convert<std::array<double, 3>>(const toml::node&,
+                                                                           const std::string&) const;
+template std::array<int, 3> TableReader::convert<std::array<int, 3>>(const toml::node&,
+                                                                     const std::string&) const;
+template std::vector<double> TableReader::convert<std::vector<double>>(const toml::node&,
+                                                                       const std::string&) const;
 
 bool TableReader::holds_number(const std::string& key) {
   const toml::node* node = find(key);
@@ -156,7 +168,8 @@ void TableReader::finish() const {
   for (const auto& [key, node] : table_) {
     const std::string name(key.str());
     if (asked_.contains(name)) continue;
-    fail(name, fmt::format("is not a key of this table; {}", suggestion(name, {asked_.begin(), asked_.end()})));
+    fail(name,
+         fmt::format("is not a key of this table; {}", suggestion(name, {asked_.begin(), asked_.end()})));
   }
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <array>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "base/parameter.hpp"
@@ -21,8 +21,8 @@ class TableReader {
   /// `prefix` is the table's name in messages, such as "material".
   TableReader(const toml::table& table, std::filesystem::path file, std::string prefix);
 
-  /// The value of a key; none when the key is absent. T: double, int, bool, std::string, a std::array or std::vector
-  /// of double or int.
+  /// The value of a key; none when the key is absent. T: double, int, bool, std::string, a std::array or
+  /// std::vector of double or int.
   template <class T>
   std::optional<T> optional(const std::string& key) {
     const toml::node* node = find(key);
@@ -70,7 +70,8 @@ class TableReader {
  private:
   const toml::node* find(const std::string& key);
   [[noreturn]] void fail_missing(const std::string& key) const;
-  [[noreturn]] void fail_type(const std::string& key, const toml::node& node, std::string_view expected) const;
+  [[noreturn]] void fail_type(const std::string& key, const toml::node& node,
+                              std::string_view expected) const;
   std::string name_of(const std::string& key) const;
 
   template <class T>

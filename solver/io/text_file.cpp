@@ -20,7 +20,8 @@ void write_text_file(const std::filesystem::path& path, const std::string& text)
     stream.close();
     if (!stream) {
       std::filesystem::remove(temporary, error);
-      throw InputError(fmt::format("{}: cannot be written; its folder must exist, be writable and have room", path.string()));
+      throw InputError(fmt::format("{}: cannot be written; its folder must exist, be writable and have room",
+                                   path.string()));
     }
   }
   std::filesystem::rename(temporary, path, error);

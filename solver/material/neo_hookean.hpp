@@ -11,8 +11,8 @@ namespace sandglass {
 
 /// The nearly incompressible neo-Hookean law of ABAQUS and of the TLED paper,
 ///   W = mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2,
-/// written in the displacement gradient H = F - I so that nothing cancels near rest. Energies in J/m^3, stresses in Pa,
-/// per reference volume. With e = F F^T - I = H + H^T + H H^T and its deviator d:
+/// written in the displacement gradient H = F - I so that nothing cancels near rest. Energies in J/m^3,
+/// stresses in Pa, per reference volume. With e = F F^T - I = H + H^T + H H^T and its deviator d:
 ///   P = (mu J^(-5/3) d + K (J - 1) I) cof F.
 struct NeoHookean {
   static constexpr std::string_view name = "neo-hookean";
@@ -31,8 +31,9 @@ struct NeoHookean {
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
   constexpr double bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
 
-  /// mu/2 (J^(-2/3) tr(F^T F) - 3). With (tr(F F^T)/3)^3 = J^2 (1 + r) the difference of two numbers near 3 becomes
-  /// 3/2 mu ((1 + r)^(1/3) - 1), and r = (d:d (1 + tr(e)/3) / 2 - det d) / J^2 is of second order term by term.
+  /// mu/2 (J^(-2/3) tr(F^T F) - 3). With (tr(F F^T)/3)^3 = J^2 (1 + r) the difference of two numbers near 3
+  /// becomes 3/2 mu ((1 + r)^(1/3) - 1), and r = (d:d (1 + tr(e)/3) / 2 - det d) / J^2 is of second order
+  /// term by term.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
     const Tensor<T> e = left_cauchy_green_minus_identity(H);
@@ -63,7 +64,7 @@ struct NeoHookean {
   /// mu J^(-5/3) dev(F F^T) cof F, the isochoric part of the first Piola-Kirchhoff stress.
   template <class T>
   Tensor<T> isochoric_piola(const Tensor<T>& H) const {
-    return isochoric_kirchhoff_over_J(H, jacobian_minus_one(H)) * cofactor(identity<T>() + H);
+    return isochoric_cauchy_stress(H, jacobian_minus_one(H)) * cofactor(identity<T>() + H);
   }
 
   /// The strain energy density.
@@ -76,7 +77,7 @@ struct NeoHookean {
   template <class T>
   Tensor<T> piola(const Tensor<T>& H) const {
     const T J_minus_one = jacobian_minus_one(H);
-    Tensor<T> sigma = isochoric_kirchhoff_over_J(H, J_minus_one);
+    Tensor<T> sigma = isochoric_cauchy_stress(H, J_minus_one);
     const T p = pressure(J_minus_one);
     for (int i = 0; i < 3; ++i) sigma(i, i) = sigma(i, i) + p;
     return sigma * cofactor(identity<T>() + H);
@@ -99,7 +100,7 @@ struct NeoHookean {
 
  private:
   template <class T>
-  Tensor<T> isochoric_kirchhoff_over_J(const Tensor<T>& H, const T& J_minus_one) const {
+  Tensor<T> isochoric_cauchy_stress(const Tensor<T>& H, const T& J_minus_one) const {
     const T r = inverse_cube_root(T(1) + J_minus_one);
     const T r2 = r * r;
     return (T(shear_modulus()) * (r2 * r2 * r)) * deviator(left_cauchy_green_minus_identity(H));

@@ -5,8 +5,8 @@
 
 namespace sandglass {
 
-/// A bound of a law's tangent in the current configuration: for a further displacement with spatial gradient L the
-/// second variation of the energy density (per reference volume, Pa) is at most
+/// A bound of a law's tangent in the current configuration: for a further displacement with spatial gradient
+/// L the second variation of the energy density (per reference volume, Pa) is at most
 ///   d^2 W <= volumetric (tr L)^2 + gradient |L|^2.
 /// At rest, isotropic: volumetric = lambda, gradient = 2 mu. It gives the wave speed and the stable step.
 template <class T>
@@ -26,7 +26,8 @@ template <class Law, class T>
 TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H) {
   const T J_minus_one = jacobian_minus_one(H);
   const auto iso = law.isochoric_tangent_bound(H);
-  const auto vol = volumetric_tangent_bound(T(1) + J_minus_one, law.pressure(J_minus_one), law.bulk_tangent(J_minus_one));
+  const auto vol =
+      volumetric_tangent_bound(T(1) + J_minus_one, law.pressure(J_minus_one), law.bulk_tangent(J_minus_one));
   return {.volumetric = iso.volumetric + vol.volumetric, .gradient = iso.gradient + vol.gradient};
 }
 

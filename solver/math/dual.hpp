@@ -4,8 +4,8 @@
 
 namespace sandglass {
 
-/// A dual number value + slope * epsilon with epsilon^2 = 0: run a kernel on it and the slope is the exact derivative.
-/// It nests: Dual<Dual<double>> gives second derivatives.
+/// A dual number value + slope * epsilon with epsilon^2 = 0: run a kernel on it and the slope is the exact
+/// derivative. It nests: Dual<Dual<double>> gives second derivatives.
 template <class T>
 struct Dual {
   T value{};
@@ -13,11 +13,14 @@ struct Dual {
 
   constexpr Dual() = default;
   explicit(false) constexpr Dual(double constant) : value(constant) {}
-  constexpr Dual(T v, T s)
-      : value(v), slope(s) {}
+  constexpr Dual(T v, T s) : value(v), slope(s) {}
 
-  friend constexpr Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
-  friend constexpr Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
+  friend constexpr Dual operator+(const Dual& a, const Dual& b) {
+    return {a.value + b.value, a.slope + b.slope};
+  }
+  friend constexpr Dual operator-(const Dual& a, const Dual& b) {
+    return {a.value - b.value, a.slope - b.slope};
+  }
   friend constexpr Dual operator-(const Dual& a) { return {T(0) - a.value, T(0) - a.slope}; }
   friend constexpr Dual operator*(const Dual& a, const Dual& b) {
     return {a.value * b.value, a.value * b.slope + a.slope * b.value};

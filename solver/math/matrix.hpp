@@ -7,13 +7,18 @@
 
 namespace sandglass {
 
-/// A small dense matrix of R rows and C columns, stored by rows. An aggregate: `Matrix<double, 2, 2>{{1, 2, 3, 4}}`.
+/// A small dense matrix of R rows and C columns, stored by rows. An aggregate: `Matrix<double, 2, 2>{{1, 2,
+/// 3, 4}}`.
 template <class T, int R, int C>
 struct Matrix {
-  std::array<T, static_cast<std::size_t>(R* C)> entries{};
+  std::array<T, static_cast<std::size_t>(R) * static_cast<std::size_t>(C)> entries{};
 
-  constexpr T& operator()(int i, int j) { return entries[static_cast<std::size_t>(i * C + j)]; }
-  constexpr const T& operator()(int i, int j) const { return entries[static_cast<std::size_t>(i * C + j)]; }
+  constexpr T& operator()(int i, int j) { return entries[index(i, j)]; }
+  constexpr const T& operator()(int i, int j) const { return entries[index(i, j)]; }
+
+  static constexpr std::size_t index(int i, int j) {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(C) + static_cast<std::size_t>(j);
+  }
 
   constexpr Matrix& operator+=(const Matrix& other) {
     for (std::size_t n = 0; n < entries.size(); ++n) entries[n] = entries[n] + other.entries[n];
@@ -106,7 +111,8 @@ constexpr Tensor<T> cofactor(const Tensor<T>& a) {
 
 template <class T>
 constexpr T determinant(const Tensor<T>& a) {
-  return a(0, 0) * (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)) + a(0, 1) * (a(1, 2) * a(2, 0) - a(1, 0) * a(2, 2)) +
+  return a(0, 0) * (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)) +
+         a(0, 1) * (a(1, 2) * a(2, 0) - a(1, 0) * a(2, 2)) +
          a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
 }
 
@@ -115,8 +121,8 @@ constexpr Tensor<T> inverse(const Tensor<T>& a) {
   return (T(1) / determinant(a)) * transpose(cofactor(a));
 }
 
-/// An upper bound of the largest eigenvalue of a symmetric tensor with non-negative eigenvalues, sharp when the two
-/// smaller ones are equal: tr/3 + sqrt(2/3) |dev|.
+/// An upper bound of the largest eigenvalue of a symmetric tensor with non-negative eigenvalues, sharp when
+/// the two smaller ones are equal: tr/3 + sqrt(2/3) |dev|.
 template <class T>
 T largest_eigenvalue_bound(const Tensor<T>& symmetric) {
   const Tensor<T> dev = deviator(symmetric);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <concepts>
 
-/// The vocabulary of scalar functions that kernels may use. A number type (double, float, a pack, a counter, a dual
-/// number) joins by giving these overloads in this namespace; kernels then need no change. There is no `if` on a value
-/// in a kernel: `select` and `any` take its place, because a pack cannot branch.
+/// The vocabulary of scalar functions that kernels may use. A number type (double, float, a pack, a counter,
+/// a dual number) joins by giving these overloads in this namespace; kernels then need no change. There is no
+/// `if` on a value in a kernel: `select` and `any` take its place, because a pack cannot branch.
 namespace sandglass {
 
 // clang-format off
@@ -31,6 +31,8 @@ T select(bool mask, T a, T b) {
 }
 
 /// Whether the mask is true anywhere.
-inline bool any(bool mask) { return mask; }
+inline bool any(bool mask) {
+  return mask;
+}
 
 }  // namespace sandglass

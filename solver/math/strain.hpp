@@ -7,7 +7,8 @@ namespace sandglass {
 /// det(I + H) - 1, expanded so that nothing cancels near rest.
 template <class T>
 constexpr T jacobian_minus_one(const Tensor<T>& H) {
-  const T second_invariant = (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0)) + (H(1, 1) * H(2, 2) - H(1, 2) * H(2, 1)) +
+  const T second_invariant = (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0)) +
+                             (H(1, 1) * H(2, 2) - H(1, 2) * H(2, 1)) +
                              (H(0, 0) * H(2, 2) - H(0, 2) * H(2, 0));
   return trace(H) + (second_invariant + determinant(H));
 }

@@ -17,8 +17,9 @@ struct BoxMesh {
   std::array<int, 3> elements{};
 
   static constexpr auto parameters() {
-    return std::tuple{Parameter{&BoxMesh::size, "size", "m", Range::positive(), "edge lengths along x, y, z"},
-                      Parameter{&BoxMesh::elements, "elements", "-", Range::at_least(1), "hexahedra along x, y, z"}};
+    return std::tuple{
+        Parameter{&BoxMesh::size, "size", "m", Range::positive(), "edge lengths along x, y, z"},
+        Parameter{&BoxMesh::elements, "elements", "-", Range::at_least(1), "hexahedra along x, y, z"}};
   }
 
   Mesh build() const;

@@ -1,7 +1,6 @@
 #include "mesh/hash.hpp"
 
 #include <fmt/format.h>
-
 #include <xxhash.h>
 
 #include <cmath>
@@ -11,15 +10,19 @@ namespace sandglass {
 
 namespace {
 
-std::string digits(XXH64_hash_t hash) { return fmt::format("{:016x}", hash); }
+std::string digits(XXH64_hash_t hash) {
+  return fmt::format("{:016x}", hash);
+}
 
 }  // namespace
 
-std::string hash_of(std::string_view text) { return digits(XXH3_64bits(text.data(), text.size())); }
+std::string hash_of(std::string_view text) {
+  return digits(XXH3_64bits(text.data(), text.size()));
+}
 
 std::string mesh_hash(const Mesh& mesh, const NodeSets& sets) {
-  // The offset keeps lattice points, which are often multiples of the unit or of its half, away from where rounding
-  // would flip.
+  // The offset keeps lattice points, which are often multiples of the unit or of its half, away from where
+  // rounding would flip.
   const double unit = 1e-7 * diagonal(mesh.points);
   constexpr double offset = 0.318;
   std::vector<std::int64_t> words{static_cast<std::int64_t>(mesh.points.size()),

@@ -10,8 +10,8 @@ namespace sandglass {
 /// 16 hexadecimal digits of XXH3 of a text.
 std::string hash_of(std::string_view text);
 
-/// A hash of a mesh and its node sets. Coordinates enter rounded to 1e-7 of the mesh's diagonal, so that the last bits,
-/// which differ between compilers, do not matter.
+/// A hash of a mesh and its node sets. Coordinates enter rounded to 1e-7 of the mesh's diagonal, so that the
+/// last bits, which differ between compilers, do not matter.
 std::string mesh_hash(const Mesh& mesh, const NodeSets& sets);
 
 }  // namespace sandglass

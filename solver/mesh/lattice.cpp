@@ -7,8 +7,8 @@ Mesh lattice(const std::array<int, 3>& n, const std::function<Vector(const Vecto
   for (int k = 0; k <= n[2]; ++k) {
     for (int j = 0; j <= n[1]; ++j) {
       for (int i = 0; i <= n[0]; ++i) {
-        mesh.points.push_back(place({static_cast<double>(i) / n[0], static_cast<double>(j) / n[1],
-                                     static_cast<double>(k) / n[2]}));
+        mesh.points.push_back(place(
+            {static_cast<double>(i) / n[0], static_cast<double>(j) / n[1], static_cast<double>(k) / n[2]}));
       }
     }
   }

@@ -15,14 +15,16 @@ bool inside(const CylinderRegion& region, const Vector& point, double tolerance)
 bool selects(const NodeSetRule& rule, const Vector& point, double tolerance) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!rule.within[i]) continue;
-    if (point[i] < rule.within[i]->low - tolerance || point[i] > rule.within[i]->high + tolerance) return false;
+    if (point[i] < rule.within[i]->low - tolerance || point[i] > rule.within[i]->high + tolerance)
+      return false;
   }
   return !rule.cylinder || inside(*rule.cylinder, point, tolerance);
 }
 
 }  // namespace
 
-std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule) {
+std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary,
+                              const NodeSetRule& rule) {
   const double tolerance = 1e-9 * diagonal(mesh.points);
   std::vector<int> nodes;
   for (std::size_t n = 0; n < mesh.points.size(); ++n) {

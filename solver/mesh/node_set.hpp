@@ -16,13 +16,13 @@ struct Interval {
 
 /// An elliptic cylinder along a coordinate axis; a point belongs to it when it lies inside.
 struct CylinderRegion {
-  int axis = 2;                           ///< 0, 1, 2 for x, y, z
-  std::array<double, 2> center{};         ///< the two other coordinates in the order of the axes, m
-  std::array<double, 2> semi_axes{};      ///< m
+  int axis = 2;                       ///< 0, 1, 2 for x, y, z
+  std::array<double, 2> center{};     ///< the two other coordinates in the order of the axes, m
+  std::array<double, 2> semi_axes{};  ///< m
 };
 
-/// A geometric rule that selects nodes; all its conditions must hold. Conditions are closed, with a tolerance of 1e-9
-/// of the mesh's diagonal, so that nodes meant to lie on a plane are found on it.
+/// A geometric rule that selects nodes; all its conditions must hold. Conditions are closed, with a tolerance
+/// of 1e-9 of the mesh's diagonal, so that nodes meant to lie on a plane are found on it.
 struct NodeSetRule {
   std::string name;
   bool surface = false;  ///< only nodes on the boundary
@@ -31,6 +31,7 @@ struct NodeSetRule {
 };
 
 /// The nodes that a rule selects, sorted. An empty result is left to the caller to judge.
-std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule);
+std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary,
+                              const NodeSetRule& rule);
 
 }  // namespace sandglass

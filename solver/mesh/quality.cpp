@@ -42,13 +42,14 @@ void require_positive_jacobians(const Mesh& mesh) {
     for (int I = 0; I < 8; ++I) {
       for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
     }
-    listed += fmt::format("\n  element {}: centre ({:.6g}, {:.6g}, {:.6g}), det J = {:.6g}", e, centre[0], centre[1],
-                          centre[2], measure);
+    listed += fmt::format("\n  element {}: centre ({:.6g}, {:.6g}, {:.6g}), det J = {:.6g}", e, centre[0],
+                          centre[1], centre[2], measure);
   }
   if (inverted > 0) {
-    throw InputError(fmt::format(
-        "mesh: {} of {} elements are inverted; det J must be positive at all eight Gauss points; the first {}:{}",
-        inverted, mesh.cells.size(), std::min(inverted, 10), listed));
+    throw InputError(
+        fmt::format("mesh: {} of {} elements are inverted; det J must be positive at all eight Gauss points; "
+                    "the first {}:{}",
+                    inverted, mesh.cells.size(), std::min(inverted, 10), listed));
   }
 }
 

@@ -10,7 +10,8 @@ double scaled_jacobian(const NodalVectors<double>& X);
 /// The smallest det(dX/dxi) at the eight Gauss points, m^3.
 double smallest_measure(const NodalVectors<double>& X);
 
-/// Throws InputError when an element has det(dX/dxi) <= 0 at a Gauss point; names the first ten with id, centre, det J.
+/// Throws InputError when an element has det(dX/dxi) <= 0 at a Gauss point; names the first ten with id,
+/// centre, det J.
 void require_positive_jacobians(const Mesh& mesh);
 
 }  // namespace sandglass

@@ -15,9 +15,11 @@ namespace {
 template <class Aggregate>
 std::string described(const Aggregate& aggregate) {
   std::string text = fmt::format("{}(", Aggregate::name);
-  std::apply([&](const auto&... parameter) {
-    ((text += fmt::format("{}={},", parameter.name, aggregate.*(parameter.member))), ...);
-  }, Aggregate::parameters());
+  std::apply(
+      [&](const auto&... parameter) {
+        ((text += fmt::format("{}={},", parameter.name, aggregate.*(parameter.member))), ...);
+      },
+      Aggregate::parameters());
   return text + ")";
 }
 
@@ -26,7 +28,8 @@ std::string described(const NodeSetRule& rule) {
   for (const auto& interval : rule.within) {
     text += interval ? fmt::format(",[{},{}]", interval->low, interval->high) : ",-";
   }
-  if (const auto& c = rule.cylinder) text += fmt::format(",cylinder({},{},{})", c->axis, c->center, c->semi_axes);
+  if (const auto& c = rule.cylinder)
+    text += fmt::format(",cylinder({},{},{})", c->axis, c->center, c->semi_axes);
   return text + ")";
 }
 

@@ -22,24 +22,25 @@ struct MeshFile {
 /// Displacements imposed on a node set; they follow the loading curve.
 struct ImposedDisplacement {
   std::string set;
-  Vector value{};                               ///< final value, m
+  Vector value{};                                    ///< final value, m
   std::array<bool, 3> components{true, true, true};  ///< which components are imposed
 };
 
 /// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.
 struct Profile {
   std::string set;
-  std::string order;  ///< "x", "y", "z" along an axis; "around-x", ... by angle about an axis through the centroid
+  std::string
+      order;  ///< "x", "y", "z" along an axis; "around-x", ... by angle about an axis through the centroid
 };
 
 /// A limit that `sandglass verify` holds a method to.
 struct Expectation {
   std::string method;
-  std::string kappa = "auto";      ///< a number, "auto", or "best": the smallest figure over the case's kappas
-  std::string reference;           ///< "golden" or "truth"
-  std::string figure;              ///< "max_relative_error", "profile_relative_error" or "rms_relative_error"
-  std::optional<double> below;     ///< the figure must be at most this, fraction
-  std::optional<double> above;     ///< the figure must be more than this: the method must fail visibly
+  std::string kappa = "auto";   ///< a number, "auto", or "best": the smallest figure over the case's kappas
+  std::string reference;        ///< "golden" or "truth"
+  std::string figure;           ///< "max_relative_error", "profile_relative_error" or "rms_relative_error"
+  std::optional<double> below;  ///< the figure must be at most this, fraction
+  std::optional<double> above;  ///< the figure must be more than this: the method must fail visibly
   std::string reason;
 };
 
@@ -64,8 +65,8 @@ struct Case {
   std::filesystem::path truth;
 };
 
-/// A hash of what decides the static answer: mesh recipe, law, node sets and imposed displacements. Settings, limits
-/// and words do not enter.
+/// A hash of what decides the static answer: mesh recipe, law, node sets and imposed displacements. Settings,
+/// limits and words do not enter.
 std::string case_hash(const Case& scene);
 
 }  // namespace sandglass

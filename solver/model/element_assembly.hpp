@@ -6,8 +6,8 @@
 
 namespace sandglass {
 
-/// All elements of one formulation, their constants computed once. Elements are added in their order, so that the same
-/// input gives the same bits.
+/// All elements of one formulation, their constants computed once. Elements are added in their order, so that
+/// the same input gives the same bits.
 template <class Formulation, class Law>
 class ElementAssembly final : public InternalForce {
  public:

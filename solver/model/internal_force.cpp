@@ -15,14 +15,15 @@ namespace {
 template <class Visitor>
 void with_method(std::string_view name, Visitor&& visit) {
   if (!with_named_type(Methods{}, name, visit)) {
-    throw InputError(fmt::format("method: '{}' is not known; {}", name, suggestion(name, names_of(Methods{}))));
+    throw InputError(
+        fmt::format("method: '{}' is not known; {}", name, suggestion(name, names_of(Methods{}))));
   }
 }
 
 }  // namespace
 
-std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string_view method, const AnyLaw& any_law,
-                                                   const HourglassSettings& settings) {
+std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string_view method,
+                                                   const AnyLaw& any_law, const HourglassSettings& settings) {
   std::unique_ptr<InternalForce> force;
   with_method(method, [&]<class Method>() {
     if (settings.kappa && !Method::Hourglass::takes_kappa) {
@@ -32,9 +33,11 @@ std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string
     if (settings.kappa && !(*settings.kappa >= 0.0)) {
       throw InputError(fmt::format("kappa: {} must be in [0, inf), or 'auto'", *settings.kappa));
     }
-    std::visit([&]<class Law>(const Law& law) {
-      force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law>>(mesh, law, settings);
-    }, any_law);
+    std::visit(
+        [&]<class Law>(const Law& law) {
+          force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law>>(mesh, law, settings);
+        },
+        any_law);
   });
   return force;
 }

@@ -16,8 +16,9 @@ struct StrainEnergies {
   double hourglass = 0.0;
 };
 
-/// The elements of a mesh with one method and one law: displacements in, internal forces out. This interface is where
-/// the choice made at run time ends; behind it loops are monomorphic. Everything is const: it may be shared by threads.
+/// The elements of a mesh with one method and one law: displacements in, internal forces out. This interface
+/// is where the choice made at run time ends; behind it loops are monomorphic. Everything is const: it may be
+/// shared by threads.
 class InternalForce {
  public:
   InternalForce() = default;
@@ -45,11 +46,13 @@ class InternalForce {
 };
 
 /// THE place of dispatch: the elements of `mesh` with the method of that name.
-/// Throws InputError for an unknown method (naming the known ones) and for a kappa given to a method that takes none.
-std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string_view method, const AnyLaw& law,
-                                                   const HourglassSettings& settings);
+/// Throws InputError for an unknown method (naming the known ones) and for a kappa given to a method that
+/// takes none.
+std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string_view method,
+                                                   const AnyLaw& law, const HourglassSettings& settings);
 
-/// Whether the method of that name takes the hourglass stiffness parameter kappa. Throws InputError when unknown.
+/// Whether the method of that name takes the hourglass stiffness parameter kappa. Throws InputError when
+/// unknown.
 bool takes_kappa(std::string_view method);
 
 /// The number that `auto` stands for, or none when the method takes no kappa.

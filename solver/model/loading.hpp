@@ -4,7 +4,8 @@
 
 namespace sandglass {
 
-/// The paper's loading curve (eq. 15) over relative time: from 0 to 1 with no velocity and acceleration at both ends.
+/// The paper's loading curve (eq. 15) over relative time: from 0 to 1 with no velocity and acceleration at
+/// both ends.
 constexpr double loading_curve(double relative_time) {
   const double t = std::clamp(relative_time, 0.0, 1.0);
   return t * t * t * (10.0 + t * (-15.0 + t * 6.0));

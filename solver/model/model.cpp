@@ -25,8 +25,8 @@ const std::vector<int>& find_set(const Case& scene, const NodeSets& sets, const 
                                  const std::string& name) {
   const auto found = sets.find(name);
   if (found == sets.end()) {
-    throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}", scene.file.string(), key, name,
-                                 suggestion(name, names(sets))));
+    throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}", scene.file.string(), key,
+                                 name, suggestion(name, names(sets))));
   }
   return found->second;
 }
@@ -43,14 +43,14 @@ std::vector<Constraint> make_constraints(const Case& scene, const NodeSets& sets
       for (std::size_t i = 0; i < 3; ++i) {
         if (!displacement.components[i]) continue;
         const double value = displacement.value[i];
-        const auto [entry, is_new] =
-            imposed.try_emplace({node, static_cast<int>(i)}, Origin{value, displacement.set});
-        if (!is_new && entry->second.value != value) {
-          throw InputError(fmt::format(
-              "{}: node {} is given two displacements in {}: {} by set '{}' and {} by set '{}'; a node may be in two "
-              "sets only if both impose the same value",
-              scene.file.string(), node, "xyz"[i], entry->second.value, entry->second.set, value, displacement.set));
-        }
+        const Origin origin{value, displacement.set};
+        const Origin& first = imposed.try_emplace({node, static_cast<int>(i)}, origin).first->second;
+        if (first.value == value) continue;
+        throw InputError(fmt::format(
+            "{}: node {} is given two displacements in {}: {} by set '{}' and {} by set '{}'; a node may be "
+            "in "
+            "two sets only if both impose the same value",
+            scene.file.string(), node, "xyz"[i], first.value, first.set, value, displacement.set));
       }
     }
   }
@@ -83,8 +83,8 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file) {
     auto nodes = select_nodes(scene.mesh, on_boundary, rule);
     if (nodes.empty()) {
       throw InputError(fmt::format(
-          "{}: sets.{} selects no node; its rule must hold for at least one of the {} nodes of the mesh", file,
-          rule.name, scene.mesh.points.size()));
+          "{}: sets.{} selects no node; its rule must hold for at least one of the {} nodes of the mesh",
+          file, rule.name, scene.mesh.points.size()));
     }
     scene.sets[rule.name] = std::move(nodes);
   }
@@ -109,8 +109,8 @@ double largest_imposed(const Scene& scene) {
 Model::Model(const Scene& scene, MethodChoice choice)
     : scene_(scene),
       choice_(std::move(choice)),
-      internal_force_(
-          make_internal_force(scene.mesh, choice_.method, scene.description.law, HourglassSettings{choice_.kappa})),
+      internal_force_(make_internal_force(scene.mesh, choice_.method, scene.description.law,
+                                          HourglassSettings{choice_.kappa})),
       masses_(scene.mesh.points.size(), 0.0) {
   element_masses_.reserve(scene.mesh.cells.size());
   for (const auto& cell : scene.mesh.cells) {

@@ -27,8 +27,8 @@ struct Scene {
   std::string mesh_hash;
 };
 
-/// Node sets by their rules, constraints from the imposed displacements. Throws InputError for an inverted element, an
-/// empty set, and a node to which two different values are imposed.
+/// Node sets by their rules, constraints from the imposed displacements. Throws InputError for an inverted
+/// element, an empty set, and a node to which two different values are imposed.
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {});
 
 /// The mesh of a case whose mesh comes from a generator.

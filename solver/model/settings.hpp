@@ -23,7 +23,8 @@ struct RelaxationSettings {
                   "stop when |residual| / |reaction| falls below this", false},
         Parameter{&S::ramp_steps, "ramp_steps", "-", Range::at_least(0),
                   "steps of the ramp; 0 chooses them from shear wave speed and imposed displacement", false},
-        Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1), "give up after this many steps", false},
+        Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1), "give up after this many steps",
+                  false},
         Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},
                   "pseudo time step over the stable one", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
@@ -49,13 +50,15 @@ struct DynamicsSettings {
         Parameter{&S::ramp_time, "ramp_time", "s", Range::at_least(0.0),
                   "time in which imposed displacements reach their value; 0 means the whole duration", false},
         Parameter{&S::time_step, "time_step", "s", Range::at_least(0.0),
-                  "fixed step; refused above the stable one; 0 chooses step_fraction of the stable one", false},
+                  "fixed step; refused above the stable one; 0 chooses step_fraction of the stable one",
+                  false},
         Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},
                   "chosen step over the stable one", false},
         Parameter{&S::damping, "damping", "1/s", Range::at_least(0.0), "mass-proportional damping", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
                   "steps between checks for inversion, divergence and stiffening", false},
-        Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written, beside the initial one", false}};
+        Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written, beside the initial one",
+                  false}};
   }
 };
 

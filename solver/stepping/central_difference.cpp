@@ -47,6 +47,9 @@ class CentralDifference {
     }
   }
 
+  /// Whether the end is reached, up to the rounding of a sum of steps.
+  bool finished() const { return state_.time >= settings_.duration * (1.0 - 1e-12); }
+
   void update_accelerations() {
     forces_.evaluate(state_.u);
     const auto& masses = model_.masses();
@@ -56,7 +59,9 @@ class CentralDifference {
   }
 
   /// v(t + dt/2) from v(t - dt_old/2): the two half steps share the acceleration and the damping at t.
+  /// The last step is cut so that the run ends at its duration.
   void update_velocities() {
+    next_step_ = std::min(next_step_, settings_.duration - state_.time);
     const double dt = 0.5 * (state_.step_size + next_step_);
     const double c = 0.5 * settings_.damping * dt;
     for (std::size_t n = 0; n < state_.u.size(); ++n) {
@@ -95,7 +100,8 @@ class CentralDifference {
       for (std::size_t i = 0; i < 3; ++i) v[n][i] += 0.5 * state_.step_size * state_.acceleration[n][i];
     }
     for (const auto& [node, component, value] : model_.scene().constraints) {
-      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = loading_rate(state_.time) * value;
+      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
+          loading_rate(state_.time) * value;
     }
     return v;
   }
@@ -115,10 +121,12 @@ class CentralDifference {
   void require_stable(const StableStep& stable) const {
     if (settings_.time_step <= stable.step) return;
     const std::string text = fmt::format(
-        "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by element {} at step {}; allowed: at "
+        "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by element {} at step {}; "
+        "allowed: at "
         "most the stable step, or 0 to let the program choose",
         settings_.time_step, stable.step, stable.element, state_.step);
-    if (state_.step == 0) throw InputError(fmt::format("{}: {}", model_.scene().description.file.string(), text));
+    if (state_.step == 0)
+      throw InputError(fmt::format("{}: {}", model_.scene().description.file.string(), text));
     throw ComputationError(text);
   }
 
@@ -143,9 +151,9 @@ Motion integrate(const Model& model, Observer& observer) {
   const auto report = [&] {
     const NodalField v = scheme.velocities();
     const StrainEnergies energies = model.internal_force().energies(state.u);
-    observer.history({state.time, 0.5 * weighted_dot(model.masses(), v, v), energies.strain, energies.hourglass,
-                      scheme.external_work(), scheme.residual(), state.step_size});
-    if (state.time >= frames * settings.duration / settings.frames) {
+    observer.history({state.time, 0.5 * weighted_dot(model.masses(), v, v), energies.strain,
+                      energies.hourglass, scheme.external_work(), scheme.residual(), state.step_size});
+    if (scheme.finished() || state.time >= frames * settings.duration / settings.frames) {
       observer.frame(state.time, state.u, v);
       ++frames;
     }
@@ -157,7 +165,7 @@ Motion integrate(const Model& model, Observer& observer) {
   motion.smallest_step = settings.duration;
   scheme.update_accelerations();
   report();
-  while (state.time < settings.duration && !motion.interrupted) {
+  while (!scheme.finished() && !motion.interrupted) {
     scheme.update_velocities();
     scheme.update_displacements();
     scheme.impose_displacements();
@@ -165,7 +173,7 @@ Motion integrate(const Model& model, Observer& observer) {
     scheme.update_external_work();
     motion.smallest_step = std::min(motion.smallest_step, state.step_size);
     const bool frame_due = state.time >= frames * settings.duration / settings.frames;
-    if (state.step % settings.check_interval == 0 || frame_due || state.time >= settings.duration ||
+    if (state.step % settings.check_interval == 0 || frame_due || scheme.finished() ||
         !std::isfinite(scheme.residual())) {
       require_healthy(model, state.u, state.step);
       report();

@@ -7,7 +7,7 @@ namespace sandglass {
 
 /// State of central differences: displacements at `time`, velocities half a step earlier.
 struct DynamicState {
-  double time = 0.0;        ///< s
+  double time = 0.0;  ///< s
   long step = 0;
   double step_size = 0.0;   ///< s, the step that led here
   NodalField u;             ///< m, at `time`
@@ -17,19 +17,20 @@ struct DynamicState {
 
 /// A dynamic answer.
 struct Motion {
-  NodalField u;              ///< m, at the end
-  NodalField v;              ///< m/s, at the end: the same time as u
-  double time = 0.0;         ///< s
+  NodalField u;       ///< m, at the end
+  NodalField v;       ///< m/s, at the end: the same time as u
+  double time = 0.0;  ///< s
   long steps = 0;
   double smallest_step = 0.0;  ///< s
   bool interrupted = false;
-  double seconds = 0.0;      ///< wall time of the steps
+  double seconds = 0.0;  ///< wall time of the steps
 };
 
-/// Integrates the equations of motion with central differences, lumped unscaled masses and the case's settings.
-/// Imposed displacements follow eq. 15 over the ramp time. A step chosen by the program follows the stable one as
-/// elements stiffen; a step given by the user is refused when it is above the stable one, at the start (InputError) or
-/// on the way (ComputationError). Throws ComputationError when an element inverts or the numbers stop being finite.
+/// Integrates the equations of motion with central differences, lumped unscaled masses and the case's
+/// settings. Imposed displacements follow eq. 15 over the ramp time. A step chosen by the program follows the
+/// stable one as elements stiffen; a step given by the user is refused when it is above the stable one, at
+/// the start (InputError) or on the way (ComputationError). Throws ComputationError when an element inverts
+/// or the numbers stop being finite.
 Motion integrate(const Model& model, Observer& observer);
 
 }  // namespace sandglass

@@ -13,23 +13,27 @@ namespace sandglass {
 
 namespace {
 
-/// Enough steps that the driven nodes never move faster than this share of the shear wave of the smallest element.
+/// Enough steps that the driven nodes never move faster than this share of the shear wave of the smallest
+/// element.
 int choose_ramp_steps(const Model& model) {
   const auto& scene = model.scene();
   if (scene.description.relaxation.ramp_steps > 0) return scene.description.relaxation.ramp_steps;
   constexpr double share = 0.3;
   const auto& masses = model.element_masses();
   const double h = std::cbrt(*std::min_element(masses.begin(), masses.end()) / scene.description.density);
-  const double shear_over_pressure_wave = std::visit([](const auto& law) {
-    return std::sqrt(law.shear_modulus() / (lame_lambda(law) + 2.0 * law.shear_modulus()));
-  }, scene.description.law);
+  const double shear_over_pressure_wave = std::visit(
+      [](const auto& law) {
+        return std::sqrt(law.shear_modulus() / (lame_lambda(law) + 2.0 * law.shear_modulus()));
+      },
+      scene.description.law);
   // In one step of an equally critical mesh a pressure wave crosses h / sqrt(3).
   const double shear_wave = h / std::sqrt(3.0) * shear_over_pressure_wave;
   const double steps = steepest_loading * largest_imposed(scene) / (share * shear_wave);
   return std::max(100, static_cast<int>(std::ceil(steps)));
 }
 
-/// Masses with which the step 1 is `step_fraction` of the stable one in every element; kept up with stiffening.
+/// Masses with which the step 1 is `step_fraction` of the stable one in every element; kept up with
+/// stiffening.
 class ScaledMasses {
  public:
   explicit ScaledMasses(const Model& model)
@@ -69,7 +73,8 @@ class AdaptiveDamping {
   explicit AdaptiveDamping(const Model& model) : previous_(model.masses().size()) {}
 
   /// 2 omega with omega^2 = du . df / du . M du for the increment du that led to these forces.
-  double coefficient(const std::vector<double>& masses, const NodalField& increment, const NodalField& force) {
+  double coefficient(const std::vector<double>& masses, const NodalField& increment,
+                     const NodalField& force) {
     double stiffness = 0.0;
     for (std::size_t n = 0; n < force.size(); ++n) {
       for (std::size_t i = 0; i < 3; ++i) stiffness += increment[n][i] * (force[n][i] - previous_[n][i]);
@@ -126,14 +131,17 @@ Relaxation relax(const Model& model, Observer& observer) {
     result.residual = forces.residual();
     result.converged = step >= ramp_steps && result.residual < settings.tolerance;
 
-    const bool check = step % settings.check_interval == 0 || result.converged || !std::isfinite(result.residual);
+    const bool check =
+        step % settings.check_interval == 0 || result.converged || !std::isfinite(result.residual);
     if (check) {
       require_healthy(model, u, step);
       const StrainEnergies energies = model.internal_force().energies(u);
-      observer.history({ramp, 0.5 * weighted_dot(masses.nodal(), v, v), energies.strain, energies.hourglass, work,
-                        result.residual, 1.0 / ramp_steps});
-      const double digits = std::log(std::max(result.residual, settings.tolerance)) / std::log(settings.tolerance);
-      result.interrupted = !observer.proceed(step, std::min(1.0, 0.5 * std::min(ramp, 1.0) + 0.5 * digits), result.residual);
+      observer.history({ramp, 0.5 * weighted_dot(masses.nodal(), v, v), energies.strain, energies.hourglass,
+                        work, result.residual, 1.0 / ramp_steps});
+      const double digits =
+          std::log(std::max(result.residual, settings.tolerance)) / std::log(settings.tolerance);
+      result.interrupted =
+          !observer.proceed(step, std::min(1.0, 0.5 * std::min(ramp, 1.0) + 0.5 * digits), result.residual);
       masses.update(u);
     }
     if (step < ramp_steps && step * settings.frames >= static_cast<long>(frames + 1) * ramp_steps) {

@@ -23,8 +23,10 @@ void require_healthy(const Model& model, const NodalField& u, long step) {
   throw ComputationError(fmt::format(
       "step {}: {} of {} elements {}; det F must be positive; the first {}:{}\n"
       "remedy: {}",
-      step, ill, jacobians.size(), finite ? "are inverted" : "hold no finite number any more", std::min(ill, 10), listed,
-      finite ? "impose less displacement or more slowly (ramp_steps, ramp_time), refine the mesh, or use an hourglass "
+      step, ill, jacobians.size(), finite ? "are inverted" : "hold no finite number any more",
+      std::min(ill, 10), listed,
+      finite ? "impose less displacement or more slowly (ramp_steps, ramp_time), refine the mesh, or use an "
+               "hourglass "
                "control (method tl-perturbation or tl-mean-dilatation)"
              : "take a smaller step (step_fraction, time_step) or check more often (check_interval)"));
 }

@@ -12,8 +12,9 @@ struct StableStep {
   int element;  ///< which element sets it
 };
 
-/// 2 / omega_max of each element (s) at displacements u, with omega_max^2 <= stiffness bound / (rho V / 8). The mesh's
-/// largest frequency is never above the largest of its elements', so the smallest of these steps is safe.
+/// 2 / omega_max of each element (s) at displacements u, with omega_max^2 <= stiffness bound / (rho V / 8).
+/// The mesh's largest frequency is never above the largest of its elements', so the smallest of these steps
+/// is safe.
 std::vector<double> stable_steps(const Model& model, const NodalField& u);
 
 StableStep stable_step(const Model& model, const NodalField& u);

@@ -1,0 +1,39 @@
+"""Checks that includes between the solver's layers point one way only.
+
+A layer may include itself and the layers before it. Exit code 1 names every include that points the other way.
+"""
+
+import pathlib
+import re
+import sys
+
+LAYERS = [
+    "base",
+    "math",
+    "material",
+    "element",
+    "mesh",
+    "model",
+    "stepping",
+    "io",
+    "comparison",
+    "app",
+]
+
+
+def wrong_includes(solver: pathlib.Path) -> list[str]:
+    """Lines 'file:line: layer includes layer' for every include that points from a layer to a later one."""
+    found = []
+    for file in sorted(solver.rglob("*.[ch]pp")):
+        layer = file.relative_to(solver).parts[0]
+        for number, line in enumerate(file.read_text().splitlines(), start=1):
+            match = re.match(r'#include "(\w+)/', line)
+            if match and LAYERS.index(match[1]) > LAYERS.index(layer):
+                found.append(f"{file}:{number}: {layer} may not include {match[1]}")
+    return found
+
+
+if __name__ == "__main__":
+    wrong = wrong_includes(pathlib.Path(__file__).parent.parent / "solver")
+    print("\n".join(wrong) or "ci/layers: every include points left")
+    sys.exit(1 if wrong else 0)
