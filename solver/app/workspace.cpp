@@ -35,7 +35,7 @@ std::vector<fs::path> canonical_cases() {
 fs::path find_case(const std::string& name_or_path) {
   std::error_code ignored;
   if (fs::is_regular_file(name_or_path, ignored)) return name_or_path;
-  const fs::path named = case_folder() / (name_or_path + ".toml");
+  fs::path named = case_folder() / (name_or_path + ".toml");
   if (fs::is_regular_file(named, ignored)) return named;
   std::vector<std::string> known;
   for (const auto& file : canonical_cases()) known.push_back(file.stem().string());

@@ -114,11 +114,11 @@ Expectation read_expectation(TableReader table) {
       table.required_choice("figure", {"max_relative_error", "profile_relative_error", "rms_relative_error"});
   expected.below = table.optional<double>("below");
   expected.above = table.optional<double>("above");
+  expected.reason = table.required<std::string>("reason");
+  table.finish();
   if (expected.below.has_value() == expected.above.has_value()) {
     table.fail("below", "or above must be given, one of the two");
   }
-  expected.reason = table.required<std::string>("reason");
-  table.finish();
   return expected;
 }
 

@@ -70,6 +70,12 @@ void TableReader::fail(const std::string& key, const std::string& message) const
 }
 
 void TableReader::fail_missing(const std::string& key) const {
+  // A misspelt key is missing under its right name; the misspelling is what the user wants to hear of.
+  for (const auto& given : keys()) {
+    if (!asked_.contains(given) && nearest_name(given, {key}) == key) {
+      fail(given, fmt::format("is not a key of this table; did you mean '{}'?", key));
+    }
+  }
   fail(key, "is missing; this key must be given");
 }
 
