@@ -93,11 +93,14 @@ class CentralDifference {
     }
   }
 
-  /// Velocities at the time of the displacements.
+  /// Velocities at the time of the displacements: the mean of the half steps before and after, damping included.
   NodalField velocities() const {
     NodalField v = state_.v_half;
+    const double half = 0.5 * state_.step_size;
     for (std::size_t n = 0; n < v.size(); ++n) {
-      for (std::size_t i = 0; i < 3; ++i) v[n][i] += 0.5 * state_.step_size * state_.acceleration[n][i];
+      for (std::size_t i = 0; i < 3; ++i) {
+        v[n][i] = (v[n][i] + half * state_.acceleration[n][i]) / (1.0 + half * settings_.damping);
+      }
     }
     for (const auto& [node, component, value] : model_.scene().constraints) {
       v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
