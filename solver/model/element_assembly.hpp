@@ -19,10 +19,12 @@ class ElementAssembly final : public InternalForce {
     }
   }
 
-  void evaluate(const NodalField& u, NodalField& force) const override {
+  // Without `flatten` the compiler leaves small matrix functions out of line, which costs a third of the time.
+  [[gnu::flatten]] void evaluate(const NodalField& u, NodalField& force) const override {
+    const Law law = law_;  // a copy that no store can alias: its moduli are computed once
     std::fill(force.begin(), force.end(), Vector{});
     for (std::size_t e = 0; e < cells_.size(); ++e) {
-      scatter_add(Formulation::force(gather(u, cells_[e]), elements_[e], law_), cells_[e], force);
+      scatter_add(Formulation::force(gather(u, cells_[e]), elements_[e], law), cells_[e], force);
     }
   }
 
