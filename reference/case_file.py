@@ -1,0 +1,119 @@
+"""Reading the parts of a case file (TOML) that the reference needs: material and displacements."""
+
+import difflib
+import math
+import tomllib
+from dataclasses import dataclass
+
+from errors import InputError
+from laws import LAWS
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """An imposed displacement: node set, value (3,) in m, and the components it acts on (0..2)."""
+
+    set_name: str
+    value: tuple
+    components: tuple
+
+
+@dataclass(frozen=True)
+class Case:
+    """Name, law, numbers of the law (SI units) and imposed displacements of a case."""
+
+    name: str
+    law: str
+    material: dict
+    displacements: tuple
+
+
+def read_case(path):
+    """Read and check a case file.
+
+    path: str or Path of a TOML file. Returns a Case.
+    Raises InputError naming file, key, value, rule and what is allowed.
+    """
+    try:
+        with open(path, "rb") as file:
+            tables = tomllib.load(file)
+    except OSError as error:
+        raise InputError(f"{path}: cannot read the case file: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not a TOML file: {error}") from error
+    name = _get(path, tables, "case", "name", str)
+    law = _get(path, tables, "material", "law", str)
+    if law not in LAWS:
+        raise InputError(f"{path}: material.law = {law!r}: unknown law; {_allowed(law, LAWS)}")
+    known = ("law", "young_modulus", "poisson_ratio", "density")
+    _check_keys(path, "material", tables["material"], known)
+    young = _get(path, tables, "material", "young_modulus", float)
+    if not (young > 0 and math.isfinite(young)):
+        raise InputError(f"{path}: material.young_modulus = {young}: must be positive (Pa)")
+    poisson = _get(path, tables, "material", "poisson_ratio", float)
+    if not -1 < poisson < 0.5:
+        raise InputError(f"{path}: material.poisson_ratio = {poisson}: must lie in (-1, 0.5)")
+    entries = tables.get("displacement")
+    if not isinstance(entries, list) or not entries:
+        raise InputError(f"{path}: no [[displacement]]: at least one table is required")
+    return Case(
+        name=name,
+        law=law,
+        material={"young_modulus": young, "poisson_ratio": poisson},
+        displacements=tuple(_displacement(path, i, entry) for i, entry in enumerate(entries)),
+    )
+
+
+def _displacement(path, index, entry):
+    """One checked [[displacement]] table as a Displacement."""
+    where = f"displacement[{index}]"
+    _check_keys(path, where, entry, ("set", "value", "components"))
+    set_name = entry.get("set")
+    if not isinstance(set_name, str):
+        raise InputError(f"{path}: {where}.set = {set_name!r}: must be the name of a node set")
+    value = entry.get("value")
+    numbers = isinstance(value, list) and all(_is_number(v) for v in value)
+    if not (numbers and len(value) == 3 and all(math.isfinite(v) for v in value)):
+        raise InputError(f"{path}: {where}.value = {value!r}: must be three finite numbers (m)")
+    components = entry.get("components", "xyz")
+    letters = components if isinstance(components, str) else ""
+    if not letters or len(set(letters)) != len(letters) or not set(letters) <= set("xyz"):
+        raise InputError(
+            f"{path}: {where}.components = {components!r}: must be letters out of 'xyz', each "
+            "at most once, at least one"
+        )
+    axes = tuple(sorted("xyz".index(letter) for letter in letters))
+    return Displacement(set_name, tuple(float(v) for v in value), axes)
+
+
+def _get(path, tables, table, key, kind):
+    """The value of table.key, checked to be a string or a number."""
+    if not isinstance(tables.get(table), dict):
+        raise InputError(f"{path}: table [{table}] is missing")
+    value = tables[table].get(key)
+    if kind is float and _is_number(value):
+        return float(value)
+    if kind is str and isinstance(value, str):
+        return value
+    wanted = {str: "a string", float: "a number"}[kind]
+    found = "is missing" if value is None else f"= {value!r}"
+    raise InputError(f"{path}: {table}.{key} {found}: {wanted} is required")
+
+
+def _is_number(value):
+    """True for a TOML integer or float (booleans are integers in Python, not here)."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _check_keys(path, where, table, known):
+    """Raise InputError at the first key of the table that is not known."""
+    for key in table:
+        if key not in known:
+            raise InputError(f"{path}: {where}.{key}: unknown key; {_allowed(key, known)}")
+
+
+def _allowed(word, known):
+    """The allowed words, and the nearest one when there is one."""
+    nearest = difflib.get_close_matches(word, known, n=1)
+    hint = f"did you mean {nearest[0]!r}? " if nearest else ""
+    return f"{hint}allowed: {', '.join(sorted(known))}"

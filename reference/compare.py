@@ -1,0 +1,109 @@
+"""The distance between goldens and truths: the table of README.md.
+
+Usage: /usr/bin/python3 reference/compare.py [--update]
+Exit codes: 0 done, 2 damaged or contradicting files.
+"""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from accuracy import relative_errors
+from errors import InputError
+from result_file import read_result, write_result
+
+FOLDER = Path(__file__).resolve().parent
+BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
+
+
+def golden_error(golden_path, truth_path):
+    """Distance of a golden from the truth of the same case and mesh: (max, rms), fractions.
+
+    Raises InputError when the two do not belong together.
+    """
+    points, displacement, golden = read_result(golden_path)
+    truth_points, truth_displacement, truth = read_result(truth_path)
+    for name in ("case", "case_hash", "mesh_hash"):
+        if golden[name] != truth[name]:
+            raise InputError(
+                f"{truth_path}: attribute {name} = {truth[name]!r}, but {golden[name]!r} in "
+                f"{golden_path}: both must come from the same case and mesh; run "
+                f"reference/regenerate {golden['case']}"
+            )
+    # Both hold the very numbers of the mesh file; 1e-12 of the size only forgives another build.
+    if points.shape != truth_points.shape or not np.allclose(
+        points, truth_points, rtol=0, atol=1e-12 * np.ptp(points)
+    ):
+        raise InputError(f"{truth_path}: the nodes are not those of {golden_path}")
+    return relative_errors(displacement, truth_displacement, golden["largest_imposed"])
+
+
+def fill_golden_error(golden_path, truth_path):
+    """Store the distance from the truth in the golden's attributes. Raises InputError."""
+    errors = golden_error(golden_path, truth_path)
+    points, displacement, attributes = read_result(golden_path)
+    attributes["discretisation_error_max"], attributes["discretisation_error_rms"] = errors
+    attributes["discretisation_error_note"] = "distance from the truth of the same case"
+    write_result(golden_path, points, displacement, attributes)
+
+
+def table(folder=FOLDER):
+    """The Markdown table of folder/golden/*.h5 against folder/truth/*.h5, as a string."""
+    lines = [
+        "| case | golden to truth, max | rms | truth's mesh | truth's own error, max | rms "
+        "| golden, s | truth, s |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for golden_path in sorted((folder / "golden").glob("*.h5")):
+        truth_path = folder / "truth" / golden_path.name
+        _, _, golden = read_result(golden_path)
+        cells = [golden["case"]]
+        if truth_path.exists():
+            _, _, truth = read_result(truth_path)
+            cells += [_percent(error) for error in golden_error(golden_path, truth_path)]
+            cells.append(f"split {truth['refinements']}x" if truth["refinements"] else "same")
+            own = (truth["discretisation_error_max"], truth["discretisation_error_rms"])
+            cells += [_percent(error) for error in own]
+            cells += [f"{golden['wall_seconds']:.0f}", f"{truth['wall_seconds']:.0f}"]
+        else:
+            cells += ["-"] * 5 + [f"{golden['wall_seconds']:.0f}", "-"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def update_readme(folder=FOLDER):
+    """Put the present table between the two marks of folder/README.md. Raises InputError."""
+    readme = folder / "README.md"
+    text = readme.read_text(encoding="utf-8")
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not end:
+        raise InputError(f"{readme}: the marks {BEGIN} and {END} are missing")
+    readme.write_text(f"{before}{begin}\n{table(folder)}\n{end}{after}", encoding="utf-8")
+
+
+def _percent(fraction):
+    """A fraction as a percentage with three digits."""
+    return "not estimated" if math.isnan(fraction) else f"{100 * fraction:.3g} %"
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description="Print the distances of goldens from truths.")
+    parser.add_argument("--update", action="store_true", help="write the table into README.md")
+    parsed = parser.parse_args(arguments)
+    try:
+        print(table())
+        if parsed.update:
+            update_readme()
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,108 @@
+"""Reading the mesh file that `sandglass mesh CASE -o FILE` writes."""
+
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+from errors import InputError
+from hexahedra import Condition, HexMesh
+
+
+@dataclass(frozen=True)
+class MeshFile:
+    """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, and what it was made of."""
+
+    points: np.ndarray
+    cells: np.ndarray
+    sets: dict
+    case: str
+    case_hash: str
+    mesh_hash: str
+
+
+def read_mesh(path):
+    """Read and check a mesh file.
+
+    path: str or Path of an HDF5 file with /mesh/points, /mesh/cells, /mesh/sets/NAME and the root
+    attributes case, case_hash and mesh_hash. Returns a MeshFile.
+    Raises InputError naming file, dataset or attribute and the rule.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            points = _dataset(path, file, "/mesh/points", np.float64, 3)
+            cells = _dataset(path, file, "/mesh/cells", np.int64, 8)
+            sets = {
+                name: _dataset(path, file, f"/mesh/sets/{name}", np.int64, None)
+                for name in file.get("/mesh/sets", {})
+            }
+            attributes = {}
+            for name in ("case", "case_hash", "mesh_hash"):
+                if name not in file.attrs:
+                    raise InputError(f"{path}: root attribute {name!r} is missing")
+                value = file.attrs[name]
+                attributes[name] = value.decode() if isinstance(value, bytes) else str(value)
+    except OSError as error:
+        raise InputError(f"{path}: cannot read the mesh (HDF5): {error}") from error
+    if not np.isfinite(points).all():
+        raise InputError(f"{path}: /mesh/points: coordinates must be finite")
+    for name, nodes in [("cells", cells)] + [(f"sets/{n}", s) for n, s in sets.items()]:
+        if nodes.size and not (0 <= nodes.min() and nodes.max() < len(points)):
+            raise InputError(
+                f"{path}: /mesh/{name}: node numbers {nodes.min()}..{nodes.max()} must lie in "
+                f"0..{len(points) - 1}"
+            )
+    return MeshFile(points=points, cells=cells, sets=sets, **attributes)
+
+
+def load_case_mesh(case, mesh_path):
+    """The mesh of a case, with the displacements of the case imposed on its nodes.
+
+    case: Case. mesh_path: str or Path. Returns (HexMesh, MeshFile).
+    Raises InputError when the mesh belongs to another case, a set is missing or empty, two
+    displacements contradict each other, or nothing is moved.
+    """
+    file = read_mesh(mesh_path)
+    if file.case != case.name:
+        raise InputError(
+            f"{mesh_path}: attribute case = {file.case!r}: this is the mesh of another case; "
+            f"{case.name!r} is required (sandglass mesh {case.name} -o FILE)"
+        )
+    mesh = HexMesh(file.points, file.cells, ())
+    for entry in case.displacements:
+        members = file.sets.get(entry.set_name, np.empty(0, dtype=np.int64))
+        if not members.size:
+            raise InputError(
+                f"{mesh_path}: displacement.set = {entry.set_name!r}: no such node set, or empty; "
+                f"allowed: {', '.join(sorted(n for n, s in file.sets.items() if s.size))}"
+            )
+        prescribed, values = mesh.imposed()
+        for axis in entry.components:
+            already = members[prescribed[members, axis]]
+            if (values[already, axis] != entry.value[axis]).any():
+                raise InputError(
+                    f"{mesh_path}: displacement.set = {entry.set_name!r}: component "
+                    f"{'xyz'[axis]} of node {already[0]} is already prescribed with another value"
+                )
+        nodes = np.zeros(len(file.points), dtype=bool)
+        nodes[members] = True
+        condition = Condition(nodes, entry.components, np.tile(entry.value, (len(nodes), 1)))
+        mesh = HexMesh(mesh.points, mesh.cells, mesh.conditions + (condition,))
+    if not mesh.largest_imposed():
+        raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
+    return mesh, file
+
+
+def _dataset(path, file, name, dtype, width):
+    """One checked dataset: (n, width), or (n,) when width is None, of the wanted kind."""
+    if name not in file:
+        raise InputError(f"{path}: dataset {name} is missing")
+    data = file[name]
+    shape = "(n,)" if width is None else f"(n, {width})"
+    good_shape = data.ndim == 1 if width is None else data.ndim == 2 and data.shape[1] == width
+    if not good_shape or data.dtype.kind != np.dtype(dtype).kind:
+        raise InputError(
+            f"{path}: {name} has shape {data.shape} and type {data.dtype}; "
+            f"{shape} {np.dtype(dtype)} is required"
+        )
+    return data[...].astype(dtype)

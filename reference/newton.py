@@ -1,0 +1,149 @@
+"""Load stepping and Newton's method with a sparse direct solver (MUMPS)."""
+
+import sys
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from petsc4py import PETSc
+
+from errors import DivergenceError
+
+MAX_ITERATIONS = 20
+# A load step only has to lead into the basin of the next one; the last one is solved to round-off.
+STEP_TOLERANCE = 1e-3
+SMALLEST_STEP = 1 / 4096
+SMALLEST_FRACTION = 1 / 16
+# A correction so many times longer than the whole load is not one that leads to an equilibrium.
+LARGEST_CORRECTION = 10.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the solution cost and how good it is.
+
+    residual: norm of the unbalanced nodal forces over the norm of the reactions.
+    last_increment: largest component of the last Newton correction over the largest imposed
+    component.
+    """
+
+    load_steps: int
+    newton_iterations: int
+    residual: float
+    last_increment: float
+
+
+def solve(problem, load_steps, tolerance):
+    """Bring a MixedProblem from rest to its prescribed displacement, in place.
+
+    problem: MixedProblem at rest. load_steps: number of equal load steps; a step that fails is
+    halved. tolerance: the last step ends when a Newton correction is below tolerance times the
+    largest imposed component. Newton's method converges quadratically, so the solution is then
+    exact to round-off. Returns an Outcome. Raises DivergenceError when halving does not help.
+    """
+    scale = np.abs(problem.values).max()
+    state = (problem.displacement.x.array, problem.pressure.x.array)
+    load, step, steps, iterations = 0.0, 1 / load_steps, 0, 0
+    while load < 1:
+        step = min(step, 1 - load)
+        target = 1.0 if load + step > 1 - 1e-9 else load + step
+        saved = [array.copy() for array in state]
+        started = time.perf_counter()
+        converged, count, residual, increment = _equilibrate(
+            problem, target, scale, tolerance if target == 1 else STEP_TOLERANCE
+        )
+        iterations += count
+        _report(target, converged, count, residual, increment, time.perf_counter() - started)
+        if converged:
+            load, steps = target, steps + 1
+            step = min(2 * step, 1 / load_steps)
+            continue
+        for array, value in zip(state, saved):
+            array[:] = value
+        step /= 2
+        if step < SMALLEST_STEP:
+            raise DivergenceError(
+                f"no equilibrium beyond {load:.4f} of the load: Newton's method fails even with "
+                f"steps of {2 * step:.1e} of it"
+            )
+    return Outcome(steps, iterations, residual, increment)
+
+
+def _equilibrate(problem, load, scale, tolerance):
+    """Newton's method at one load: (converged, iterations, residual, increment), both relative."""
+    u = problem.displacement.x.array
+    increment = np.inf
+    for count in range(1, MAX_ITERATIONS + 1):
+        tangent, residual, recover = problem.linearize()
+        du = np.zeros_like(u)
+        # The first correction moves the boundary and the interior together: moving
+        # the boundary alone would crush the elements next to it.
+        du[problem.fixed] = load * problem.values - u[problem.fixed]
+        right = -(residual + tangent @ du)[problem.free]
+        free_tangent = tangent[problem.free][:, problem.free]
+        del tangent  # the factors need the memory
+        du[problem.free] = _direct_solve(free_tangent, right)
+        dp = recover(du)
+        increment = np.abs(du).max() / scale
+        fraction = _advance(problem, du, dp)
+        if not fraction or increment > LARGEST_CORRECTION:
+            return False, count, np.nan, increment
+        if increment < tolerance and fraction == 1:
+            forces, _ = problem.mixed_residual()
+            unbalanced, reactions = (forces[dofs] for dofs in (problem.free, problem.fixed))
+            relative = np.linalg.norm(unbalanced) / np.linalg.norm(reactions)
+            return True, count, relative, increment
+    return False, count, np.nan, increment
+
+
+def _advance(problem, du, dp):
+    """Add the largest of du, du/2, du/4, ... that inverts no element, and as much of dp.
+
+    An inverted element has no energy (J^(-2/3) is not a number). Returns the fraction, or 0 when
+    even SMALLEST_FRACTION of the correction inverts elements.
+    """
+    u, p = problem.displacement.x.array, problem.pressure.x.array
+    old_u, old_p = u.copy(), p.copy()
+    fraction = 1.0
+    while fraction >= SMALLEST_FRACTION:
+        u[:], p[:] = old_u + fraction * du, old_p + fraction * dp
+        forces, _ = problem.mixed_residual()
+        if np.isfinite(forces).all():
+            return fraction
+        fraction /= 2
+    return 0.0
+
+
+def _direct_solve(matrix, right):
+    """Solve a sparse symmetric system with MUMPS (L D L^T): matrix (n, n), right (n,)."""
+    matrix.sort_indices()
+    size = matrix.shape
+    a = PETSc.Mat().createAIJ(size, csr=(matrix.indptr, matrix.indices, matrix.data))
+    a.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+    ksp = PETSc.KSP().create(PETSc.COMM_SELF)
+    ksp.setOperators(a)
+    ksp.setType(PETSc.KSP.Type.PREONLY)
+    pc = ksp.getPC()
+    pc.setType(PETSc.PC.Type.CHOLESKY)
+    pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+    b = PETSc.Vec().createWithArray(right, comm=PETSc.COMM_SELF)
+    x = PETSc.Vec().createWithArray(np.empty(size[0]), comm=PETSc.COMM_SELF)
+    ksp.solve(b, x)
+    failed = ksp.getConvergedReason() < 0
+    solution = np.full(size[0], np.nan) if failed else x.array.copy()
+    # petsc4py keeps what goes out of scope for a later clean-up: without these calls the factors
+    # of all iterations pile up.
+    for thing in (pc, ksp, a, b, x):
+        thing.destroy()
+    return solution
+
+
+def _report(load, converged, count, residual, increment, seconds):
+    """One line of progress on stderr."""
+    verdict = f"residual {residual:.1e}" if converged else "failed, step halved"
+    print(
+        f"load {load:6.4f}: {count} iterations, correction {increment:.1e}, {verdict}, "
+        f"{seconds:.1f} s",
+        file=sys.stderr,
+        flush=True,
+    )

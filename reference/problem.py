@@ -1,0 +1,169 @@
+"""The mixed displacement-pressure problem on a mesh of hexahedra, assembled with FEniCSx.
+
+The pressure is discontinuous, so every Newton step eliminates it exactly on the element level
+(static condensation); what is left is symmetric and has the displacement's unknowns only.
+"""
+
+from dataclasses import dataclass
+
+import basix
+import dolfinx
+import numpy as np
+import scipy.sparse
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+
+from boundary import prescribed_dofs
+from hexahedra import VTK_TO_LEXICOGRAPHIC
+from laws import LAWS
+
+
+@dataclass(frozen=True)
+class ElementPair:
+    """Displacement Lagrange order, pressure family and order, Gauss points per direction."""
+
+    name: str
+    displacement_order: int
+    pressure_family: str
+    pressure_order: int
+    gauss_points: int
+
+    @property
+    def quadrature(self):
+        """The quadrature in words."""
+        n = self.gauss_points
+        return f"Gauss-Legendre {n}x{n}x{n}"
+
+
+GOLDEN = ElementPair("Q1-P0", 1, "DQ", 0, 2)
+# Not 3 x 3 x 3: under an indenter's rim the elements are so distorted that it shows (README).
+TRUTH = ElementPair("Q2-P1", 2, "DPC", 1, 4)
+
+
+class MixedProblem:
+    """Equilibrium of a HexMesh: residual and tangent in the displacement's unknowns.
+
+    mesh: HexMesh. pair: ElementPair. law: name out of LAWS. material: dict of its numbers (SI).
+    Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
+    dofs), values (their full values, m), free (the other dofs).
+    """
+
+    def __init__(self, mesh, pair, law, material):
+        vertex = ufl.VectorElement("Lagrange", "hexahedron", 1)
+        lexicographic = mesh.cells[:, VTK_TO_LEXICOGRAPHIC]
+        domain = dolfinx.mesh.create_mesh(
+            MPI.COMM_SELF, lexicographic, mesh.points, ufl.Mesh(vertex)
+        )
+        displacements = ufl.VectorElement("Lagrange", "hexahedron", pair.displacement_order)
+        pressures = ufl.FiniteElement(pair.pressure_family, "hexahedron", pair.pressure_order)
+        self.displacement = fem.Function(fem.FunctionSpace(domain, displacements))
+        self.pressure = fem.Function(fem.FunctionSpace(domain, pressures))
+        # As constants rather than literals: one compiled form then serves every case.
+        constants = {name: fem.Constant(domain, value) for name, value in material.items()}
+        self._forms = _compile_forms(self.displacement, self.pressure, pair, law, constants)
+        self._matrices = {
+            name: fem.petsc.create_matrix(form) for name, form in self._forms["matrices"].items()
+        }
+        # dolfinx reorders cells and nodes on input. Geometry and displacement number the vertices
+        # of a cell alike, so cell by cell they give the node in the caller's numbering.
+        n_cells = len(mesh.cells)
+        geometry = domain.geometry.dofmap.array.reshape(n_cells, 8)
+        cell_nodes = np.asarray(domain.geometry.input_global_indices)[geometry]
+        space = self.displacement.function_space
+        self._vertex_block = np.empty(len(mesh.points), dtype=np.int64)
+        cell_dofs = space.dofmap.list.array.reshape(n_cells, -1)
+        vertex_dofs = [space.dofmap.dof_layout.entity_dofs(0, v)[0] for v in range(8)]
+        self._vertex_block[cell_nodes] = cell_dofs[:, vertex_dofs]
+        self.fixed, self.values = prescribed_dofs(space, cell_nodes, mesh.conditions)
+        self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
+
+    def nodal_displacement(self):
+        """Displacement (n, 3) in m at the nodes of the HexMesh, in its numbering."""
+        return self.displacement.x.array.reshape(-1, 3)[self._vertex_block]
+
+    def nodal_points(self):
+        """Undeformed points (n, 3) in m as the displacement's space sees them, in the same order.
+
+        They equal the HexMesh's points exactly when the numbering is right.
+        """
+        space = self.displacement.function_space
+        return space.tabulate_dof_coordinates()[self._vertex_block]
+
+    def linearize(self):
+        """Residual and tangent at the present displacement and pressure, pressure eliminated.
+
+        Returns (tangent, residual, recover): sparse (N, N) in N/m and (N,) in N over all
+        displacement dofs, and a function from a displacement increment (N,) to the pressure
+        increment of the same Newton step.
+        """
+        stiffness = self._assemble_matrix("uu")
+        coupling = self._assemble_matrix("up")
+        inverse = _invert_blocks(self._assemble_matrix("pp"), self._pressures_per_cell())
+        force, dilatation = self.mixed_residual()
+        condensed = coupling @ inverse
+        tangent = (stiffness - condensed @ coupling.T).tocsr()
+        residual = force - condensed @ dilatation
+
+        def recover(increment):
+            return -(inverse @ (dilatation + coupling.T @ increment))
+
+        return tangent, residual, recover
+
+    def mixed_residual(self):
+        """Both rows of the mixed system: forces (N,) in N, and (M,) in m^3, one per pressure."""
+        return self._assemble_vector("u"), self._assemble_vector("p")
+
+    def _pressures_per_cell(self):
+        return self.pressure.function_space.dofmap.dof_layout.num_dofs
+
+    def _assemble_matrix(self, name):
+        matrix = self._matrices[name]
+        matrix.zeroEntries()
+        fem.petsc.assemble_matrix(matrix, self._forms["matrices"][name])
+        matrix.assemble()
+        indptr, indices, data = matrix.getValuesCSR()
+        return scipy.sparse.csr_matrix((data, indices, indptr), shape=matrix.getSize())
+
+    def _assemble_vector(self, name):
+        return fem.assemble_vector(self._forms["vectors"][name]).array
+
+
+def _compile_forms(u, p, pair, law, material):
+    """First and second derivatives of the energy with respect to displacement and pressure."""
+    degree = 2 * pair.gauss_points - 1
+    points, _ = basix.make_quadrature(basix.CellType.hexahedron, degree)
+    assert len(points) == pair.gauss_points**3, "FEniCSx chose another Gauss rule"
+    measure = ufl.dx(metadata={"quadrature_rule": "default", "quadrature_degree": degree})
+    F = ufl.Identity(3) + ufl.grad(u)
+    energy = LAWS[law](F, p, material) * measure
+    v, du = ufl.TestFunction(u.function_space), ufl.TrialFunction(u.function_space)
+    q, dp = ufl.TestFunction(p.function_space), ufl.TrialFunction(p.function_space)
+    by_u, by_p = ufl.derivative(energy, u, v), ufl.derivative(energy, p, q)
+    forms = {
+        "vectors": {"u": by_u, "p": by_p},
+        "matrices": {
+            "uu": ufl.derivative(by_u, u, du),
+            "up": ufl.derivative(by_u, p, dp),
+            "pp": ufl.derivative(by_p, p, dp),
+        },
+    }
+    # Waiting for another process that compiles the same form must not end the run.
+    options = {"timeout": 600, "cffi_extra_compile_args": ["-O3", "-g0"]}
+    return {
+        kind: {name: fem.form(form, jit_params=options) for name, form in group.items()}
+        for kind, group in forms.items()
+    }
+
+
+def _invert_blocks(matrix, size):
+    """Inverse of a sparse block-diagonal matrix of contiguous (size x size) blocks."""
+    n_blocks = matrix.shape[0] // size
+    columns = matrix.indices.reshape(n_blocks, size, size)
+    assert (columns // size == np.arange(n_blocks)[:, None, None]).all(), "pressure is not local"
+    order = np.argsort(columns, axis=2)
+    blocks = np.take_along_axis(matrix.data.reshape(n_blocks, size, size), order, axis=2)
+    inverse = scipy.sparse.bsr_matrix(
+        (np.linalg.inv(blocks), np.arange(n_blocks), np.arange(n_blocks + 1)), shape=matrix.shape
+    )
+    return inverse.tocsr()

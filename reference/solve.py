@@ -1,0 +1,141 @@
+"""Solve a case with mixed elements in FEniCSx: the golden (Q1-P0) or the truth (Q2-P1).
+
+Usage: /usr/bin/python3 reference/solve.py golden|truth CASE.toml --mesh mesh.h5 -o out.h5
+Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium found.
+"""
+
+import argparse
+import logging
+import math
+import sys
+import time
+
+import dolfinx
+
+import newton
+from accuracy import relative_errors
+from case_file import read_case
+from errors import DivergenceError, InputError
+from hexahedra import refine
+from mesh_file import load_case_mesh
+from problem import GOLDEN, TRUTH, MixedProblem
+from result_file import require_writable, write_result
+from symmetry import halve
+
+PAIRS = {"golden": GOLDEN, "truth": TRUTH}
+# A step that fails is halved, so these only set the speed.
+LOAD_STEPS = {"golden": 10, "truth": 1}
+NEWTON_TOLERANCE = 1e-10
+BOUNDARY_RULE = "trace of Q1: every vertex, edge and face whose vertices are all prescribed"
+
+
+def solve_case(kind, case, mesh, refinements, load_steps):
+    """Solve a case on its mesh split `refinements` times.
+
+    kind: "golden" or "truth". case: Case. mesh: HexMesh. Returns (displacement (n, 3) in m at the
+    nodes of the mesh, newton.Outcome, axes of the mirror planes used). Raises DivergenceError.
+    """
+    # The golden is the oracle of every other program: it takes no short cut.
+    part, halves = halve(mesh) if kind == "truth" else (mesh, [])
+    n_nodes = len(part.points)
+    for _ in range(refinements):
+        part = refine(part)
+    problem = MixedProblem(part, PAIRS[kind], case.law, case.material)
+    outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE)
+    displacement = problem.nodal_displacement()[:n_nodes]
+    for half in reversed(halves):
+        displacement = half.expand(displacement)
+    return displacement, outcome, "".join("xyz"[half.axis] for half in halves)
+
+
+def run(arguments):
+    """Read, solve, store. Raises InputError or DivergenceError."""
+    started = time.perf_counter()
+    kind, refinements = arguments.kind, arguments.refine
+    case = read_case(arguments.case)
+    mesh, file = load_case_mesh(case, arguments.mesh)
+    load_steps = arguments.load_steps or LOAD_STEPS[kind]
+    require_writable(arguments.output)
+    largest = mesh.largest_imposed()
+    errors, note = (math.nan, math.nan), "not estimated"
+    if refinements:
+        coarse, _, _ = solve_case(kind, case, mesh, refinements - 1, load_steps)
+    displacement, outcome, mirrors = solve_case(kind, case, mesh, refinements, load_steps)
+    if refinements:
+        errors = relative_errors(coarse, displacement, largest)
+        note = f"difference to the same element on the mesh split {refinements - 1} times"
+    pair = PAIRS[kind]
+    write_result(
+        arguments.output,
+        mesh.points,
+        displacement,
+        {
+            "case": case.name,
+            "case_hash": file.case_hash,
+            "mesh_hash": file.mesh_hash,
+            "kind": kind,
+            "element": pair.name,
+            "refinements": refinements,
+            "quadrature": pair.quadrature,
+            "law": case.law,
+            "mirror_planes": mirrors,
+            "boundary_rule": BOUNDARY_RULE,
+            "largest_imposed": largest,
+            "load_steps": outcome.load_steps,
+            "newton_iterations": outcome.newton_iterations,
+            "residual": outcome.residual,
+            "newton_tolerance": NEWTON_TOLERANCE,
+            "last_correction": outcome.last_increment,
+            "dolfinx_version": dolfinx.__version__,
+            "wall_seconds": time.perf_counter() - started,
+            "discretisation_error_max": errors[0],
+            "discretisation_error_rms": errors[1],
+            "discretisation_error_note": note,
+        },
+    )
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(
+        description="Solve a case with mixed elements in FEniCSx.",
+        epilog="exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium found",
+    )
+    parser.add_argument("kind", choices=PAIRS, help="golden: Q1-P0; truth: Q2-P1")
+    parser.add_argument("case", metavar="CASE.toml", help="the case file")
+    parser.add_argument("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
+    parser.add_argument("-o", "--output", required=True, help="HDF5 file to write")
+    parser.add_argument(
+        "--refine",
+        type=_count,
+        default=0,
+        metavar="N",
+        help="split every hexahedron into 8, N times; the difference to N-1 is stored as the "
+        "estimate of the discretisation error (default 0: no estimate)",
+    )
+    parser.add_argument(
+        "--load-steps", type=_count, metavar="N", help=f"default: {LOAD_STEPS}, halved on failure"
+    )
+    parsed = parser.parse_args(arguments)
+    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
+    try:
+        run(parsed)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except DivergenceError as error:
+        print(f"error: {parsed.case}: {error}", file=sys.stderr)
+        return 3
+    return 0
+
+
+def _count(text):
+    """A whole number >= 0 out of the command line."""
+    number = int(text)
+    if number < 0:
+        raise argparse.ArgumentTypeError(f"{text}: must be 0 or more")
+    return number
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,136 @@
+"""Wrong input ends with exit code 2 (3 when there is no equilibrium) and leaves no file behind."""
+
+import numpy as np
+import pytest
+
+import solve
+from blocks import distorted_block, write_mesh
+from result_file import read_result
+
+CASE = """
+[case]
+name = "block"
+
+[material]
+law = "neo-hookean"
+young_modulus = 3000.0
+poisson_ratio = 0.49
+density = 1000.0
+
+[[displacement]]
+set = "bottom"
+value = [0.0, 0.0, 0.0]
+
+[[displacement]]
+set = "top"
+value = [0.0, 0.0, 0.1]
+components = "z"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with block.toml and its mesh.h5."""
+    points, cells, _ = distorted_block(n=2)
+    sets = {"bottom": np.flatnonzero(points[:, 2] == 0), "top": np.flatnonzero(points[:, 2] == 1)}
+    write_mesh(tmp_path / "mesh.h5", points, cells, sets)
+    (tmp_path / "block.toml").write_text(CASE)
+    return tmp_path
+
+
+def _run(folder, kind="golden", mesh="mesh.h5"):
+    """Exit code of the command line on the files of the folder."""
+    before = {path.name for path in folder.iterdir()}
+    arguments = [kind, folder / "block.toml", "--mesh", folder / mesh, "-o", folder / "out.h5"]
+    code = solve.main([str(argument) for argument in arguments])
+    new = {path.name for path in folder.iterdir()} - before
+    assert new == ({"out.h5"} if code == 0 else set())
+    return code
+
+
+def test_good_input(folder):
+    assert _run(folder) == 0
+    points, displacement, attributes = read_result(folder / "out.h5")
+    top, bottom = points[:, 2] == 1, points[:, 2] == 0
+    # Exact: prescribed values are copied, not computed.
+    assert (displacement[top, 2] == 0.1).all() and (displacement[bottom] == 0).all()
+    assert (displacement[top, :2] != 0).any()  # components = "z" leaves x and y free
+    assert attributes["case_hash"] == "0123456789abcdef"
+    assert attributes["mesh_hash"] == "fedcba9876543210"
+    assert attributes["element"] == "Q1-P0"
+    assert attributes["largest_imposed"] == 0.1
+
+
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        (
+            'law = "neo-hookean"',
+            'law = "neo-hokean"',
+            ["material.law", "neo-hokean", "did you mean"],
+        ),
+        ("young_modulus = 3000.0", "young_modulus = -1", ["material.young_modulus", "positive"]),
+        ("poisson_ratio = 0.49", "poisson_ratio = 0.5", ["material.poisson_ratio", "0.5"]),
+        ("poisson_ratio = 0.49", "poison_ratio = 0.4", ["poison_ratio", "'poisson_ratio'"]),
+        ("value = [0.0, 0.0, 0.1]", "value = [0.0, 0.1]", ["displacement[1].value", "three"]),
+        ("value = [0.0, 0.0, 0.1]", "value = [0.0, 0.0, nan]", ["displacement[1].value", "finite"]),
+        ("value = [0.0, 0.0, 0.1]", "value = [0.0, 0.0, 0.0]", ["moves no node"]),
+        ('components = "z"', 'components = "w"', ["displacement[1].components", "'w'"]),
+        ('components = "z"', 'component = "z"', ["displacement[1].component", "'components'"]),
+        ('set = "top"', 'set = "lid"', ["displacement.set", "'lid'", "bottom, top"]),
+        ('set = "top"', 'set = "bottom"', ["bottom", "already prescribed"]),
+        ("[[displacement]]", "[displacement]", ["displacement"]),
+        ("[case]", "[case", ["not a TOML file"]),
+        ('name = "block"', 'name = "brick"', ["'block'", "another case", "'brick'"]),
+    ],
+)
+def test_wrong_case_file(folder, capsys, old, new, words):
+    (folder / "block.toml").write_text(CASE.replace(old, new))
+    assert _run(folder) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("error: ")
+    for word in words + [str(folder)]:
+        assert word in message
+
+
+def test_missing_files(folder, capsys):
+    assert _run(folder, mesh="nothing.h5") == 2
+    assert "nothing.h5" in capsys.readouterr().err
+    (folder / "block.toml").unlink()
+    assert _run(folder) == 2
+    assert "block.toml" in capsys.readouterr().err
+
+
+def test_output_that_cannot_be_written(folder, capsys):
+    arguments = ["golden", folder / "block.toml", "--mesh", folder / "mesh.h5", "-o"]
+    for output in (folder / "nowhere" / "out.h5", folder):
+        assert solve.main([str(argument) for argument in arguments + [output]]) == 2
+        assert f"{output}: cannot write" in capsys.readouterr().err
+
+
+def test_truncated_mesh(folder, capsys):
+    content = (folder / "mesh.h5").read_bytes()
+    (folder / "mesh.h5").write_bytes(content[: len(content) // 2])
+    assert _run(folder) == 2
+    assert "mesh.h5" in capsys.readouterr().err
+
+
+def test_mesh_with_impossible_cells(folder, capsys):
+    points, cells, _ = distorted_block(n=2)
+    cells[0, 0] = len(points)
+    write_mesh(folder / "mesh.h5", points, cells, {"bottom": [0], "top": [1]})
+    assert _run(folder) == 2
+    assert "/mesh/cells" in capsys.readouterr().err
+
+
+def test_bad_usage():
+    with pytest.raises(SystemExit) as stop:
+        solve.main(["gold", "block.toml", "--mesh", "mesh.h5", "-o", "out.h5"])
+    assert stop.value.code == 2
+
+
+def test_no_equilibrium(folder, capsys):
+    # Both ends held, the upper one pushed through the lower one: the elements must invert.
+    (folder / "block.toml").write_text(CASE.replace("[0.0, 0.0, 0.1]", "[0.0, 0.0, -1.2]"))
+    assert _run(folder) == 3
+    assert "no equilibrium" in capsys.readouterr().err

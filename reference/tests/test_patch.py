@@ -1,0 +1,93 @@
+"""Problems with a known answer: affine fields and uniaxial stress, on distorted meshes."""
+
+import numpy as np
+import pytest
+
+from blocks import MATERIAL, affine, affine_patch, distorted_block, pressed_block
+from hexahedra import Condition, HexMesh, refine
+from newton import solve
+from problem import GOLDEN, TRUTH, MixedProblem
+
+GRADIENT = [[0.2, 0.1, -0.1], [0.05, -0.1, 0.15], [-0.1, 0.1, 0.05]]
+PAIRS = pytest.mark.parametrize("pair", [GOLDEN, TRUTH], ids=lambda pair: pair.name)
+LAW = "neo-hookean"
+TOLERANCE = 1e-10
+# The last correction is at most TOLERANCE, and quadratic convergence leaves much less behind it:
+# what remains is round-off, 2.2e-16 times a condition number of a few thousand.
+EXACT = 1e-11
+
+
+@PAIRS
+@pytest.mark.parametrize("splits", [0, 1])
+def test_affine_patch(pair, splits):
+    mesh = affine_patch(GRADIENT)
+    n_nodes = len(mesh.points)
+    points = mesh.points
+    for _ in range(splits):
+        mesh = refine(mesh)
+    problem = MixedProblem(mesh, pair, LAW, MATERIAL)
+    outcome = solve(problem, 2, TOLERANCE)
+    # A homogeneous deformation is in equilibrium, and both elements contain it.
+    difference = problem.nodal_displacement()[:n_nodes] - affine(points, GRADIENT)
+    assert np.abs(difference).max() < EXACT
+    assert outcome.residual < EXACT
+
+
+@PAIRS
+def test_uniaxial_stress_with_sliding_faces(pair):
+    stretch = 1.5
+    points, cells, _ = distorted_block()
+    values = np.tile([0.0, 0.0, stretch - 1], (len(points), 1))
+    held = np.zeros_like(values)
+    # Three symmetry planes, each held in its normal only, and the lid.
+    conditions = [Condition(points[:, axis] == 0, (axis,), held) for axis in range(3)]
+    conditions.append(Condition(points[:, 2] == 1, (2,), values))
+    problem = MixedProblem(HexMesh(points, cells, tuple(conditions)), pair, LAW, MATERIAL)
+    solve(problem, 2, TOLERANCE)
+    lateral = _lateral_stretch(stretch)
+    exact = affine(points, np.diag([lateral - 1, lateral - 1, stretch - 1]))
+    assert np.abs(problem.nodal_displacement() - exact).max() < EXACT
+
+
+def _lateral_stretch(stretch):
+    """Lateral stretch a of uniaxial stress: sigma_xx = 0 of the law, by bisection.
+
+    J sigma_xx = mu J^(-2/3) (a^2 - I1/3) + K (J - 1) J, with J = a^2 stretch and
+    I1 = 2 a^2 + stretch^2: increasing in a, negative at a = 0.5, positive at a = 1.
+    """
+    E, nu = MATERIAL["young_modulus"], MATERIAL["poisson_ratio"]
+    mu, K = E / 2 / (1 + nu), E / 3 / (1 - 2 * nu)
+
+    def stress(a):
+        J = a**2 * stretch
+        return mu * J ** (-2 / 3) * (a**2 - stretch**2) / 3 + K * (J - 1) * J
+
+    low, high = 0.5, 1.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if stress(middle) < 0 else (low, middle)
+    return low
+
+
+@PAIRS
+def test_eliminating_the_pressure_changes_nothing(pair):
+    # The condensed solution must satisfy both rows of the mixed system, each on its own.
+    mesh = affine_patch(GRADIENT, bulge=0.2)
+    problem = MixedProblem(mesh, pair, LAW, MATERIAL)
+    solve(problem, 2, TOLERANCE)
+    forces, dilatation = problem.mixed_residual()
+    # Forces against the reactions, volumes (m^3) against the volume of the block, 1 m^3.
+    assert np.abs(forces[problem.free]).max() < EXACT * np.abs(forces[problem.fixed]).max()
+    assert np.abs(dilatation).max() < EXACT
+
+
+def test_load_steps_do_not_matter():
+    # Pressed so far that in one load step the first corrections would invert elements.
+    mesh = pressed_block((0.0, 0.0, -0.5))
+    answers = []
+    for load_steps in (1, 7):
+        problem = MixedProblem(mesh, TRUTH, LAW, MATERIAL)
+        outcome = solve(problem, load_steps, TOLERANCE)
+        assert outcome.load_steps == load_steps  # shortened corrections, no halved step
+        answers.append(problem.nodal_displacement())
+    assert np.abs(answers[0] - answers[1]).max() < EXACT

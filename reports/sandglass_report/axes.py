@@ -1,0 +1,81 @@
+"""What several charts need of an Axes: percent scales, labels that keep apart."""
+
+import math
+
+import numpy as np
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullLocator
+
+TICKS_1_2_5 = (1, 2, 5)
+
+
+def percent_scale(axis, limits):
+    """Makes an axis logarithmic over fractions, with ticks like 0.1 % at every decade."""
+    axis.axes.set_yscale("log") if axis.axis_name == "y" else axis.axes.set_xscale("log")
+    axis.axes.set_ylim(limits) if axis.axis_name == "y" else axis.axes.set_xlim(limits)
+    narrow = math.log10(limits[1] / limits[0]) < 2.6
+    axis.set_major_locator(LogLocator(subs=TICKS_1_2_5 if narrow else (1,), numticks=20))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:.10g} %"))
+
+
+def log_scale(axis, limits, last_tick=math.inf):
+    """Makes an x axis logarithmic with plain numbers as ticks, up to last_tick."""
+    axis.axes.set_xscale("log")
+    axis.axes.set_xlim(limits)
+    decades = range(math.floor(math.log10(limits[0])), math.ceil(math.log10(limits[1])) + 1)
+    ticks = [s * 10.0**d for d in decades for s in TICKS_1_2_5]
+    axis.set_major_locator(
+        FixedLocator([t for t in ticks if limits[0] <= t <= min(limits[1], 1.001 * last_tick)])
+    )
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.10g}"))
+
+
+def spread(positions, gap, low, high):
+    """Positions moved as little as needed to lie `gap` apart, kept in order, within low..high."""
+    order = np.argsort(positions, kind="stable")
+    moved = np.asarray(positions, dtype=float)[order]
+    for _ in range(200):
+        overlap = gap - np.diff(moved)
+        if (overlap <= 1e-6).all():
+            break
+        for i in np.flatnonzero(overlap > 1e-6):
+            shift = (gap - (moved[i + 1] - moved[i])) / 2
+            if shift > 0:
+                moved[i] -= shift
+                moved[i + 1] += shift
+        moved += max(0.0, low - moved[0]) - max(0.0, moved[-1] - high)
+    result = np.empty_like(moved)
+    result[order] = moved
+    return result
+
+
+def label_points(axes, labels, size=7.5):
+    """Writes labels beside their points, to the side with more room, without overlaps.
+
+    labels: list of (x, y, text, colour) in data coordinates; scales and limits must be set.
+    Labels of both sides keep apart from each other, since narrow panels let them meet.
+    """
+    if not labels:
+        return
+    box = axes.get_window_extent()
+    pixels_per_point = axes.figure.dpi / 72
+    gap = size * 1.35 * pixels_per_point
+    at = axes.transData.transform([(x, y) for x, y, _, _ in labels])
+    heights = spread(at[:, 1], gap, box.y0 + gap / 2, box.y1 - gap / 2)
+    for (x, y, text, colour), point, height in zip(labels, at, heights):
+        on_the_left = point[0] < box.x0 + 0.5 * box.width
+        up = (height - point[1]) / pixels_per_point
+        # A label that was pushed off its point's height may reach under or over the point.
+        aside = 8 if abs(up) < size else 0
+        axes.annotate(
+            text,
+            (x, y),
+            xytext=(aside if on_the_left else -aside, up),
+            textcoords="offset points",
+            ha="left" if on_the_left else "right",
+            va="center",
+            color=colour,
+            fontsize=size,
+            fontweight="bold",
+        )

@@ -1,0 +1,183 @@
+"""Kappa curves: how the error depends on the hourglass stiffness."""
+
+import numpy as np
+
+from sandglass_report import axes as helpers
+from sandglass_report import style
+from sandglass_report.plates import Panel, Plate
+
+FIGURES = (("max", "-", 1.6), ("profile", "--", 1.3), ("rms", ":", 1.6))
+NAMES = {"max": "max, all nodes", "profile": "max, profile", "rms": "rms"}
+
+
+def kappa_panels(subject, palette):
+    """Two panels of a case that has kappa curves: error to the golden and to the truth."""
+    if not _curves(subject, "golden") and not _curves(subject, "truth"):
+        return ()
+    limits = _limits(subject)
+    return tuple(_panel(subject, palette, kind, limits) for kind in ("golden", "truth"))
+
+
+def kappa_plates(subjects, palette):
+    """One static figure per case that has kappa curves."""
+    plates = []
+    for subject in subjects:
+        panels = kappa_panels(subject, palette)
+        if panels:
+            title = f"{subject.name}: error against the hourglass stiffness kappa"
+            plates.append(Plate(f"kappa.{subject.name}", title, panels, 2))
+    return plates
+
+
+def _curves(subject, reference):
+    """method -> runs in order of kappa, for the methods with at least two points."""
+    curves = {}
+    for run in subject.runs:
+        if run.kappa is not None and getattr(run, reference) is not None:
+            curves.setdefault(run.method, []).append(run)
+    return {m: sorted(c, key=lambda r: r.kappa) for m, c in curves.items() if len(c) > 1}
+
+
+def _levels(subject):
+    """The golden's own distances from the truth, by figure."""
+    own = subject.golden_to_truth()
+    return {} if own is None else {name: getattr(own, name) for name, _, _ in FIGURES}
+
+
+def _limits(subject):
+    values = [v for v in _levels(subject).values() if v]
+    for kind in ("golden", "truth"):
+        for runs in _curves(subject, kind).values():
+            values += [getattr(getattr(r, kind), name) or 0 for r in runs for name, _, _ in FIGURES]
+    shown = [value for value in values if value > style.FLOOR] or [style.FLOOR, 1.0]
+    return min(shown) / 1.5, max(shown) * 1.5
+
+
+def _panel(subject, palette, reference, limits):
+    curves = _curves(subject, reference)
+    levels = _levels(subject)
+
+    def draw(axes):
+        kappas = [run.kappa for runs in curves.values() for run in runs]
+        low, high = min(kappas), max(kappas)
+        helpers.log_scale(axes.xaxis, (low / 1.12, high * (high / low) ** 0.3), last_tick=high)
+        helpers.percent_scale(axes.yaxis, limits)
+        axes.set_xlabel("κ")
+        axes.figure.canvas.draw()
+        labels = []
+        for method, runs in curves.items():
+            labels += _draw_curve(axes, method, runs, palette, reference)
+        _draw_auto(axes, curves, palette)
+        _label_ends(axes, labels)
+        _draw_levels(axes, levels, curves, reference)
+
+    name = f"kappa.{subject.name}.{reference}"
+    alt = f"{subject.name}: error to the {reference} against kappa. " + _in_words(curves, reference)
+    missing = "" if curves else style.why_empty(subject, reference)
+    return Panel(name, f"error to the {reference}", alt, draw, 410, 300, missing)
+
+
+def _draw_curve(axes, method, runs, palette, reference):
+    """The three curves of a method; returns the labels of their ends."""
+    labels = []
+    for name, dashes, width in reversed(FIGURES):  # the last label comes out on top
+        points = [(r.kappa, getattr(getattr(r, reference), name)) for r in runs]
+        points = [(k, max(e, style.FLOOR)) for k, e in points if e is not None]
+        if not points:
+            continue
+        xs, ys = zip(*points)
+        colour = palette.colour(method)
+        axes.plot(xs, ys, dashes, color=colour, linewidth=width)
+        marked = [(r.kappa, getattr(getattr(r, reference), name)) for r in runs if r.kappa_is_auto]
+        for x, y in marked:
+            axes.plot(x, max(y, style.FLOOR), palette.mark(method), color=colour, markersize=5)
+        labels.append((xs[-1], ys[-1], NAMES[name], colour))
+    return labels
+
+
+def _draw_auto(axes, curves, palette):
+    """A line at the kappa that `auto` takes."""
+    for method, runs in curves.items():
+        for run in runs:
+            if run.kappa_is_auto:
+                axes.axvline(run.kappa, color=palette.colour(method), linewidth=0.8, alpha=0.5)
+                axes.annotate(
+                    f"auto {run.kappa:.2g}",
+                    (run.kappa, 1.0),
+                    xycoords=("data", "axes fraction"),
+                    xytext=(4, -2),
+                    textcoords="offset points",
+                    va="top",
+                    fontsize=7.5,
+                    color=palette.colour(method),
+                )
+
+
+def _label_ends(axes, labels):
+    """Names of the curves at their right ends."""
+    pixels_per_point = axes.figure.dpi / 72
+    box = axes.get_window_extent()
+    gap = 10.5 * pixels_per_point
+    heights = [axes.transData.transform(label[:2])[1] for label in labels]
+    moved = helpers.spread(heights, gap, box.y0 + gap / 2, box.y1 - gap / 2)
+    for (x, y, text, colour), old, new in zip(labels, heights, moved):
+        axes.annotate(
+            text,
+            (x, y),
+            xytext=(5, (new - old) / pixels_per_point),
+            textcoords="offset points",
+            va="center",
+            color=colour,
+            fontsize=7.5,
+        )
+
+
+def _draw_levels(axes, levels, curves, reference):
+    """The golden's own distance from the truth: below it, nearer to the golden is no gain."""
+    for name, dashes, _ in FIGURES:
+        if levels.get(name):
+            axes.axhline(levels[name], color=style.GOLDEN[0], linestyle=dashes, linewidth=1.3)
+    if levels.get("max"):
+        place, above = _free_place(axes, levels, curves, reference)
+        axes.annotate(
+            "golden to truth, max",
+            (place, levels["max"]),
+            xycoords=("axes fraction", "data"),
+            xytext=(0, 3 if above else -3),
+            textcoords="offset points",
+            ha="center",
+            va="bottom" if above else "top",
+            fontsize=7.5,
+            color=style.GOLDEN[0],
+        )
+
+
+def _free_place(axes, levels, curves, reference):
+    """Where a label at the max level is farthest from all else: (fraction across, above?)."""
+    box = axes.get_window_extent()
+    to_pixels = axes.transData.transform
+    level = to_pixels((axes.get_xlim()[0], levels["max"]))[1]
+    others = [value for name, value in levels.items() if name != "max" and value]
+    lines = [to_pixels([(x, value) for x in axes.get_xlim()]) for value in others]
+    for runs in curves.values():
+        for name, _, _ in FIGURES:
+            points = [(r.kappa, getattr(getattr(r, reference), name)) for r in runs]
+            lines += [to_pixels(found) for found in [[p for p in points if p[1]]] if found]
+
+    def clearance(place, above):
+        height = level + (1 if above else -1) * 0.03 * box.height
+        across = box.x0 + box.width * np.linspace(place - 0.16, place + 0.16, 9)
+        gaps = [np.abs(np.interp(across, *line.T) - height).min() for line in lines]
+        return min(gaps)
+
+    places = [(place, above) for above in (True, False) for place in (0.18, 0.35, 0.5, 0.65)]
+    return max(places, key=lambda place: clearance(*place))
+
+
+def _in_words(curves, reference):
+    parts = []
+    for method, runs in curves.items():
+        best = min(runs, key=lambda run: getattr(run, reference).max)
+        error = style.percent(getattr(best, reference).max)
+        parts.append(f"{method}: smallest largest error {error} at kappa {best.kappa:g}")
+    return "; ".join(parts) or "No figures."

@@ -1,0 +1,164 @@
+"""Panels and plates: one drawing, shown in the page as themed SVG and saved as static figures."""
+
+import io
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import matplotlib
+
+matplotlib.use("agg")
+
+from matplotlib import pyplot  # noqa: E402 (the backend must be chosen first)
+
+from sandglass_report import style  # noqa: E402
+
+PIXELS_PER_INCH = 96
+TEXT = style.INK[0]
+MUTED = style.MUTED[0]
+
+BASE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.25,
+    "axes.titlesize": 9,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.edgecolor": MUTED,
+    "axes.labelcolor": MUTED,
+    "axes.facecolor": "none",
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": style.GRID[0],
+    "grid.linewidth": 0.7,
+    "text.color": TEXT,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "xtick.major.size": 3,
+    "ytick.major.size": 3,
+    "xtick.minor.size": 0,
+    "ytick.minor.size": 0,
+    "figure.facecolor": "none",
+    "svg.hashsalt": "sandglass",
+    "path.simplify": True,
+}
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One drawing. `draw` fills an Axes; title and text are plain words, sizes CSS pixels."""
+
+    name: str  # for file names and ids: a-z, 0-9, - and .
+    title: str
+    alt: str  # what a reader who sees no picture should know
+    draw: Callable
+    width: int = 320
+    height: int = 270
+    missing: str = ""  # why there is nothing to draw; the page then shows this instead
+
+
+@dataclass(frozen=True)
+class Plate:
+    """Panels that belong together, `columns` abreast in the static figure."""
+
+    name: str
+    title: str
+    panels: tuple
+    columns: int
+    note: str = ""
+
+
+def inline_svg(panel):
+    """The panel as an SVG element that takes its colours from the page's custom properties."""
+    with matplotlib.rc_context(BASE | {"svg.fonttype": "none"}):
+        size = panel.width / PIXELS_PER_INCH, panel.height / PIXELS_PER_INCH
+        figure, axes = pyplot.subplots(figsize=size, layout="constrained")
+        figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03)
+        try:
+            _draw(panel, axes)
+            buffer = io.StringIO()
+            figure.savefig(buffer, format="svg", transparent=True, metadata={"Date": None})
+        finally:
+            pyplot.close(figure)
+    return themed(buffer.getvalue(), panel)
+
+
+def themed(svg, panel):
+    """Matplotlib's SVG document as an element for a page: small, without ids of others' names."""
+    start = svg.index("<svg")
+    svg = svg[start:]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
+    svg = re.sub(r' (xmlns(:xlink)?|version)="[^"]*"', "", svg)
+    head = f'<svg role="img" aria-label="{_escaped(panel.alt)}"'
+    svg = re.sub(r'<svg (width|height)="[^"]*"', "<svg", svg)
+    svg = re.sub(r'^<svg([^>]*?) (?:width|height)="[^"]*"', r"<svg\1", svg)
+    svg = re.sub(r'^<svg([^>]*?) (?:width|height)="[^"]*"', r"<svg\1", svg)
+    svg = head + svg.removeprefix("<svg")
+    used = set(re.findall(r'(?:url\(|href=")#([^)"]+)', svg))
+    svg = re.sub(r' id="([^"]+)"', lambda m: _own_id(m[1], used, panel.name), svg)
+    svg = re.sub(r'(url\(|href=")#', rf"\1#{panel.name}-", svg)
+    svg = re.sub(r'(?<= d=")[^"]+', lambda m: _rounded(m[0]), svg)
+    for name, (light, _) in style.THEMED.items():
+        svg = re.sub(rf"{light}\b", f"var({name})", svg)
+    # The page's own font: the text is narrower in it than in the one it was laid out with.
+    svg = re.sub(r"'DejaVu Sans'(, [^;\"]*)?", "var(--font)", svg)
+    return re.sub(r"\n\s*", "\n", svg).strip()
+
+
+def save_plate(plate, folder):
+    """Writes the plate to folder as NAME.svg and NAME.png, on white. Returns the two paths."""
+    rows = -(-len(plate.panels) // plate.columns)
+    unused = rows * plate.columns - len(plate.panels)
+    width = plate.columns * plate.panels[0].width / PIXELS_PER_INCH
+    height = rows * (min(max(p.height for p in plate.panels), 440) + 14) / PIXELS_PER_INCH + 0.45
+    colours = {"figure.facecolor": "#ffffff", "svg.fonttype": "path"}
+    with matplotlib.rc_context(BASE | colours):
+        figure, grid = pyplot.subplots(
+            rows, plate.columns, figsize=(width, height), layout="constrained", squeeze=False
+        )
+        figure.get_layout_engine().set(w_pad=0.08, h_pad=0.06)
+        try:
+            for axes, panel in zip(grid.flat, plate.panels):
+                _draw(panel, axes)
+                axes.set_title(panel.title, pad=8)
+            for axes in list(grid.flat)[-unused:] if unused else []:
+                axes.set_axis_off()
+            figure.suptitle(plate.title, x=0.01, ha="left", fontsize=12, fontweight="bold")
+            if plate.note:
+                figure.supxlabel(plate.note, x=0.01, ha="left", fontsize=8.25, color=MUTED)
+            paths = folder / f"{plate.name}.svg", folder / f"{plate.name}.png"
+            figure.savefig(paths[0], metadata={"Date": None})
+            figure.savefig(paths[1], dpi=160)
+        finally:
+            pyplot.close(figure)
+    return paths
+
+
+def _draw(panel, axes):
+    """Fills an Axes with the panel, or with the reason why there is none."""
+    if not panel.missing:
+        panel.draw(axes)
+        return
+    axes.set_axis_off()
+    words = panel.missing.replace(" for ", "\nfor ")
+    where = {"transform": axes.transAxes, "ha": "center", "va": "center"}
+    axes.text(0.5, 0.5, words, color=MUTED, linespacing=1.6, **where)
+
+
+def _own_id(name, used, prefix):
+    """An id with the panel's name in front, when something refers to it; no id otherwise."""
+    return f' id="{prefix}-{name}"' if name in used else ""
+
+
+def _rounded(path):
+    """Path data with two decimals: a hundredth of a point is more than a screen shows."""
+    return re.sub(r"-?\d+\.\d+", lambda m: f"{float(m[0]):.2f}".rstrip("0").rstrip("."), path)
+
+
+def _escaped(text):
+    for sign, name in (("&", "&amp;"), ('"', "&quot;"), ("<", "&lt;"), (">", "&gt;")):
+        text = text.replace(sign, name)
+    return text

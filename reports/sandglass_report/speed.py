@@ -1,0 +1,155 @@
+"""The speed-accuracy chart: error against cost, one point per method and kappa."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from sandglass_report import axes as helpers
+from sandglass_report import style
+from sandglass_report.plates import Panel, Plate
+
+FIGURES = (("max", "max over all nodes"), ("rms", "rms over all nodes"))
+REFERENCES = ("golden", "truth")
+
+
+def speed_panels(subject, palette, costs):
+    """Four panels of a case: max and rms error, to the golden and to the truth, same scales."""
+    limits = error_limits(subject)
+    return tuple(
+        _panel(subject, palette, reference, figure, words, limits, costs)
+        for figure, words in FIGURES
+        for reference in REFERENCES
+    )
+
+
+def speed_plate(subjects, palette, costs):
+    """All cases in one static figure: upper row against the golden, lower against the truth."""
+    panels = []
+    for reference in REFERENCES:
+        for subject in subjects:
+            words = f"{subject.name}\nmax error to the {reference}"
+            limits = error_limits(subject)
+            panel = _panel(subject, palette, reference, "max", words, limits, costs)
+            panels.append(replace(panel, title=words, width=300, height=300))
+    return Plate(
+        "speed-accuracy",
+        "Speed and accuracy of every method: lower left is better",
+        tuple(panels),
+        len(subjects),
+        "Error: largest distance of any node from the reference, in % of the imposed displacement. "
+        "Golden: the mixed element on the same mesh. Truth: quadratic mixed element.\n"
+        "Large marks: the method as it comes; small ones: other values of kappa; bar: middle half "
+        "of the timings. Triangle: below the scale.",
+    )
+
+
+def cost_limits(runs):
+    """Common limits of the cost axis, ns per element and step, with room for the labels."""
+    costs = [run.ns_per_element_step for run in runs if run.ns_per_element_step > 0]
+    return (min(costs) * 0.7, max(costs) * 1.45) if costs else (10.0, 1000.0)
+
+
+def error_limits(subject):
+    """Common limits of a case's error axes, fractions; what lies below FLOOR does not count."""
+    errors = [
+        getattr(accuracy, figure)
+        for run in subject.runs
+        for accuracy in (run.golden, run.truth)
+        if accuracy is not None
+        for figure, _ in FIGURES
+    ]
+    shown = [error for error in errors if error > style.FLOOR]
+    if not shown:
+        return style.FLOOR, 1.0
+    hidden = len(shown) < len(errors)
+    return min(shown) / (4.0 if hidden else 1.6), max(shown) * 1.6
+
+
+def _panel(subject, palette, reference, figure, words, limits, costs):
+    found = [run for run in subject.runs if getattr(run, reference) is not None]
+
+    def draw(axes):
+        helpers.log_scale(axes.xaxis, costs)
+        helpers.percent_scale(axes.yaxis, limits)
+        axes.set_xlabel("ns per element and step")
+        axes.figure.canvas.draw()  # the layout must stand before labels are pushed apart
+        labels = []
+        for method in dict.fromkeys(run.method for run in found):
+            of_method = [run for run in found if run.method == method]
+            labels += _draw_method(axes, of_method, palette, reference, figure, limits)
+        helpers.label_points(axes, labels)
+        _name_missing(axes, subject, reference)
+
+    return Panel(
+        f"speed-accuracy.{subject.name}.{reference}.{figure}",
+        f"to the {reference}, {words}",
+        f"{subject.name}: {words} of the error to the {reference} against ns per element and step. "
+        + _in_words(found, reference, figure),
+        draw,
+        290,
+        250,
+        "" if found else style.why_empty(subject, reference),
+    )
+
+
+def _draw_method(axes, runs, palette, reference, figure, limits):
+    """Points of one method, those of its kappa curve joined; returns the main points' labels."""
+    colour, mark = palette.colour(runs[0].method), palette.mark(runs[0].method)
+    lowest = limits[0] * 1.5
+    # Kappa does not change the work of a step: all its runs time the same thing. The points stand
+    # at the median of these times, and a bar at the main one shows their middle half.
+    times = [run.ns_per_element_step for run in runs]
+    early, x, late = np.quantile(times, (0.25, 0.5, 0.75))
+    height = {id(run): max(getattr(getattr(run, reference), figure), lowest) for run in runs}
+    if len(runs) > 1:
+        ys = sorted(height.values())
+        axes.plot([x, x], [ys[0], ys[-1]], color=colour, linewidth=0.8, alpha=0.4)
+        axes.plot([x] * len(ys), ys, color=colour, marker=mark, linestyle="", markersize=2.6)
+    labels = []
+    for run in (run for run in runs if run.is_main):
+        y = height[id(run)]
+        axes.plot([early, late], [y, y], color=colour, linewidth=1.6, alpha=0.45)
+        error = getattr(getattr(run, reference), figure)
+        hidden = error < lowest
+        text = f"{run.method} {style.percent(error, 1)}" if hidden else run.method
+        axes.plot(
+            x,
+            y,
+            marker="v" if hidden else mark,
+            markersize=7,
+            color=colour,
+            markeredgecolor=style.PANEL[0] if run.ok else style.BAD[0],
+            markeredgewidth=0.8 if run.ok else 1.6,
+            linestyle="",
+            zorder=4,
+        )
+        labels.append((late, y, text if run.ok else f"{text} (failed)", colour))
+    return labels
+
+
+def _name_missing(axes, subject, reference):
+    """Names the methods whose main run has no figure, so that their absence is seen."""
+    missing = [r.method for r in subject.runs if r.is_main and getattr(r, reference) is None]
+    if missing:
+        words = "failed: " + ", ".join(missing)
+        axes.text(
+            0.5,
+            0.99,
+            words,
+            transform=axes.transAxes,
+            ha="center",
+            va="top",
+            color=style.BAD[0],
+            fontsize=7.5,
+        )
+
+
+def _in_words(runs, reference, figure):
+    """The main points as a sentence, for readers who do not see the picture."""
+    parts = []
+    for run in (run for run in runs if run.is_main):
+        error = style.percent(getattr(getattr(run, reference), figure))
+        cost = run.ns_per_element_step
+        parts.append(f"{run.method}: {error} at {cost:.0f} ns" if math.isfinite(cost) else "")
+    return "; ".join(parts) or "No figures."

@@ -1,0 +1,222 @@
+"""One case with everything known about it: mesh, references, runs and their displacements."""
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from sandglass_report.accuracy import accuracy, ordered_profile
+from sandglass_report.errors import ReportError
+from sandglass_report.load import REFERENCES
+
+# verdicts.json and a recomputation differ by rounding of the square root only, see the tests.
+AGREEMENT = 1e-9
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A stored answer: displacement (n, 3) in m, and the attributes of its file."""
+
+    displacement: np.ndarray
+    attributes: dict
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A case, its mesh (None when no run left a file), its references and its runs."""
+
+    name: str
+    requirement: str
+    unit: float  # largest imposed displacement, m
+    imposed: tuple  # (set name, value in m)
+    profile_set: str | None
+    profile_order: str | None
+    runs: tuple
+    points: np.ndarray | None = None  # (n, 3), m
+    cells: np.ndarray | None = None  # (m, 8), VTK order
+    sets: dict = field(default_factory=dict)
+    golden: Reference | None = None
+    truth: Reference | None = None
+    displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
+
+    def main_run(self, method):
+        """The run of a method as it comes (kappa auto where it has one), or None."""
+        return next((r for r in self.runs if r.method == method and r.is_main), None)
+
+    def displacement(self, method):
+        """Displacements (n, 3), m, of a method's main run, or None when it left none."""
+        return self.displacements.get((method, None))
+
+    def profile(self):
+        """(nodes in order along the profile line, coordinate), or None; see ordered_profile."""
+        if self.points is None or self.profile_set is None:
+            return None
+        return ordered_profile(self.points, self.sets[self.profile_set], self.profile_order)
+
+    def golden_to_truth(self):
+        """Accuracy of the golden itself against the truth, or None when one is missing."""
+        if self.golden is None or self.truth is None:
+            return None
+        nodes = self.sets.get(self.profile_set)
+        return accuracy(self.golden.displacement, self.truth.displacement, self.unit, nodes)
+
+
+def read_subjects(verdicts, cases, references, results):
+    """A Subject for every case of the verdicts.
+
+    cases: folder of case files. references: folder with golden/ and truth/. results: folder with
+    the result files of the runs. Raises ReportError when a file is missing, broken or of others.
+    """
+    case_files = _case_files(Path(cases))
+    return tuple(
+        _read_subject(verdicts, name, case_files, Path(references), Path(results))
+        for name in verdicts.case_names
+    )
+
+
+def _case_files(folder):
+    """name of a case -> (path, tables) for every case file in the folder."""
+    if not folder.is_dir():
+        raise ReportError(f"{folder}: no such folder of cases")
+    found = {}
+    for path in sorted(folder.glob("*.toml")):
+        try:
+            tables = tomllib.loads(path.read_text(encoding="utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise ReportError(f"{path}: not a TOML file: {error}") from error
+        found[tables.get("case", {}).get("name")] = (path, tables)
+    return found
+
+
+def _read_subject(verdicts, name, case_files, references, results):
+    if name not in case_files:
+        raise ReportError(f"case {name!r} is in the verdicts, but no case file has this name")
+    path, tables = case_files[name]
+    runs = tuple(run for run in verdicts.runs if run.case == name)
+    try:
+        imposed = tuple((d["set"], tuple(map(float, d["value"]))) for d in tables["displacement"])
+        requirement = tables["case"]["requirement"]
+        profile = tables.get("profile", {})
+        profile_set, profile_order = profile.get("set"), profile.get("order")
+        stored = tables.get("comparison", {})
+    except (KeyError, TypeError, ValueError) as error:
+        raise ReportError(f"{path}: not a case of this solver: {error!r}") from error
+    files = _result_files(runs, results)
+    mesh, displacements, hashes = _read_results(files)
+    subject = Subject(
+        name=name,
+        requirement=requirement,
+        unit=max(float(np.linalg.norm(value)) for _, value in imposed),
+        imposed=imposed,
+        profile_set=profile_set,
+        profile_order=profile_order,
+        runs=runs,
+        displacements=displacements,
+        **mesh,
+        **{
+            kind: _read_reference(
+                path.parent / stored[kind] if kind in stored else references / kind / f"{name}.h5",
+                name,
+                hashes,
+                mesh.get("points"),
+            )
+            for kind in REFERENCES
+        },
+    )
+    if profile_set is not None and files and profile_set not in subject.sets:
+        raise ReportError(f"{files[0][1]}: node set {profile_set} of the profile is missing")
+    _require_same_runs(subject, files)
+    return subject
+
+
+def _result_files(runs, folder):
+    """(run, path) of every run that left a file; a run that came to rest must have left one."""
+    found = []
+    for run in runs:
+        path = folder / run.file_name
+        if path.is_file():
+            found.append((run, path))
+        elif run.ok:
+            raise ReportError(
+                f"{path}: no such result file, but the verdicts say that {run.label} on {run.case} "
+                f"is ok; make both in one go: sandglass verify --json FILE --results {folder}"
+            )
+    return found
+
+
+def _read_results(files):
+    """Mesh (of the first file), last displacements by run, and the hashes they belong to."""
+    mesh, displacements, hashes = {}, {}, {}
+    for run, path in files:
+        with _open(path) as file:
+            try:
+                frames = file["frames"]
+                u = frames[max(frames)]["displacement"][...]
+                own = {key: _text(file.attrs[key]) for key in ("case_hash", "mesh_hash")}
+                if not mesh:
+                    group, hashes = file["mesh"], own
+                    sets = {name: nodes[...] for name, nodes in group.get("sets", {}).items()}
+                    mesh = {"points": group["points"][...], "cells": group["cells"][...]}
+                    mesh["sets"] = sets
+            except (KeyError, ValueError) as error:
+                raise ReportError(f"{path}: not a result file of this solver: {error}") from error
+        if own != hashes or u.shape != mesh["points"].shape:
+            raise ReportError(
+                f"{path}: made for another case or mesh than {files[0][1].name}; run verify anew"
+            )
+        displacements[run.method, None if run.is_main else run.kappa] = u
+    return mesh, displacements, hashes
+
+
+def _read_reference(path, name, hashes, points):
+    """The Reference in a file, None when there is no file; points of the runs' mesh, or None."""
+    if not path.is_file():
+        return None
+    with _open(path) as file:
+        attributes = {key: _text(value) for key, value in file.attrs.items()}
+        if "displacement" not in file:
+            raise ReportError(f"{path}: dataset displacement is missing: not a reference")
+        displacement = file["displacement"][...]
+    for key, expected in hashes.items():
+        if attributes.get(key) != expected:
+            raise ReportError(
+                f"{path}: {key} is {attributes.get(key)}, but the runs have {expected}; the "
+                f"reference was made for another case or mesh: reference/regenerate {name}"
+            )
+    if points is not None and displacement.shape != points.shape:
+        raise ReportError(
+            f"{path}: displacement has shape {displacement.shape}, but the mesh of the runs has "
+            f"{points.shape}; make it anew: reference/regenerate {name}"
+        )
+    return Reference(displacement, attributes)
+
+
+def _require_same_runs(subject, files):
+    """Raises ReportError unless the result files give the very figures of the verdicts."""
+    profile = None if subject.profile_set is None else subject.sets.get(subject.profile_set)
+    for run, path in files:
+        u = subject.displacements[run.method, None if run.is_main else run.kappa]
+        for kind in REFERENCES:
+            reference, told = getattr(subject, kind), getattr(run, kind)
+            if reference is None or told is None:
+                continue
+            found = accuracy(u, reference.displacement, subject.unit, profile)
+            if abs(found.max - told.max) > AGREEMENT * max(1.0, told.max):
+                raise ReportError(
+                    f"{path}: its largest error against the {kind} is {found.max:.6g}, but the "
+                    f"verdicts say {told.max:.6g}: they come from different runs; run verify anew"
+                )
+
+
+def _open(path):
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise ReportError(f"{path}: cannot read it as HDF5: {error}") from error
+
+
+def _text(value):
+    """HDF5 attribute: bytes as text, all else as it is."""
+    return value.decode() if isinstance(value, bytes) else value

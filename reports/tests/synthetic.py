@@ -1,0 +1,152 @@
+"""A tiny data set of the report's inputs: a box with two methods, a kappa curve and a failure."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+HASHES = {"case_hash": "0123456789abcdef", "mesh_hash": "fedcba9876543210"}
+CASE = """
+[case]
+name = "column"
+requirement = "A short column leans by 50 % of its height."
+answer = "quasi-static"
+
+[[displacement]]
+set = "bottom"
+value = [0.0, 0.0, 0.0]
+
+[[displacement]]
+set = "top"
+value = [0.3, 0.0, 0.4]
+
+[profile]
+set = "edge"
+order = "z"
+"""
+UNIT = 0.5  # the length of the imposed displacement, m
+
+
+def box(nx, ny, nz):
+    """Points (n, 3) of a box of unit cubes, and its cells (m, 8) in VTK order."""
+    x, y, z = np.meshgrid(range(nx + 1), range(ny + 1), range(nz + 1), indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel(), z.ravel()]).astype(float)
+    number = np.arange(len(points)).reshape(nx + 1, ny + 1, nz + 1)
+    ring = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    cells = [
+        [number[i + a, j + b, k + c] for c in (0, 1) for a, b in ring]
+        for i in range(nx)
+        for j in range(ny)
+        for k in range(nz)
+    ]
+    return points, np.array(cells)
+
+
+@dataclass
+class DataSet:
+    """Writes the inputs into a folder; fields and methods let a test spoil them."""
+
+    folder: Path
+
+    def __post_init__(self):
+        self.points, self.cells = box(2, 2, 3)
+        self.sets = {
+            "bottom": np.flatnonzero(self.points[:, 2] == 0),
+            "top": np.flatnonzero(self.points[:, 2] == 3),
+            "edge": np.flatnonzero((self.points[:, 0] == 0) & (self.points[:, 1] == 0))[::-1],
+        }
+        self.answer = self.points[:, 2:] / 3 * np.array([0.3, 0.0, 0.4])
+        for name in ("cases", "reference/golden", "reference/truth", "results"):
+            (self.folder / name).mkdir(parents=True)
+        (self.folder / "cases/column.toml").write_text(CASE, encoding="utf-8")
+        self.write_reference("golden", self.answer)
+        self.records = [
+            self.run("tl-none", 0.2),
+            self.run("tl-perturbation", 0.002, kappa=0.0065, auto=True),
+            self.run("tl-perturbation", 0.004, kappa=0.02),
+        ]
+        failed = self.run("tl-full", 0.0) | {"status": "failed: <inverted>", "golden": None}
+        (self.folder / "results/column.tl-full.h5").unlink()
+        self.records.append(failed)
+        self.limits = [
+            {
+                "case": "column",
+                "method": "tl-perturbation",
+                "kappa": "auto",
+                "reference": "golden",
+                "figure": "max_relative_error",
+                "below": 0.003,
+                "above": None,
+                "found": 0.002,
+                "at_kappa": 0.0065,
+                "holds": True,
+                "reason": "it is the paper's",
+            }
+        ]
+        self.write_verdicts()
+
+    def run(self, method, error, kappa=None, auto=False):
+        """Writes a result file whose largest error is `error`; returns its record."""
+        inner = (self.points[:, 2] > 0) & (self.points[:, 2] < 3)
+        shift = np.where(inner & (self.points.sum(axis=1) % 2 == 0), error * UNIT, 0.0)
+        u = self.answer + shift[:, None] * [1.0, 0.0, 0.0]
+        suffix = "" if kappa is None or auto else f".{kappa!r}"
+        with h5py.File(self.folder / f"results/column.{method}{suffix}.h5", "w") as file:
+            file["mesh/points"], file["mesh/cells"] = self.points, self.cells
+            for name, nodes in self.sets.items():
+                file[f"mesh/sets/{name}"] = nodes
+            file["frames/0000/displacement"] = np.zeros_like(u)
+            file["frames/0001/displacement"] = u
+            for key, value in HASHES.items():
+                file.attrs[key] = np.bytes_(value)
+        figures = {
+            "max_relative_error": error,
+            "profile_relative_error": error,
+            "rms_relative_error": float(np.sqrt(np.mean((shift / UNIT) ** 2))),
+        }
+        return {
+            "case": "column",
+            "method": method,
+            "kappa": kappa,
+            "kappa_is_auto": auto,
+            "precision": "double",
+            "status": "ok",
+            "golden": figures,
+            "truth": None,
+            "steps": 100,
+            "residual": 1e-8,
+            "hourglass_energy_ratio": 0.01,
+            "ns_per_element_step": 120.0,
+            "wall_seconds": 0.5,
+        }
+
+    def write_reference(self, kind, displacement, **attributes):
+        """Writes a golden or truth for the case."""
+        with h5py.File(self.folder / f"reference/{kind}/column.h5", "w") as file:
+            file["displacement"] = displacement
+            for key, value in (HASHES | attributes).items():
+                file.attrs[key] = value
+
+    def write_verdicts(self):
+        """Writes verdicts.json from the records and limits as they are."""
+        document = {"version": "0", "compiler": "none", "processor": "none"}
+        document |= {"records": self.records, "limits": self.limits}
+        (self.folder / "verdicts.json").write_text(json.dumps(document), encoding="utf-8")
+
+    @property
+    def page(self):
+        """Where the page goes."""
+        return self.folder / "report/index.html"
+
+    @property
+    def arguments(self):
+        """The command line for these inputs."""
+        return [
+            f"--verdicts={self.folder}/verdicts.json",
+            f"--results={self.folder}/results",
+            f"--cases={self.folder}/cases",
+            f"--reference={self.folder}/reference",
+            f"--output={self.page}",
+        ]

@@ -1,0 +1,154 @@
+"""The whole report from a tiny data set: what is on the page, and what is not."""
+
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from synthetic import DataSet
+
+from make_report import main
+
+VOID = {"meta", "link", "br", "hr", "img", "input"}
+
+
+class Balance(HTMLParser):
+    """Checks that every element is closed, and collects ids and targets."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.ids, self.targets = [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in VOID:
+            self.open.append(tag)
+        attributes = dict(attrs)
+        self.ids += [attributes["id"]] if "id" in attributes else []
+        target = attributes.get("href") or attributes.get("xlink:href") or attributes.get("src")
+        self.targets += [target] if target else []
+
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+        if tag not in VOID:
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open.pop() == tag
+
+
+def made(data):
+    """The page of a data set, as text."""
+    assert main(data.arguments) == 0
+    return data.page.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """The data set as it is, with its page made."""
+    data = DataSet(tmp_path_factory.mktemp("plain"))
+    made(data)
+    return data
+
+
+@pytest.fixture
+def page(plain):
+    """The page of the data set as it is, as text."""
+    return plain.page.read_text(encoding="utf-8")
+
+
+def test_page_and_figures_are_written(plain, page):
+    assert "All 1 limits hold" in page
+    figures = {path.name for path in (plain.page.parent / "figures").iterdir()}
+    for name in ("speed-accuracy", "kappa.column", "figure-3", "figure-4", "cases"):
+        assert {f"{name}.svg", f"{name}.png"} <= figures
+    assert [path.name for path in plain.page.parent.iterdir() if path.name.startswith(".")] == []
+
+
+def test_page_is_well_formed(page):
+    parser = Balance()
+    parser.feed(page)
+    assert parser.open == []
+    assert len(parser.ids) == len(set(parser.ids))
+    assert all(target[1:] in parser.ids for target in parser.targets)
+
+
+def test_page_loads_nothing(plain, page):
+    assert re.search(r"""(src|href|url)\s*[=(]\s*["']?(https?:|//|file:)""", page) is None
+    assert "@import" not in page and "<link" not in page
+    assert str(plain.folder) not in page
+
+
+def test_page_is_the_same_when_made_again(plain, page):
+    assert made(plain) == page
+
+
+def test_a_failed_run_is_shown_with_its_reason(page):
+    assert "failed: &lt;inverted&gt;" in page
+    assert "1 failed" in page
+
+
+def test_a_missing_truth_is_said(page):
+    assert "no truth is stored for this case yet" in page
+
+
+def test_a_truth_gives_the_goldens_own_error(data):
+    data.write_reference("truth", data.answer * [1.0, 1.0, 1.1], element="Q2-P1", refinements=1)
+    assert "no run has a figure against the truth" in made(data)
+    for record in data.records[1:3]:
+        record["truth"] = record["golden"] | {"max_relative_error": 0.08}
+    data.write_verdicts()
+    page = made(data)
+    assert "no truth is stored for this case yet" not in page
+    assert "golden to truth, max" in page
+    assert "8.00 %" in page  # 0.1 * 0.4 m over 0.5 m
+    assert "mesh split 1×" in page
+
+
+def test_a_broken_limit_comes_first(data):
+    broken = data.limits[0] | {"below": 0.001, "holds": False, "reason": "a reason of its own"}
+    data.limits.append(broken)
+    data.write_verdicts()
+    page = made(data)
+    assert "1 of 2 limits is BROKEN" in page
+    assert page.index("a reason of its own") < page.index("it is the paper&#39;s")
+
+
+def test_a_case_whose_runs_all_failed_makes_a_page(data):
+    data.records = [data.records[-1]]
+    data.limits = []
+    data.write_verdicts()
+    for path in (data.folder / "results").iterdir():
+        path.unlink()
+    page = made(data)
+    assert "No limits were checked" in page
+    assert "No run left a mesh to show" in page
+
+
+def test_an_exploded_run_makes_a_page(data):
+    error = 1e9
+    data.records[0] = data.run("tl-none", error) | {"status": "failed: not at rest"}
+    data.write_verdicts()
+    page = made(data)
+    assert "failed: not at rest" in page
+
+
+def test_an_exact_method_is_named_below_the_scale(data):
+    data.records.append(data.run("tl-mean-dilatation", 3e-8))
+    data.write_verdicts()
+    assert "tl-mean-dilatation 3·10⁻⁶ %" in made(data)
+
+
+def test_a_ninth_and_further_method_gets_a_pair_of_its_own():
+    from sandglass_report.style import Palette
+
+    palette = Palette([f"m{i}" for i in range(20)])
+    pairs = {(palette.colour(m), palette.mark(m)) for m in palette.methods}
+    assert len(pairs) == 20
+
+
+def test_labels_keep_apart():
+    from sandglass_report.axes import spread
+
+    moved = spread([5.0, 5.0, 5.5, 40.0], gap=10.0, low=0.0, high=100.0)
+    assert np.diff(np.sort(moved)).min() >= 10.0 - 1e-5
+    assert moved.min() >= -1e-5

@@ -1,0 +1,295 @@
+/// Case files: what is read from good ones, and what is said about bad ones.
+
+#include "io/case_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "io/mesh_file.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+const std::string good = R"([case]
+name = "good"
+requirement = "A block is pulled."
+answer = "quasi-static"
+
+[mesh]
+generator = "box"
+size = [1.0, 2.0, 3.0]
+elements = [1, 2, 3]
+
+[material]
+law = "neo-hookean"
+young_modulus = 3000.0
+poisson_ratio = 0.49
+density = 1000.0
+
+[sets]
+bottom = { z = [0.0, 0.0] }
+top = { z = [3.0, 3.0] }
+
+[[displacement]]
+set = "bottom"
+value = [0.0, 0.0, 0.0]
+
+[[displacement]]
+set = "top"
+value = [0.5, 0.0, 0.3]
+components = "xz"
+
+[profile]
+set = "top"
+order = "x"
+
+[relaxation]
+tolerance = 1e-7
+
+[comparison]
+kappas = [0.01, 0.02]
+
+[[expect]]
+method = "tl-perturbation"
+kappa = 0.01
+reference = "golden"
+figure = "rms_relative_error"
+below = 0.01
+reason = "a test"
+)";
+
+/// `good` with one piece of text replaced.
+std::string with(const std::string& old, const std::string& replacement) {
+  const auto at = good.find(old);
+  if (at == std::string::npos) throw std::logic_error("not in the good case: " + old);
+  return std::string(good).replace(at, old.size(), replacement);
+}
+
+TEST(CaseFile, good_case_is_read_as_written) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("good.toml", good));
+  const Case& c = scene.description;
+  EXPECT_EQ(c.name, "good");
+  EXPECT_TRUE(c.quasi_static);
+  EXPECT_EQ(scene.mesh.cells.size(), 6U);
+  EXPECT_EQ(std::get<NeoHookean>(c.law).young_modulus, 3000.0);
+  EXPECT_EQ(std::get<NeoHookean>(c.law).poisson_ratio, 0.49);
+  EXPECT_EQ(c.density, 1000.0);
+  EXPECT_EQ(c.relaxation.tolerance, 1e-7);
+  EXPECT_EQ(c.kappas, (std::vector<double>{0.01, 0.02}));
+  ASSERT_EQ(c.expectations.size(), 1U);
+  EXPECT_EQ(c.expectations[0].kappa, "0.01");
+  EXPECT_EQ(c.expectations[0].below, 0.01);
+  EXPECT_EQ(scene.sets.at("bottom").size(), 6U);
+  EXPECT_EQ(scene.sets.at("top").size(), 6U);
+  // Three components below, two above: y of the top is free.
+  EXPECT_EQ(scene.constraints.size(), 6U * 3 + 6U * 2);
+  for (const auto& constraint : scene.constraints) {
+    const double z = scene.mesh.points[index(constraint.node)][2];
+    const std::array<double, 3> top{0.5, NAN, 0.3};
+    EXPECT_EQ(constraint.value, z == 0.0 ? 0.0 : top[index(constraint.component)]);
+  }
+  EXPECT_DOUBLE_EQ(largest_imposed(scene), std::hypot(0.5, 0.3));
+}
+
+TEST(CaseFile, dynamic_case_is_read_as_written) {
+  const TemporaryFolder folder;
+  const auto text = with("\"quasi-static\"", "\"dynamic\"") +
+                    "[initial]\nvelocity = [1, 2.5, -3]\n[dynamics]\nduration = 2.0\ndamping = 0.5\n";
+  const Case c = read_case_file(folder.write("dynamic.toml", text));
+  EXPECT_FALSE(c.quasi_static);
+  EXPECT_EQ(c.initial_velocity, (Vector{1.0, 2.5, -3.0}));
+  EXPECT_EQ(c.dynamics.duration, 2.0);
+  EXPECT_EQ(c.dynamics.damping, 0.5);
+}
+
+TEST(CaseFile, hash_follows_what_decides_the_answer_and_nothing_else) {
+  const TemporaryFolder folder;
+  const auto hash = [&](const std::string& text) {
+    return read_scene(folder.write("a.toml", text)).case_hash;
+  };
+  const std::string once = hash(good);
+  EXPECT_EQ(once.size(), 16U);
+  EXPECT_EQ(hash(with("A block is pulled.", "Other words.")), once);
+  EXPECT_EQ(hash(with("tolerance = 1e-7", "tolerance = 1e-6")), once);
+  EXPECT_EQ(hash(with("below = 0.01", "below = 0.02")), once);
+  EXPECT_NE(hash(with("poisson_ratio = 0.49", "poisson_ratio = 0.48")), once);
+  EXPECT_NE(hash(with("elements = [1, 2, 3]", "elements = [1, 2, 4]")), once);
+  EXPECT_NE(hash(with("value = [0.5, 0.0, 0.3]", "value = [0.5, 0.0, 0.31]")), once);
+  EXPECT_NE(hash(with("components = \"xz\"", "components = \"xyz\"")), once);
+  EXPECT_NE(hash(with("top = { z = [3.0, 3.0] }", "top = { z = [2.0, 3.0] }")), once);
+}
+
+struct BadCase {
+  const char* name;
+  std::string text;
+  std::vector<std::string> said;  ///< what the error must contain, beside the file's name
+};
+
+void PrintTo(const BadCase& bad, std::ostream* stream) {
+  *stream << bad.name;
+}
+
+class BadCaseTest : public ::testing::TestWithParam<BadCase> {};
+
+TEST_P(BadCaseTest, is_refused_with_file_key_value_and_rule) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("bad.toml", GetParam().text);
+  const std::string text = input_error([&] { read_scene(file); });
+  EXPECT_TRUE(contains(text, file.string()));
+  for (const auto& part : GetParam().said) EXPECT_TRUE(contains(text, part));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, BadCaseTest,
+    ::testing::Values(
+        BadCase{"not_toml", "[case\nname = 3", {":1: is not TOML"}},
+        BadCase{"empty_file", "", {"case is missing"}},
+        BadCase{"unknown_key",
+                with("tolerance = 1e-7", "tolerence = 1e-7"),
+                {"bad.toml:35: relaxation.tolerence", "did you mean 'tolerance'?"}},
+        BadCase{"unknown_table", good + "[gravity]\ng = 9.81\n", {"gravity is not a key"}},
+        BadCase{"misspelt_required_key",
+                with("young_modulus = ", "young_moduls = "),
+                {"material.young_moduls", "did you mean 'young_modulus'?"}},
+        BadCase{"missing_key", with("density = 1000.0\n", ""), {"material.density is missing"}},
+        BadCase{"missing_table",
+                with("[mesh]\ngenerator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]\n", ""),
+                {"mesh is missing"}},
+        BadCase{"text_for_a_number",
+                with("young_modulus = 3000.0", "young_modulus = \"soft\""),
+                {"bad.toml:13: material.young_modulus = 'soft' must be a number"}},
+        BadCase{"fraction_for_an_integer",
+                with("elements = [1, 2, 3]", "elements = [1, 2.5, 3]"),
+                {"mesh.elements", "a list of 3, each an integer"}},
+        BadCase{"two_entries_for_three",
+                with("size = [1.0, 2.0, 3.0]", "size = [1.0, 2.0]"),
+                {"mesh.size", "list of 3"}},
+        BadCase{"number_for_a_table",
+                with("bottom = { z = [0.0, 0.0] }", "bottom = 3"),
+                {"sets.bottom = 3 must be a table"}},
+        BadCase{"poisson_ratio_half",
+                with("poisson_ratio = 0.49", "poisson_ratio = 0.5"),
+                {"material.poisson_ratio = 0.5 must be in (-1, 0.5)"}},
+        BadCase{"poisson_ratio_above",
+                with("poisson_ratio = 0.49", "poisson_ratio = 0.6"),
+                {"= 0.6 must be in (-1, 0.5)"}},
+        BadCase{"poisson_ratio_minus_one",
+                with("poisson_ratio = 0.49", "poisson_ratio = -1"),
+                {"= -1 must be in (-1, 0.5)"}},
+        BadCase{"poisson_ratio_nan",
+                with("poisson_ratio = 0.49", "poisson_ratio = nan"),
+                {"= nan must be in (-1, 0.5)"}},
+        BadCase{"young_modulus_zero",
+                with("young_modulus = 3000.0", "young_modulus = 0.0"),
+                {"material.young_modulus = 0 must be in (0, inf)"}},
+        BadCase{"young_modulus_infinite",
+                with("young_modulus = 3000.0", "young_modulus = inf"),
+                {"= inf must be in (0, inf)"}},
+        BadCase{"density_negative",
+                with("density = 1000.0", "density = -1.0"),
+                {"material.density = -1 must be in (0, inf)"}},
+        BadCase{"no_elements",
+                with("elements = [1, 2, 3]", "elements = [1, 0, 3]"),
+                {"mesh.elements = 0 must be in [1, inf)"}},
+        BadCase{"tolerance_negative",
+                with("tolerance = 1e-7", "tolerance = -1.0"),
+                {"relaxation.tolerance = -1"}},
+        BadCase{"kappa_negative",
+                with("kappas = [0.01, 0.02]", "kappas = [0.01, -0.02]"),
+                {"comparison.kappas = -0.02"}},
+        BadCase{"kappa_unknown_word",
+                with("kappa = 0.01", "kappa = \"automatic\""),
+                {"expect.kappa", "auto, best"}},
+        BadCase{"unknown_law",
+                with("law = \"neo-hookean\"", "law = \"neo-hokean\""),
+                {"material.law = 'neo-hokean' is not known", "did you mean 'neo-hookean'?"}},
+        BadCase{"unknown_generator",
+                with("generator = \"box\"", "generator = \"torus\""),
+                {"mesh.generator = 'torus' is not known", "known: box, ellipsoid, cylinder"}},
+        BadCase{"unknown_method",
+                with("method = \"tl-perturbation\"", "method = \"tl-nothing\""),
+                {"expect.method = 'tl-nothing'", "tl-none", "tl-mean-dilatation"}},
+        BadCase{"unknown_answer",
+                with("\"quasi-static\"", "\"static\""),
+                {"case.answer = 'static'", "quasi-static, dynamic"}},
+        BadCase{
+            "both_limits", with("below = 0.01", "below = 0.01\nabove = 0.5"), {"below", "one of the two"}},
+        BadCase{"no_limit", with("below = 0.01\n", ""), {"below", "one of the two"}},
+        BadCase{"empty_set",
+                with("top = { z = [3.0, 3.0] }", "top = { z = [4.0, 5.0] }"),
+                {"sets.top selects no node"}},
+        BadCase{"interval_turned",
+                with("top = { z = [3.0, 3.0] }", "top = { z = [5.0, 4.0] }"),
+                {"sets.top.z", "low end first"}},
+        BadCase{"set_of_a_displacement",
+                with("set = \"top\"\nvalue", "set = \"tap\"\nvalue"),
+                {"displacement.set = 'tap' is not a node set", "did you mean 'top'?"}},
+        BadCase{"set_of_the_profile",
+                with("set = \"top\"\norder", "set = \"tip\"\norder"),
+                {"profile.set = 'tip'"}},
+        BadCase{"wrong_component",
+                with("components = \"xz\"", "components = \"xw\""),
+                {"displacement.components = 'xw'"}},
+        BadCase{"infinite_displacement",
+                with("value = [0.5, 0.0, 0.3]", "value = [0.5, 0.0, inf]"),
+                {"displacement.value = inf"}},
+        BadCase{"node_driven_twice_differently",
+                with("set = \"top\"\nvalue", "set = \"bottom\"\nvalue"),
+                {"node 0 is given two displacements in x: 0 by set 'bottom' and 0.5 by set 'bottom'"}},
+        BadCase{
+            "no_displacement", good.substr(0, good.find("[[displacement]]")), {"displacement is missing"}},
+        BadCase{"dynamic_without_duration",
+                with("\"quasi-static\"", "\"dynamic\"") + "[dynamics]\nframes = 3\n",
+                {"dynamics.duration is missing"}}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
+TEST(CaseFile, missing_file_is_named) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(
+      contains(input_error([&] { read_scene(folder / "none.toml"); }), "none.toml: no such case file"));
+}
+
+TEST(CaseFile, missing_mesh_file_is_named) {
+  const TemporaryFolder folder;
+  const auto file = folder.write(
+      "bad.toml",
+      with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"none.h5\""));
+  EXPECT_TRUE(contains(input_error([&] { read_scene(file); }), "none.h5: no such file"));
+}
+
+TEST(CaseFile, inverted_elements_of_a_mesh_file_are_named) {
+  const TemporaryFolder folder;
+  Scene scene = read_scene(folder.write("good.toml", good));
+  for (auto& cell : scene.mesh.cells) {
+    for (std::size_t n = 0; n < 4; ++n) std::swap(cell[n], cell[n + 4]);
+  }
+  write_mesh_file(scene, folder / "mesh.h5");
+  const auto file = folder.write(
+      "bad.toml",
+      with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"mesh.h5\""));
+  const std::string text = input_error([&] { read_scene(file); });
+  EXPECT_TRUE(contains(text, "bad.toml"));
+  EXPECT_TRUE(contains(text, "6 of 6 elements are inverted"));
+  EXPECT_TRUE(contains(text, "element 0: centre (0.5, 0.5, 0.5), det J = -0.125"));
+}
+
+/// A mesh written and read back with its sets is the same scene.
+TEST(CaseFile, mesh_file_gives_the_same_scene) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("good.toml", good));
+  write_mesh_file(scene, folder / "mesh.h5");
+  const auto text =
+      with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"mesh.h5\"");
+  const auto sets_at = text.find("[sets]");
+  const auto no_rules = std::string(text).erase(sets_at, text.find("[[displacement]]") - sets_at);
+  const Scene again = read_scene(folder.write("again.toml", no_rules));
+  EXPECT_EQ(again.mesh.points, scene.mesh.points);
+  EXPECT_EQ(again.mesh.cells, scene.mesh.cells);
+  EXPECT_EQ(again.sets, scene.sets);
+  EXPECT_EQ(again.mesh_hash, scene.mesh_hash);
+}
+
+}  // namespace
+}  // namespace sandglass::verification

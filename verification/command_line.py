@@ -1,0 +1,83 @@
+"""The program under test and the small case that its tests use.
+
+The program is the one that SANDGLASS_BINARY in the environment names, else build/release/sandglass.
+"""
+
+import os
+import pathlib
+import subprocess
+
+import h5py
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BINARY = os.environ.get("SANDGLASS_BINARY", str(ROOT / "build" / "release" / "sandglass"))
+
+BLOCK = """
+[case]
+name = "block"
+requirement = "A block is pulled and sheared."
+answer = "quasi-static"
+
+[mesh]
+generator = "box"
+size = [0.1, 0.1, 0.2]
+elements = [2, 2, 4]
+
+[material]
+law = "neo-hookean"
+young_modulus = 3000.0
+poisson_ratio = 0.49
+density = 1000.0
+
+[sets]
+foot = { z = [0.0, 0.0] }
+head = { z = [0.2, 0.2] }
+
+[[displacement]]
+set = "foot"
+value = [0.0, 0.0, 0.0]
+
+[[displacement]]
+set = "head"
+value = [0.02, 0.0, 0.01]
+
+[comparison]
+kappas = [0.01]
+golden = "golden.h5"
+"""
+
+LIMIT = """
+[[expect]]
+method = "{method}"
+reference = "golden"
+figure = "max_relative_error"
+below = {below}
+reason = "a test"
+"""
+
+
+def sandglass(*arguments, **options):
+    """Runs the program; its outcome with the texts it wrote."""
+    command = [BINARY, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
+
+
+def methods():
+    """The names of all methods, from the program itself."""
+    return [line.split()[0] for line in sandglass("methods").stdout.splitlines()]
+
+
+def text_of(attribute):
+    """A text attribute; texts of fixed length come out of h5py as bytes."""
+    return attribute.decode() if isinstance(attribute, bytes) else attribute
+
+
+def write_golden(case, **changed):
+    """Makes the answer of mean dilatation the golden of a case; `changed` replaces attributes."""
+    result = case.parent / "for-golden.h5"
+    assert sandglass("run", case, "--method", "tl-mean-dilatation", "-o", result).returncode == 0
+    with h5py.File(result) as source, h5py.File(case.parent / "golden.h5", "w") as golden:
+        last = sorted(source["frames"])[-1]
+        golden["displacement"] = source[f"frames/{last}/displacement"][:]
+        for name in ("case_hash", "mesh_hash"):
+            golden.attrs[name] = changed.get(name, source.attrs[name])

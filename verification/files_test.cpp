@@ -1,0 +1,248 @@
+/// Files: results as the architecture note lays them out, references that belong to their case, no rubbish
+/// left.
+
+#include <gtest/gtest.h>
+
+#include "io/case_file.hpp"
+#include "io/hdf5_file.hpp"
+#include "io/mesh_file.hpp"
+#include "io/reference_file.hpp"
+#include "io/result_file.hpp"
+#include "io/text_file.hpp"
+#include "stepping/dynamic_relaxation.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scene pulled_block() {
+  Case description = plain_case(sample_law<NeoHookean>(0.49));
+  description.name = "block";
+  const Mesh mesh = box({0.1, 0.1, 0.2}, {1, 2, 2});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.04, 0.0, 0.03}}};
+  return make_scene(description, mesh, sets);
+}
+
+/// Passes everything on to a writer, as the command line does.
+class WritingObserver final : public Observer {
+ public:
+  explicit WritingObserver(ResultWriter& writer) : writer_(writer) {}
+  void frame(double time, const NodalField& u, const NodalField& v) override { writer_.frame(time, u, v); }
+  void history(const HistoryRow& row) override {
+    writer_.history(row);
+    ++rows;
+  }
+  std::size_t rows = 0;
+
+ private:
+  ResultWriter& writer_;
+};
+
+TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
+  const TemporaryFolder folder;
+  const Scene scene = pulled_block();
+  const Model model(scene, {"tl-perturbation", {}});
+  Relaxation answer;
+  std::size_t rows = 0;
+  {
+    ResultWriter writer(model, folder / "result.h5", {{"revision", "abc"}, {"build_flags", "fast"}});
+    WritingObserver observer(writer);
+    answer = relax(model, observer);
+    rows = observer.rows;
+    EXPECT_FALSE(fs::exists(folder / "result.h5")) << "something is in place before the end";
+    writer.commit("complete");
+  }
+  EXPECT_EQ(folder.entries(), 2U) << "result.h5 and result.xdmf, no temporaries";
+  const auto file = Hdf5File::open(folder / "result.h5");
+  EXPECT_EQ(file.read_text_attribute("/", "case_hash"), scene.case_hash);
+  EXPECT_EQ(file.read_text_attribute("/", "mesh_hash"), scene.mesh_hash);
+  EXPECT_EQ(file.read_text_attribute("/", "revision"), "abc");
+  EXPECT_EQ(file.read_text_attribute("/", "build_flags"), "fast");
+  EXPECT_EQ(file.read_text_attribute("/", "status"), "complete");
+
+  const auto with_sets = read_mesh_file(folder / "result.h5");
+  EXPECT_EQ(with_sets.mesh.points, scene.mesh.points);
+  EXPECT_EQ(with_sets.mesh.cells, scene.mesh.cells);
+  EXPECT_EQ(with_sets.sets, scene.sets);
+
+  const auto frames = file.names_in("/frames");
+  ASSERT_GE(frames.size(), 2U);
+  EXPECT_EQ(frames.front(), "0000");
+  double previous = -1.0;
+  for (const auto& frame : frames) {
+    const double time = file.read_number_attribute("/frames/" + frame, "time");
+    EXPECT_GT(time, previous);
+    previous = time;
+    const auto& group = "/frames/" + frame;
+    EXPECT_EQ(file.read_doubles(group + "/velocity").shape, (std::vector<std::size_t>{18, 3}));
+    EXPECT_EQ(file.read_doubles(group + "/jacobian").shape, (std::vector<std::size_t>{4}));
+    EXPECT_EQ(file.read_doubles(group + "/hourglass_energy_density").shape, (std::vector<std::size_t>{4}));
+    EXPECT_EQ(file.read_text_attribute(group + "/hourglass_energy_density", "unit"), "J/m^3");
+  }
+  // The first frame is the initial state.
+  EXPECT_EQ(file.read_number_attribute("/frames/0000", "time"), 0.0);
+  EXPECT_EQ(read_nodal_field(file, "/frames/0000/displacement", 18), NodalField(18));
+  EXPECT_EQ(file.read_doubles("/frames/0000/jacobian").entries, std::vector<double>(4, 1.0));
+  // The last is the answer, with the densities that sum to its hourglass energy.
+  const auto last = "/frames/" + frames.back();
+  EXPECT_EQ(read_nodal_field(file, last + "/displacement", 18), answer.u);
+  double sum = 0.0;
+  for (const double density : file.read_doubles(last + "/hourglass_energy_density").entries) {
+    sum += density * 0.1 * 0.1 * 0.2 / 4;
+  }
+  const double hourglass = model.internal_force().energies(answer.u).hourglass;
+  EXPECT_GT(hourglass, 0.0);
+  EXPECT_NEAR(sum / hourglass, 1.0, 1e-12);
+
+  const std::vector<std::pair<std::string, std::string>> columns{
+      {"time", "ramp"},       {"kinetic_energy", "J"}, {"strain_energy", "J"}, {"hourglass_energy", "J"},
+      {"external_work", "J"}, {"residual", "-"},       {"step_size", "ramp"}};
+  EXPECT_EQ(file.names_in("/history").size(), columns.size());
+  for (const auto& [name, unit] : columns) {
+    EXPECT_EQ(file.read_doubles("/history/" + name).shape, std::vector<std::size_t>{rows}) << name;
+    EXPECT_EQ(file.read_text_attribute("/history/" + name, "unit"), unit) << name;
+  }
+  const auto energies = model.internal_force().energies(answer.u);
+  EXPECT_EQ(file.read_doubles("/history/strain_energy").entries.back(), energies.strain);
+  EXPECT_EQ(file.read_doubles("/history/hourglass_energy").entries.back(), energies.hourglass);
+}
+
+TEST(ResultFile, leaves_nothing_without_commit) {
+  const TemporaryFolder folder;
+  const Scene scene = pulled_block();
+  const Model model(scene, {"tl-none", {}});
+  {
+    ResultWriter writer(model, folder / "result.h5", {});
+    const NodalField rest(scene.mesh.points.size());
+    writer.frame(0.0, rest, rest);
+  }
+  EXPECT_EQ(folder.entries(), 0U);
+}
+
+TEST(ResultFile, keeps_the_former_result_until_commit) {
+  const TemporaryFolder folder;
+  folder.write("result.h5", "former");
+  const Scene scene = pulled_block();
+  const Model model(scene, {"tl-none", {}});
+  { ResultWriter writer(model, folder / "result.h5", {}); }
+  EXPECT_EQ(fs::file_size(folder / "result.h5"), 6U);
+}
+
+TEST(ResultFile, missing_folder_is_told_before_the_work) {
+  const TemporaryFolder folder;
+  const Scene scene = pulled_block();
+  const Model model(scene, {"tl-none", {}});
+  const auto text = input_error([&] { ResultWriter(model, folder / "none/result.h5", {}); });
+  EXPECT_TRUE(contains(text, "none/result.h5: cannot be written"));
+}
+
+TEST(TextFile, is_whole_or_not_there) {
+  const TemporaryFolder folder;
+  write_text_file(folder / "a.json", "{}\n");
+  EXPECT_EQ(fs::file_size(folder / "a.json"), 3U);
+  EXPECT_TRUE(
+      contains(input_error([&] { write_text_file(folder / "none/a.json", "{}"); }), "cannot be written"));
+  fs::create_directory(folder / "taken");
+  fs::create_directory(folder / "taken/by");
+  EXPECT_TRUE(
+      contains(input_error([&] { write_text_file(folder / "taken", "{}"); }), "cannot be put in place"));
+  EXPECT_EQ(folder.entries(), 2U) << "a temporary was left";
+}
+
+// References.
+
+/// Writes displacements with chosen hashes.
+void write_reference(const fs::path& path, const NodalField& u, const std::string& case_hash,
+                     const std::string& mesh_hash) {
+  auto file = Hdf5File::create(path);
+  file.write("/displacement", {u.size(), 3}, std::span<const double>(u.front().data(), 3 * u.size()));
+  file.write_attribute("/", "case_hash", case_hash);
+  file.write_attribute("/", "mesh_hash", mesh_hash);
+  file.commit();
+}
+
+class ReferenceFileTest : public ::testing::Test {
+ protected:
+  std::string error() const {
+    return input_error([&] { read_reference(path, scene); });
+  }
+
+  TemporaryFolder folder;
+  Scene scene = pulled_block();
+  NodalField u = NodalField(scene.mesh.points.size(), Vector{1.0, 2.0, 3.0});
+  fs::path path = folder / "golden.h5";
+};
+
+TEST_F(ReferenceFileTest, is_read_when_it_belongs_to_the_case) {
+  write_reference(path, u, scene.case_hash, scene.mesh_hash);
+  EXPECT_EQ(read_reference(path, scene), u);
+}
+
+TEST_F(ReferenceFileTest, of_another_case_is_refused_with_the_command_that_helps) {
+  write_reference(path, u, "0123456789abcdef", scene.mesh_hash);
+  const auto text = error();
+  EXPECT_TRUE(contains(text, "golden.h5"));
+  EXPECT_TRUE(contains(text, "case_hash is 0123456789abcdef"));
+  EXPECT_TRUE(contains(text, scene.case_hash));
+  EXPECT_TRUE(contains(text, "reference/regenerate block"));
+}
+
+TEST_F(ReferenceFileTest, of_another_mesh_is_refused_with_the_command_that_helps) {
+  write_reference(path, u, scene.case_hash, "0123456789abcdef");
+  EXPECT_TRUE(contains(error(), "mesh_hash is 0123456789abcdef"));
+  EXPECT_TRUE(contains(error(), "reference/regenerate block"));
+}
+
+TEST_F(ReferenceFileTest, with_too_few_nodes_is_refused) {
+  u.pop_back();
+  write_reference(path, u, scene.case_hash, scene.mesh_hash);
+  EXPECT_TRUE(contains(error(), "'/displacement' has shape [17, 3]; it must be [18, 3]"));
+}
+
+TEST_F(ReferenceFileTest, with_a_number_that_is_none_is_refused) {
+  u[4][1] = NAN;
+  write_reference(path, u, scene.case_hash, scene.mesh_hash);
+  EXPECT_TRUE(contains(error(), "at node 4; every value must be finite"));
+}
+
+TEST_F(ReferenceFileTest, missing_truncated_and_foreign_files_are_told_apart) {
+  EXPECT_TRUE(contains(error(), "golden.h5: no such file"));
+  folder.write("golden.h5", "this is no HDF5 file");
+  EXPECT_TRUE(contains(error(), "golden.h5: is not a complete HDF5 file"));
+  write_reference(path, u, scene.case_hash, scene.mesh_hash);
+  fs::resize_file(path, fs::file_size(path) / 2);
+  EXPECT_TRUE(contains(error(), "golden.h5: is not a complete HDF5 file"));
+  {
+    auto foreign = Hdf5File::create(path);
+    const std::vector<double> numbers{1.0, 2.0};
+    foreign.write("/something/else", {2}, std::span<const double>(numbers));
+    foreign.commit();
+  }
+  EXPECT_TRUE(contains(error(), "attribute 'case_hash' is missing"));
+}
+
+TEST(MeshFile, wrong_contents_are_refused) {
+  const TemporaryFolder folder;
+  const auto path = folder / "mesh.h5";
+  const auto error_with = [&](const std::vector<std::int64_t>& cells, std::size_t width) {
+    auto file = Hdf5File::create(path);
+    const std::vector<double> points(24, 0.5);
+    file.write("/mesh/points", {8, 3}, std::span<const double>(points));
+    file.write("/mesh/cells", {cells.size() / width, width}, std::span<const std::int64_t>(cells));
+    file.commit();
+    return input_error([&] { read_mesh_file(path); });
+  };
+  EXPECT_TRUE(
+      contains(error_with({0, 1, 2, 3}, 4), "'/mesh/cells' has shape [1, 4]; it must be [elements, 8]"));
+  EXPECT_TRUE(
+      contains(error_with({0, 1, 2, 3, 4, 5, 6, 8}, 8), "/mesh/cells names node 8; allowed are 0 to 7"));
+  EXPECT_TRUE(contains(error_with({0, 1, 2, 3, 4, 5, 6, -1}, 8), "names node -1"));
+}
+
+}  // namespace
+}  // namespace sandglass::verification

@@ -1,0 +1,274 @@
+/// Meshes: counts and volumes of the canonical cases, closed surfaces, positive Jacobians.
+
+#include "mesh/mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "element/hexahedron.hpp"
+#include "io/case_file.hpp"
+#include "mesh/hash.hpp"
+#include "mesh/node_set.hpp"
+#include "mesh/quality.hpp"
+#include "support/scenes.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+Scene canonical(const std::string& name) {
+  return read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / (name + ".toml"));
+}
+
+double volume(const Mesh& mesh) {
+  double sum = 0.0;
+  for (const auto& cell : mesh.cells) sum += mean_gradient(gather(mesh.points, cell)).volume;
+  return sum;
+}
+
+double smallest_scaled_jacobian(const Mesh& mesh) {
+  double smallest = 1.0;
+  for (const auto& cell : mesh.cells)
+    smallest = std::min(smallest, scaled_jacobian(gather(mesh.points, cell)));
+  return smallest;
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The volume inside the boundary faces by the divergence theorem, each bilinear face as the mean of its two
+/// triangulations. Positive only when the faces look outward.
+double enclosed_volume(const Mesh& mesh) {
+  const auto triple = [&](int a, int b, int c) {
+    const auto n = cross(mesh.points[index(b)], mesh.points[index(c)]);
+    const auto& p = mesh.points[index(a)];
+    return p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
+  };
+  double sum = 0.0;
+  for (const auto& [a, b, c, d] : boundary_faces(mesh.cells)) {
+    sum += triple(a, b, c) + triple(a, c, d) + triple(a, b, d) + triple(b, c, d);
+  }
+  return sum / 12.0;
+}
+
+/// A closed, consistently turned surface runs along each edge once in each direction.
+void expect_closed(const Mesh& mesh) {
+  std::map<std::pair<int, int>, int> directed;
+  for (const auto& face : boundary_faces(mesh.cells)) {
+    for (std::size_t n = 0; n < 4; ++n) ++directed[{face[n], face[(n + 1) % 4]}];
+  }
+  for (const auto& [edge, count] : directed) {
+    EXPECT_EQ(count, 1);
+    EXPECT_TRUE(directed.contains({edge.second, edge.first}));
+  }
+}
+
+/// What holds for every mesh that a generator makes.
+void expect_sound(const Mesh& mesh) {
+  ASSERT_FALSE(mesh.cells.empty());
+  EXPECT_NO_THROW(require_positive_jacobians(mesh));
+  for (const auto& cell : mesh.cells) EXPECT_GT(smallest_measure(gather(mesh.points, cell)), 0.0);
+  expect_closed(mesh);
+  EXPECT_NEAR(enclosed_volume(mesh) / volume(mesh), 1.0, 1e-12);
+  std::vector<bool> used(mesh.points.size(), false);
+  for (const auto& cell : mesh.cells) {
+    for (const int node : cell) used[index(node)] = true;
+  }
+  EXPECT_EQ(std::count(used.begin(), used.end(), false), 0) << "nodes without elements would have no mass";
+}
+
+struct Count {
+  const char* name;
+  std::size_t nodes;
+  std::size_t elements;
+};
+
+class CanonicalMeshTest : public ::testing::TestWithParam<Count> {};
+
+TEST_P(CanonicalMeshTest, has_the_published_counts_and_is_sound) {
+  const Scene scene = canonical(GetParam().name);
+  EXPECT_EQ(scene.mesh.points.size(), GetParam().nodes);
+  EXPECT_EQ(scene.mesh.cells.size(), GetParam().elements);
+  expect_sound(scene.mesh);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, CanonicalMeshTest,
+                         ::testing::Values(Count{"column", 496, 270},  // the paper, section 3.2
+                                           Count{"ellipsoid-indentation", 2535, 2200},  // the paper, 3.1
+                                           Count{"ellipsoid-touch", 2535, 2200},
+                                           Count{"cylinder-stretch", 6741, 6000},  // TLED paper of 2007
+                                           Count{"cylinder-compression", 6741, 6000}),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param.name;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(CanonicalMesh, ellipsoid_has_the_documented_sets_shape_and_volume) {
+  const Scene scene = canonical("ellipsoid-indentation");
+  EXPECT_EQ(scene.sets.at("support").size(), 141U);
+  EXPECT_EQ(scene.sets.at("indenter").size(), 65U);
+  EXPECT_GE(smallest_scaled_jacobian(scene.mesh), 0.6);
+  EXPECT_NEAR(volume(scene.mesh), 2.81777e-3, 5e-9);                                  // the digits given
+  EXPECT_LT(volume(scene.mesh), 4.0 / 3.0 * std::numbers::pi * 0.10 * 0.085 * 0.08);  // inscribed
+  for (const int node : scene.sets.at("midline")) EXPECT_NEAR(scene.mesh.points[index(node)][1], 0.0, 1e-12);
+  const auto on_boundary = boundary_nodes(scene.mesh);
+  for (std::size_t n = 0; n < on_boundary.size(); ++n) {
+    const auto& [x, y, z] = scene.mesh.points[n];
+    const double radius = std::hypot(x / 0.10, y / 0.085, z / 0.08);
+    if (on_boundary[n]) {
+      EXPECT_NEAR(radius, 1.0, 1e-12);
+    } else {
+      EXPECT_LT(radius, 0.999);
+    }
+  }
+}
+
+TEST(CanonicalMesh, cylinder_has_the_volume_of_its_polygon) {
+  const Scene scene = canonical("cylinder-stretch");
+  // 40 equal sides: 4 core edges of 10, their ends at equal angles by the map's tangent.
+  const double polygon = 0.5 * 40 * 0.05 * 0.05 * std::sin(2 * std::numbers::pi / 40);
+  EXPECT_NEAR(volume(scene.mesh) / (0.1 * polygon), 1.0, 1e-12);
+  EXPECT_EQ(scene.sets.at("bottom").size(), 321U);  // 6741 nodes in 21 planes
+  EXPECT_EQ(scene.sets.at("top").size(), 321U);
+  EXPECT_EQ(scene.sets.at("generator_line").size(), 21U);
+}
+
+TEST(CanonicalMesh, column_has_its_volume_and_sets) {
+  const Scene scene = canonical("column");
+  EXPECT_NEAR(volume(scene.mesh), 0.01, 1e-15);
+  EXPECT_EQ(scene.sets.at("bottom").size(), 16U);
+  EXPECT_EQ(scene.sets.at("top").size(), 16U);
+  EXPECT_EQ(scene.sets.at("edge").size(), 31U);
+  EXPECT_EQ(smallest_scaled_jacobian(scene.mesh), 1.0);
+}
+
+/// A generator of the list with plain parameters, set through its own declarations: lengths differ so that
+/// axes cannot be swapped unseen, counts are small.
+template <class Generator>
+Generator plain_generator() {
+  Generator generator;
+  const auto set = [](auto& value, bool required) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if (!required) return;
+    if constexpr (std::is_same_v<Value, double>) {
+      value = 0.7;
+    } else if constexpr (std::is_same_v<Value, int>) {
+      value = 3;
+    } else {
+      for (std::size_t n = 0; n < value.size(); ++n) {
+        value[n] = static_cast<typename Value::value_type>(2 + static_cast<int>(n));
+      }
+    }
+  };
+  std::apply([&](const auto&... p) { (set(generator.*(p.member), p.required), ...); },
+             Generator::parameters());
+  return generator;
+}
+
+template <class Generator>
+class GeneratorTest : public ::testing::Test {};
+
+TYPED_TEST_SUITE(GeneratorTest, GeneratorTypes, EntryName);
+
+TYPED_TEST(GeneratorTest, makes_sound_meshes) {
+  expect_sound(plain_generator<TypeParam>().build());
+}
+
+TYPED_TEST(GeneratorTest, makes_the_same_mesh_again) {
+  const auto generator = plain_generator<TypeParam>();
+  const Mesh once = generator.build();
+  const Mesh again = generator.build();
+  EXPECT_EQ(once.points, again.points);
+  EXPECT_EQ(once.cells, again.cells);
+}
+
+/// Rules have no length of their own: a body of a millionth of the size with rules to match has the same
+/// sets, in the corner cases too, where nodes lie on the rule's edge up to roundoff.
+TEST(NodeSets, do_not_depend_on_the_unit_of_length) {
+  std::vector<std::vector<int>> found;
+  for (const double size : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+    const Mesh mesh = EllipsoidMesh{{1.0 * size, 0.9 * size, 0.8 * size}, 4, 2}.build();
+    const NodeSetRule band{"band", true, {{{}, Interval{-0.1 * size, 0.3 * size}, {}}}, {}};
+    const NodeSetRule core{"core", false, {}, CylinderRegion{2, {0.1 * size, 0.0}, {0.5 * size, 0.4 * size}}};
+    const NodeSetRule plane{"plane", false, {{{}, {}, Interval{0.0, 0.0}}}, {}};
+    const auto on_boundary = boundary_nodes(mesh);
+    for (const auto& rule : {band, core, plane}) found.push_back(select_nodes(mesh, on_boundary, rule));
+  }
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    EXPECT_FALSE(found[n].empty());
+    EXPECT_EQ(found[n], found[n % 3]);
+  }
+}
+
+/// The elliptic cylinder by its definition, along each axis, with the other coordinates in the order of the
+/// axes.
+TEST(NodeSets, cylinder_selects_what_lies_inside) {
+  const Mesh mesh = box({1.0, 1.0, 1.0}, {6, 6, 6});
+  const auto on_boundary = boundary_nodes(mesh);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t first = axis == 0 ? 1 : 0;
+    const std::size_t second = axis == 2 ? 1 : 2;
+    const NodeSetRule rule{"rod", true, {}, CylinderRegion{static_cast<int>(axis), {0.4, 0.7}, {0.31, 0.22}}};
+    const auto inside = [&](const Vector& X) {
+      const double a = (X[first] - 0.4) / 0.31;
+      const double b = (X[second] - 0.7) / 0.22;
+      const bool surface = std::any_of(X.begin(), X.end(), [](double x) { return x == 0.0 || x == 1.0; });
+      return surface && a * a + b * b < 1.0;
+    };
+    EXPECT_EQ(select_nodes(mesh, on_boundary, rule), nodes_where(mesh.points, inside)) << "axis " << axis;
+  }
+}
+
+TEST(MeshHash, sees_points_cells_and_sets_but_not_the_last_bits) {
+  Mesh mesh = box({0.1, 0.2, 0.3}, {2, 2, 2});
+  const NodeSets sets{{"a", {1, 2}}};
+  const std::string hash = mesh_hash(mesh, sets);
+  Mesh nudged = mesh;
+  for (auto& point : nudged.points) point[1] *= 1.0 + 1e-15;
+  EXPECT_EQ(mesh_hash(nudged, sets), hash);
+  nudged.points[4][0] += 1e-5;
+  EXPECT_NE(mesh_hash(nudged, sets), hash);
+  Mesh renumbered = mesh;
+  std::swap(renumbered.cells[0], renumbered.cells[1]);
+  EXPECT_NE(mesh_hash(renumbered, sets), hash);
+  EXPECT_NE(mesh_hash(mesh, {{"a", {1, 3}}}), hash);
+  EXPECT_NE(mesh_hash(mesh, {{"b", {1, 2}}}), hash);
+}
+
+TEST(MeshQuality, names_the_first_ten_inverted_elements) {
+  Mesh mesh = box({12.0, 1.0, 1.0}, {12, 1, 1});
+  for (auto& cell : mesh.cells) {
+    for (std::size_t n = 0; n < 4; ++n) std::swap(cell[n], cell[n + 4]);  // bottom and top exchanged
+  }
+  try {
+    require_positive_jacobians(mesh);
+    FAIL() << "inverted elements were accepted";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("12 of 12"), std::string::npos) << text;
+    EXPECT_NE(text.find("element 9: centre (9.5, 0.5, 0.5), det J = -0.125"), std::string::npos) << text;
+    EXPECT_EQ(text.find("element 10"), std::string::npos) << text;
+  }
+}
+
+/// Lumped masses: an eighth of rho V at each node, nothing lost.
+TEST(Masses, sum_to_density_times_volume) {
+  for (const char* name : {"column", "ellipsoid-touch", "cylinder-stretch"}) {
+    const Scene scene = canonical(name);
+    const Model model(scene, {"tl-none", {}});
+    double sum = 0.0;
+    for (const double mass : model.masses()) {
+      EXPECT_GT(mass, 0.0);
+      sum += mass;
+    }
+    EXPECT_NEAR(sum / (1000.0 * enclosed_volume(scene.mesh)), 1.0, 1e-12) << name;
+  }
+}
+
+}  // namespace
+}  // namespace sandglass::verification

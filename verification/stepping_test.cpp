@@ -1,0 +1,291 @@
+/// Steppers: what they promise about residuals, determinism and failures.
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/dynamic_relaxation.hpp"
+#include "stepping/stable_step.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// A block on its foot whose head is moved by `d`.
+Scene driven_block(const Vector& d, double nu = 0.49) {
+  Case description = plain_case(sample_law<NeoHookean>(nu));
+  const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}};
+  description.displacements = {{"foot", {}}, {"head", d}};
+  return make_scene(description, mesh, sets);
+}
+
+/// Recomputes |free forces| / |reactions| from the forces alone.
+double residual_of(const Model& model, const NodalField& u) {
+  NodalField force(u.size());
+  model.internal_force().evaluate(u, force);
+  double carried = 0.0;
+  for (const auto& c : model.scene().constraints) {
+    double& f = force[index(c.node)][index(c.component)];
+    carried += f * f;
+    f = 0.0;
+  }
+  double unbalanced = 0.0;
+  for (const auto& f : force) unbalanced += f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+  return std::sqrt(unbalanced / carried);
+}
+
+template <class Method>
+class StepperTest : public ::testing::Test {
+ protected:
+  static MethodChoice method() { return {std::string(Method::name), {}}; }
+};
+
+TYPED_TEST_SUITE(StepperTest, MethodTypes, EntryName);
+
+TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) {
+  const Vector d{0.04, 0.0, 0.03};
+  const Scene scene = driven_block(d);
+  const Model model(scene, this->method());
+  Recorder recorder;
+  const Relaxation answer = relax(model, recorder);
+  ASSERT_TRUE(answer.converged);
+  EXPECT_LT(answer.residual, 1e-8);
+  // The residual told is that of the displacements returned, to the roundoff of sums in another order.
+  EXPECT_NEAR(residual_of(model, answer.u), answer.residual, 1e-12);
+  for (const int n : scene.sets.at("head")) EXPECT_EQ(answer.u[index(n)], d);
+  for (const int n : scene.sets.at("foot")) EXPECT_EQ(answer.u[index(n)], Vector{});
+  ASSERT_GE(recorder.frames.size(), 2U);
+  EXPECT_EQ(recorder.frames.front().time, 0.0);  // the initial state comes first
+  EXPECT_EQ(largest_distance(recorder.frames.front().u, NodalField(answer.u.size())), 0.0);
+  EXPECT_EQ(recorder.frames.back().u, answer.u);
+  for (std::size_t n = 1; n < recorder.frames.size(); ++n) {
+    EXPECT_GT(recorder.frames[n].time, recorder.frames[n - 1].time);
+  }
+}
+
+/// The answer does not depend on the path: another ramp and pseudo step end at the same displacements. Modes
+/// without energy have no answer of their own and keep what the path gave them.
+TYPED_TEST(StepperTest, relaxed_answer_does_not_depend_on_the_settings) {
+  if (zero_energy_modes<TypeParam>() > 6) return;
+  Scene scene = driven_block({0.01, 0.0, 0.01});
+  scene.description.relaxation.tolerance = 1e-10;
+  Observer silent;
+  const NodalField once = relax(Model(scene, this->method()), silent).u;
+  scene.description.relaxation.ramp_steps = 700;
+  scene.description.relaxation.step_fraction = 0.6;
+  scene.description.relaxation.check_interval = 17;
+  const NodalField again = relax(Model(scene, this->method()), silent).u;
+  // A residual of 1e-10 allows errors of 1e-10 times the condition of the free block, a few hundred.
+  EXPECT_LT(largest_distance(once, again), 1e-7 * 0.01);
+}
+
+TYPED_TEST(StepperTest, the_same_input_gives_the_same_bits) {
+  Observer silent;
+  const Scene scene = driven_block({0.04, 0.0, 0.03});
+  const NodalField once = relax(Model(scene, this->method()), silent).u;
+  EXPECT_EQ(relax(Model(scene, this->method()), silent).u, once);
+  Scene dynamic = driven_block({0.04, 0.0, 0.03});
+  dynamic.description.quasi_static = false;
+  dynamic.description.dynamics.duration = 0.1;
+  const Motion motion = integrate(Model(dynamic, this->method()), silent);
+  const Motion same = integrate(Model(dynamic, this->method()), silent);
+  EXPECT_EQ(motion.u, same.u);
+  EXPECT_EQ(motion.v, same.v);
+}
+
+TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
+  Scene scene = driven_block({0.0, 0.0, 0.01});
+  scene.description.quasi_static = false;
+  scene.description.dynamics.duration = 0.1;
+  Observer silent;
+  const StableStep stable = stable_step(Model(scene, this->method()), NodalField(scene.mesh.points.size()));
+  scene.description.dynamics.time_step = 1.001 * stable.step;
+  try {
+    integrate(Model(scene, this->method()), silent);
+    FAIL() << "a step above the stable one was accepted";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "dynamics.time_step"));
+    EXPECT_TRUE(contains(error.what(), "element " + std::to_string(stable.element)));
+    EXPECT_TRUE(contains(error.what(), "made-in-a-test.toml"));
+  }
+  scene.description.dynamics.time_step = 0.5 * stable.step;
+  EXPECT_NO_THROW(integrate(Model(scene, this->method()), silent));
+}
+
+/// Compression stiffens: a step that was stable at the start is refused on the way, with step and element.
+TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
+  Scene scene = driven_block({0.0, 0.0, -0.1}, 0.3);
+  scene.description.quasi_static = false;
+  scene.description.dynamics.duration = 2.0;
+  const StableStep stable = stable_step(Model(scene, this->method()), NodalField(scene.mesh.points.size()));
+  scene.description.dynamics.time_step = 0.999 * stable.step;
+  Observer silent;
+  try {
+    integrate(Model(scene, this->method()), silent);
+    FAIL() << "a step that had become unstable was used";
+  } catch (const ComputationError& error) {
+    EXPECT_TRUE(contains(error.what(), "dynamics.time_step"));
+    EXPECT_TRUE(contains(error.what(), "set by element"));
+    EXPECT_TRUE(contains(error.what(), "at step "));
+  }
+  scene.description.dynamics.time_step = 0.0;  // the program's own choice follows the stiffening
+  const Motion motion = integrate(Model(scene, this->method()), silent);
+  EXPECT_LT(motion.smallest_step, 0.9 * stable.step);
+}
+
+/// A head pushed through the foot turns elements inside out. All nodes are driven, so that there is no way
+/// round: no number is returned, and the text helps.
+TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
+  Case description = plain_case(sample_law<NeoHookean>(0.49));
+  const Mesh mesh = box({0.2, 0.2, 0.1}, {2, 2, 1});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.0; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.0, 0.0, -0.15}}};
+  Scene scene = make_scene(description, mesh, sets);
+  Observer silent;
+  const auto expect_helpful = [](const std::string& text) {
+    EXPECT_TRUE(contains(text, "step "));
+    EXPECT_TRUE(contains(text, "element "));
+    EXPECT_TRUE(contains(text, "det F"));
+    EXPECT_TRUE(contains(text, "remedy: "));
+  };
+  try {
+    relax(Model(scene, this->method()), silent);
+    FAIL() << "relaxation returned an inverted body";
+  } catch (const ComputationError& error) {
+    expect_helpful(error.what());
+  }
+  scene.description.quasi_static = false;
+  scene.description.dynamics.duration = 0.5;
+  try {
+    integrate(Model(scene, this->method()), silent);
+    FAIL() << "integration returned an inverted body";
+  } catch (const ComputationError& error) {
+    expect_helpful(error.what());
+  }
+}
+
+TYPED_TEST(StepperTest, an_observer_may_end_the_run) {
+  Scene scene = driven_block({0.04, 0.0, 0.03});
+  Recorder impatient;
+  impatient.last_step = 50;
+  const Relaxation relaxation = relax(Model(scene, this->method()), impatient);
+  EXPECT_TRUE(relaxation.interrupted);
+  EXPECT_FALSE(relaxation.converged);
+  EXPECT_EQ(relaxation.steps, 50);
+  scene.description.quasi_static = false;
+  scene.description.dynamics.duration = 10.0;
+  const Motion motion = integrate(Model(scene, this->method()), impatient);
+  EXPECT_TRUE(motion.interrupted);
+  EXPECT_LT(motion.time, 10.0);
+}
+
+TYPED_TEST(StepperTest, too_few_steps_are_told_and_not_called_rest) {
+  Scene scene = driven_block({0.04, 0.0, 0.03});
+  scene.description.relaxation.max_steps = 120;
+  Observer silent;
+  const Relaxation answer = relax(Model(scene, this->method()), silent);
+  EXPECT_FALSE(answer.converged);
+  EXPECT_FALSE(answer.interrupted);
+  EXPECT_EQ(answer.steps, 120);
+}
+
+// Invariance: the answer belongs to the body, not to its units, place or direction.
+
+/// A bar of distorted elements that is bent; `size` scales lengths, `density` and `modulus` are in the same
+/// units.
+Scene bent_bar(double size, double modulus, double density, const Tensor<double>& turn, double shift) {
+  Mesh mesh = box({1.0, 1.0, 3.0}, {2, 2, 6});
+  const auto foot = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; });
+  const auto head = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 3.0; });
+  RandomGeometry random(23);
+  for (auto& X : mesh.points) {
+    for (auto& x : X) x += random.uniform(-0.06, 0.06);
+    X = linear(size * turn, X);
+    for (auto& x : X) x += shift;
+  }
+  Case description = plain_case(sample_law<NeoHookean>(0.45, modulus), density);
+  description.displacements = {{"foot", {}}, {"head", linear(size * turn, {0.5, 0.2, 0.4})}};
+  description.relaxation.tolerance = 1e-10;
+  description.relaxation.ramp_steps = 500;  // the same path for all
+  return make_scene(description, mesh, {{"foot", foot}, {"head", head}});
+}
+
+constexpr double modulus = 3000.0;
+constexpr double density = 1000.0;
+
+/// What a scene answers: fields of displacement and velocity, and how many steps the motion took.
+struct Answers {
+  std::vector<NodalField> fields;
+  long steps = 0;
+
+  /// The same with every vector mapped.
+  template <class Map>
+  Answers mapped(const Map& map) const {
+    Answers result = *this;
+    for (auto& field : result.fields) std::transform(field.begin(), field.end(), field.begin(), map);
+    return result;
+  }
+};
+
+/// A short motion and, where it is determined, the state of rest: modes without energy keep roundoff there.
+template <class Method>
+Answers answers(Scene scene) {
+  Observer silent;
+  const MethodChoice method{std::string(Method::name), {}};
+  Answers result;
+  if (zero_energy_modes<Method>() == 6) result.fields.push_back(relax(Model(scene, method), silent).u);
+  scene.description.quasi_static = false;
+  scene.description.dynamics.duration = 0.02;
+  const Motion motion = integrate(Model(scene, method), silent);
+  result.fields.push_back(motion.u);
+  result.fields.push_back(motion.v);
+  result.steps = motion.steps;
+  return result;
+}
+
+/// Expects answers equal to within a share of the bar's size, 0.01 m; its velocities are of the order of 1
+/// m/s.
+void expect_equal(const Answers& a, const Answers& b, double tolerance) {
+  EXPECT_EQ(a.steps, b.steps);
+  ASSERT_EQ(a.fields.size(), b.fields.size());
+  for (std::size_t n = 0; n < a.fields.size(); ++n) {
+    EXPECT_LT(largest_distance(a.fields[n], b.fields[n]), tolerance * 0.01);
+  }
+}
+
+/// Metres, kilograms, seconds against millimetres, grams, seconds, where pressure has the same number and
+/// density a millionth. An absolute length anywhere would show.
+TYPED_TEST(StepperTest, units_do_not_matter) {
+  const auto one = identity<double>();
+  const auto in_si = answers<TypeParam>(bent_bar(0.01, modulus, density, one, 0.0));
+  const auto in_mm = answers<TypeParam>(bent_bar(10.0, modulus, 1e-6 * density, one, 0.0));
+  const auto in_m = in_mm.mapped([](const Vector& u) {
+    return Vector{u[0] / 1000, u[1] / 1000, u[2] / 1000};
+  });
+  // Roundoff differs in every number and grows over the path; six digits of room for that.
+  expect_equal(in_si, in_m, 1e-9);
+}
+
+/// A thousand lengths from the origin coordinates have three digits less: eps * 1000 per coordinate and
+/// length, so gradients of u to about 1e-12, and the answer to that times the condition of the bar.
+TYPED_TEST(StepperTest, place_does_not_matter) {
+  const auto one = identity<double>();
+  expect_equal(answers<TypeParam>(bent_bar(0.01, modulus, density, one, 0.0)),
+               answers<TypeParam>(bent_bar(0.01, modulus, density, one, 10.0)), 1e-8);
+}
+
+TYPED_TEST(StepperTest, direction_does_not_matter) {
+  const auto Q = RandomGeometry(29).rotation();
+  const auto here = answers<TypeParam>(bent_bar(0.01, modulus, density, identity<double>(), 0.0))
+                        .mapped([&](const Vector& u) { return linear(Q, u); });
+  expect_equal(here, answers<TypeParam>(bent_bar(0.01, modulus, density, Q, 0.0)), 1e-9);
+}
+
+}  // namespace
+}  // namespace sandglass::verification

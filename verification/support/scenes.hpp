@@ -1,0 +1,98 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "element/methods.hpp"
+#include "mesh/lattice.hpp"
+#include "model/model.hpp"
+#include "stepping/observer.hpp"
+#include "support/sample_law.hpp"
+
+/// Small scenes made in code, without case files.
+namespace sandglass::verification {
+
+inline std::size_t index(int n) {
+  return static_cast<std::size_t>(n);
+}
+
+/// A case without mesh and loads; tests fill in what they are about.
+inline Case plain_case(const AnyLaw& law, double density = 1000.0) {
+  Case scene;
+  scene.file = "made-in-a-test.toml";
+  scene.name = "test";
+  scene.law = law;
+  scene.density = density;
+  return scene;
+}
+
+/// A box from the origin in equal hexahedra.
+inline Mesh box(const std::array<double, 3>& size, const std::array<int, 3>& elements) {
+  return BoxMesh{size, elements}.build();
+}
+
+/// Imposes on every node of `nodes` its own displacement `field(X)`: each node is a set of its own.
+inline void impose_field(const std::vector<int>& nodes, const NodalField& points,
+                         const std::function<Vector(const Vector&)>& field, Case& scene, NodeSets& sets) {
+  for (const int node : nodes) {
+    const std::string name = "node " + std::to_string(node);
+    sets[name] = {node};
+    scene.displacements.push_back({name, field(points[index(node)])});
+  }
+}
+
+/// H X.
+inline Vector linear(const Tensor<double>& H, const Vector& X) {
+  Vector u{};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) u[index(i)] += H(i, j) * X[index(j)];
+  }
+  return u;
+}
+
+/// The nodes where `condition(X)` holds.
+inline std::vector<int> nodes_where(const NodalField& points,
+                                    const std::function<bool(const Vector&)>& condition) {
+  std::vector<int> nodes;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    if (condition(points[n])) nodes.push_back(static_cast<int>(n));
+  }
+  return nodes;
+}
+
+/// The largest distance between two nodal fields.
+inline double largest_distance(const NodalField& a, const NodalField& b) {
+  double largest = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    largest = std::max(largest, std::hypot(a[n][0] - b[n][0], a[n][1] - b[n][1], a[n][2] - b[n][2]));
+  }
+  return largest;
+}
+
+/// Keeps everything that a stepper tells.
+class Recorder final : public Observer {
+ public:
+  struct Frame {
+    double time;
+    NodalField u;
+    NodalField v;
+  };
+
+  void frame(double time, const NodalField& u, const NodalField& v) override {
+    frames.push_back({time, u, v});
+  }
+  void history(const HistoryRow& row) override { rows.push_back(row); }
+  bool proceed(long step, double /*share*/, double /*residual*/) override { return step < last_step; }
+
+  std::vector<Frame> frames;
+  std::vector<HistoryRow> rows;
+  long last_step = std::numeric_limits<long>::max();  ///< ask to end at the first check from here on
+};
+
+/// All that a row of history counts as stored or moving, J.
+inline double total_energy(const HistoryRow& row) {
+  return row.kinetic + row.strain + row.hourglass;
+}
+
+}  // namespace sandglass::verification

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "element/methods.hpp"
+#include "material/laws.hpp"
+#include "mesh/generators.hpp"
+
+/// Turns the solver's lists into typed tests, so that a new method, law or generator is tested without an
+/// edit.
+namespace sandglass::verification {
+
+/// One pair of the product method x law.
+template <class MethodType, class LawType>
+struct MethodWithLaw {
+  using Method = MethodType;
+  using Law = LawType;
+  using Formulation = FormulationOf<Method, Law>;
+  static std::string label() { return std::string(Method::name) + " " + std::string(Law::name); }
+};
+
+namespace detail {
+
+template <class List>
+struct AsTestTypes;
+template <class... Entries>
+struct AsTestTypes<TypeList<Entries...>> {
+  using type = ::testing::Types<Entries...>;
+};
+
+template <class... Lists>
+struct Concatenated;
+template <class... Entries>
+struct Concatenated<TypeList<Entries...>> {
+  using type = TypeList<Entries...>;
+};
+template <class... First, class... Second, class... Rest>
+struct Concatenated<TypeList<First...>, TypeList<Second...>, Rest...> {
+  using type = typename Concatenated<TypeList<First..., Second...>, Rest...>::type;
+};
+
+template <class Method, class LawList>
+struct WithEveryLaw;
+template <class Method, class... EveryLaw>
+struct WithEveryLaw<Method, TypeList<EveryLaw...>> {
+  using type = TypeList<MethodWithLaw<Method, EveryLaw>...>;
+};
+
+template <class MethodList, class LawList>
+struct Product;
+template <class... EveryMethod, class LawList>
+struct Product<TypeList<EveryMethod...>, LawList> {
+  using type = typename Concatenated<typename WithEveryLaw<EveryMethod, LawList>::type...>::type;
+};
+
+}  // namespace detail
+
+using LawTypes = detail::AsTestTypes<Laws>::type;
+using MethodTypes = detail::AsTestTypes<Methods>::type;
+using GeneratorTypes = detail::AsTestTypes<Generators>::type;
+using MethodWithLawTypes = detail::AsTestTypes<detail::Product<Methods, Laws>::type>::type;
+
+/// How many zero eigenvalues an element at rest has. Six are the rigid motions. A method that leaves more by
+/// nature says so with `zero_energy_modes` in its own definition; one point without control leaves the twelve
+/// hourglass modes.
+template <class Method>
+constexpr int zero_energy_modes() {
+  if constexpr (requires { Method::zero_energy_modes; }) {
+    return Method::zero_energy_modes;
+  } else {
+    constexpr bool uncontrolled = std::is_same_v<typename Method::Hourglass, NoHourglassControl>;
+    return Method::integration_points == 1 && uncontrolled ? 18 : 6;
+  }
+}
+
+/// Test names from the entries' own names. '-' has a meaning in test filters, so it becomes '_'.
+struct EntryName {
+  template <class Entry>
+  static std::string GetName(int /*index*/) {
+    std::string label;
+    if constexpr (requires { Entry::label(); }) {
+      label = Entry::label();
+    } else {
+      label = std::string(Entry::name);
+    }
+    std::replace_if(
+        label.begin(), label.end(), [](char c) { return c == '-' || c == ' '; }, '_');
+    return label;
+  }
+};
+
+}  // namespace sandglass::verification

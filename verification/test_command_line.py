@@ -1,0 +1,350 @@
+"""The command line as people and scripts use it: exit codes, messages, files.
+
+Exit codes: 0 ok, 1 a limit is broken, 2 bad usage or input, 3 the computation failed.
+"""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+import xml.etree.ElementTree
+
+import h5py
+import numpy
+import pytest
+from command_line import BINARY, BLOCK, ROOT, methods, sandglass, text_of
+
+CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
+COMMANDS = ["cases", "methods", "mesh", "run", "verify"]
+
+
+# Help, lists, usage.
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_of_every_command(command):
+    outcome = sandglass(command, "--help")
+    assert outcome.returncode == 0
+    assert command in sandglass("--help").stdout
+    assert outcome.stdout and not outcome.stderr
+
+
+def test_help_tells_the_exit_codes():
+    outcome = sandglass("--help")
+    assert outcome.returncode == 0
+    for text in ("0 ok", "1 a limit is broken", "2 bad usage or input", "3 the computation failed"):
+        assert text in outcome.stdout
+
+
+def test_version():
+    outcome = sandglass("--version")
+    assert outcome.returncode == 0
+    assert outcome.stdout.startswith("sandglass ")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["nonsense"],
+        ["run"],
+        ["run", "column", "--nonsense"],
+        ["mesh", "column"],
+        ["verify", "--threads", "-1"],
+        ["cases", "column"],
+    ],
+    ids=lambda arguments: " ".join(arguments) or "nothing",
+)
+def test_bad_usage(arguments):
+    outcome = sandglass(*arguments)
+    assert outcome.returncode == 2
+    assert outcome.stderr
+
+
+def test_cases_lists_every_case_with_its_requirement():
+    outcome = sandglass("cases")
+    assert outcome.returncode == 0
+    lines = outcome.stdout.splitlines()
+    assert sorted(line.split()[0] for line in lines) == CASES
+    assert all(line.endswith(".") for line in lines)
+
+
+def test_cases_in_an_empty_or_missing_folder(tmp_path):
+    environment = dict(os.environ, SANDGLASS_CASES=str(tmp_path / "none"))
+    outcome = sandglass("cases", env=environment)
+    assert outcome.returncode == 2
+    assert "none: cannot list the cases" in outcome.stderr
+
+
+def test_methods_lists_one_line_each():
+    outcome = sandglass("methods")
+    assert outcome.returncode == 0
+    assert {"tl-none", "tl-perturbation", "tl-full", "tl-mean-dilatation"} <= set(methods())
+    assert all(len(line.split()) > 3 for line in outcome.stdout.splitlines())
+
+
+def test_describe_names_keys_units_ranges_and_defaults():
+    outcome = sandglass("run", "--describe")
+    assert outcome.returncode == 0
+    for text in (
+        "material.poisson_ratio",
+        "(-1, 0.5)",
+        "[Pa]",
+        "required",
+        "dynamics.damping",
+        "default 1e-08",
+    ):
+        assert text in outcome.stdout
+
+
+# Wrong input.
+
+
+def test_unknown_case_suggests_the_nearest(tmp_path):
+    for command in (["run"], ["verify"], ["mesh", "-o", tmp_path / "m.h5"]):
+        outcome = sandglass(command[0], "colum", *command[1:])
+        assert outcome.returncode == 2
+        assert "did you mean 'column'?" in outcome.stderr
+        assert "ellipsoid-touch" in outcome.stderr
+
+
+def test_unknown_method_lists_the_known(block):
+    outcome = sandglass("run", block, "--method", "tl-pertubation")
+    assert outcome.returncode == 2
+    assert "did you mean 'tl-perturbation'?" in outcome.stderr
+    for method in methods():
+        assert method in outcome.stderr
+
+
+@pytest.mark.parametrize("kappa", ["-0.1", "nan", "much", "", "0.1x"])
+def test_wrong_kappa(block, kappa):
+    outcome = sandglass("run", block, f"--kappa={kappa}")
+    assert outcome.returncode == 2
+    assert "kappa" in outcome.stderr
+
+
+def test_kappa_for_a_method_without(block):
+    outcome = sandglass("run", block, "--method", "tl-full", "--kappa", "0.1")
+    assert outcome.returncode == 2
+    assert "tl-full" in outcome.stderr and "kappa" in outcome.stderr
+
+
+def test_wrong_key_is_told_with_file_and_line(block):
+    block.write_text(BLOCK.replace("poisson_ratio = 0.49", "poisson_ratio = 0.5"))
+    outcome = sandglass("run", block)
+    assert outcome.returncode == 2
+    assert f"{block}:15: material.poisson_ratio = 0.5 must be in (-1, 0.5)" in outcome.stderr
+
+
+@pytest.mark.parametrize("command", ["run", "mesh"])
+def test_unwritable_output(block, command):
+    outcome = sandglass(command, block, "-o", block.parent / "none" / "result.h5")
+    assert outcome.returncode == 2
+    assert "none/result.h5: cannot be written" in outcome.stderr
+    assert not (block.parent / "none").exists()
+
+
+def test_unwritable_json(block):
+    outcome = sandglass("verify", block, "--json", block.parent / "none" / "verdicts.json")
+    assert outcome.returncode == 2
+    assert "verdicts.json: cannot be written" in outcome.stderr
+
+
+# Runs.
+
+
+def test_run_writes_what_it_says(block):
+    result = block.parent / "result.h5"
+    outcome = sandglass("run", block, "-o", result)
+    assert outcome.returncode == 0
+    assert "at rest" in outcome.stdout and f"wrote {result}" in outcome.stdout
+    assert sorted(file.name for file in block.parent.iterdir()) == [
+        "block.toml",
+        "result.h5",
+        "result.xdmf",
+    ]
+    with h5py.File(result) as file:
+        assert file["mesh/points"].shape == (45, 3)
+        assert file["mesh/cells"].shape == (16, 8)
+        assert sorted(file["mesh/sets"]) == ["foot", "head"]
+        for name in (
+            "case_hash",
+            "mesh_hash",
+            "revision",
+            "build_flags",
+            "compiler",
+            "method",
+            "kappa",
+            "status",
+        ):
+            assert file.attrs[name]
+        assert text_of(file.attrs["method"]) == "tl-perturbation"
+        assert text_of(file.attrs["status"]) == "complete"
+        frames = sorted(file["frames"])
+        times = [file["frames"][frame].attrs["time"] for frame in frames]
+        assert times[0] == 0.0 and times == sorted(set(times))
+        assert not file["frames/0000/displacement"][:].any()
+        last = file["frames"][frames[-1]]["displacement"][:]
+        head = file["mesh/sets/head"][:]
+        assert numpy.array_equal(last[head], numpy.tile([0.02, 0.0, 0.01], (len(head), 1)))
+        assert file["history/residual"][-1] < 1e-8
+        assert len({column.shape for column in file["history"].values()}) == 1
+
+
+@pytest.mark.parametrize("method", methods())
+def test_every_method_runs(block, method):
+    assert sandglass("run", block, "--method", method).returncode == 0
+
+
+def test_kappa_given_is_kappa_used(block):
+    energies = []
+    for kappa in ("0", "0.1"):
+        result = block.parent / "result.h5"
+        assert sandglass("run", block, "--kappa", kappa, "-o", result).returncode == 0
+        with h5py.File(result) as file:
+            assert text_of(file.attrs["kappa"]) == kappa
+            energies.append(file["history/hourglass_energy"][-1])
+    assert energies[0] == 0.0 and energies[1] > 0.0
+
+
+def test_xdmf_points_into_the_result(block):
+    result = block.parent / "result.h5"
+    assert sandglass("run", block, "-o", result).returncode == 0
+    root = xml.etree.ElementTree.parse(block.parent / "result.xdmf").getroot()
+    grids = root.findall("./Domain/Grid/Grid")
+    with h5py.File(result) as file:
+        assert len(grids) == len(file["frames"])
+        for frame, grid in zip(sorted(file["frames"]), grids):
+            time_value = float(grid.find("Time").attrib["Value"])
+            assert time_value == pytest.approx(file["frames"][frame].attrs["time"], rel=1e-15)
+            assert {a.attrib["Name"].split(" [")[0] for a in grid.findall("Attribute")} == {
+                "displacement",
+                "velocity",
+                "jacobian",
+                "hourglass energy density",
+            }
+            items = list(grid.iter("DataItem"))
+            assert len(items) == 6  # cells, points, four fields
+            for item in items:
+                name, path = item.text.split(":")
+                assert name == "result.h5"
+                shape = tuple(int(n) for n in item.attrib["Dimensions"].split())
+                assert file[path].shape == shape
+                assert file[path].dtype.itemsize == int(item.attrib["Precision"])
+                assert (file[path].dtype.kind == "f") == (item.attrib["NumberType"] == "Float")
+            assert all(f"/{frame}/" in a.find("DataItem").text for a in grid.findall("Attribute"))
+            topology = grid.find("Topology").attrib
+            assert (
+                topology["TopologyType"] == "Hexahedron" and int(topology["NumberOfElements"]) == 16
+            )
+
+
+def test_mesh_writes_mesh_and_sets(tmp_path):
+    outcome = sandglass("mesh", "ellipsoid-touch", "-o", tmp_path / "mesh.h5")
+    assert outcome.returncode == 0
+    assert "2535 nodes, 2200 elements" in outcome.stdout
+    assert [file.name for file in tmp_path.iterdir()] == ["mesh.h5"]
+    with h5py.File(tmp_path / "mesh.h5") as file:
+        assert file["mesh/points"].shape == (2535, 3)
+        assert file["mesh/cells"].shape == (2200, 8)
+        assert len(file["mesh/sets/support"]) == 141
+        assert len(file["mesh/sets/indenter"]) == 65
+
+
+def test_dynamic_case(block):
+    text = (
+        BLOCK.replace('"quasi-static"', '"dynamic"') + "[dynamics]\nduration = 0.05\nframes = 5\n"
+    )
+    block.write_text(text)
+    result = block.parent / "result.h5"
+    assert sandglass("run", block, "-o", result).returncode == 0
+    with h5py.File(result) as file:
+        times = [frame.attrs["time"] for frame in file["frames"].values()]
+        assert len(times) == 6 and times[0] == 0.0 and times[-1] == pytest.approx(0.05, rel=1e-9)
+        assert file["history/kinetic_energy"][:].max() > 0.0
+    outcome = sandglass("verify", block)
+    assert outcome.returncode == 2 and "dynamic" in outcome.stderr
+
+
+# Failures of the computation.
+
+
+def test_inversion_ends_with_3_and_leaves_nothing(block):
+    text = BLOCK.replace("[2, 2, 4]", "[2, 2, 1]").replace("[0.02, 0.0, 0.01]", "[0.0, 0.0, -0.3]")
+    block.write_text(text)
+    outcome = sandglass("run", block, "-o", block.parent / "result.h5")
+    assert outcome.returncode == 3
+    assert "det F" in outcome.stderr and "remedy" in outcome.stderr
+    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
+
+
+def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
+    block.write_text(BLOCK + "[relaxation]\nmax_steps = 150\n")
+    result = block.parent / "result.h5"
+    outcome = sandglass("run", block, "-o", result)
+    assert outcome.returncode == 3
+    assert "not at rest after 150 steps" in outcome.stderr
+    with h5py.File(result) as file:
+        assert text_of(file.attrs["status"]) == "not at rest after 150 steps"
+
+
+def catches_interrupts(process):
+    """Whether a process has taken charge of Ctrl-C, as the kernel tells it."""
+    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("SigCgt:"):
+            return bool(int(line.split()[1], 16) >> (signal.SIGINT - 1) & 1)
+    return False
+
+
+@pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="needs Linux's /proc")
+def test_interrupt_keeps_what_was_computed(block):
+    block.write_text(BLOCK + "[relaxation]\ntolerance = 1e-300\nmax_steps = 2000000000\n")
+    result = block.parent / "result.h5"
+    with subprocess.Popen(
+        [BINARY, "run", str(block), "-o", str(result)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        while process.poll() is None and not catches_interrupts(process):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 3
+    assert "interrupted" in errors and str(result) in errors
+    assert sorted(file.name for file in block.parent.iterdir()) == [
+        "block.toml",
+        "result.h5",
+        "result.xdmf",
+    ]
+    with h5py.File(result) as file:
+        assert text_of(file.attrs["status"]).startswith("interrupted at step ")
+        assert file["frames/0000/displacement"].shape == (45, 3)
+        assert len(file["history/time"]) > 0
+
+
+def test_mesh_file_as_input(block):
+    folder = block.parent
+    assert sandglass("mesh", block, "-o", folder / "mesh.h5").returncode == 0
+    generated = 'generator = "box"\nsize = [0.1, 0.1, 0.2]\nelements = [2, 2, 4]'
+    from_file = folder / "from-file.toml"
+    from_file.write_text(BLOCK.replace(generated, 'file = "mesh.h5"'))
+    for case, result in ((block, "a.h5"), (from_file, "b.h5")):
+        assert sandglass("run", case, "-o", folder / result).returncode == 0
+    with h5py.File(folder / "a.h5") as a, h5py.File(folder / "b.h5") as b:
+        last = sorted(a["frames"])[-1]
+        assert numpy.array_equal(
+            a[f"frames/{last}/displacement"][:], b[f"frames/{last}/displacement"][:]
+        )
+
+
+def test_cases_folder_is_found_from_anywhere(tmp_path):
+    shutil.copy(ROOT / "cases" / "column.toml", tmp_path / "mine.toml")
+    environment = dict(os.environ, SANDGLASS_CASES=str(tmp_path))
+    assert "column" in sandglass("cases", env=environment).stdout
+    assert (
+        sandglass("mesh", "mine", "-o", tmp_path / "m.h5", env=environment, cwd=tmp_path).returncode
+        == 0
+    )

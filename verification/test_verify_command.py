@@ -1,0 +1,78 @@
+"""`sandglass verify`: limits, references that belong to their case, every figure in JSON."""
+
+import json
+
+import pytest
+from command_line import BLOCK, LIMIT, methods, sandglass, write_golden
+
+
+def test_verify_holds_and_writes_every_figure(block):
+    write_golden(block)
+    block.write_text(BLOCK + LIMIT.format(method="tl-mean-dilatation", below=1e-6))
+    verdicts = block.parent / "verdicts.json"
+    outcome = sandglass("verify", block, "--json", verdicts, "--results", block.parent / "states")
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    document = json.loads(verdicts.read_text())
+    for key in ("revision", "build_flags", "processor"):
+        assert document[key]
+    records = document["records"]
+    assert [r["method"] for r in records if r["kappa_is_auto"] or r["kappa"] is None] == methods()
+    for record in records:
+        assert record["case"] == "block" and record["precision"] == "double"
+        assert record["status"] == "ok"
+        assert record["truth"] is None
+        for figure in ("max_relative_error", "rms_relative_error"):
+            assert record["golden"][figure] >= 0.0
+        assert record["golden"]["profile_relative_error"] is None
+        assert (
+            record["steps"] > 0 and record["residual"] < 1e-8 and record["ns_per_element_step"] > 0
+        )
+    assert [r["kappa"] for r in records if r["kappa"] and not r["kappa_is_auto"]] == [0.01]
+    assert [limit["holds"] for limit in document["limits"]] == [True]
+    assert len(list((block.parent / "states").glob("*.h5"))) == len(records)
+
+
+def test_verify_gives_the_same_figures_for_any_number_of_threads(block):
+    write_golden(block)
+    figures = []
+    for threads in (1, 3):
+        verdicts = block.parent / "verdicts.json"
+        assert sandglass("verify", block, "-j", threads, "--json", verdicts).returncode == 0
+        records = json.loads(verdicts.read_text())["records"]
+        figures.append(
+            [(r["method"], r["kappa"], r["steps"], r["golden"], r["residual"]) for r in records]
+        )
+    assert figures[0] == figures[1]
+
+
+def test_broken_limit_ends_with_1(block):
+    write_golden(block)
+    block.write_text(BLOCK + LIMIT.format(method="tl-none", below=1e-30))
+    outcome = sandglass("verify", block)
+    assert outcome.returncode == 1
+    assert "BROKEN block tl-none" in outcome.stdout
+
+
+def test_limit_without_a_golden_is_broken(block):
+    block.write_text(BLOCK + LIMIT.format(method="tl-none", below=1.0))
+    outcome = sandglass("verify", block)
+    assert outcome.returncode == 1
+    assert "no figure" in outcome.stdout
+
+
+@pytest.mark.parametrize("attribute", ["mesh_hash", "case_hash"])
+def test_golden_of_another_case_or_mesh_ends_with_2(block, attribute):
+    write_golden(block, **{attribute: "0123456789abcdef"})
+    outcome = sandglass("verify", block)
+    assert outcome.returncode == 2
+    assert f"{attribute} is 0123456789abcdef" in outcome.stderr
+    assert "reference/regenerate block" in outcome.stderr
+
+
+def test_truncated_golden_ends_with_2(block):
+    write_golden(block)
+    golden = block.parent / "golden.h5"
+    golden.write_bytes(golden.read_bytes()[:1000])
+    outcome = sandglass("verify", block)
+    assert outcome.returncode == 2
+    assert "golden.h5: is not a complete HDF5 file" in outcome.stderr
