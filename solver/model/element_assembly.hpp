@@ -19,7 +19,8 @@ class ElementAssembly final : public InternalForce {
     }
   }
 
-  // Without `flatten` the compiler leaves small matrix functions out of line, which costs a third of the time.
+  // Without `flatten` the compiler leaves small matrix functions out of line, which costs a third of the
+  // time.
   [[gnu::flatten]] void evaluate(const NodalField& u, NodalField& force) const override {
     const Law law = law_;  // a copy that no store can alias: its moduli are computed once
     std::fill(force.begin(), force.end(), Vector{});

@@ -93,7 +93,8 @@ class CentralDifference {
     }
   }
 
-  /// Velocities at the time of the displacements: the mean of the half steps before and after, damping included.
+  /// Velocities at the time of the displacements: the mean of the half steps before and after, damping
+  /// included.
   NodalField velocities() const {
     NodalField v = state_.v_half;
     const double half = 0.5 * state_.step_size;
