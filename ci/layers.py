@@ -1,6 +1,7 @@
 """Checks that includes between the solver's layers point one way only.
 
-A layer may include itself and the layers before it. Exit code 1 names every include that points the other way.
+A layer may include itself and the layers before it. Exit code 1 names every include that points the
+other way.
 """
 
 import pathlib
@@ -22,7 +23,7 @@ LAYERS = [
 
 
 def wrong_includes(solver: pathlib.Path) -> list[str]:
-    """Lines 'file:line: layer includes layer' for every include that points from a layer to a later one."""
+    """Lines 'file:line: layer may not include layer' for every include that points to the right."""
     found = []
     for file in sorted(solver.rglob("*.[ch]pp")):
         layer = file.relative_to(solver).parts[0]

@@ -33,21 +33,22 @@ class Outcome:
     last_increment: float
 
 
-def solve(problem, load_steps, tolerance):
-    """Bring a MixedProblem from rest to its prescribed displacement, in place.
+def solve(problem, load_steps, tolerance, guessed=False):
+    """Bring a MixedProblem to its prescribed displacement, in place.
 
-    problem: MixedProblem at rest. load_steps: number of equal load steps; a step that fails is
+    problem: MixedProblem at rest or, if guessed, near the answer: when Newton's method fails there
+    it starts again at rest. load_steps: number of equal load steps from rest; a step that fails is
     halved. tolerance: the last step ends when a Newton correction is below tolerance times the
     largest imposed component. Newton's method converges quadratically, so the solution is then
     exact to round-off. Returns an Outcome. Raises DivergenceError when halving does not help.
     """
     scale = np.abs(problem.values).max()
     state = (problem.displacement.x.array, problem.pressure.x.array)
-    load, step, steps, iterations = 0.0, 1 / load_steps, 0, 0
+    balanced = [np.zeros_like(array) for array in state]  # the last equilibrium: at rest
+    load, steps, iterations = 0.0, 0, 0
+    step = 1.0 if guessed else 1 / load_steps
     while load < 1:
-        step = min(step, 1 - load)
         target = 1.0 if load + step > 1 - 1e-9 else load + step
-        saved = [array.copy() for array in state]
         started = time.perf_counter()
         converged, count, residual, increment = _equilibrate(
             problem, target, scale, tolerance if target == 1 else STEP_TOLERANCE
@@ -56,11 +57,12 @@ def solve(problem, load_steps, tolerance):
         _report(target, converged, count, residual, increment, time.perf_counter() - started)
         if converged:
             load, steps = target, steps + 1
+            balanced = [array.copy() for array in state]
             step = min(2 * step, 1 / load_steps)
             continue
-        for array, value in zip(state, saved):
+        for array, value in zip(state, balanced):
             array[:] = value
-        step /= 2
+        step = min((target - load) / 2, 1 / load_steps)
         if step < SMALLEST_STEP:
             raise DivergenceError(
                 f"no equilibrium beyond {load:.4f} of the load: Newton's method fails even with "
@@ -72,20 +74,23 @@ def solve(problem, load_steps, tolerance):
 def _equilibrate(problem, load, scale, tolerance):
     """Newton's method at one load: (converged, iterations, residual, increment), both relative."""
     u = problem.displacement.x.array
+    fixed = load * problem.values
     increment = np.inf
     for count in range(1, MAX_ITERATIONS + 1):
         tangent, residual, recover = problem.linearize()
+        if not np.isfinite(residual).all():  # the guess inverts elements
+            return False, count, np.nan, increment
         du = np.zeros_like(u)
         # The first correction moves the boundary and the interior together: moving
         # the boundary alone would crush the elements next to it.
-        du[problem.fixed] = load * problem.values - u[problem.fixed]
+        du[problem.fixed] = fixed - u[problem.fixed]
         right = -(residual + tangent @ du)[problem.free]
         free_tangent = tangent[problem.free][:, problem.free]
         del tangent  # the factors need the memory
         du[problem.free] = _direct_solve(free_tangent, right)
         dp = recover(du)
         increment = np.abs(du).max() / scale
-        fraction = _advance(problem, du, dp)
+        fraction = _advance(problem, du, dp, fixed)
         if not fraction or increment > LARGEST_CORRECTION:
             return False, count, np.nan, increment
         if increment < tolerance and fraction == 1:
@@ -96,11 +101,12 @@ def _equilibrate(problem, load, scale, tolerance):
     return False, count, np.nan, increment
 
 
-def _advance(problem, du, dp):
+def _advance(problem, du, dp, fixed):
     """Add the largest of du, du/2, du/4, ... that inverts no element, and as much of dp.
 
-    An inverted element has no energy (J^(-2/3) is not a number). Returns the fraction, or 0 when
-    even SMALLEST_FRACTION of the correction inverts elements.
+    fixed: values of the prescribed dofs after the whole of du. An inverted element has no energy
+    (J^(-2/3) is not a number). Returns the fraction, or 0 when even SMALLEST_FRACTION of the
+    correction inverts elements.
     """
     u, p = problem.displacement.x.array, problem.pressure.x.array
     old_u, old_p = u.copy(), p.copy()
@@ -109,6 +115,8 @@ def _advance(problem, du, dp):
         u[:], p[:] = old_u + fraction * du, old_p + fraction * dp
         forces, _ = problem.mixed_residual()
         if np.isfinite(forces).all():
+            if fraction == 1:
+                u[problem.fixed] = fixed  # exactly, not old_u + (fixed - old_u)
             return fraction
         fraction /= 2
     return 0.0

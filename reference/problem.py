@@ -78,6 +78,27 @@ class MixedProblem:
         self.fixed, self.values = prescribed_dofs(space, cell_nodes, mesh.conditions)
         self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
 
+    def start_from(self, coarse):
+        """Take over displacement and pressure of a problem on the mesh before refine().
+
+        coarse: MixedProblem with the same elements. The finer spaces contain the coarser ones, so
+        nothing is lost.
+        """
+        domain, coarse_domain = (
+            problem.displacement.function_space.mesh for problem in (self, coarse)
+        )
+        number = np.argsort(coarse_domain.topology.original_cell_index)
+        parents = number[np.asarray(domain.topology.original_cell_index) // 8].astype(np.int32)
+
+        def take_over(finer, coarser):
+            def values(x):  # (3, points of all cells in turn)
+                return coarser.eval(x.T, np.repeat(parents, x.shape[1] // len(parents))).T
+
+            finer.interpolate(values)
+
+        take_over(self.displacement, coarse.displacement)
+        take_over(self.pressure, coarse.pressure)
+
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh, in its numbering."""
         return self.displacement.x.array.reshape(-1, 3)[self._vertex_block]

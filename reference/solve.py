@@ -30,22 +30,28 @@ BOUNDARY_RULE = "trace of Q1: every vertex, edge and face whose vertices are all
 
 
 def solve_case(kind, case, mesh, refinements, load_steps):
-    """Solve a case on its mesh split `refinements` times.
+    """Solve a case on its mesh and on that mesh split once, twice, ... `refinements` times.
 
-    kind: "golden" or "truth". case: Case. mesh: HexMesh. Returns (displacement (n, 3) in m at the
-    nodes of the mesh, newton.Outcome, axes of the mirror planes used). Raises DivergenceError.
+    kind: "golden" or "truth". case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh.
+    Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
+    the last mesh; axes of the mirror planes used, as text). Raises DivergenceError.
     """
     # The golden is the oracle of every other program: it takes no short cut.
     part, halves = halve(mesh) if kind == "truth" else (mesh, [])
     n_nodes = len(part.points)
-    for _ in range(refinements):
-        part = refine(part)
-    problem = MixedProblem(part, PAIRS[kind], case.law, case.material)
-    outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE)
-    displacement = problem.nodal_displacement()[:n_nodes]
-    for half in reversed(halves):
-        displacement = half.expand(displacement)
-    return displacement, outcome, "".join("xyz"[half.axis] for half in halves)
+    displacements, coarse = [], None
+    for level in range(refinements + 1):
+        part = refine(part) if level else part
+        problem = MixedProblem(part, PAIRS[kind], case.law, case.material)
+        if coarse:
+            problem.start_from(coarse)
+        outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE, guessed=bool(coarse))
+        whole = problem.nodal_displacement()[:n_nodes]
+        for half in reversed(halves):
+            whole = half.expand(whole)
+        displacements.append(whole)
+        coarse = problem
+    return displacements, outcome, "".join("xyz"[half.axis] for half in halves)
 
 
 def run(arguments):
@@ -54,21 +60,20 @@ def run(arguments):
     kind, refinements = arguments.kind, arguments.refine
     case = read_case(arguments.case)
     mesh, file = load_case_mesh(case, arguments.mesh)
-    load_steps = arguments.load_steps or LOAD_STEPS[kind]
     require_writable(arguments.output)
+    displacements, outcome, mirrors = solve_case(
+        kind, case, mesh, refinements, arguments.load_steps or LOAD_STEPS[kind]
+    )
     largest = mesh.largest_imposed()
     errors, note = (math.nan, math.nan), "not estimated"
     if refinements:
-        coarse, _, _ = solve_case(kind, case, mesh, refinements - 1, load_steps)
-    displacement, outcome, mirrors = solve_case(kind, case, mesh, refinements, load_steps)
-    if refinements:
-        errors = relative_errors(coarse, displacement, largest)
+        errors = relative_errors(displacements[-2], displacements[-1], largest)
         note = f"difference to the same element on the mesh split {refinements - 1} times"
     pair = PAIRS[kind]
     write_result(
         arguments.output,
         mesh.points,
-        displacement,
+        displacements[-1],
         {
             "case": case.name,
             "case_hash": file.case_hash,

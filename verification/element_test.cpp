@@ -117,9 +117,7 @@ TEST(Hexahedron, hourglass_shape_vectors_are_orthogonal_to_linear_fields) {
       for (int I = 0; I < 8; ++I) sum += gamma(I, a);
       EXPECT_NEAR(sum, 0.0, 64 * eps * scale);
     }
-    // gamma is not merely small: it measures each hourglass mode of the parent cube as Gamma does, for Gamma
-    // is orthogonal to whatever linear part was taken out only in the parent, so Gamma^T gamma keeps full
-    // rank.
+    // Zero would be orthogonal too; gamma has the size of the base vectors.
     EXPECT_GT(largest_entry(gamma), 0.5);
   }
 }
@@ -175,7 +173,7 @@ TEST(PerturbationHourglassControl, auto_bends_a_cube_with_its_exact_energy) {
           NodalVectors<double> u;
           for (int I = 0; I < 8; ++I) u(I, i) = q * hourglass_base_vectors()(I, mode);
           const double energy = PerturbationHourglassControl::energy(u, Tensor<double>{}, element);
-          const double exact = 2.0 / 3.0 * sample_young_modulus * a * q * q;
+          const double exact = 2.0 / 3.0 * young_modulus_of(law) * a * q * q;
           EXPECT_NEAR(energy / exact, 1.0, 1e-12) << "nu " << nu;  // 1 - 2 nu amplifies roundoff
         }
       }
@@ -187,12 +185,10 @@ TEST(PerturbationHourglassControl, auto_bends_a_cube_with_its_exact_energy) {
 TEST(PerturbationHourglassControl, auto_kappa_has_the_tabulated_values) {
   constexpr std::array<double, 4> tabulated{0.0926, 0.0293, 0.0065, 0.00066};
   constexpr std::array<double, 4> digit{5e-5, 5e-5, 5e-5, 5e-6};
-  for_each_type(Laws{}, [&]<class Law>() {
-    for (std::size_t n = 0; n < tabulated.size(); ++n) {
-      const Law law = sample_law<Law>(poisson_ratios[n]);
-      EXPECT_NEAR(PerturbationHourglassControl::auto_kappa(law), tabulated[n], digit[n]);
-    }
-  });
+  for (std::size_t n = 0; n < tabulated.size(); ++n) {
+    const auto law = sample_law<NeoHookean>(poisson_ratios[n]);
+    EXPECT_NEAR(PerturbationHourglassControl::auto_kappa(law), tabulated[n], digit[n]);
+  }
 }
 
 }  // namespace

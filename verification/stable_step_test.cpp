@@ -95,7 +95,9 @@ TYPED_TEST(StableStepTest, step_of_a_cube) {
     const double mu = law.shear_modulus();
     const double number = stable_step(model, NodalField(8)).step * c / h;
     const double one_point = std::sqrt((lambda + 2 * mu) / (3 * lambda + 2 * mu));
-    EXPECT_NEAR(one_point, tabulated[n], 5e-4);
+    if (std::is_same_v<typename TypeParam::Law, NeoHookean>) {
+      EXPECT_NEAR(one_point, tabulated[n], 5e-4);
+    }
     if (std::is_same_v<typename TypeParam::Method, TlNone>) {
       EXPECT_NEAR(number, one_point, 1e-12);
     }

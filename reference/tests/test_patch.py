@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+import ufl
+from dolfinx import fem
 
 from blocks import MATERIAL, affine, affine_patch, distorted_block, pressed_block
 from hexahedra import Condition, HexMesh, refine
 from newton import solve
 from problem import GOLDEN, TRUTH, MixedProblem
+from symmetry import halve
 
 GRADIENT = [[0.2, 0.1, -0.1], [0.05, -0.1, 0.15], [-0.1, 0.1, 0.05]]
 PAIRS = pytest.mark.parametrize("pair", [GOLDEN, TRUTH], ids=lambda pair: pair.name)
@@ -91,3 +94,26 @@ def test_load_steps_do_not_matter():
         assert outcome.load_steps == load_steps  # shortened corrections, no halved step
         answers.append(problem.nodal_displacement())
     assert np.abs(answers[0] - answers[1]).max() < EXACT
+
+
+def test_refined_solution_started_from_the_coarse_one():
+    mesh = halve(pressed_block((0.0, 0.0, -0.2)))[0]
+    coarse = MixedProblem(mesh, TRUTH, LAW, MATERIAL)
+    solve(coarse, 2, TOLERANCE)
+    started = MixedProblem(refine(mesh), TRUTH, LAW, MATERIAL)
+    started.start_from(coarse)
+    # The fine space contains the coarse solution. dolfinx finds the points by Newton's method.
+    n_nodes = len(mesh.points)
+    there = started.nodal_displacement()[:n_nodes] - coarse.nodal_displacement()
+    assert np.abs(there).max() < 1e-8
+    assert abs(_square_of_pressure(started) / _square_of_pressure(coarse) - 1) < 1e-8
+    solve(started, 2, TOLERANCE, guessed=True)
+    from_rest = MixedProblem(refine(mesh), TRUTH, LAW, MATERIAL)
+    solve(from_rest, 2, TOLERANCE)
+    difference = started.nodal_displacement() - from_rest.nodal_displacement()
+    assert np.abs(difference).max() < EXACT
+
+
+def _square_of_pressure(problem):
+    """Integral of p^2 over the body, Pa^2 m^3."""
+    return fem.assemble_scalar(fem.form(problem.pressure**2 * ufl.dx))

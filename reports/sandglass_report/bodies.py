@@ -1,6 +1,7 @@
 """Pictures of bodies: the paper's figures 1 and 3, and a small one of every case."""
 
 import numpy as np
+from matplotlib.colors import to_rgb
 
 from sandglass_report import paper, style
 from sandglass_report.plates import Panel, Plate
@@ -113,5 +114,4 @@ def _pale(colour):
     """A body's form of a line's colour: light enough for shading to show."""
     if colour == BODY:
         return colour
-    rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
-    return tuple(1 - 0.62 * (1 - rgb))
+    return tuple(1 - 0.62 * (1 - np.array(to_rgb(colour))))

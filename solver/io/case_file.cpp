@@ -138,6 +138,14 @@ void read_header(TableReader table, Case& scene) {
   table.finish();
 }
 
+MeshWithSets read_mesh_of(const Case& scene, const MeshFile& file) {
+  try {
+    return read_mesh_file(file.path);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: mesh.file: {}", scene.file.string(), error.what()));
+  }
+}
+
 toml::table parse(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
@@ -226,7 +234,7 @@ Case read_case_file(const std::filesystem::path& path) {
 Scene read_scene(const std::filesystem::path& path) {
   Case scene = read_case_file(path);
   if (const auto* file = std::get_if<MeshFile>(&scene.mesh)) {
-    MeshWithSets read = read_mesh_file(file->path);
+    MeshWithSets read = read_mesh_of(scene, *file);
     return make_scene(std::move(scene), std::move(read.mesh), std::move(read.sets));
   }
   Mesh mesh = generate_mesh(std::get<AnyGenerator>(scene.mesh));

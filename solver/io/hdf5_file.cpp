@@ -193,13 +193,14 @@ FileArray<std::int64_t> Hdf5File::read_integers(const std::string& name) const {
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, const std::string& value) {
   const Identifier type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), std::max<std::size_t>(value.size(), 1));
+  H5Tset_size(type.get(), H5T_VARIABLE);  // h5py reads this kind as a text, the fixed kind as bytes
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   const Identifier space(H5Screate(H5S_SCALAR), H5Sclose);
   const Identifier attribute(H5Acreate_by_name(handle_->file, object.c_str(), name.c_str(), type.get(),
                                                space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                              H5Aclose);
-  handle_->require(attribute.valid() && H5Awrite(attribute.get(), type.get(), value.c_str()) >= 0,
+  const char* text = value.c_str();
+  handle_->require(attribute.valid() && H5Awrite(attribute.get(), type.get(), &text) >= 0,
                    fmt::format("cannot write attribute '{}'", name));
 }
 

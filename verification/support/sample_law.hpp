@@ -33,6 +33,14 @@ Law sample_law(double poisson_ratio, double young_modulus = sample_young_modulus
   return law;
 }
 
+/// Young's modulus at rest (Pa) of any law.
+template <class Law>
+double young_modulus_of(const Law& law) {
+  const double mu = law.shear_modulus();
+  const double K = law.bulk_modulus();
+  return 9.0 * K * mu / (3.0 * K + mu);
+}
+
 /// lambda + 2 mu at rest, Pa.
 template <class Law>
 double p_wave_modulus(const Law& law) {
