@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+
+#include "element/hourglass_none.hpp"
 #include "element/one_point.hpp"
 
 namespace sandglass {
@@ -11,119 +14,6 @@ T volume_average(const std::array<T, 8>& values, const Element& element) {
   for (std::size_t q = 1; q < 8; ++q) sum = sum + element.weight[q] * values[q];
   return sum / element.V;
 }
-
-/// The hexahedron with 2x2x2 Gauss points. Pressure is a policy: `PointPressure` gives the displacement
-/// element, which locks as nu -> 1/2; `MeanPressure` the mean-dilatation element, the explicit twin of the
-/// mixed Q1-P0 element.
-template <class Pressure>
-struct EightPoint {
-  template <class T>
-  struct Element {
-    std::array<NodalVectors<T>, 8> gradient;  ///< dN_I/dX_i at the Gauss points, 1/m
-    std::array<T, 8> weight;                  ///< det(dX/dxi) at the Gauss points, m^3
-    NodalVectors<T> h;                        ///< mean shape gradients, 1/m
-    T V;                                      ///< reference volume, m^3
-  };
-
-  static Element<double> precompute(const NodalVectors<double>& X) {
-    Element<double> element{};
-    const auto points = gauss_points();
-    for (std::size_t q = 0; q < 8; ++q) {
-      const PointGradient point = point_gradient(X, points[q]);
-      element.gradient[q] = point.gradient;
-      element.weight[q] = point.measure;
-    }
-    const MeanGradient mean = sandglass::mean_gradient(X);
-    element.h = mean.h;
-    element.V = mean.volume;
-    return element;
-  }
-
-  template <class T>
-  static Tensor<T> mean_gradient(const NodalVectors<T>& u, const Element<T>& element) {
-    return transpose(u) * element.h;
-  }
-
-  /// Internal nodal forces (N): sum_q w_q B_q (P_iso(H_q) + p_q cof F_q)^T.
-  template <class T, class Law>
-  static NodalVectors<T> force(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element,
-                               const Law& law) {
-    const auto dilatation = Pressure::dilatations(point_dilatations(u, element), element);
-    NodalVectors<T> f;
-    for (std::size_t q = 0; q < 8; ++q) {
-      const Tensor<T> H = point_gradient_of(u, element, q);
-      const Tensor<T> P = law.isochoric_piola(H) + law.pressure(dilatation[q]) * cofactor(identity<T>() + H);
-      f += element.gradient[q] * (element.weight[q] * transpose(P));
-    }
-    return f;
-  }
-
-  /// Strain energy (J).
-  template <class T, class Law>
-  static T energy(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element,
-                  const Law& law) {
-    const auto dilatation = Pressure::dilatations(point_dilatations(u, element), element);
-    T W = T(0);
-    for (std::size_t q = 0; q < 8; ++q) {
-      const Tensor<T> H = point_gradient_of(u, element, q);
-      W = W + element.weight[q] * (law.isochoric_energy(H) + law.volumetric_energy(dilatation[q]));
-    }
-    return W;
-  }
-
-  template <class T>
-  static T smallest_jacobian(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element) {
-    const auto dilatation = point_dilatations(u, element);
-    T smallest = dilatation[0];
-    for (std::size_t q = 1; q < 8; ++q) smallest = min(smallest, dilatation[q]);
-    return T(1) + smallest;
-  }
-
-  template <class T>
-  static T mean_jacobian(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element) {
-    return T(1) + volume_average(point_dilatations(u, element), element);
-  }
-
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u: the points' bounds add up,
-  /// and the stiffness of a pressure that is one for the element acts on one mean spatial gradient.
-  template <class T, class Law>
-  static T stiffness_bound(const NodalVectors<T>& u, const Tensor<T>& /*H*/, const Element<T>& element,
-                           const Law& law) {
-    const auto own_dilatation = point_dilatations(u, element);
-    const auto dilatation = Pressure::dilatations(own_dilatation, element);
-    T bound = T(0);
-    NodalVectors<T> mean_spatial_gradient;
-    for (std::size_t q = 0; q < 8; ++q) {
-      const Tensor<T> H = point_gradient_of(u, element, q);
-      const NodalVectors<T> g = element.gradient[q] * inverse(identity<T>() + H);
-      const T J = T(1) + own_dilatation[q];
-      const T bulk = Pressure::shared ? T(0) : law.bulk_tangent(dilatation[q]);
-      const auto vol = volumetric_tangent_bound(J, law.pressure(dilatation[q]), bulk);
-      const auto iso = law.isochoric_tangent_bound(H);
-      const TangentBound<T> point{iso.volumetric + vol.volumetric, iso.gradient + vol.gradient};
-      bound = bound + element.weight[q] * OnePoint::gradient_bound(point, g);
-      mean_spatial_gradient += (element.weight[q] * J / element.V) * g;
-    }
-    if constexpr (Pressure::shared) {
-      bound = bound + element.V * law.bulk_tangent(dilatation[0]) *
-                          double_dot(mean_spatial_gradient, mean_spatial_gradient);
-    }
-    return bound;
-  }
-
- private:
-  template <class T>
-  static Tensor<T> point_gradient_of(const NodalVectors<T>& u, const Element<T>& element, std::size_t q) {
-    return transpose(u) * element.gradient[q];
-  }
-
-  template <class T>
-  static std::array<T, 8> point_dilatations(const NodalVectors<T>& u, const Element<T>& element) {
-    std::array<T, 8> dilatation;
-    for (std::size_t q = 0; q < 8; ++q) dilatation[q] = jacobian_minus_one(point_gradient_of(u, element, q));
-    return dilatation;
-  }
-};
 
 /// The pressure at each point from the volume change there.
 struct PointPressure {
@@ -143,6 +33,187 @@ struct MeanPressure {
     std::array<T, 8> mean;
     mean.fill(volume_average(own, element));
     return mean;
+  }
+};
+
+/// The hexahedron with 2x2x2 Gauss points. Pressure is a policy: `PointPressure` gives the displacement
+/// element, which locks as nu -> 1/2; `MeanPressure` the mean-dilatation element, the explicit twin of the
+/// mixed Q1-P0 element. It has no hourglass modes, hence takes no control.
+template <class Pressure>
+struct EightPoint {
+  /// What is constant in time.
+  template <class T>
+  struct Element {
+    std::array<Tensor<T>, 8>
+        inverse_jacobian;     ///< dxi_k/dX_j at the Gauss points, 1/m, times 1/8 for modes are sums
+    std::array<T, 8> weight;  ///< det(dX/dxi) at the Gauss points, m^3
+    T V;                      ///< reference volume, m^3
+  };
+
+  using NoControl = NoHourglassControl;
+
+  static Element<double> precompute(const NodalVectors<double>& X) {
+    Element<double> element{};
+    const auto points = gauss_points();
+    for (std::size_t q = 0; q < 8; ++q) {
+      const Tensor<double> jacobian = parent_jacobian(X, points[q]);
+      element.inverse_jacobian[q] = 0.125 * inverse(jacobian);
+      element.weight[q] = determinant(jacobian);
+      element.V += element.weight[q];
+    }
+    return element;
+  }
+
+  /// Internal nodal forces (N): sum_q w_q B_q (P_iso(H_q) + p_q cof F_q)^T.
+  template <class Hourglass, class T, class Law>
+  static NodalVectors<T> force(const NodalVectors<T>& u, const Element<T>& element,
+                               const NoControl::Element<T>& /*control*/, const Law& law) {
+    const auto H = point_gradients(u, element);
+    const auto dilatation = Pressure::dilatations(point_dilatations(H), element);
+    std::array<Tensor<T>, 8> flux;  // w P J^-T, the stress that the parent gradient carries
+    for (std::size_t q = 0; q < 8; ++q) {
+      const Tensor<T> P =
+          law.isochoric_piola(H[q]) + law.pressure(dilatation[q]) * cofactor(identity<T>() + H[q]);
+      flux[q] = (element.weight[q] * P) * transpose(element.inverse_jacobian[q]);
+    }
+    return from_modes(parent_divergence(flux));
+  }
+
+  /// Strain energy (J).
+  template <class Hourglass, class T, class Law>
+  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element<T>& element,
+                                 const NoControl::Element<T>& /*control*/, const Law& law) {
+    const auto H = point_gradients(u, element);
+    const auto dilatation = Pressure::dilatations(point_dilatations(H), element);
+    T W = T(0);
+    for (std::size_t q = 0; q < 8; ++q) {
+      W = W + element.weight[q] * (law.isochoric_energy(H[q]) + law.volumetric_energy(dilatation[q]));
+    }
+    return {W, T(0)};
+  }
+
+  template <class T>
+  static T smallest_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
+    const auto dilatation = point_dilatations(point_gradients(u, element));
+    T smallest = dilatation[0];
+    for (std::size_t q = 1; q < 8; ++q) smallest = min(smallest, dilatation[q]);
+    return T(1) + smallest;
+  }
+
+  template <class T>
+  static T mean_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
+    return T(1) + volume_average(point_dilatations(point_gradients(u, element)), element);
+  }
+
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u: the points' bounds add up,
+  /// and the stiffness of a pressure that is one for the element acts on one mean spatial gradient.
+  template <class Hourglass, class T, class Law>
+  static T stiffness_bound(const NodalVectors<T>& u, const Element<T>& element,
+                           const NoControl::Element<T>& /*control*/, const Law& law) {
+    const auto H = point_gradients(u, element);
+    const auto own_dilatation = point_dilatations(H);
+    const auto dilatation = Pressure::dilatations(own_dilatation, element);
+    const auto points = gauss_points();
+    T bound = T(0);
+    NodalVectors<T> mean_spatial_gradient{};
+    for (std::size_t q = 0; q < 8; ++q) {
+      const Tensor<T> to_space = T(8) * (element.inverse_jacobian[q] * inverse(identity<T>() + H[q]));
+      const NodalVectors<T> g = from_double<T>(parent_gradient(points[q])) * to_space;
+      const T J = T(1) + own_dilatation[q];
+      const T bulk = Pressure::shared ? T(0) : law.bulk_tangent(dilatation[q]);
+      const auto vol = volumetric_tangent_bound(J, law.pressure(dilatation[q]), bulk);
+      const auto iso = law.isochoric_tangent_bound(H[q]);
+      const TangentBound<T> point{iso.volumetric + vol.volumetric, iso.gradient + vol.gradient};
+      bound = bound + element.weight[q] * gradient_bound(point, g);
+      mean_spatial_gradient += (element.weight[q] * J / element.V) * g;
+    }
+    if constexpr (Pressure::shared) {
+      bound = bound + element.V * law.bulk_tangent(dilatation[0]) *
+                          double_dot(mean_spatial_gradient, mean_spatial_gradient);
+    }
+    return bound;
+  }
+
+ private:
+  /// Signs of a Gauss point along the parent axes; the points stand in the order of the corners.
+  static constexpr int sign(std::size_t q, int axis) {
+    return corner_signs(static_cast<int>(q), axis) > 0.0 ? 1 : -1;
+  }
+
+  /// For each parent axis: which hourglass modes vary along it with the second, the third axis, and with
+  /// both, as rows of Modes; and those two axes. d/dxi of xi zeta and xi eta and xi eta zeta, and so on
+  /// round.
+  struct Axis {
+    int second;
+    int third;
+    int with_second;
+    int with_third;
+  };
+  static constexpr std::array<Axis, 3> axes{{{1, 2, 5, 4}, {0, 2, 5, 3}, {0, 1, 4, 3}}};
+  static constexpr double g = 0.57735026918962576451;  // 1/sqrt(3), where the Gauss points stand
+
+  /// Parent gradients du_i/dxi_k at the Gauss points, times 8. Along each axis the gradient is bilinear in
+  /// the two others, so that it has four values: additions of modes scaled once by g and g^2.
+  template <class T>
+  static std::array<Tensor<T>, 8> parent_gradients(const Modes<T>& modes) {
+    std::array<Tensor<T>, 8> gradients;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const auto& [second, third, with_second, with_third] = axes[static_cast<std::size_t>(k)];
+        const T a = modes(k, i);
+        const T b = T(g) * modes(with_second, i);
+        const T c = T(g) * modes(with_third, i);
+        const T d = T(g * g) * modes(6, i);
+        const T low = a - b, high = a + b;      // by the sign along the second axis
+        const T low_c = c - d, high_c = c + d;  // what the sign along the third axis multiplies
+        const std::array<T, 4> values{low - low_c, high - high_c, low + low_c, high + high_c};
+        for (std::size_t q = 0; q < 8; ++q) {
+          gradients[q](i, k) =
+              values[static_cast<std::size_t>((sign(q, second) + 1) / 2 + (sign(q, third) + 1))];
+        }
+      }
+    }
+    return gradients;
+  }
+
+  /// The transpose of `parent_gradients`: what fluxes at the points do to the modes.
+  template <class T>
+  static Modes<T> parent_divergence(const std::array<Tensor<T>, 8>& flux) {
+    Modes<T> f{};
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const auto& [second, third, with_second, with_third] = axes[static_cast<std::size_t>(k)];
+        std::array<T, 4> values{T(0), T(0), T(0), T(0)};
+        std::array<bool, 4> filled{};
+        for (std::size_t q = 0; q < 8; ++q) {
+          const auto n = static_cast<std::size_t>((sign(q, second) + 1) / 2 + (sign(q, third) + 1));
+          values[n] = filled[n] ? values[n] + flux[q](i, k) : flux[q](i, k);
+          filled[n] = true;
+        }
+        const T low = values[0] + values[1], high = values[2] + values[3];
+        const T low_b = values[1] - values[0], high_b = values[3] - values[2];
+        f(k, i) = low + high;
+        f(with_second, i) = f(with_second, i) + T(g) * (low_b + high_b);
+        f(with_third, i) = f(with_third, i) + T(g) * (high - low);
+        f(6, i) = f(6, i) + T(g * g) * (high_b - low_b);
+      }
+    }
+    return f;
+  }
+
+  /// Displacement gradients at the Gauss points.
+  template <class T>
+  static std::array<Tensor<T>, 8> point_gradients(const NodalVectors<T>& u, const Element<T>& element) {
+    auto H = parent_gradients(to_modes(u));
+    for (std::size_t q = 0; q < 8; ++q) H[q] = H[q] * element.inverse_jacobian[q];
+    return H;
+  }
+
+  template <class T>
+  static std::array<T, 8> point_dilatations(const std::array<Tensor<T>, 8>& H) {
+    std::array<T, 8> dilatation;
+    for (std::size_t q = 0; q < 8; ++q) dilatation[q] = jacobian_minus_one(H[q]);
+    return dilatation;
   }
 };
 

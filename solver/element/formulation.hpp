@@ -1,7 +1,7 @@
 #pragma once
 
 #include "element/hourglass_settings.hpp"
-#include "math/matrix.hpp"
+#include "element/one_point.hpp"
 
 namespace sandglass {
 
@@ -16,13 +16,6 @@ struct Formulation {
     typename Hourglass::template Element<T> hourglass;
   };
 
-  /// Energies of one element, in J.
-  template <class T>
-  struct Energy {
-    T strain;
-    T hourglass;
-  };
-
   /// The constants of an element with reference coordinates X (m).
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& settings) {
@@ -33,34 +26,31 @@ struct Formulation {
   /// u.
   template <class T>
   static NodalVectors<T> force(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
-    const Tensor<T> H = Kinematics::mean_gradient(u, element.body);
-    return Kinematics::force(u, H, element.body, law) + Hourglass::force(u, H, element.hourglass);
+    return Kinematics::template force<Hourglass>(u, element.body, element.hourglass, law);
   }
 
+  /// Strain and hourglass energy (J).
   template <class T>
-  static Energy<T> energy(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
-    const Tensor<T> H = Kinematics::mean_gradient(u, element.body);
-    return {Kinematics::energy(u, H, element.body, law), Hourglass::energy(u, H, element.hourglass)};
+  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
+    return Kinematics::template energy<Hourglass>(u, element.body, element.hourglass, law);
   }
 
   /// The smallest det F at the integration points.
   template <class T>
   static T smallest_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    return Kinematics::smallest_jacobian(u, Kinematics::mean_gradient(u, element.body), element.body);
+    return Kinematics::smallest_jacobian(u, element.body);
   }
 
   /// The volume ratio of the element.
   template <class T>
   static T mean_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    return Kinematics::mean_jacobian(u, Kinematics::mean_gradient(u, element.body), element.body);
+    return Kinematics::mean_jacobian(u, element.body);
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u, hourglass part included.
   template <class T>
   static T stiffness_bound(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
-    const Tensor<T> H = Kinematics::mean_gradient(u, element.body);
-    return Kinematics::stiffness_bound(u, H, element.body, law) +
-           Hourglass::stiffness_bound(element.hourglass);
+    return Kinematics::template stiffness_bound<Hourglass>(u, element.body, element.hourglass, law);
   }
 };
 

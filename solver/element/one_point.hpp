@@ -1,77 +1,172 @@
 #pragma once
 
 #include "element/hexahedron.hpp"
+#include "element/modes.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 
 namespace sandglass {
 
+/// Energies of one element, J.
+template <class T>
+struct ElementEnergy {
+  T strain;
+  T hourglass;
+};
+
+/// Amplitudes q_ai of the four hourglass modes and of what resists them, three components each.
+template <class T>
+using HourglassModes = Matrix<T, 4, 3>;
+
+/// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): the largest eigenvalue per
+/// volume that a tangent bound allows, from (tr L)^2 <= |g|^2 |v|^2 and |L|^2 <= lambda_max |v|^2 for L = v^T
+/// g.
+template <class T>
+T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
+  const Tensor<T> G = transpose(g) * g;
+  return max(bound.volumetric, T(0)) * trace(G) + bound.gradient * largest_eigenvalue_bound(G);
+}
+
 /// The uniform strain hexahedron in the Total Lagrangian formulation: one stress from the mean displacement
-/// gradient.
+/// gradient, and an hourglass control on what that gradient does not see. Written in modes: additions take
+/// the place of the dense products with h and gamma, and gamma need not be stored.
 struct OnePoint {
   /// What is constant in time.
   template <class T>
   struct Element {
-    NodalVectors<T> h;  ///< mean shape gradients, 1/m (paper, eq. 1)
+    Matrix<T, 6, 3> h;  ///< mean gradients of the first six modes, 1/m (eq. 1); the mode xi eta zeta has none
+    Matrix<T, 4, 3> c;  ///< Gamma^T X, m: gamma = Gamma - h c^T (eq. 2); zero on parallelepipeds
     T V;                ///< reference volume, m^3
   };
 
   static Element<double> precompute(const NodalVectors<double>& X) {
     const MeanGradient mean = sandglass::mean_gradient(X);
-    return {mean.h, mean.volume};
+    const Modes<double> h = 0.125 * to_modes(mean.h);
+    const Modes<double> x = to_modes(X);
+    Element<double> element{.V = mean.volume};
+    for (int i = 0; i < 3; ++i) {
+      for (int m = 0; m < 6; ++m) element.h(m, i) = h(m, i);
+      for (int a = 0; a < 4; ++a) element.c(a, i) = x(3 + a, i);
+    }
+    return element;
   }
 
   /// The mean displacement gradient H_ij = u_Ii h_Ij.
   template <class T>
-  static Tensor<T> mean_gradient(const NodalVectors<T>& u, const Element<T>& element) {
-    return transpose(u) * element.h;
+  static Tensor<T> mean_gradient(const Modes<T>& modes, const Element<T>& element) {
+    Tensor<T> H;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        T sum = modes(0, i) * element.h(0, j);
+        for (int m = 1; m < 6; ++m) sum = sum + modes(m, i) * element.h(m, j);
+        H(i, j) = sum;
+      }
+    }
+    return H;
   }
 
-  /// Internal nodal forces (N) of the stress: f = V h P^T.
-  template <class T, class Law>
-  static NodalVectors<T> force(const NodalVectors<T>& /*u*/, const Tensor<T>& H, const Element<T>& element,
-                               const Law& law) {
-    const Tensor<T> P = law.piola(H);
-    return element.h * (element.V * transpose(P));
+  /// Hourglass displacements gamma^T u = Gamma^T u - c H^T (eq. 11 without its 1/sqrt 8).
+  template <class T>
+  static HourglassModes<T> hourglass_displacements(const Modes<T>& modes, const Tensor<T>& H,
+                                                   const Element<T>& element) {
+    HourglassModes<T> q;
+    for (int a = 0; a < 4; ++a) {
+      for (int i = 0; i < 3; ++i) {
+        T sum = modes(3 + a, i);
+        for (int j = 0; j < 3; ++j) sum = sum - H(i, j) * element.c(a, j);
+        q(a, i) = sum;
+      }
+    }
+    return q;
   }
 
-  /// Strain energy (J).
-  template <class T, class Law>
-  static T energy(const NodalVectors<T>& /*u*/, const Tensor<T>& H, const Element<T>& element,
-                  const Law& law) {
-    return element.V * law.energy(H);
+  /// Internal nodal forces (N): f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14).
+  template <class Hourglass, class T, class Law>
+  static NodalVectors<T> force(const NodalVectors<T>& u, const Element<T>& element,
+                               const typename Hourglass::template Element<T>& control, const Law& law) {
+    const Modes<T> modes = to_modes(u);
+    const Tensor<T> H = mean_gradient(modes, element);
+    Tensor<T> S = element.V * transpose(law.piola(H));
+    Modes<T> f{};
+    if constexpr (Hourglass::active) {
+      const HourglassModes<T> q = hourglass_displacements(modes, H, element);
+      const HourglassModes<T> Q = Hourglass::resistance(q, control);
+      S = S - transpose(element.c) * Q;
+      for (int i = 0; i < 3; ++i) {
+        for (int m = 0; m < 6; ++m) {
+          T sum = m < 3 ? element.h(m, 0) * S(0, i) : Q(m - 3, i) + element.h(m, 0) * S(0, i);
+          for (int j = 1; j < 3; ++j) sum = sum + element.h(m, j) * S(j, i);
+          f(m, i) = sum;
+        }
+        f(6, i) = Q(3, i);
+      }
+    } else {
+      const Matrix<T, 6, 3> hS = element.h * S;
+      for (int m = 0; m < 6; ++m) {
+        for (int i = 0; i < 3; ++i) f(m, i) = hS(m, i);
+      }
+    }
+    return from_modes(f);
+  }
+
+  template <class Hourglass, class T, class Law>
+  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element<T>& element,
+                                 const typename Hourglass::template Element<T>& control, const Law& law) {
+    const Modes<T> modes = to_modes(u);
+    const Tensor<T> H = mean_gradient(modes, element);
+    ElementEnergy<T> energy{element.V * law.energy(H), T(0)};
+    if constexpr (Hourglass::active) {
+      energy.hourglass = Hourglass::energy(hourglass_displacements(modes, H, element), control);
+    }
+    return energy;
   }
 
   /// The smallest volume ratio det F at the integration points.
   template <class T>
-  static T smallest_jacobian(const NodalVectors<T>& /*u*/, const Tensor<T>& H,
-                             const Element<T>& /*element*/) {
-    return T(1) + jacobian_minus_one(H);
+  static T smallest_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
+    return mean_jacobian(u, element);
   }
 
   /// The element's volume over its reference volume, as this element sees it.
   template <class T>
-  static T mean_jacobian(const NodalVectors<T>& u, const Tensor<T>& H, const Element<T>& element) {
-    return smallest_jacobian(u, H, element);
+  static T mean_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
+    return T(1) + jacobian_minus_one(mean_gradient(to_modes(u), element));
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u. With spatial gradients h_c
-  /// = h F^-1 and L = v^T h_c: (tr L)^2 <= |h_c|^2 |v|^2 and |L|^2 <= g |v|^2, g the largest eigenvalue of
-  /// h_c^T h_c. On a cube at rest it is the exact eigenvalue; paper's eq. 7 and 8 give (lambda + 2 mu) |h|^2
-  /// instead.
-  template <class T, class Law>
-  static T stiffness_bound(const NodalVectors<T>& /*u*/, const Tensor<T>& H, const Element<T>& element,
-                           const Law& law) {
-    const auto bound = tangent_bound(law, H);
-    return element.V * gradient_bound(bound, element.h * inverse(identity<T>() + H));
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u. The body's part is that of
+  /// the spatial gradients h F^-1; on a cube at rest it is the exact eigenvalue, where the paper's eqs 7 and
+  /// 8 give (lambda + 2 mu) |h|^2. The control's part is added, which is safe whatever the angle between
+  /// their modes.
+  template <class Hourglass, class T, class Law>
+  static T stiffness_bound(const NodalVectors<T>& u, const Element<T>& element,
+                           const typename Hourglass::template Element<T>& control, const Law& law) {
+    const Tensor<T> H = mean_gradient(to_modes(u), element);
+    const NodalVectors<T> h = nodal_gradients(element);
+    const T body = element.V * gradient_bound(tangent_bound(law, H), h * inverse(identity<T>() + H));
+    if constexpr (Hourglass::active) return body + Hourglass::stiffness_bound(gamma(h, element), control);
+    return body;
   }
 
-  /// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): what a tangent bound costs
-  /// per volume.
+ private:
+  /// h_Ii, back from its modes.
   template <class T>
-  static T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
-    const Tensor<T> G = transpose(g) * g;
-    return max(bound.volumetric, T(0)) * trace(G) + bound.gradient * largest_eigenvalue_bound(G);
+  static NodalVectors<T> nodal_gradients(const Element<T>& element) {
+    Modes<T> h{};
+    for (int m = 0; m < 6; ++m) {
+      for (int i = 0; i < 3; ++i) h(m, i) = element.h(m, i);
+    }
+    return from_modes(h);
+  }
+
+  /// Hourglass shape vectors gamma_Ia (eq. 2).
+  template <class T>
+  static Matrix<T, 8, 4> gamma(const NodalVectors<T>& h, const Element<T>& element) {
+    constexpr auto Gamma = hourglass_base_vectors();
+    Matrix<T, 8, 4> gamma = h * transpose(element.c);
+    for (int I = 0; I < 8; ++I) {
+      for (int a = 0; a < 4; ++a) gamma(I, a) = T(Gamma(I, a)) - gamma(I, a);
+    }
+    return gamma;
   }
 };
 

@@ -86,6 +86,14 @@ constexpr T double_dot(const Matrix<T, R, C>& a, const Matrix<T, R, C>& b) {
   return sum;
 }
 
+/// A matrix of constants as another number type.
+template <class T, int R, int C>
+constexpr Matrix<T, R, C> from_double(const Matrix<double, R, C>& a) {
+  Matrix<T, R, C> b;
+  for (std::size_t n = 0; n < a.entries.size(); ++n) b.entries[n] = T(a.entries[n]);
+  return b;
+}
+
 template <class T>
 constexpr T trace(const Tensor<T>& a) {
   return a(0, 0) + a(1, 1) + a(2, 2);
