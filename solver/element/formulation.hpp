@@ -13,7 +13,7 @@ struct Formulation {
   template <class T>
   struct Element {
     typename Kinematics::template Element<T> body;
-    typename Hourglass::template Element<T> hourglass;
+    [[no_unique_address]] typename Hourglass::template Element<T> hourglass;
   };
 
   /// The constants of an element with reference coordinates X (m).

@@ -12,7 +12,7 @@ namespace detail {
 
 /// Vectors of W lanes in the compiler's own types; integers of the same width for masks and bit tricks.
 template <class T, int W>
-struct Lanes {
+struct VectorOf {
   using Integer = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
   using Vector __attribute__((vector_size(sizeof(T) * W))) = T;
   using Mask __attribute__((vector_size(sizeof(T) * W))) = Integer;
@@ -38,8 +38,8 @@ inline constexpr int native_width =
 template <class T, int W = native_width<T>>
 struct Pack {
   using Scalar = T;
-  using Vector = typename detail::Lanes<T, W>::Vector;
-  using Mask = typename detail::Lanes<T, W>::Mask;
+  using Vector = typename detail::VectorOf<T, W>::Vector;
+  using Mask = typename detail::VectorOf<T, W>::Mask;
   static constexpr int width = W;
 
   Vector lanes;
@@ -87,8 +87,8 @@ struct Pack {
   /// precision (within 3.4 %), then steps of fourth order from r = 1 - x y^3, y (1 - r)^(-1/3) expanded. The
   /// second step ends at a few units in the last place; tested against cbrt.
   friend Pack inverse_cube_root(Pack x) {
-    using FloatVector = typename detail::Lanes<T, W>::FloatVector;
-    using IntVector = typename detail::Lanes<T, W>::IntVector;
+    using FloatVector = typename detail::VectorOf<T, W>::FloatVector;
+    using IntVector = typename detail::VectorOf<T, W>::IntVector;
     FloatVector guess = __builtin_convertvector(x.lanes, FloatVector);
     IntVector bits;
     std::memcpy(&bits, &guess, sizeof bits);

@@ -35,7 +35,8 @@ std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string
     }
     std::visit(
         [&]<class Law>(const Law& law) {
-          force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law>>(mesh, law, settings);
+          force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Pack<double>>>(mesh, law,
+                                                                                                   settings);
         },
         any_law);
   });
