@@ -1,0 +1,33 @@
+"""The case and the commands that the README shows are run as they stand there."""
+
+import pathlib
+import re
+
+import h5py
+from command_line import ROOT, sandglass
+
+README = (ROOT / "README.md").read_text()
+
+
+def test_first_own_case_runs_as_written(tmp_path):
+    case = re.search(r"```toml\n(.*?)```", README, re.DOTALL)[1]
+    (tmp_path / "my-beam.toml").write_text(case)
+    commands = re.findall(r"^    build/release/sandglass (run my-beam.*)$", README, re.MULTILINE)
+    assert len(commands) == 2
+    for command in commands:
+        done = sandglass(*command.split(), cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert "at rest" in done.stdout
+        output = pathlib.Path(tmp_path / command.split()[-1])
+        with h5py.File(output) as result:
+            assert result.attrs["status"] == "complete"
+        assert output.with_suffix(".xdmf").exists()
+
+
+def test_files_and_folders_that_the_readme_names_are_there():
+    named = re.findall(
+        r"`((?:solver|cases|verification|reference)/[\w./-]*|\w+\.(?:md|cff))`", README
+    )
+    assert len(named) >= 6
+    for name in named:
+        assert (ROOT / name).exists(), name
