@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "element/hexahedron.hpp"
 #include "element/modes.hpp"
 #include "material/tangent_bound.hpp"
@@ -86,27 +88,17 @@ struct OnePoint {
                                const typename Hourglass::template Element<T>& control, const Law& law) {
     const Modes<T> modes = to_modes(u);
     const Tensor<T> H = mean_gradient(modes, element);
-    Tensor<T> S = element.V * transpose(law.piola(H));
-    Modes<T> f{};
+    const Tensor<T> VP = element.V * transpose(law.piola(H));
     if constexpr (Hourglass::active) {
-      const HourglassModes<T> q = hourglass_displacements(modes, H, element);
-      const HourglassModes<T> Q = Hourglass::resistance(q, control);
-      S = S - transpose(element.c) * Q;
-      for (int i = 0; i < 3; ++i) {
-        for (int m = 0; m < 6; ++m) {
-          T sum = m < 3 ? element.h(m, 0) * S(0, i) : Q(m - 3, i) + element.h(m, 0) * S(0, i);
-          for (int j = 1; j < 3; ++j) sum = sum + element.h(m, j) * S(j, i);
-          f(m, i) = sum;
-        }
-        f(6, i) = Q(3, i);
+      const HourglassModes<T> Q = Hourglass::resistance(hourglass_displacements(modes, H, element), control);
+      Modes<T> f = body_forces(VP - transpose(element.c) * Q, element);
+      for (int a = 0; a < 4; ++a) {
+        for (int i = 0; i < 3; ++i) f(3 + a, i) = f(3 + a, i) + Q(a, i);
       }
+      return from_modes(f);
     } else {
-      const Matrix<T, 6, 3> hS = element.h * S;
-      for (int m = 0; m < 6; ++m) {
-        for (int i = 0; i < 3; ++i) f(m, i) = hS(m, i);
-      }
+      return from_modes(body_forces(VP, element));
     }
-    return from_modes(f);
   }
 
   template <class Hourglass, class T, class Law>
@@ -148,14 +140,19 @@ struct OnePoint {
   }
 
  private:
+  /// h S for each mode; none in the mode xi eta zeta.
+  template <class T>
+  static Modes<T> body_forces(const Tensor<T>& S, const Element<T>& element) {
+    const Matrix<T, 6, 3> hS = element.h * S;
+    Modes<T> f{};
+    std::copy(hS.entries.begin(), hS.entries.end(), f.entries.begin());
+    return f;
+  }
+
   /// h_Ii, back from its modes.
   template <class T>
   static NodalVectors<T> nodal_gradients(const Element<T>& element) {
-    Modes<T> h{};
-    for (int m = 0; m < 6; ++m) {
-      for (int i = 0; i < 3; ++i) h(m, i) = element.h(m, i);
-    }
-    return from_modes(h);
+    return from_modes(body_forces(identity<T>(), element));
   }
 
   /// Hourglass shape vectors gamma_Ia (eq. 2).
