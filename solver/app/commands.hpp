@@ -8,6 +8,7 @@ namespace sandglass {
 void add_cases_command(CLI::App& app);
 void add_methods_command(CLI::App& app);
 void add_mesh_command(CLI::App& app);
+void add_flops_command(CLI::App& app);
 void add_run_command(CLI::App& app, int& exit_code);
 void add_verify_command(CLI::App& app, int& exit_code);
 

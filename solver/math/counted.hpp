@@ -11,6 +11,13 @@ struct Operations {
   long div = 0;      ///< divisions
   long special = 0;  ///< roots and transcendental functions, one each
   long total() const { return add + mul + div + special; }
+
+  friend Operations operator+(const Operations& a, const Operations& b) {
+    return {a.add + b.add, a.mul + b.mul, a.div + b.div, a.special + b.special};
+  }
+  friend Operations operator-(const Operations& a, const Operations& b) {
+    return {a.add - b.add, a.mul - b.mul, a.div - b.div, a.special - b.special};
+  }
 };
 
 /// A number that counts what is done with it: run a kernel on it and read the tally. Constants know no tally,
