@@ -36,6 +36,38 @@ struct MeanPressure {
   }
 };
 
+namespace detail {
+
+/// A parent axis: the two others, and the hourglass modes (rows of Modes) that vary along it with the second
+/// axis and with the third. Along xi these are xi eta and xi zeta, and so on round; xi eta zeta varies with
+/// both.
+struct ParentAxis {
+  int second;
+  int third;
+  int with_second;
+  int with_third;
+};
+inline constexpr std::array<ParentAxis, 3> parent_axes{{{1, 2, 5, 4}, {0, 2, 5, 3}, {0, 1, 4, 3}}};
+
+/// The two Gauss points on each of the four lines along a parent axis; lines are ordered by the signs along
+/// the second, then the third axis. Gauss points stand in the order of the corners.
+using GaussLines = std::array<std::array<std::size_t, 2>, 4>;
+constexpr GaussLines gauss_lines(const ParentAxis& axis) {
+  GaussLines lines{};
+  std::array<std::size_t, 4> found{};
+  for (std::size_t q = 0; q < 8; ++q) {
+    const auto corner = static_cast<int>(q);
+    const std::size_t line = (corner_signs(corner, axis.second) > 0.0 ? 1U : 0U) +
+                             (corner_signs(corner, axis.third) > 0.0 ? 2U : 0U);
+    lines[line][found[line]++] = q;
+  }
+  return lines;
+}
+inline constexpr std::array<GaussLines, 3> lines_along{
+    gauss_lines(parent_axes[0]), gauss_lines(parent_axes[1]), gauss_lines(parent_axes[2])};
+
+}  // namespace detail
+
 /// The hexahedron with 2x2x2 Gauss points. Pressure is a policy: `PointPressure` gives the displacement
 /// element, which locks as nu -> 1/2; `MeanPressure` the mean-dilatation element, the explicit twin of the
 /// mixed Q1-P0 element. It has no hourglass modes, hence takes no control.
@@ -135,22 +167,7 @@ struct EightPoint {
   }
 
  private:
-  /// Signs of a Gauss point along the parent axes; the points stand in the order of the corners.
-  static constexpr int sign(std::size_t q, int axis) {
-    return corner_signs(static_cast<int>(q), axis) > 0.0 ? 1 : -1;
-  }
-
-  /// For each parent axis: which hourglass modes vary along it with the second, the third axis, and with
-  /// both, as rows of Modes; and those two axes. d/dxi of xi zeta and xi eta and xi eta zeta, and so on
-  /// round.
-  struct Axis {
-    int second;
-    int third;
-    int with_second;
-    int with_third;
-  };
-  static constexpr std::array<Axis, 3> axes{{{1, 2, 5, 4}, {0, 2, 5, 3}, {0, 1, 4, 3}}};
-  static constexpr double g = 0.57735026918962576451;  // 1/sqrt(3), where the Gauss points stand
+  static constexpr double g = gauss_coordinate;
 
   /// Parent gradients du_i/dxi_k at the Gauss points, times 8. Along each axis the gradient is bilinear in
   /// the two others, so that it has four values: additions of modes scaled once by g and g^2.
@@ -159,7 +176,9 @@ struct EightPoint {
     std::array<Tensor<T>, 8> gradients;
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
-        const auto& [second, third, with_second, with_third] = axes[static_cast<std::size_t>(k)];
+        const auto axis = static_cast<std::size_t>(k);
+        const int with_second = detail::parent_axes[axis].with_second;
+        const int with_third = detail::parent_axes[axis].with_third;
         const T a = modes(k, i);
         const T b = T(g) * modes(with_second, i);
         const T c = T(g) * modes(with_third, i);
@@ -167,9 +186,8 @@ struct EightPoint {
         const T low = a - b, high = a + b;      // by the sign along the second axis
         const T low_c = c - d, high_c = c + d;  // what the sign along the third axis multiplies
         const std::array<T, 4> values{low - low_c, high - high_c, low + low_c, high + high_c};
-        for (std::size_t q = 0; q < 8; ++q) {
-          gradients[q](i, k) =
-              values[static_cast<std::size_t>((sign(q, second) + 1) / 2 + (sign(q, third) + 1))];
+        for (std::size_t line = 0; line < 4; ++line) {
+          for (const std::size_t q : detail::lines_along[axis][line]) gradients[q](i, k) = values[line];
         }
       }
     }
@@ -182,13 +200,13 @@ struct EightPoint {
     Modes<T> f{};
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
-        const auto& [second, third, with_second, with_third] = axes[static_cast<std::size_t>(k)];
-        std::array<T, 4> values{T(0), T(0), T(0), T(0)};
-        std::array<bool, 4> filled{};
-        for (std::size_t q = 0; q < 8; ++q) {
-          const auto n = static_cast<std::size_t>((sign(q, second) + 1) / 2 + (sign(q, third) + 1));
-          values[n] = filled[n] ? values[n] + flux[q](i, k) : flux[q](i, k);
-          filled[n] = true;
+        const auto axis = static_cast<std::size_t>(k);
+        const int with_second = detail::parent_axes[axis].with_second;
+        const int with_third = detail::parent_axes[axis].with_third;
+        std::array<T, 4> values;
+        for (std::size_t line = 0; line < 4; ++line) {
+          const auto& [q, r] = detail::lines_along[axis][line];
+          values[line] = flux[q](i, k) + flux[r](i, k);
         }
         const T low = values[0] + values[1], high = values[2] + values[3];
         const T low_b = values[1] - values[0], high_b = values[3] - values[2];

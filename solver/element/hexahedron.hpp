@@ -42,13 +42,16 @@ constexpr NodalVectors<double> parent_gradient(const std::array<double, 3>& xi) 
   return gradient;
 }
 
+/// Where the points of the 2x2x2 Gauss rule stand on the parent axes: 1/sqrt(3).
+inline constexpr double gauss_coordinate = 0.57735026918962576451;
+
 /// The eight points of the 2x2x2 Gauss rule, one beside each corner; every weight is 1.
 constexpr std::array<std::array<double, 3>, 8> gauss_points() {
-  constexpr double g = 0.57735026918962576451;  // 1/sqrt(3)
   std::array<std::array<double, 3>, 8> points{};
   for (int q = 0; q < 8; ++q) {
     for (int i = 0; i < 3; ++i)
-      points[static_cast<std::size_t>(q)][static_cast<std::size_t>(i)] = g * corner_signs(q, i);
+      points[static_cast<std::size_t>(q)][static_cast<std::size_t>(i)] =
+          gauss_coordinate * corner_signs(q, i);
   }
   return points;
 }
