@@ -88,12 +88,11 @@ References references_to_show(const Scene& scene) {
 
 void print_accuracy(const Scene& scene, const NodalField& u) {
   const References references = references_to_show(scene);
-  const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
   const auto print = [&](const char* name, const std::optional<NodalField>& reference) {
-    if (!reference) return;
-    const Accuracy figures = accuracy(u, *reference, profile, largest_imposed(scene));
+    const auto figures = accuracy_of(scene, u, reference);
+    if (!figures) return;
     fmt::print("against the {}: max {:.4g} %, rms {:.4g} % of the imposed displacement\n", name,
-               100.0 * figures.max_relative_error, 100.0 * figures.rms_relative_error);
+               100.0 * figures->max_relative_error, 100.0 * figures->rms_relative_error);
   };
   print("golden", references.golden);
   print("truth", references.truth);

@@ -38,6 +38,13 @@ References read_references(const Scene& scene) {
   return {read_if_present(scene.description.golden, scene), read_if_present(scene.description.truth, scene)};
 }
 
+std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
+                                    const std::optional<NodalField>& reference) {
+  if (!reference) return std::nullopt;
+  const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
+  return accuracy(u, *reference, profile, largest_imposed(scene));
+}
+
 Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
   Verdict verdict{.case_name = scene.description.name,
                   .method = choice.method,
@@ -63,10 +70,8 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
     return verdict;
   }
-  const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
-  const double unit = largest_imposed(scene);
-  if (references.golden) verdict.golden = accuracy(u, *references.golden, profile, unit);
-  if (references.truth) verdict.truth = accuracy(u, *references.truth, profile, unit);
+  verdict.golden = accuracy_of(scene, u, references.golden);
+  verdict.truth = accuracy_of(scene, u, references.truth);
   return verdict;
 }
 

@@ -20,6 +20,10 @@ struct References {
 /// another case.
 References read_references(const Scene& scene);
 
+/// The accuracy figures of displacements u of a scene against one of its references, if there is one.
+std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
+                                    const std::optional<NodalField>& reference);
+
 /// What came of one method on one case.
 struct Verdict {
   std::string case_name;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <optional>
 
@@ -66,10 +67,9 @@ OperationCount count_operations(const Law& law) {
   Operations tally;
   const auto plain =
       std::bit_cast<std::array<double, numbers>>(Kernel::precompute(0.5 * corner_signs, law, {}));
-  typename Kernel::template Element<Counted> element;
-  static_assert(sizeof element == numbers * sizeof(Counted));
-  auto* constants = reinterpret_cast<Counted*>(&element);
+  std::array<Counted, numbers> constants;
   for (std::size_t n = 0; n < numbers; ++n) constants[n] = Counted(plain[n], tally);
+  const auto element = std::bit_cast<typename Kernel::template Element<Counted>>(constants);
   NodalVectors<Counted> u;
   for (int n = 0; auto& entry : u.entries) entry = Counted(1e-3 * ++n, tally);
 

@@ -17,6 +17,16 @@ namespace sandglass {
 
 namespace {
 
+/// State of central differences: displacements at `time`, velocities half a step earlier.
+struct DynamicState {
+  double time = 0.0;  ///< s
+  long step = 0;
+  double step_size = 0.0;   ///< s, the step that led here
+  NodalField u;             ///< m, at `time`
+  NodalField v_half;        ///< m/s, at `time - step_size / 2`
+  NodalField acceleration;  ///< m/s^2, at `time`; zero on constrained components
+};
+
 /// The recipe's quantities, one function each; the order of calls is in `integrate`.
 class CentralDifference {
  public:
