@@ -136,7 +136,7 @@ TEST(Hexahedron, hourglass_shape_vectors_of_parallelepipeds_are_the_base_vectors
 /// K_max = V (lambda + 2 mu) (1/a^2 + 1/b^2 + 1/c^2) / 2 (eqs 6-9) and k = kappa K_max / 8 (eqs 10-12).
 TEST(PerturbationHourglassControl, stiffness_of_a_box_in_closed_form) {
   const std::array<double, 3> size{0.02, 0.05, 0.03};
-  NodalVectors<double> X;
+  NodalVectors<double> X{};
   for (int I = 0; I < 8; ++I) {
     for (int i = 0; i < 3; ++i) X(I, i) = 0.5 * size[static_cast<std::size_t>(i)] * corner_signs(I, i);
   }
@@ -171,7 +171,7 @@ TEST(PerturbationHourglassControl, auto_bends_a_cube_with_its_exact_energy) {
       for (int mode = 0; mode < 3; ++mode) {
         for (int i = 0; i < 3; ++i) {
           if (i == mode) continue;  // u_x = eta zeta twists; bending has the displaced axis in the product
-          NodalVectors<double> u;
+          NodalVectors<double> u{};
           for (int I = 0; I < 8; ++I) u(I, i) = q * hourglass_base_vectors()(I, mode);
           const Matrix<double, 4, 3> amplitudes = transpose(gamma) * u;
           const double energy = PerturbationHourglassControl::energy(amplitudes, element);

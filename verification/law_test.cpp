@@ -16,7 +16,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 
 template <class T>
 Tensor<T> converted(const Tensor<double>& a) {
-  Tensor<T> result;
+  Tensor<T> result{};
   for (std::size_t n = 0; n < 9; ++n) result.entries[n] = static_cast<T>(a.entries[n]);
   return result;
 }
@@ -33,7 +33,7 @@ Tensor<double> linear_stress(const Law& law, const Tensor<double>& H) {
 template <class Law>
 Matrix<double, 9, 9> current_tangent(const Law& law, const Tensor<double>& H) {
   const Tensor<double> F = identity<double>() + H;
-  Matrix<double, 9, 9> A;
+  Matrix<double, 9, 9> A{};
   for (int n = 0; n < 9; ++n) {
     const Tensor<double> dF = unit<3, 3>(static_cast<std::size_t>(n)) * F;
     const Tensor<double> current = slope(law.piola(along(H, dF))) * transpose(F);
@@ -176,7 +176,7 @@ TYPED_TEST(LawTest, nothing_cancels_near_rest) {
 TYPED_TEST(LawTest, tiny_rotation_gives_tiny_stress) {
   const auto law = this->law(0);
   for (const double angle : {1e-3, 1e-6, 1e-9}) {
-    Tensor<double> H;
+    Tensor<double> H{};
     H(0, 0) = H(1, 1) = -2.0 * std::sin(angle / 2) * std::sin(angle / 2);
     H(1, 0) = std::sin(angle);
     H(0, 1) = -H(1, 0);
@@ -192,10 +192,10 @@ TYPED_TEST(LawTest, single_precision_is_accurate_near_rest) {
     for (int n = 0; n < this->samples; ++n) {
       const auto law = this->law(n);
       const auto H = converted<float>(this->random.tensor(size));
-      Tensor<double> same;
+      Tensor<double> same{};
       for (std::size_t k = 0; k < 9; ++k) same.entries[k] = static_cast<double>(H.entries[k]);
       const auto exact = law.piola(same);
-      Tensor<double> difference;
+      Tensor<double> difference{};
       const auto P = law.piola(H);
       for (std::size_t k = 0; k < 9; ++k) {
         difference.entries[k] = static_cast<double>(P.entries[k]) - exact.entries[k];
@@ -313,7 +313,7 @@ TEST(NeoHookean, simple_shear) {
   const auto law = sample_law<NeoHookean>(0.49);
   const double mu = law.shear_modulus();
   for (const double g : {-1.5, 1e-3, 0.4, 1.0}) {
-    Tensor<double> H;
+    Tensor<double> H{};
     H(0, 1) = g;
     const auto P = law.piola(H);
     // F^-T = I - g e2 e1, I1 = 3 + g^2, J = 1
@@ -352,7 +352,7 @@ TEST(NeoHookean, agrees_with_the_textbook_form_in_long_double) {
       const Real scale = static_cast<Real>(law.shear_modulus()) / std::cbrt(J * J);
       const Real bulk = static_cast<Real>(law.bulk_modulus()) * (J - 1);
       const Tensor<Real> exact = scale * F + (bulk - scale * I1 / (3 * J)) * cofactor(F);
-      Tensor<double> difference;
+      Tensor<double> difference{};
       const auto P = law.piola(H);
       for (std::size_t k = 0; k < 9; ++k) {
         difference.entries[k] = P.entries[k] - static_cast<double>(exact.entries[k]);

@@ -13,7 +13,7 @@ constexpr double eps = 0x1p-52;
 
 /// Nodal signs of the seven modes: the parent coordinates, then the hourglass base vectors.
 Matrix<double, 8, 7> signs() {
-  Matrix<double, 8, 7> s;
+  Matrix<double, 8, 7> s{};
   for (int I = 0; I < 8; ++I) {
     for (int i = 0; i < 3; ++i) s(I, i) = corner_signs(I, i);
     for (int a = 0; a < 4; ++a) s(I, 3 + a) = hourglass_base_vectors()(I, a);

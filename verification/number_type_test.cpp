@@ -72,7 +72,7 @@ TYPED_TEST(PackedKernel, computes_what_doubles_compute) {
   std::array<typename Kernel::template Element<double>, P::width> elements;
   std::array<NodalVectors<double>, P::width> displacements;
   std::array<P, numbers> constants;
-  NodalVectors<P> u;
+  NodalVectors<P> u{};
   for (int lane = 0; lane < P::width; ++lane) {
     const auto n = static_cast<std::size_t>(lane);
     const NodalVectors<double> X = random.hexahedron();

@@ -50,8 +50,7 @@ class PatchTest : public ::testing::Test {
   /// What pulls on the face x = 1: the sum of its nodes' forces is P e_x times its unit area, for the shares
   /// of the faces beside it cancel. It contains the element's weights, which the displacements do not.
   static Vector traction(const Model& model, const NodalField& u) {
-    NodalField force(u.size());
-    model.internal_force().evaluate(u, force);
+    const NodalField force = internal_forces(model, u);
     Vector sum{};
     for (const int n : nodes_where(model.scene().mesh.points, [](const Vector& X) { return X[0] == 1.0; })) {
       for (std::size_t i = 0; i < 3; ++i) sum[i] += force[index(n)][i];
@@ -142,8 +141,7 @@ TYPED_TEST(PatchTest, affine_displacements_are_an_equilibrium) {
   const Model model(scene, this->method());
   NodalField u;
   for (const auto& X : scene.mesh.points) u.push_back(linear(finite_gradient, X));
-  NodalField force(u.size());
-  model.internal_force().evaluate(u, force);
+  NodalField force = internal_forces(model, u);
   for (int n = 0; n < first_corner; ++n) {
     for (const double f : force[index(n)]) EXPECT_NEAR(f, 0.0, 1e-13 * young_modulus);
   }

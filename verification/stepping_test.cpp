@@ -26,8 +26,7 @@ Scene driven_block(const Vector& d, double nu = 0.49) {
 
 /// Recomputes |free forces| / |reactions| from the forces alone.
 double residual_of(const Model& model, const NodalField& u) {
-  NodalField force(u.size());
-  model.internal_force().evaluate(u, force);
+  NodalField force = internal_forces(model, u);
   double carried = 0.0;
   for (const auto& c : model.scene().constraints) {
     double& f = force[index(c.node)][index(c.component)];

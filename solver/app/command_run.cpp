@@ -31,8 +31,8 @@ class RunObserver final : public Observer {
  public:
   RunObserver(const std::string& title, ResultWriter* writer) : progress_(title), writer_(writer) {}
 
-  void frame(double time, const NodalField& u, const NodalField& v) override {
-    if (writer_ != nullptr) writer_->frame(time, u, v);
+  void frame(const Frame& frame) override {
+    if (writer_ != nullptr) writer_->frame(frame);
   }
   void history(const HistoryRow& row) override {
     if (writer_ != nullptr) writer_->history(row);

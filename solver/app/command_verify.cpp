@@ -16,6 +16,7 @@
 #include "element/methods.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
+#include "stepping/body.hpp"
 #include "io/text_file.hpp"
 
 namespace sandglass {
@@ -81,9 +82,8 @@ void write_result(const Task& task, const NodalField& u, const std::string& fold
       std::filesystem::path(folder) /
       fmt::format("{}.{}{}.h5", task.subject->scene.description.name, task.choice.method, kappa);
   ResultWriter writer(model, path, build_provenance());
-  const NodalField rest(u.size());
-  writer.frame(0.0, rest, rest);
-  writer.frame(1.0, u, rest);
+  writer.frame(static_frame(model, 0.0, NodalField(u.size())));
+  writer.frame(static_frame(model, 1.0, u));
   writer.commit("complete");
 }
 

@@ -55,7 +55,7 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
     Observer silent;
     Relaxation relaxation = relax(model, silent);
     u = std::move(relaxation.u);
-    const StrainEnergies energies = model.internal_force().energies(u);
+    const StrainEnergies energies = relaxation.energies;
     verdict.status = relaxation.converged ? "ok"
                                           : fmt::format("failed: not at rest after {} steps, residual {:.1e}",
                                                         relaxation.steps, relaxation.residual);

@@ -38,16 +38,15 @@ struct MeanPressure {
 
 namespace detail {
 
-/// A parent axis: the two others, and the hourglass modes (rows of Modes) that vary along it with the second
-/// axis and with the third. Along xi these are xi eta and xi zeta, and so on round; xi eta zeta varies with
-/// both.
+/// A parent axis: the two others, and which of the hourglass modes eta zeta, xi zeta, xi eta vary along it with
+/// the second axis and with the third; xi eta zeta varies with both.
 struct ParentAxis {
   int second;
   int third;
-  int with_second;
-  int with_third;
+  std::size_t with_second;
+  std::size_t with_third;
 };
-inline constexpr std::array<ParentAxis, 3> parent_axes{{{1, 2, 5, 4}, {0, 2, 5, 3}, {0, 1, 4, 3}}};
+inline constexpr std::array<ParentAxis, 3> parent_axes{{{1, 2, 2, 1}, {0, 2, 2, 0}, {0, 1, 1, 0}}};
 
 /// The two Gauss points on each of the four lines along a parent axis; lines are ordered by the signs along
 /// the second, then the third axis. Gauss points stand in the order of the corners.
@@ -82,6 +81,10 @@ struct EightPoint {
     T V;                      ///< reference volume, m^3
   };
 
+  static constexpr bool needs_increment = false;
+  static constexpr bool needs_coordinates = false;
+  template <class T>
+  using History = NoHistory<T>;
   using NoControl = NoHourglassControl;
 
   static Element<double> precompute(const NodalVectors<double>& X) {
@@ -96,26 +99,47 @@ struct EightPoint {
     return element;
   }
 
-  /// Internal nodal forces (N): sum_q w_q B_q (P_iso(H_q) + p_q cof F_q)^T.
+  /// What the force needs of the displacements, at each Gauss point.
+  template <class T>
+  struct Deformation {
+    std::array<Tensor<T>, 8> H;
+    std::array<T, 8> inverse_root;
+    std::array<T, 8> J_minus_one;
+  };
+
+  template <class Hourglass, class T>
+  static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
+    Deformation<T> now;
+    const auto gradients = parent_gradients(motion.u);
+    for (std::size_t q = 0; q < 8; ++q) {
+      now.H[q] = gradients[q] * element.inverse_jacobian[q];
+      const VolumeChange<T> change = volume_change(now.H[q]);
+      now.J_minus_one[q] = change.J_minus_one;
+      now.inverse_root[q] = change.inverse_root;
+    }
+    return now;
+  }
+
+  /// Internal forces (N) in modes: sum_q w_q B_q (P_iso(H_q) + p_q cof F_q)^T.
   template <class Hourglass, class T, class Law>
-  static NodalVectors<T> force(const NodalVectors<T>& u, const Element<T>& element,
-                               const NoControl::Element<T>& /*control*/, const Law& law) {
-    const auto H = point_gradients(u, element);
-    const auto dilatation = Pressure::dilatations(point_dilatations(H), element);
+  static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
+                        const NoControl::Element<T>& /*control*/, History<T>& /*history*/, const Law& law) {
+    const auto dilatation = Pressure::dilatations(now.J_minus_one, element);
     std::array<Tensor<T>, 8> flux;  // w P J^-T, the stress that the parent gradient carries
     for (std::size_t q = 0; q < 8; ++q) {
-      const Tensor<T> P =
-          law.isochoric_piola(H[q]) + law.pressure(dilatation[q]) * cofactor(identity<T>() + H[q]);
-      flux[q] = (element.weight[q] * P) * transpose(element.inverse_jacobian[q]);
+      const VolumeChange<T> change{now.J_minus_one[q], now.inverse_root[q]};
+      flux[q] = law.weighted_piola(element.weight[q], now.H[q], change, law.pressure(dilatation[q])) *
+                transpose(element.inverse_jacobian[q]);
     }
-    return from_modes(parent_divergence(flux));
+    return parent_divergence(flux);
   }
 
   /// Strain energy (J).
   template <class Hourglass, class T, class Law>
-  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element<T>& element,
-                                 const NoControl::Element<T>& /*control*/, const Law& law) {
-    const auto H = point_gradients(u, element);
+  static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
+                                 const NoControl::Element<T>& /*control*/, const History<T>& /*history*/,
+                                 const Law& law) {
+    const auto H = point_gradients(motion, element);
     const auto dilatation = Pressure::dilatations(point_dilatations(H), element);
     T W = T(0);
     for (std::size_t q = 0; q < 8; ++q) {
@@ -124,25 +148,31 @@ struct EightPoint {
     return {W, T(0)};
   }
 
+  /// Reference volume, m^3.
   template <class T>
-  static T smallest_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    const auto dilatation = point_dilatations(point_gradients(u, element));
+  static T volume(const ElementMotion<T>& /*motion*/, const Element<T>& element) {
+    return element.V;
+  }
+
+  template <class T>
+  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    const auto dilatation = point_dilatations(point_gradients(motion, element));
     T smallest = dilatation[0];
     for (std::size_t q = 1; q < 8; ++q) smallest = min(smallest, dilatation[q]);
     return T(1) + smallest;
   }
 
   template <class T>
-  static T mean_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    return T(1) + volume_average(point_dilatations(point_gradients(u, element)), element);
+  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return T(1) + volume_average(point_dilatations(point_gradients(motion, element)), element);
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u: the points' bounds add up,
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness: the points' bounds add up,
   /// and the stiffness of a pressure that is one for the element acts on one mean spatial gradient.
   template <class Hourglass, class T, class Law>
-  static T stiffness_bound(const NodalVectors<T>& u, const Element<T>& element,
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const NoControl::Element<T>& /*control*/, const Law& law) {
-    const auto H = point_gradients(u, element);
+    const auto H = point_gradients(motion, element);
     const auto own_dilatation = point_dilatations(H);
     const auto dilatation = Pressure::dilatations(own_dilatation, element);
     const auto points = gauss_points();
@@ -175,16 +205,14 @@ struct EightPoint {
   static std::array<Tensor<T>, 8> parent_gradients(const Modes<T>& modes) {
     std::array<Tensor<T>, 8> gradients;
     for (int i = 0; i < 3; ++i) {
+      const std::array<T, 3> bilinear{T(g) * modes(3, i), T(g) * modes(4, i), T(g) * modes(5, i)};
+      const T trilinear = T(g * g) * modes(6, i);
       for (int k = 0; k < 3; ++k) {
         const auto axis = static_cast<std::size_t>(k);
-        const int with_second = detail::parent_axes[axis].with_second;
-        const int with_third = detail::parent_axes[axis].with_third;
-        const T a = modes(k, i);
-        const T b = T(g) * modes(with_second, i);
-        const T c = T(g) * modes(with_third, i);
-        const T d = T(g * g) * modes(6, i);
-        const T low = a - b, high = a + b;      // by the sign along the second axis
-        const T low_c = c - d, high_c = c + d;  // what the sign along the third axis multiplies
+        const T b = bilinear[detail::parent_axes[axis].with_second];
+        const T c = bilinear[detail::parent_axes[axis].with_third];
+        const T low = modes(k, i) - b, high = modes(k, i) + b;    // by the sign along the second axis
+        const T low_c = c - trilinear, high_c = c + trilinear;  // what the sign along the third multiplies
         const std::array<T, 4> values{low - low_c, high - high_c, low + low_c, high + high_c};
         for (std::size_t line = 0; line < 4; ++line) {
           for (const std::size_t q : detail::lines_along[axis][line]) gradients[q](i, k) = values[line];
@@ -197,12 +225,12 @@ struct EightPoint {
   /// The transpose of `parent_gradients`: what fluxes at the points do to the modes.
   template <class T>
   static Modes<T> parent_divergence(const std::array<Tensor<T>, 8>& flux) {
-    Modes<T> f{};
+    Modes<T> f;
     for (int i = 0; i < 3; ++i) {
+      std::array<T, 3> bilinear{T(0), T(0), T(0)};
+      T trilinear = T(0);
       for (int k = 0; k < 3; ++k) {
         const auto axis = static_cast<std::size_t>(k);
-        const int with_second = detail::parent_axes[axis].with_second;
-        const int with_third = detail::parent_axes[axis].with_third;
         std::array<T, 4> values;
         for (std::size_t line = 0; line < 4; ++line) {
           const auto& [q, r] = detail::lines_along[axis][line];
@@ -210,19 +238,23 @@ struct EightPoint {
         }
         const T low = values[0] + values[1], high = values[2] + values[3];
         const T low_b = values[1] - values[0], high_b = values[3] - values[2];
+        T& second = bilinear[detail::parent_axes[axis].with_second];
+        T& third = bilinear[detail::parent_axes[axis].with_third];
         f(k, i) = low + high;
-        f(with_second, i) = f(with_second, i) + T(g) * (low_b + high_b);
-        f(with_third, i) = f(with_third, i) + T(g) * (high - low);
-        f(6, i) = f(6, i) + T(g * g) * (high_b - low_b);
+        second = second + (low_b + high_b);
+        third = third + (high - low);
+        trilinear = trilinear + (high_b - low_b);
       }
+      for (int a = 0; a < 3; ++a) f(3 + a, i) = T(g) * bilinear[static_cast<std::size_t>(a)];
+      f(6, i) = T(g * g) * trilinear;
     }
     return f;
   }
 
   /// Displacement gradients at the Gauss points.
   template <class T>
-  static std::array<Tensor<T>, 8> point_gradients(const NodalVectors<T>& u, const Element<T>& element) {
-    auto H = parent_gradients(to_modes(u));
+  static std::array<Tensor<T>, 8> point_gradients(const ElementMotion<T>& motion, const Element<T>& element) {
+    auto H = parent_gradients(motion.u);
     for (std::size_t q = 0; q < 8; ++q) H[q] = H[q] * element.inverse_jacobian[q];
     return H;
   }

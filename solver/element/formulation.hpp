@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "element/hourglass_settings.hpp"
 #include "element/one_point.hpp"
 
@@ -16,41 +18,105 @@ struct Formulation {
     [[no_unique_address]] typename Hourglass::template Element<T> hourglass;
   };
 
+  /// What changes in time beside the displacements; empty for elements whose force follows from them.
+  template <class T>
+  using History = typename Kinematics::template History<T>;
+
+  static constexpr bool remembers = !std::is_empty_v<History<double>>;
+  static constexpr bool needs_increment = Kinematics::needs_increment;
+  static constexpr bool needs_coordinates = Kinematics::needs_coordinates;
+
   /// The constants of an element with reference coordinates X (m).
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& settings) {
     return {Kinematics::precompute(X), Hourglass::precompute(X, law, settings)};
   }
 
-  /// Internal nodal forces (N) at the nodal displacements u (m): the derivative of the energy with respect to
-  /// u.
+  /// What the force needs of the motion: the first half of a step. Two halves let a loop begin the next
+  /// element before it ends this one.
   template <class T>
-  static NodalVectors<T> force(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
-    return Kinematics::template force<Hourglass>(u, element.body, element.hourglass, law);
+  using Deformation = typename Kinematics::template Deformation<T>;
+
+  template <class T>
+  static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
+    return Kinematics::template deformation<Hourglass>(motion, element.body);
+  }
+
+  /// Internal forces (N) in modes. What the element remembers goes one step on.
+  template <class T>
+  static Modes<T> force(const Deformation<T>& now, const Element<T>& element, History<T>& history,
+                        const Law& law) {
+    return Kinematics::template force<Hourglass>(now, element.body, element.hourglass, history, law);
   }
 
   /// Strain and hourglass energy (J).
   template <class T>
-  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
-    return Kinematics::template energy<Hourglass>(u, element.body, element.hourglass, law);
+  static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
+                                 const History<T>& history, const Law& law) {
+    return Kinematics::template energy<Hourglass>(motion, element.body, element.hourglass, history, law);
+  }
+
+  /// The reference volume, m^3.
+  template <class T>
+  static T volume(const ElementMotion<T>& motion, const Element<T>& element) {
+    return Kinematics::volume(motion, element.body);
   }
 
   /// The smallest det F at the integration points.
   template <class T>
-  static T smallest_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    return Kinematics::smallest_jacobian(u, element.body);
+  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return Kinematics::smallest_jacobian(motion, element.body);
   }
 
   /// The volume ratio of the element.
   template <class T>
-  static T mean_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    return Kinematics::mean_jacobian(u, element.body);
+  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return Kinematics::mean_jacobian(motion, element.body);
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u, hourglass part included.
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, hourglass part included.
   template <class T>
-  static T stiffness_bound(const NodalVectors<T>& u, const Element<T>& element, const Law& law) {
-    return Kinematics::template stiffness_bound<Hourglass>(u, element.body, element.hourglass, law);
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element, const Law& law) {
+    return Kinematics::template stiffness_bound<Hourglass>(motion, element.body, element.hourglass, law);
+  }
+};
+
+/// One element that remembers nothing, from nodal displacements u (m) to nodal forces (N): the plain form of
+/// the functions above, for who looks at a single element.
+template <class Kernel>
+struct NodalForm : Kernel {
+  static_assert(!Kernel::remembers && !Kernel::needs_increment);
+
+  template <class T, class Element, class Law>
+  static NodalVectors<T> force(const NodalVectors<T>& u, const Element& element, const Law& law) {
+    typename Kernel::template History<T> none;
+    return from_modes(Kernel::force(Kernel::deformation(motion(u), element), element, none, law));
+  }
+
+  template <class T, class Element, class Law>
+  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element& element, const Law& law) {
+    return Kernel::energy(motion(u), element, typename Kernel::template History<T>{}, law);
+  }
+
+  template <class T, class Element>
+  static T smallest_jacobian(const NodalVectors<T>& u, const Element& element) {
+    return Kernel::smallest_jacobian(motion(u), element);
+  }
+
+  template <class T, class Element>
+  static T mean_jacobian(const NodalVectors<T>& u, const Element& element) {
+    return Kernel::mean_jacobian(motion(u), element);
+  }
+
+  template <class T, class Element, class Law>
+  static T stiffness_bound(const NodalVectors<T>& u, const Element& element, const Law& law) {
+    return Kernel::stiffness_bound(motion(u), element, law);
+  }
+
+ private:
+  template <class T>
+  static ElementMotion<T> motion(const NodalVectors<T>& u) {
+    return {.u = to_modes(u), .increment = {}, .X = {}};
   }
 };
 

@@ -83,7 +83,7 @@ struct MeanGradient {
 /// dN/dX det(dX/dxi) are quadratic in each parent coordinate; gradients at the centre would fail the patch
 /// test.
 constexpr MeanGradient mean_gradient(const NodalVectors<double>& X) {
-  NodalVectors<double> B;
+  NodalVectors<double> B{};
   double V = 0.0;
   for (const auto& xi : gauss_points()) {
     const Tensor<double> jacobian = parent_jacobian(X, xi);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "element/hexahedron.hpp"
-#include "element/modes.hpp"
+#include "element/element_motion.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 
@@ -41,14 +41,39 @@ struct OnePoint {
     T V;                ///< reference volume, m^3
   };
 
-  static Element<double> precompute(const NodalVectors<double>& X) {
-    const MeanGradient mean = sandglass::mean_gradient(X);
-    const Modes<double> h = 0.125 * to_modes(mean.h);
-    const Modes<double> x = to_modes(X);
-    Element<double> element{.V = mean.volume};
+  static constexpr bool needs_increment = false;
+  static constexpr bool needs_coordinates = false;
+  template <class T>
+  using History = NoHistory<T>;
+
+  static Element<double> precompute(const NodalVectors<double>& X) { return geometry(to_modes(X)); }
+
+  /// The same from the modes of the nodal coordinates x (m), in closed form: with a_m = x_m / 8 the volume is
+  ///   V = 8 ([a1 a2 a3] + ([a1 a6 a5] + [a6 a2 a4] + [a5 a4 a3]) / 3),  [a b c] = a . (b x c),
+  /// and h_m = dV/dx_m / V. It is Flanagan and Belytschko's closed form of B and V, in modes; a7 is not in it.
+  template <class T>
+  static Element<T> geometry(const Modes<T>& x) {
+    std::array<Triple<T>, 6> a;
+    for (int m = 0; m < 6; ++m) {
+      for (int i = 0; i < 3; ++i) a[static_cast<std::size_t>(m)](i, 0) = T(0.125) * x(m, i);
+    }
+    const T third(1.0 / 3.0);
+    const Triple<T> a65 = third * cross(a[5], a[4]);
+    const Triple<T> a46 = third * cross(a[3], a[5]);
+    const Triple<T> a54 = third * cross(a[4], a[3]);
+    const std::array<Triple<T>, 6> dV{cross(a[1], a[2]) + a65,
+                                      cross(a[2], a[0]) + a46,
+                                      cross(a[0], a[1]) + a54,
+                                      third * (cross(a[5], a[1]) + cross(a[2], a[4])),
+                                      third * (cross(a[0], a[5]) + cross(a[3], a[2])),
+                                      third * (cross(a[4], a[0]) + cross(a[1], a[3]))};
+    const T eighth = double_dot(a[0], dV[0]) + double_dot(a[1], a46) + double_dot(a[2], a54);
+    const T scale = T(0.125) / eighth;
+    Element<T> element;
+    element.V = T(8) * eighth;
     for (int i = 0; i < 3; ++i) {
-      for (int m = 0; m < 6; ++m) element.h(m, i) = h(m, i);
-      for (int a = 0; a < 4; ++a) element.c(a, i) = x(3 + a, i);
+      for (int m = 0; m < 6; ++m) element.h(m, i) = scale * dV[static_cast<std::size_t>(m)](i, 0);
+      for (int b = 0; b < 4; ++b) element.c(b, i) = x(3 + b, i);
     }
     return element;
   }
@@ -82,70 +107,100 @@ struct OnePoint {
     return q;
   }
 
-  /// Internal nodal forces (N): f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14).
+  /// What the force needs of the displacements.
+  template <class T>
+  struct Deformation {
+    Tensor<T> H;
+    VolumeChange<T> change;
+    HourglassModes<T> q;  ///< hourglass displacements, m; unset without a control
+  };
+
+  template <class Hourglass, class T>
+  static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
+    Deformation<T> now;
+    now.H = mean_gradient(motion.u, element);
+    now.change = volume_change(now.H);
+    if constexpr (Hourglass::active) now.q = hourglass_displacements(motion.u, now.H, element);
+    return now;
+  }
+
+  /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14).
   template <class Hourglass, class T, class Law>
-  static NodalVectors<T> force(const NodalVectors<T>& u, const Element<T>& element,
-                               const typename Hourglass::template Element<T>& control, const Law& law) {
-    const Modes<T> modes = to_modes(u);
-    const Tensor<T> H = mean_gradient(modes, element);
-    const Tensor<T> VP = element.V * transpose(law.piola(H));
+  static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
+                        const typename Hourglass::template Element<T>& control, History<T>& /*history*/,
+                        const Law& law) {
+    const T p = law.pressure(now.change.J_minus_one);
+    const Tensor<T> VP = transpose(law.weighted_piola(element.V, now.H, now.change, p));
     if constexpr (Hourglass::active) {
-      const HourglassModes<T> Q = Hourglass::resistance(hourglass_displacements(modes, H, element), control);
-      Modes<T> f = body_forces(VP - transpose(element.c) * Q, element);
-      for (int a = 0; a < 4; ++a) {
-        for (int i = 0; i < 3; ++i) f(3 + a, i) = f(3 + a, i) + Q(a, i);
-      }
-      return from_modes(f);
+      return modal_forces(VP, Hourglass::resistance(now.q, control), element);
     } else {
-      return from_modes(body_forces(VP, element));
+      return body_forces(VP, element);
     }
   }
 
   template <class Hourglass, class T, class Law>
-  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element<T>& element,
-                                 const typename Hourglass::template Element<T>& control, const Law& law) {
-    const Modes<T> modes = to_modes(u);
-    const Tensor<T> H = mean_gradient(modes, element);
+  static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
+                                 const typename Hourglass::template Element<T>& control,
+                                 const History<T>& /*history*/, const Law& law) {
+    const Tensor<T> H = mean_gradient(motion.u, element);
     ElementEnergy<T> energy{element.V * law.energy(H), T(0)};
     if constexpr (Hourglass::active) {
-      energy.hourglass = Hourglass::energy(hourglass_displacements(modes, H, element), control);
+      energy.hourglass = Hourglass::energy(hourglass_displacements(motion.u, H, element), control);
     }
     return energy;
   }
 
+  /// Reference volume, m^3.
+  template <class T>
+  static T volume(const ElementMotion<T>& /*motion*/, const Element<T>& element) {
+    return element.V;
+  }
+
   /// The smallest volume ratio det F at the integration points.
   template <class T>
-  static T smallest_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    return mean_jacobian(u, element);
+  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return mean_jacobian(motion, element);
   }
 
   /// The element's volume over its reference volume, as this element sees it.
   template <class T>
-  static T mean_jacobian(const NodalVectors<T>& u, const Element<T>& element) {
-    return T(1) + jacobian_minus_one(mean_gradient(to_modes(u), element));
+  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return T(1) + jacobian_minus_one(mean_gradient(motion.u, element));
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness at u. The body's part is that of
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness. The body's part is that of
   /// the spatial gradients h F^-1; on a cube at rest it is the exact eigenvalue, where the paper's eqs 7 and
   /// 8 give (lambda + 2 mu) |h|^2. The control's part is added, which is safe whatever the angle between
   /// their modes.
   template <class Hourglass, class T, class Law>
-  static T stiffness_bound(const NodalVectors<T>& u, const Element<T>& element,
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const typename Hourglass::template Element<T>& control, const Law& law) {
-    const Tensor<T> H = mean_gradient(to_modes(u), element);
+    const Tensor<T> H = mean_gradient(motion.u, element);
     const NodalVectors<T> h = nodal_gradients(element);
     const T body = element.V * gradient_bound(tangent_bound(law, H), h * inverse(identity<T>() + H));
     if constexpr (Hourglass::active) return body + Hourglass::stiffness_bound(gamma(h, element), control);
     return body;
   }
 
- private:
+  /// h S + gamma Q in modes, for a stress S = V P^T and hourglass resistances Q (N).
+  template <class T>
+  static Modes<T> modal_forces(const Tensor<T>& S, const HourglassModes<T>& Q, const Element<T>& element) {
+    Modes<T> f = body_forces(S - transpose(element.c) * Q, element);
+    for (int a = 0; a < 4; ++a) {
+      for (int i = 0; i < 3; ++i) f(3 + a, i) = f(3 + a, i) + Q(a, i);
+    }
+    return f;
+  }
+
   /// h S for each mode; none in the mode xi eta zeta.
   template <class T>
   static Modes<T> body_forces(const Tensor<T>& S, const Element<T>& element) {
     const Matrix<T, 6, 3> hS = element.h * S;
-    Modes<T> f{};
-    std::copy(hS.entries.begin(), hS.entries.end(), f.entries.begin());
+    Modes<T> f;
+    for (int i = 0; i < 3; ++i) {
+      for (int m = 0; m < 6; ++m) f(m, i) = hS(m, i);
+      f(6, i) = T(0);
+    }
     return f;
   }
 

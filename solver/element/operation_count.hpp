@@ -2,24 +2,24 @@
 
 #include <array>
 #include <bit>
-#include <optional>
 
 #include "element/formulation.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
 #include "math/counted.hpp"
+#include "math/rows.hpp"
 
 /// Operations per element and step, counted by running the kernels themselves on counting numbers.
 namespace sandglass {
 
-/// What one evaluation of an element's force costs, by part.
+/// What an element costs per step, by part.
 struct OperationCount {
-  Operations gradient;   ///< from nodal displacements to displacement gradients
+  Operations gradient;   ///< from nodal displacements to displacement gradients and volume changes
   Operations law;        ///< from displacement gradients to stresses
   Operations force;      ///< from stresses to nodal forces
   Operations hourglass;  ///< what the hourglass control adds to an element without it
   Operations total;
-  long bytes = 0;  ///< constants of the element in double and its eight node numbers, read once per step
+  long bytes = 0;  ///< in double: constants and four places of nodes read, history read and written
 };
 
 namespace detail {
@@ -32,19 +32,20 @@ class ObservedLaw {
 
   // clang-format off
   template <class H> auto piola(const H& h) const { return observed([&] { return law_.piola(h); }); }
-  template <class H> auto isochoric_piola(const H& h) const { return observed([&] { return law_.isochoric_piola(h); }); }
+  template <class T, class H, class C> auto weighted_piola(const T& V, const H& h, const C& c, const T& p) const { return observed([&] { return law_.weighted_piola(V, h, c, p); }); }
   template <class T> auto pressure(const T& j) const { return observed([&] { return law_.pressure(j); }); }
   // clang-format on
 
   /// The tally before the first call, and all that was counted inside of calls.
-  Operations before() const { return before_.value_or(Operations{}); }
+  Operations before() const { return before_; }
   Operations inside() const { return inside_; }
 
  private:
   template <class Call>
   auto observed(Call call) const {
     const Operations start = tally_;
-    if (!before_) before_ = start;
+    if (!called_) before_ = start;
+    called_ = true;
     auto result = call();
     inside_ = inside_ + (tally_ - start);
     return result;
@@ -52,14 +53,36 @@ class ObservedLaw {
 
   const Law& law_;
   const Operations& tally_;
-  mutable std::optional<Operations> before_;
+  mutable bool called_ = false;
+  mutable Operations before_;
   mutable Operations inside_;
 };
 
 }  // namespace detail
 
-/// Counts one force evaluation of a formulation. The count does not depend on the values: kernels have no
-/// branches.
+namespace detail {
+
+/// `count` numbers that are known to a tally, as an aggregate of them.
+template <class Aggregate>
+Aggregate counted(Operations& tally, double value) {
+  constexpr std::size_t numbers = sizeof(Aggregate) / sizeof(Counted);
+  std::array<Counted, numbers> entries;
+  for (std::size_t n = 0; n < numbers; ++n) {
+    entries[n] = Counted(value * (1.0 + 1e-3 * static_cast<double>(n)), tally);
+  }
+  return std::bit_cast<Aggregate>(entries);
+}
+
+/// The modes of an element in a strip: those of its lower face are known from the element before.
+inline Modes<Counted> modes_in_strip(const FaceModes<Counted>& lower, Operations& tally, double value) {
+  const auto upper = counted<FaceVectors<Counted>>(tally, value);
+  return modes_between(lower, to_face_modes(upper));
+}
+
+}  // namespace detail
+
+/// Counts what one element costs in one step, as the assembly runs it: in a strip, where a face's modes serve
+/// both its elements. The count does not depend on the values: kernels have no branches.
 template <class Kinematics, class Hourglass, class Law>
 OperationCount count_operations(const Law& law) {
   using Kernel = Formulation<Kinematics, Hourglass, Law>;
@@ -70,13 +93,29 @@ OperationCount count_operations(const Law& law) {
   std::array<Counted, numbers> constants;
   for (std::size_t n = 0; n < numbers; ++n) constants[n] = Counted(plain[n], tally);
   const auto element = std::bit_cast<typename Kernel::template Element<Counted>>(constants);
-  NodalVectors<Counted> u;
-  for (int n = 0; auto& entry : u.entries) entry = Counted(1e-3 * ++n, tally);
+  const auto lower = detail::counted<FaceModes<Counted>>(tally, 1e-3);
+  const auto carried = detail::counted<FaceModes<Counted>>(tally, 1.0);
 
+  ElementMotion<Counted> motion;
+  motion.u = detail::modes_in_strip(lower, tally, 2e-3);
+  if constexpr (Kernel::needs_increment) motion.increment = detail::modes_in_strip(lower, tally, 1e-4);
+  if constexpr (Kernel::needs_coordinates) motion.X = detail::modes_in_strip(lower, tally, 1.0);
+  OperationCount count;
+  typename Kernel::template History<Counted> history;
+  if constexpr (Kernel::remembers) {
+    history = detail::counted<typename Kernel::template History<Counted>>(tally, 1e-2);
+    count.bytes += static_cast<long>(2 * sizeof(typename Kernel::template History<double>));
+  }
   const detail::ObservedLaw<Law> observed(law, tally);
-  Kinematics::template force<Hourglass>(u, element.body, element.hourglass, observed);
-  OperationCount count{.gradient = observed.before(), .law = observed.inside(), .total = tally};
-  count.bytes = static_cast<long>(numbers * sizeof(double) + 8 * sizeof(int));
+  const auto now = Kernel::deformation(motion, element);
+  const auto f = Kinematics::template force<Hourglass>(now, element.body, element.hourglass, history, observed);
+  from_face_modes(carried + lower_face(f));
+  upper_face(f);
+
+  count.gradient = observed.before();
+  count.law = observed.inside();
+  count.total = tally;
+  count.bytes += static_cast<long>(numbers * sizeof(double) + 4 * sizeof(Place));
   count.force = tally - count.gradient - count.law;
   if constexpr (Hourglass::active) {
     const OperationCount without = count_operations<Kinematics, NoHourglassControl>(law);

@@ -29,20 +29,22 @@ ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path
   for (const auto& [name, value] : provenance) file_.write_attribute("/", name, value);
 }
 
-void ResultWriter::frame(double time, const NodalField& u, const NodalField& v) {
+void ResultWriter::frame(const Frame& frame) {
   const std::string group = frame_group(times_.size());
-  const std::size_t n_nodes = u.size();
-  const std::size_t n_cells = model_.scene().mesh.cells.size();
-  std::vector<double> per_element(n_cells);
-  file_.write(group + "/displacement", {n_nodes, 3}, std::span<const double>(u.front().data(), 3 * n_nodes));
-  file_.write(group + "/velocity", {n_nodes, 3}, std::span<const double>(v.front().data(), 3 * n_nodes));
-  model_.internal_force().jacobians(u, per_element);
-  file_.write(group + "/jacobian", {n_cells}, std::span<const double>(per_element));
-  model_.internal_force().hourglass_energy_densities(u, per_element);
-  file_.write(group + "/hourglass_energy_density", {n_cells}, std::span<const double>(per_element));
+  const auto write_nodal = [&](const std::string& name, const NodalField& field) {
+    file_.write(group + name, {field.size(), 3},
+                std::span<const double>(field.front().data(), 3 * field.size()));
+  };
+  const auto write_elements = [&](const std::string& name, const std::vector<double>& values) {
+    file_.write(group + name, {values.size()}, std::span<const double>(values));
+  };
+  write_nodal("/displacement", frame.u);
+  write_nodal("/velocity", frame.v);
+  write_elements("/jacobian", frame.jacobians);
+  write_elements("/hourglass_energy_density", frame.hourglass_energy_densities);
   file_.write_attribute(group + "/hourglass_energy_density", "unit", "J/m^3");
-  file_.write_attribute(group, "time", time);
-  times_.push_back(time);
+  file_.write_attribute(group, "time", frame.time);
+  times_.push_back(frame.time);
 }
 
 void ResultWriter::write_history() {

@@ -19,7 +19,7 @@ class ResultWriter {
  public:
   ResultWriter(const Model& model, const std::filesystem::path& path, const Provenance& provenance);
 
-  void frame(double time, const NodalField& u, const NodalField& v);
+  void frame(const Frame& frame);
   void history(const HistoryRow& row) { history_.push_back(row); }
 
   /// `status` is "complete" or says how the run ended.

@@ -12,8 +12,7 @@ namespace sandglass {
 /// The nearly incompressible neo-Hookean law of ABAQUS and of the TLED paper,
 ///   W = mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2,
 /// written in the displacement gradient H = F - I so that nothing cancels near rest. Energies in J/m^3,
-/// stresses in Pa, per reference volume. With e = F F^T - I = H + H^T + H H^T and its deviator d:
-///   P = (mu J^(-5/3) d + K (J - 1) I) cof F.
+/// stresses in Pa, per reference volume.
 struct NeoHookean {
   static constexpr std::string_view name = "neo-hookean";
   static constexpr std::string_view summary = "isochoric neo-Hookean with a quadratic volumetric energy";
@@ -61,10 +60,33 @@ struct NeoHookean {
     return T(bulk_modulus());
   }
 
-  /// mu J^(-5/3) dev(F F^T) cof F, the isochoric part of the first Piola-Kirchhoff stress.
+  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure p
+  /// (Pa, tension positive) that need not be the law's own:
+  /// P = a F + (p - a tr(F^T F) / (3 J)) cof F with a = mu J^(-2/3). With cof F = (1 + tr H) I - H^T + cof H
+  /// the unit tensors cancel by hand, and what is left is linear in H at rest:
+  ///   P = c I + a H + (a - c) (H^T - tr H I - cof H),  c = p + a (3 (J - 1) - 2 tr H - H:H) / (3 J).
+  template <class T>
+  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
+    const T r = change.inverse_root;
+    const T r2 = r * r;
+    const T a = (T(shear_modulus()) * V) * r2;
+    const T tr = trace(H);
+    const T c = V * p + (T(1.0 / 3.0) * a) * (r2 * r) *
+                        (T(3) * change.J_minus_one - (T(2) * tr + double_dot(H, H)));
+    const T b = a - c;
+    const Tensor<T> cof_H = cofactor(H);
+    Tensor<T> P;  // times V
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) P(i, j) = a * H(i, j) + b * (H(j, i) - cof_H(i, j));
+      P(i, i) = P(i, i) + (c - b * tr);
+    }
+    return P;
+  }
+
+  /// The isochoric part of the first Piola-Kirchhoff stress.
   template <class T>
   Tensor<T> isochoric_piola(const Tensor<T>& H) const {
-    return isochoric_cauchy_stress(H, jacobian_minus_one(H)) * cofactor(identity<T>() + H);
+    return weighted_piola(T(1), H, volume_change(H), T(0));
   }
 
   /// The strain energy density.
@@ -76,11 +98,8 @@ struct NeoHookean {
   /// The first Piola-Kirchhoff stress, dW/dF.
   template <class T>
   Tensor<T> piola(const Tensor<T>& H) const {
-    const T J_minus_one = jacobian_minus_one(H);
-    Tensor<T> sigma = isochoric_cauchy_stress(H, J_minus_one);
-    const T p = pressure(J_minus_one);
-    for (int i = 0; i < 3; ++i) sigma(i, i) = sigma(i, i) + p;
-    return sigma * cofactor(identity<T>() + H);
+    const VolumeChange<T> change = volume_change(H);
+    return weighted_piola(T(1), H, change, pressure(change.J_minus_one));
   }
 
   /// Bound of the isochoric tangent in the current configuration; see TangentBound. With b = F F^T and
@@ -96,14 +115,6 @@ struct NeoHookean {
     const T m = T(shear_modulus()) * root * root;
     return {.volumetric = m * (T(2.0 / 3.0) * deviation - T(2.0 / 9.0) * trace_b),
             .gradient = m * (T(2.0 / 3.0) * trace_b + T(std::sqrt(2.0 / 3.0) + 2.0 / 3.0) * deviation)};
-  }
-
- private:
-  template <class T>
-  Tensor<T> isochoric_cauchy_stress(const Tensor<T>& H, const T& J_minus_one) const {
-    const T r = inverse_cube_root(T(1) + J_minus_one);
-    const T r2 = r * r;
-    return (T(shear_modulus()) * (r2 * r2 * r)) * deviator(left_cauchy_green_minus_identity(H));
   }
 };
 

@@ -8,10 +8,11 @@
 namespace sandglass {
 
 /// A small dense matrix of R rows and C columns, stored by rows. An aggregate: `Matrix<double, 2, 2>{{1, 2,
-/// 3, 4}}`.
+/// 3, 4}}`. Without an initialiser its entries are unset, as for plain numbers: clearing them would cost the
+/// kernels time.
 template <class T, int R, int C>
 struct Matrix {
-  std::array<T, static_cast<std::size_t>(R) * static_cast<std::size_t>(C)> entries{};
+  std::array<T, static_cast<std::size_t>(R) * static_cast<std::size_t>(C)> entries;
 
   constexpr T& operator()(int i, int j) { return entries[index(i, j)]; }
   constexpr const T& operator()(int i, int j) const { return entries[index(i, j)]; }
@@ -33,6 +34,10 @@ using Tensor = Matrix<T, 3, 3>;
 /// Three components at each of the eight nodes of a hexahedron: displacements, forces, coordinates.
 template <class T>
 using NodalVectors = Matrix<T, 8, 3>;
+
+/// Three components.
+template <class T>
+using Triple = Matrix<T, 3, 1>;
 
 template <class T>
 constexpr Tensor<T> identity() {
@@ -115,6 +120,12 @@ constexpr Tensor<T> cofactor(const Tensor<T>& a) {
            a(0, 0) * a(2, 2) - a(0, 2) * a(2, 0), a(0, 1) * a(2, 0) - a(0, 0) * a(2, 1),
            a(0, 1) * a(1, 2) - a(0, 2) * a(1, 1), a(0, 2) * a(1, 0) - a(0, 0) * a(1, 2),
            a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0)}};
+}
+
+template <class T>
+constexpr Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
+  return {{a(1, 0) * b(2, 0) - a(2, 0) * b(1, 0), a(2, 0) * b(0, 0) - a(0, 0) * b(2, 0),
+           a(0, 0) * b(1, 0) - a(1, 0) * b(0, 0)}};
 }
 
 template <class T>

@@ -13,6 +13,20 @@ constexpr T jacobian_minus_one(const Tensor<T>& H) {
   return trace(H) + (second_invariant + determinant(H));
 }
 
+/// How a point's volume changes: J - 1 and J^(-1/3), which isochoric laws scale F with. The root is a long chain
+/// of operations; who computes it early has it when the stress needs it.
+template <class T>
+struct VolumeChange {
+  T J_minus_one;
+  T inverse_root;
+};
+
+template <class T>
+constexpr VolumeChange<T> volume_change(const Tensor<T>& H) {
+  const T J_minus_one = jacobian_minus_one(H);
+  return {J_minus_one, inverse_cube_root(T(1) + J_minus_one)};
+}
+
 /// F F^T - I = H + H^T + H H^T, the left Cauchy-Green tensor without its unit part.
 template <class T>
 constexpr Tensor<T> left_cauchy_green_minus_identity(const Tensor<T>& H) {

@@ -1,138 +1,241 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 #include <span>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "math/lanes.hpp"
 #include "model/internal_force.hpp"
 
 namespace sandglass {
 
 /// All elements of one formulation, their constants computed once, in blocks of as many elements as `Number`
-/// computes at a time: a pack for speed, a plain double for comparison. Elements are added in a fixed order,
-/// so that the same input gives the same bits.
-template <class Formulation, class Law, class Number>
-class ElementAssembly final : public InternalForce {
+/// computes at a time: a pack for speed, a plain number for comparison. The loop runs along the strips of the
+/// layout: a face's nodes are gathered once, their modes serve the elements on both sides, and the forces of
+/// both leave together.
+template <class Kernel, class Law, class Number>
+class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scalar> {
   static constexpr int width = Lanes<Number>::width;
-  using Element = typename Formulation::template Element<double>;
-  using ElementBlock = typename Formulation::template Element<Number>;
+  using Real = typename Lanes<Number>::Scalar;
+  using Element = typename Kernel::template Element<double>;
+  using ElementBlock = typename Kernel::template Element<Number>;
+  using HistoryBlock = typename Kernel::template History<Number>;
 
  public:
-  ElementAssembly(const Mesh& mesh, const Law& law, const HourglassSettings& settings)
-      : cells_(mesh.cells), law_(law) {
-    for (std::size_t first = 0; first < cells_.size(); first += width) {
-      ConstantsBlock block;
-      for (int lane = 0; lane < width; ++lane) {
-        // The last block is filled up with its last element; what the surplus lanes compute is never added.
-        const std::size_t e = std::min(first + static_cast<std::size_t>(lane), cells_.size() - 1);
-        const Element element = Formulation::precompute(gather(mesh.points, cells_[e]), law_, settings);
-        const auto constants = std::bit_cast<Constants>(element);
-        for (std::size_t n = 0; n < numbers; ++n) Lanes<Number>::set(block[n], lane, constants[n]);
+  ElementAssembly(const Mesh& mesh, const Law& law, const HourglassSettings& settings, int threads)
+      : layout_(make_layout(mesh, width)), law_(law), threads_(threads) {
+    blocks_.resize(layout_.levels());
+    for (const auto& group : layout_.groups) {
+      for (std::size_t k = 0; k < group.levels; ++k) {
+        blocks_[group.first_level + k] = precompute(mesh, group.first_face + k, settings);
       }
-      blocks_.push_back(std::bit_cast<ElementBlock>(block));
+    }
+    if constexpr (Kernel::needs_coordinates) {
+      coordinates_.resize(layout_.rows());
+      for (std::size_t r = 0; r < layout_.rows(); ++r) {
+        const Vector& X = mesh.points[static_cast<std::size_t>(layout_.node_of_row[r])];
+        for (std::size_t i = 0; i < 3; ++i) coordinates_[r][i] = static_cast<Real>(X[i]);
+      }
     }
   }
 
-  // Without `flatten` the compiler leaves small matrix functions out of line, which costs a third of the
-  // time.
-  [[gnu::flatten]] void evaluate(const NodalField& u, NodalField& force) const override {
-    const Law law = law_;  // a copy that no store can alias: its moduli are computed once
-    std::fill(force.begin(), force.end(), Vector{});
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const std::span<const Hexahedron> cells = cells_of(b);
-      scatter(Formulation::force(gather_block(u, cells), blocks_[b], law), cells, force);
+  const Layout& layout() const override { return layout_; }
+
+  State<Real> rest() const override {
+    State<Real> state{Rows<Real>(layout_.rows()), Rows<Real>(layout_.rows()), {}};
+    if constexpr (Kernel::remembers) state.history.resize(blocks_.size() * history_numbers);
+    return state;
+  }
+
+  void add_to(Rows<Real>& force, State<Real>& state) const override {
+    for (const std::size_t colour : {0U, 1U}) {
+      const std::size_t chunks = (layout_.chunks.size() + 1 - colour) / 2;
+      in_parallel(chunks, threads_,
+                  [&](std::size_t c) { add_chunk(layout_.chunks[2 * c + colour], numbers_of(force), state); });
     }
   }
 
-  StrainEnergies energies(const NodalField& u) const override {
+  StrainEnergies energies(const State<Real>& state) const override {
     StrainEnergies sum;
-    for (std::size_t e = 0; e < cells_.size(); ++e) {
-      const auto energy = Formulation::energy(gather(u, cells_[e]), element(e), law_);
-      sum.strain += energy.strain;
-      sum.hourglass += energy.hourglass;
-    }
+    for_each_level(state, [&](std::size_t level, const ElementMotion<Number>& motion) {
+      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law_);
+      for (int lane = 0; lane < width; ++lane) {
+        if (element_at(level, lane) < 0) continue;
+        sum.strain += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
+        sum.hourglass += static_cast<double>(Lanes<Number>::get(energy.hourglass, lane));
+      }
+    });
     return sum;
   }
 
-  void hourglass_energy_densities(const NodalField& u, std::span<double> densities) const override {
-    for (std::size_t e = 0; e < cells_.size(); ++e) {
-      const Element constants = element(e);
-      densities[e] = Formulation::energy(gather(u, cells_[e]), constants, law_).hourglass / constants.body.V;
-    }
+  void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const override {
+    per_element(state, densities, [&](std::size_t level, const ElementMotion<Number>& motion) {
+      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law_);
+      return energy.hourglass / Kernel::volume(motion, blocks_[level]);
+    });
   }
 
-  void jacobians(const NodalField& u, std::span<double> jacobians) const override {
-    for (std::size_t e = 0; e < cells_.size(); ++e) {
-      jacobians[e] = Formulation::mean_jacobian(gather(u, cells_[e]), element(e));
-    }
+  void jacobians(const State<Real>& state, std::span<double> jacobians) const override {
+    per_element(state, jacobians, [&](std::size_t level, const ElementMotion<Number>& motion) {
+      return Kernel::mean_jacobian(motion, blocks_[level]);
+    });
   }
 
-  void smallest_jacobians(const NodalField& u, std::span<double> jacobians) const override {
-    for (std::size_t e = 0; e < cells_.size(); ++e) {
-      jacobians[e] = Formulation::smallest_jacobian(gather(u, cells_[e]), element(e));
-    }
+  void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const override {
+    per_element(state, jacobians, [&](std::size_t level, const ElementMotion<Number>& motion) {
+      return Kernel::smallest_jacobian(motion, blocks_[level]);
+    });
   }
 
-  void stiffness_bounds(const NodalField& u, std::span<double> bounds) const override {
-    for (std::size_t e = 0; e < cells_.size(); ++e) {
-      bounds[e] = Formulation::stiffness_bound(gather(u, cells_[e]), element(e), law_);
-    }
+  void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
+    per_element(state, bounds, [&](std::size_t level, const ElementMotion<Number>& motion) {
+      return Kernel::stiffness_bound(motion, blocks_[level], law_);
+    });
   }
 
  private:
+  using Faces = FaceModes<Number>;
+
+  /// A face's part of an `ElementMotion`.
+  struct FaceMotion {
+    Faces u;
+    Faces increment;
+    Faces X;
+  };
+
+  /// Forces of one chunk. Without `flatten` the compiler leaves small matrix functions out of line, which
+  /// costs a third of the time.
+  [[gnu::flatten]] void add_chunk(const Layout::Chunk& chunk, Real* force, State<Real>& state) const {
+    const Law law = law_;  // a copy that no store can alias: its moduli are computed once
+    for (std::size_t g = chunk.first; g < chunk.last; ++g) {
+      const Layout::Group group = layout_.groups[g];
+      FaceMotion lower = gather_face(state, group.first_face);
+      Faces carried{};
+      for (std::size_t k = 0; k < group.levels; ++k) {
+        const std::size_t level = group.first_level + k;
+        const FaceMotion upper = gather_face(state, group.first_face + k + 1);
+        HistoryBlock remembered = history(state, level);
+        const Modes<Number> f = Kernel::force(Kernel::deformation(between(lower, upper), blocks_[level]), blocks_[level], remembered, law);
+        keep_history(remembered, state, level);
+        scatter_face(carried + lower_face(f), group.first_face + k, force);
+        carried = upper_face(f);
+        lower = upper;
+      }
+      scatter_face(carried, group.first_face + group.levels, force);
+    }
+  }
+
+  Faces gather_rows(const Rows<Real>& rows, std::size_t face) const {
+    FaceVectors<Number> corners;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto x = gather<Number>(numbers_of(rows), layout_.places(face, c));
+      for (std::size_t i = 0; i < 3; ++i) corners(static_cast<int>(c), static_cast<int>(i)) = x[i];
+    }
+    return to_face_modes(corners);
+  }
+
+  FaceMotion gather_face(const State<Real>& state, std::size_t face) const {
+    FaceMotion motion;
+    motion.u = gather_rows(state.u, face);
+    if constexpr (Kernel::needs_increment) motion.increment = gather_rows(state.increment, face);
+    if constexpr (Kernel::needs_coordinates) motion.X = gather_rows(coordinates_, face);
+    return motion;
+  }
+
+  static ElementMotion<Number> between(const FaceMotion& lower, const FaceMotion& upper) {
+    ElementMotion<Number> motion;
+    motion.u = modes_between(lower.u, upper.u);
+    if constexpr (Kernel::needs_increment) motion.increment = modes_between(lower.increment, upper.increment);
+    if constexpr (Kernel::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
+    return motion;
+  }
+
+  void scatter_face(const Faces& forces, std::size_t face, Real* force) const {
+    const FaceVectors<Number> corners = from_face_modes(forces);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const int corner = static_cast<int>(c);
+      scatter_add<Number>({corners(corner, 0), corners(corner, 1), corners(corner, 2)}, force,
+                          layout_.places(face, c));
+    }
+  }
+
+  static constexpr std::size_t history_numbers = sizeof(HistoryBlock) / sizeof(Real);
+
+  HistoryBlock history(const State<Real>& state, std::size_t level) const {
+    HistoryBlock block;
+    if constexpr (Kernel::remembers) {
+      std::memcpy(&block, state.history.data() + level * history_numbers, sizeof block);
+    }
+    return block;
+  }
+
+  void keep_history(const HistoryBlock& block, State<Real>& state, std::size_t level) const {
+    if constexpr (Kernel::remembers) {
+      std::memcpy(state.history.data() + level * history_numbers, &block, sizeof block);
+    }
+  }
+
+  int element_at(std::size_t level, int lane) const {
+    return layout_.elements[level * width + static_cast<std::size_t>(lane)];
+  }
+
+  /// Calls visit(level, motion) for every block.
+  template <class Visit>
+  void for_each_level(const State<Real>& state, const Visit& visit) const {
+    for (const auto& group : layout_.groups) {
+      FaceMotion lower = gather_face(state, group.first_face);
+      for (std::size_t k = 0; k < group.levels; ++k) {
+        const FaceMotion upper = gather_face(state, group.first_face + k + 1);
+        visit(group.first_level + k, between(lower, upper));
+        lower = upper;
+      }
+    }
+  }
+
+  /// Sets values[e] for every element of the mesh to its lane of evaluate(level, motion).
+  template <class Evaluate>
+  void per_element(const State<Real>& state, std::span<double> values, const Evaluate& evaluate) const {
+    for_each_level(state, [&](std::size_t level, const ElementMotion<Number>& motion) {
+      const Number value = evaluate(level, motion);
+      for (int lane = 0; lane < width; ++lane) {
+        const int e = element_at(level, lane);
+        if (e >= 0) values[static_cast<std::size_t>(e)] = static_cast<double>(Lanes<Number>::get(value, lane));
+      }
+    });
+  }
+
   static constexpr std::size_t numbers = sizeof(Element) / sizeof(double);
   static_assert(sizeof(ElementBlock) == numbers * sizeof(Number),
                 "an element's constants must all be of its number type");
 
-  using Constants = std::array<double, numbers>;
-  using ConstantsBlock = std::array<Number, numbers>;
-
-  /// The constants of one element, out of its block.
-  Element element(std::size_t e) const {
-    const auto block = std::bit_cast<ConstantsBlock>(blocks_[e / width]);
-    Constants constants;
-    for (std::size_t n = 0; n < numbers; ++n) {
-      constants[n] = Lanes<Number>::get(block[n], static_cast<int>(e % width));
-    }
-    return std::bit_cast<Element>(constants);
-  }
-
-  /// The elements of a block; fewer than `width` in the last one.
-  std::span<const Hexahedron> cells_of(std::size_t b) const {
-    const std::size_t first = b * width;
-    return {cells_.data() + first, std::min<std::size_t>(width, cells_.size() - first)};
-  }
-
-  static NodalVectors<Number> gather_block(const NodalField& field, std::span<const Hexahedron> cells) {
-    NodalVectors<Number> rows;
+  /// The constants of the elements between a face of the layout and the next.
+  ElementBlock precompute(const Mesh& mesh, std::size_t face, const HourglassSettings& settings) const {
+    std::array<Number, numbers> block;
     for (int lane = 0; lane < width; ++lane) {
-      const Hexahedron& cell = cells[std::min(static_cast<std::size_t>(lane), cells.size() - 1)];
+      NodalVectors<double> X;
       for (int I = 0; I < 8; ++I) {
-        const Vector& row = field[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])];
-        for (int i = 0; i < 3; ++i) Lanes<Number>::set(rows(I, i), lane, row[static_cast<std::size_t>(i)]);
+        const auto corner = static_cast<std::size_t>(I);
+        const auto row = static_cast<std::size_t>(layout_.places(face + corner / 4, corner % 4)[lane]) / 4;
+        const Vector& point = mesh.points[static_cast<std::size_t>(layout_.node_of_row[row])];
+        for (int i = 0; i < 3; ++i) X(I, i) = point[static_cast<std::size_t>(i)];
+      }
+      const auto constants =
+          std::bit_cast<std::array<double, numbers>>(Kernel::precompute(X, law_, settings));
+      for (std::size_t n = 0; n < numbers; ++n) {
+        Lanes<Number>::set(block[n], lane, static_cast<Real>(constants[n]));
       }
     }
-    return rows;
+    return std::bit_cast<ElementBlock>(block);
   }
 
-  static void scatter(const NodalVectors<Number>& rows, std::span<const Hexahedron> cells,
-                      NodalField& field) {
-    for (std::size_t lane = 0; lane < cells.size(); ++lane) {
-      for (int I = 0; I < 8; ++I) {
-        Vector& row = field[static_cast<std::size_t>(cells[lane][static_cast<std::size_t>(I)])];
-        for (int i = 0; i < 3; ++i) {
-          row[static_cast<std::size_t>(i)] += Lanes<Number>::get(rows(I, i), static_cast<int>(lane));
-        }
-      }
-    }
-  }
-
-  std::vector<Hexahedron> cells_;
+  Layout layout_;
   std::vector<ElementBlock> blocks_;
+  Rows<Real> coordinates_;  // only where the kernel needs them
   Law law_;
+  int threads_;
 };
 
 }  // namespace sandglass

@@ -3,44 +3,36 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "base/names.hpp"
-#include "element/methods.hpp"
-#include "model/element_assembly.hpp"
+#include "model/method_dispatch.hpp"
 
 namespace sandglass {
 
 namespace {
 
-/// Calls visit.operator()<Method>() for the method of that name, or throws.
-template <class Visitor>
-void with_method(std::string_view name, Visitor&& visit) {
-  if (!with_named_type(Methods{}, name, visit)) {
-    throw InputError(
-        fmt::format("method: '{}' is not known; {}", name, suggestion(name, names_of(Methods{}))));
+void require_sensible(const MethodChoice& choice) {
+  const bool takes = takes_kappa(choice.method);
+  if (choice.kappa && !takes) {
+    throw InputError(fmt::format("kappa: {} was given, but method '{}' has no such parameter; leave it out",
+                                 *choice.kappa, choice.method));
+  }
+  if (choice.kappa && !(*choice.kappa >= 0.0)) {
+    throw InputError(fmt::format("kappa: {} must be in [0, inf), or 'auto'", *choice.kappa));
+  }
+  if (choice.threads < 1) {
+    throw InputError(fmt::format("threads: {} must be at least 1", choice.threads));
+  }
+  if (choice.kernel == KernelWidth::scalar && choice.precision == Precision::single_precision) {
+    throw InputError("kernel: the scalar kernel is there for comparison in double precision only");
   }
 }
 
 }  // namespace
 
-std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string_view method,
-                                                   const AnyLaw& any_law, const HourglassSettings& settings) {
-  std::unique_ptr<InternalForce> force;
-  with_method(method, [&]<class Method>() {
-    if (settings.kappa && !Method::Hourglass::takes_kappa) {
-      throw InputError(fmt::format("kappa: {} was given, but method '{}' has no such parameter; leave it out",
-                                   *settings.kappa, method));
-    }
-    if (settings.kappa && !(*settings.kappa >= 0.0)) {
-      throw InputError(fmt::format("kappa: {} must be in [0, inf), or 'auto'", *settings.kappa));
-    }
-    std::visit(
-        [&]<class Law>(const Law& law) {
-          force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Pack<double>>>(mesh, law,
-                                                                                                   settings);
-        },
-        any_law);
-  });
-  return force;
+AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice) {
+  require_sensible(choice);
+  if (choice.kernel == KernelWidth::scalar) return make_scalar_double(mesh, law, choice);
+  if (choice.precision == Precision::double_precision) return make_packed_double(mesh, law, choice);
+  return make_packed_float(mesh, law, choice);
 }
 
 bool takes_kappa(std::string_view method) {
@@ -58,5 +50,40 @@ std::optional<double> auto_kappa(std::string_view method, const AnyLaw& any_law)
   });
   return kappa;
 }
+
+template <class Real>
+Rows<Real> to_rows(const NodalField& field, const Layout& layout) {
+  Rows<Real> rows(layout.rows());
+  for (std::size_t r = 0; r < layout.nodes; ++r) {
+    const Vector& value = field[static_cast<std::size_t>(layout.node_of_row[r])];
+    for (std::size_t i = 0; i < 3; ++i) rows[r][i] = static_cast<Real>(value[i]);
+  }
+  return rows;
+}
+
+template <class Real>
+NodalField to_field(const Rows<Real>& rows, const Layout& layout) {
+  NodalField field(layout.nodes);
+  for (std::size_t r = 0; r < layout.nodes; ++r) {
+    Vector& value = field[static_cast<std::size_t>(layout.node_of_row[r])];
+    for (std::size_t i = 0; i < 3; ++i) value[i] = static_cast<double>(rows[r][i]);
+  }
+  return field;
+}
+
+template <class Real>
+State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u) {
+  State<Real> state = elements.rest();
+  state.u = to_rows<Real>(u, elements.layout());
+  state.increment = state.u;
+  return state;
+}
+
+template Rows<double> to_rows(const NodalField&, const Layout&);
+template Rows<float> to_rows(const NodalField&, const Layout&);
+template NodalField to_field(const Rows<double>&, const Layout&);
+template NodalField to_field(const Rows<float>&, const Layout&);
+template State<double> state_at(const InternalForce<double>&, const NodalField&);
+template State<float> state_at(const InternalForce<float>&, const NodalField&);
 
 }  // namespace sandglass

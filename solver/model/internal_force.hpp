@@ -1,12 +1,16 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <variant>
 
 #include "element/hourglass_settings.hpp"
 #include "material/laws.hpp"
-#include "mesh/mesh.hpp"
+#include "math/rows.hpp"
+#include "mesh/layout.hpp"
 
 namespace sandglass {
 
@@ -16,9 +20,18 @@ struct StrainEnergies {
   double hourglass = 0.0;
 };
 
+/// What changes in time: nodal values in rows, in the order of the layout, and what elements remember.
+template <class Real>
+struct State {
+  Rows<Real> u;               ///< displacements, m
+  Rows<Real> increment;       ///< what the last step added to them, m
+  std::vector<Real> history;  ///< of the elements; only they know its meaning
+};
+
 /// The elements of a mesh with one method and one law: displacements in, internal forces out. This interface
 /// is where the choice made at run time ends; behind it loops are monomorphic. Everything is const: it may be
 /// shared by threads.
+template <class Real>
 class InternalForce {
  public:
   InternalForce() = default;
@@ -26,30 +39,57 @@ class InternalForce {
   InternalForce& operator=(const InternalForce&) = delete;
   virtual ~InternalForce() = default;
 
-  /// Sets `force` (N) to the internal nodal forces at displacements `u` (m). Allocates nothing.
-  virtual void evaluate(const NodalField& u, NodalField& force) const = 0;
+  /// The order of rows and elements.
+  virtual const Layout& layout() const = 0;
 
-  /// Strain and hourglass energy at `u`.
-  virtual StrainEnergies energies(const NodalField& u) const = 0;
+  /// The body at rest.
+  virtual State<Real> rest() const = 0;
 
-  /// Hourglass energy per reference volume of each element (J/m^3).
-  virtual void hourglass_energy_densities(const NodalField& u, std::span<double> densities) const = 0;
+  /// Adds the internal nodal forces (N) to `force`; what elements remember goes one step on. Allocates
+  /// nothing. The bits do not depend on the number of threads.
+  virtual void add_to(Rows<Real>& force, State<Real>& state) const = 0;
 
-  /// Volume ratio of each element.
-  virtual void jacobians(const NodalField& u, std::span<double> jacobians) const = 0;
+  /// Strain and hourglass energy.
+  virtual StrainEnergies energies(const State<Real>& state) const = 0;
 
-  /// Smallest det F at the integration points of each element; not positive means inverted.
-  virtual void smallest_jacobians(const NodalField& u, std::span<double> jacobians) const = 0;
+  // Per element, in the numbering of the mesh:
 
-  /// Upper bound of the largest eigenvalue (N/m) of each element's tangent stiffness at `u`.
-  virtual void stiffness_bounds(const NodalField& u, std::span<double> bounds) const = 0;
+  /// Hourglass energy per reference volume (J/m^3).
+  virtual void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const = 0;
+
+  /// Volume ratios.
+  virtual void jacobians(const State<Real>& state, std::span<double> jacobians) const = 0;
+
+  /// Smallest det F at the integration points; not positive means inverted.
+  virtual void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const = 0;
+
+  /// Upper bounds of the largest eigenvalue (N/m) of the tangent stiffness.
+  virtual void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const = 0;
 };
 
-/// THE place of dispatch: the elements of `mesh` with the method of that name.
-/// Throws InputError for an unknown method (naming the known ones) and for a kappa given to a method that
-/// takes none.
-std::unique_ptr<InternalForce> make_internal_force(const Mesh& mesh, std::string_view method,
-                                                   const AnyLaw& law, const HourglassSettings& settings);
+/// The numbers in which a run computes.
+enum class Precision { double_precision, single_precision };
+
+/// How many elements a kernel computes at a time: as many as a register holds, or one, for comparison.
+enum class KernelWidth { pack, scalar };
+
+/// What a user chooses beside the case.
+struct MethodChoice {
+  std::string method;
+  std::optional<double> kappa = {};  ///< none means auto
+  Precision precision = Precision::double_precision;
+  int threads = 1;
+  KernelWidth kernel = KernelWidth::pack;
+};
+
+/// Elements in one of the two precisions.
+using AnyInternalForce =
+    std::variant<std::unique_ptr<InternalForce<double>>, std::unique_ptr<InternalForce<float>>>;
+
+/// THE place of dispatch: the elements of `mesh` with the chosen method.
+/// Throws InputError for an unknown method (naming the known ones), for a kappa given to a method that takes
+/// none, and for scalar kernels in single precision, which nothing needs.
+AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice);
 
 /// Whether the method of that name takes the hourglass stiffness parameter kappa. Throws InputError when
 /// unknown.
@@ -57,5 +97,17 @@ bool takes_kappa(std::string_view method);
 
 /// The number that `auto` stands for, or none when the method takes no kappa.
 std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law);
+
+/// The state in which a body finds itself when nodes go from rest to `u` (m) in one step.
+template <class Real>
+State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u);
+
+/// Nodal values of the mesh as rows of a layout; spare rows are zero.
+template <class Real>
+Rows<Real> to_rows(const NodalField& field, const Layout& layout);
+
+/// Rows of a layout as nodal values of the mesh.
+template <class Real>
+NodalField to_field(const Rows<Real>& rows, const Layout& layout);
 
 }  // namespace sandglass

@@ -109,8 +109,7 @@ double largest_imposed(const Scene& scene) {
 Model::Model(const Scene& scene, MethodChoice choice)
     : scene_(scene),
       choice_(std::move(choice)),
-      internal_force_(make_internal_force(scene.mesh, choice_.method, scene.description.law,
-                                          HourglassSettings{choice_.kappa})),
+      internal_force_(make_internal_force(scene.mesh, scene.description.law, choice_)),
       masses_(scene.mesh.points.size(), 0.0) {
   element_masses_.reserve(scene.mesh.cells.size());
   for (const auto& cell : scene.mesh.cells) {
@@ -120,16 +119,26 @@ Model::Model(const Scene& scene, MethodChoice choice)
   }
 }
 
-void Model::impose(double factor, NodalField& u) const {
-  for (const auto& [node, component, value] : scene_.constraints) {
-    u[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = factor * value;
-  }
+NodalField internal_forces(const Model& model, const NodalField& u) {
+  return std::visit(
+      [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+        State<Real> state = state_at(*elements, u);
+        Rows<Real> force(state.u.size());
+        elements->add_to(force, state);
+        return to_field(force, elements->layout());
+      },
+      model.internal_force());
 }
 
-void Model::clear_constrained(NodalField& field) const {
-  for (const auto& [node, component, value] : scene_.constraints) {
-    field[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = 0.0;
-  }
+StrainEnergies strain_energies(const Model& model, const NodalField& u) {
+  return std::visit(
+      [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+        State<Real> state = state_at(*elements, u);
+        Rows<Real> unused(state.u.size());
+        elements->add_to(unused, state);  // takes along what elements remember
+        return elements->energies(state);
+      },
+      model.internal_force());
 }
 
 }  // namespace sandglass

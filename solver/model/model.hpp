@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,12 +36,6 @@ Mesh generate_mesh(const AnyGenerator& generator);
 /// Largest imposed displacement, m: the unit of all relative errors.
 double largest_imposed(const Scene& scene);
 
-/// What the user chooses beside the case.
-struct MethodChoice {
-  std::string method;
-  std::optional<double> kappa;  ///< none means auto
-};
-
 /// A well-posed problem: scene, elements and masses. All is const; what changes lives in the steppers' state.
 class Model {
  public:
@@ -50,7 +43,7 @@ class Model {
 
   const Scene& scene() const { return scene_; }
   const MethodChoice& choice() const { return choice_; }
-  const InternalForce& internal_force() const { return *internal_force_; }
+  const AnyInternalForce& internal_force() const { return internal_force_; }
 
   /// Lumped masses (kg): an eighth of rho V of each element at each of its nodes.
   const std::vector<double>& masses() const { return masses_; }
@@ -58,18 +51,18 @@ class Model {
   /// Mass of each element, kg.
   const std::vector<double>& element_masses() const { return element_masses_; }
 
-  /// Sets the constrained components of `u` to `factor` times their final value.
-  void impose(double factor, NodalField& u) const;
-
-  /// Sets the constrained components of `field` to zero.
-  void clear_constrained(NodalField& field) const;
-
  private:
   const Scene& scene_;
   MethodChoice choice_;
-  std::unique_ptr<InternalForce> internal_force_;
+  AnyInternalForce internal_force_;
   std::vector<double> element_masses_;
   std::vector<double> masses_;
 };
+
+/// Internal nodal forces (N) of a model at displacements u (m), reached from rest in one step.
+NodalField internal_forces(const Model& model, const NodalField& u);
+
+/// Energies of a model at displacements u (m), reached from rest in one step.
+StrainEnergies strain_energies(const Model& model, const NodalField& u);
 
 }  // namespace sandglass

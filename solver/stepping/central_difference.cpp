@@ -8,47 +8,48 @@
 
 #include "base/error.hpp"
 #include "model/loading.hpp"
+#include "stepping/body.hpp"
 #include "stepping/field.hpp"
-#include "stepping/forces.hpp"
-#include "stepping/health.hpp"
+#include "stepping/row_loops.hpp"
 #include "stepping/stable_step.hpp"
 
 namespace sandglass {
 
 namespace {
 
-/// State of central differences: displacements at `time`, velocities half a step earlier.
-struct DynamicState {
-  double time = 0.0;  ///< s
-  long step = 0;
-  double step_size = 0.0;   ///< s, the step that led here
-  NodalField u;             ///< m, at `time`
-  NodalField v_half;        ///< m/s, at `time - step_size / 2`
-  NodalField acceleration;  ///< m/s^2, at `time`; zero on constrained components
-};
-
-/// The recipe's quantities, one function each; the order of calls is in `integrate`.
+/// The recipe's quantities, one function each; the order of calls is in `integrate_body`. Velocities stand half
+/// a step before the displacements, as increments over `increment_time_`.
+template <class Real>
 class CentralDifference {
  public:
-  explicit CentralDifference(const Model& model)
+  CentralDifference(const Model& model, const InternalForce<Real>& elements)
       : model_(model),
         settings_(model.scene().description.dynamics),
-        forces_(model),
-        reactions_(model.scene().constraints.size(), 0.0) {
-    const std::size_t n = model.masses().size();
-    state_.u.resize(n);
-    state_.v_half.assign(n, model.scene().description.initial_velocity);
-    state_.acceleration.resize(n);
-    model.clear_constrained(state_.v_half);
-  }
+        body_(model, elements),
+        inverse_masses_(body_.on_free_components(inverses(model.masses()))),
+        reactions_(model.scene().constraints.size(), 0.0) {}
 
-  const DynamicState& state() const { return state_; }
-  double residual() const { return forces_.residual(); }
+  Body<Real>& body() { return body_; }
+  double time() const { return time_; }
+  long step() const { return step_; }
+  double step_size() const { return step_size_; }
   double external_work() const { return work_; }
+
+  /// Starts from the initial velocity: before the first step it is an increment over 1 s.
+  void set_initial_velocity() {
+    const Vector& v = model_.scene().description.initial_velocity;
+    Rows<Real>& increment = body_.state().increment;
+    for (std::size_t r = 0; r < increment.size(); ++r) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        increment[r][i] = inverse_masses_[r][i] > Real(0) ? static_cast<Real>(v[i]) : Real(0);
+      }
+    }
+    increment_time_ = 1.0;
+  }
 
   /// The next step: the user's, refused when unsafe, or a share of the stable one.
   void choose_step() {
-    const StableStep stable = stable_step(model_, state_.u);
+    const StableStep stable = stable_step(model_, body_.stiffness_bounds());
     if (settings_.time_step > 0.0) {
       require_stable(stable);
       next_step_ = settings_.time_step;
@@ -58,46 +59,41 @@ class CentralDifference {
   }
 
   /// Whether the end is reached, up to the rounding of a sum of steps.
-  bool finished() const { return state_.time >= settings_.duration * (1.0 - 1e-12); }
+  bool finished() const { return time_ >= settings_.duration * (1.0 - 1e-12); }
 
-  void update_accelerations() {
-    forces_.evaluate(state_.u);
-    const auto& masses = model_.masses();
-    for (std::size_t n = 0; n < masses.size(); ++n) {
-      for (std::size_t i = 0; i < 3; ++i) state_.acceleration[n][i] = -forces_.free()[n][i] / masses[n];
-    }
-  }
-
-  /// v(t + dt/2) from v(t - dt_old/2): the two half steps share the acceleration and the damping at t.
-  /// The last step is cut so that the run ends at its duration.
-  void update_velocities() {
-    next_step_ = std::min(next_step_, settings_.duration - state_.time);
-    const double dt = 0.5 * (state_.step_size + next_step_);
+  /// v(t + dt/2) from v(t - dt_old/2), and u(t + dt) with it: the two half steps share the acceleration and
+  /// the damping at t. The last step is cut so that the run ends at its duration. One pass over the nodes.
+  void advance() {
+    next_step_ = std::min(next_step_, settings_.duration - time_);
+    const double dt = 0.5 * (step_size_ + next_step_);
     const double c = 0.5 * settings_.damping * dt;
-    for (std::size_t n = 0; n < state_.u.size(); ++n) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        state_.v_half[n][i] = ((1.0 - c) * state_.v_half[n][i] + dt * state_.acceleration[n][i]) / (1.0 + c);
+    const auto keep = static_cast<Real>((1.0 - c) / (1.0 + c) * next_step_ / increment_time_);
+    const auto gain = static_cast<Real>(-dt / (1.0 + c) * next_step_);
+    Real* u = numbers_of(body_.state().u);
+    Real* increment = numbers_of(body_.state().increment);
+    const Real* force = numbers_of(body_.free_forces());
+    const Real* inverse_mass = numbers_of(inverse_masses_);
+    for_each_block(4 * inverse_masses_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+#pragma omp simd
+      for (std::size_t k = first; k < last; ++k) {
+        increment[k] = keep * increment[k] + gain * inverse_mass[k] * force[k];
+        u[k] += increment[k];
       }
-    }
-    state_.step_size = next_step_;
+    });
+    step_size_ = next_step_;
+    increment_time_ = next_step_;
+    time_ += step_size_;
+    ++step_;
   }
 
-  void update_displacements() {
-    for (std::size_t n = 0; n < state_.u.size(); ++n) {
-      for (std::size_t i = 0; i < 3; ++i) state_.u[n][i] += state_.step_size * state_.v_half[n][i];
-    }
-    state_.time += state_.step_size;
-    ++state_.step;
-  }
-
-  void impose_displacements() { model_.impose(loading(state_.time), state_.u); }
+  void impose_displacements() { body_.impose(loading(time_)); }
 
   /// Work of the imposed displacements over the last step, from the mean of the forces at its ends.
   void update_external_work() {
-    const double advance = loading(state_.time) - loading(state_.time - state_.step_size);
+    const double advance = loading(time_) - loading(time_ - step_size_);
     const auto& constraints = model_.scene().constraints;
     for (std::size_t k = 0; k < constraints.size(); ++k) {
-      const double force = forces_.reactions()[k] + inertia(constraints[k]);
+      const double force = body_.reactions()[k] + inertia(constraints[k]);
       work_ += 0.5 * (reactions_[k] + force) * advance * constraints[k].value;
       reactions_[k] = force;
     }
@@ -106,21 +102,30 @@ class CentralDifference {
   /// Velocities at the time of the displacements: the mean of the half steps before and after, damping
   /// included.
   NodalField velocities() const {
-    NodalField v = state_.v_half;
-    const double half = 0.5 * state_.step_size;
-    for (std::size_t n = 0; n < v.size(); ++n) {
+    const double half = 0.5 * step_size_;
+    const Rows<Real>& increment = body_.state().increment;
+    const Rows<Real>& force = body_.free_forces();
+    Rows<Real> rows(increment.size());
+    for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) {
-        v[n][i] = (v[n][i] + half * state_.acceleration[n][i]) / (1.0 + half * settings_.damping);
+        const double v_half = static_cast<double>(increment[r][i]) / increment_time_;
+        const double acceleration = -static_cast<double>(inverse_masses_[r][i] * force[r][i]);
+        rows[r][i] = static_cast<Real>((v_half + half * acceleration) / (1.0 + half * settings_.damping));
       }
     }
+    NodalField v = body_.field(rows);
     for (const auto& [node, component, value] : model_.scene().constraints) {
-      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
-          loading_rate(state_.time) * value;
+      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = loading_rate(time_) * value;
     }
     return v;
   }
 
  private:
+  static std::vector<double> inverses(std::vector<double> values) {
+    for (double& value : values) value = 1.0 / value;
+    return values;
+  }
+
   double ramp_time() const { return settings_.ramp_time > 0.0 ? settings_.ramp_time : settings_.duration; }
   double loading(double time) const { return loading_curve(time / ramp_time()); }
   double loading_rate(double time) const { return loading_curve_rate(time / ramp_time()) / ramp_time(); }
@@ -129,77 +134,88 @@ class CentralDifference {
   double inertia(const Constraint& constraint) const {
     const double T = ramp_time();
     return model_.masses()[static_cast<std::size_t>(constraint.node)] * constraint.value *
-           loading_curve_acceleration(state_.time / T) / (T * T);
+           loading_curve_acceleration(time_ / T) / (T * T);
   }
 
   void require_stable(const StableStep& stable) const {
     if (settings_.time_step <= stable.step) return;
     const std::string text = fmt::format(
         "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by element {} at step {}; "
-        "allowed: at "
-        "most the stable step, or 0 to let the program choose",
-        settings_.time_step, stable.step, stable.element, state_.step);
-    if (state_.step == 0)
+        "allowed: at most the stable step, or 0 to let the program choose",
+        settings_.time_step, stable.step, stable.element, step_);
+    if (step_ == 0)
       throw InputError(fmt::format("{}: {}", model_.scene().description.file.string(), text));
     throw ComputationError(text);
   }
 
   const Model& model_;
   const DynamicsSettings& settings_;
-  DynamicState state_;
-  Forces forces_;
+  Body<Real> body_;
+  Rows<Real> inverse_masses_;  // 1/kg, zero where a component may not move
   std::vector<double> reactions_;
+  double time_ = 0.0;  // s, of the displacements
+  long step_ = 0;
+  double step_size_ = 0.0;       // s, the step that led here
+  double increment_time_ = 1.0;  // s, in which the increments came about
   double next_step_ = 0.0;
   double work_ = 0.0;
 };
 
-}  // namespace
-
-Motion integrate(const Model& model, Observer& observer) {
+template <class Real>
+Motion integrate_body(const Model& model, const InternalForce<Real>& elements, Observer& observer) {
   const DynamicsSettings& settings = model.scene().description.dynamics;
-  CentralDifference scheme(model);
-  const DynamicState& state = scheme.state();
+  CentralDifference<Real> scheme(model, elements);
+  Body<Real>& body = scheme.body();
   Motion motion;
   int frames = 0;
 
+  const auto frame_due = [&] {
+    return scheme.finished() || scheme.time() >= frames * settings.duration / settings.frames;
+  };
   const auto report = [&] {
-    const NodalField v = scheme.velocities();
-    const StrainEnergies energies = model.internal_force().energies(state.u);
-    observer.history({state.time, 0.5 * weighted_dot(model.masses(), v, v), energies.strain,
-                      energies.hourglass, scheme.external_work(), scheme.residual(), state.step_size});
-    if (scheme.finished() || state.time >= frames * settings.duration / settings.frames) {
-      observer.frame(state.time, state.u, v);
+    NodalField v = scheme.velocities();
+    const StrainEnergies energies = body.energies();
+    observer.history({scheme.time(), 0.5 * weighted_dot(model.masses(), v, v), energies.strain,
+                      energies.hourglass, scheme.external_work(), body.residual(), scheme.step_size()});
+    if (frame_due()) {
+      observer.frame(body.frame(scheme.time(), std::move(v)));
       ++frames;
     }
-    motion.interrupted = !observer.proceed(state.step, state.time / settings.duration, scheme.residual());
+    motion.interrupted =
+        !observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
   };
 
   const auto start = std::chrono::steady_clock::now();
   scheme.choose_step();
   motion.smallest_step = settings.duration;
-  scheme.update_accelerations();
+  body.evaluate_forces();
+  scheme.set_initial_velocity();
   report();
   while (!scheme.finished() && !motion.interrupted) {
-    scheme.update_velocities();
-    scheme.update_displacements();
+    scheme.advance();
     scheme.impose_displacements();
-    scheme.update_accelerations();
+    body.evaluate_forces();
     scheme.update_external_work();
-    motion.smallest_step = std::min(motion.smallest_step, state.step_size);
-    const bool frame_due = state.time >= frames * settings.duration / settings.frames;
-    if (state.step % settings.check_interval == 0 || frame_due || scheme.finished() ||
-        !std::isfinite(scheme.residual())) {
-      require_healthy(model, state.u, state.step);
+    motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
+    if (scheme.step() % settings.check_interval == 0 || frame_due()) {
+      body.require_healthy(scheme.step());
       report();
       scheme.choose_step();
     }
   }
-  motion.u = state.u;
+  motion.u = body.field(body.state().u);
   motion.v = scheme.velocities();
-  motion.time = state.time;
-  motion.steps = state.step;
+  motion.time = scheme.time();
+  motion.steps = scheme.step();
   motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return motion;
+}
+
+}  // namespace
+
+Motion integrate(const Model& model, Observer& observer) {
+  return std::visit([&](const auto& elements) { return integrate_body(model, *elements, observer); },
+                    model.internal_force());
 }
 
 }  // namespace sandglass

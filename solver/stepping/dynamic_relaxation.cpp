@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "model/loading.hpp"
-#include "stepping/field.hpp"
-#include "stepping/forces.hpp"
-#include "stepping/health.hpp"
+#include "stepping/body.hpp"
+#include "stepping/row_loops.hpp"
 
 namespace sandglass {
 
@@ -37,18 +36,14 @@ int choose_ramp_steps(const Model& model) {
 class ScaledMasses {
  public:
   explicit ScaledMasses(const Model& model)
-      : model_(model),
-        bounds_(model.element_masses().size(), 0.0),
-        needed_(bounds_.size()),
-        nodal_(model.masses().size()) {}
+      : model_(model), bounds_(model.element_masses().size(), 0.0), nodal_(model.masses().size()) {}
 
-  /// Takes new masses when an element has become stiffer than its masses allow.
-  void update(const NodalField& u) {
-    model_.internal_force().stiffness_bounds(u, needed_);
+  /// Takes new masses when an element has become stiffer than its masses allow; returns whether it did.
+  bool update(const std::vector<double>& needed) {
     bool enough = true;
-    for (std::size_t e = 0; e < bounds_.size(); ++e) enough = enough && needed_[e] <= bounds_[e];
-    if (enough) return;
-    bounds_ = needed_;
+    for (std::size_t e = 0; e < bounds_.size(); ++e) enough = enough && needed[e] <= bounds_[e];
+    if (enough) return false;
+    bounds_ = needed;
     const double fraction = model_.scene().description.relaxation.step_fraction;
     std::fill(nodal_.begin(), nodal_.end(), 0.0);
     const auto& cells = model_.scene().mesh.cells;
@@ -56,107 +51,167 @@ class ScaledMasses {
       const double mass = bounds_[e] / (4.0 * fraction * fraction);  // omega = 2 fraction / 1
       for (const int node : cells[e]) nodal_[static_cast<std::size_t>(node)] += mass;
     }
+    return true;
   }
 
   const std::vector<double>& nodal() const { return nodal_; }
+  std::vector<double> inverses() const {
+    std::vector<double> values = nodal_;
+    for (double& value : values) value = 1.0 / value;
+    return values;
+  }
 
  private:
   const Model& model_;
   std::vector<double> bounds_;
-  std::vector<double> needed_;
   std::vector<double> nodal_;
 };
 
-/// Critical damping of the lowest frequency in motion, from the Rayleigh quotient of the last increment.
-class AdaptiveDamping {
- public:
-  explicit AdaptiveDamping(const Model& model) : previous_(model.masses().size()) {}
+/// What the last increment du tells of the body: du . df and du . M du.
+struct RayleighSums {
+  double stiffness = 0.0;
+  double mass = 0.0;
+  RayleighSums& operator+=(const RayleighSums& other) {
+    stiffness += other.stiffness;
+    mass += other.mass;
+    return *this;
+  }
+};
 
-  /// 2 omega with omega^2 = du . df / du . M du for the increment du that led to these forces.
-  double coefficient(const std::vector<double>& masses, const NodalField& increment,
-                     const NodalField& force) {
-    double stiffness = 0.0;
-    for (std::size_t n = 0; n < force.size(); ++n) {
-      for (std::size_t i = 0; i < 3; ++i) stiffness += increment[n][i] * (force[n][i] - previous_[n][i]);
-    }
-    previous_ = force;
-    const double mass = weighted_dot(masses, increment, increment);
-    const double square = mass > 0.0 ? std::clamp(stiffness / mass, 0.0, 1.0) : 0.0;
+/// Central differences with the step 1, scaled masses and critical damping of the lowest frequency in motion.
+template <class Real>
+class PseudoDynamics {
+ public:
+  PseudoDynamics(const Model& model, const InternalForce<Real>& elements)
+      : masses_(model), body_(model, elements), previous_force_(body_.free_forces().size()) {
+    update_masses();
+  }
+
+  Body<Real>& body() { return body_; }
+
+  void update_masses() {
+    if (!masses_.update(body_.stiffness_bounds())) return;
+    mass_ = body_.on_free_components(masses_.nodal());
+    inverse_mass_ = body_.on_free_components(masses_.inverses());
+  }
+
+  /// 2 omega with omega^2 = du . df / du . M du for the increment du that led to these forces (N/m over kg).
+  double damping() {
+    const Real *du = numbers_of(body_.state().increment), *f = numbers_of(body_.free_forces());
+    const Real *m = numbers_of(mass_), *before = numbers_of(previous_force_);
+    const auto sums = sum_over_blocks<RayleighSums>(
+        4 * mass_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+          Real stiffness = 0, mass = 0;
+#pragma omp simd reduction(+ : stiffness, mass)
+          for (std::size_t k = first; k < last; ++k) {
+            stiffness += du[k] * (f[k] - before[k]);
+            mass += du[k] * m[k] * du[k];
+          }
+          return RayleighSums{static_cast<double>(stiffness), static_cast<double>(mass)};
+        });
+    const double square = sums.mass > 0.0 ? std::clamp(sums.stiffness / sums.mass, 0.0, 1.0) : 0.0;
     return 2.0 * std::sqrt(square);
   }
 
+  /// Increments and displacements of the next step, damped by c.
+  void advance(double c) {
+    const auto keep = static_cast<Real>((2.0 - c) / (2.0 + c)), gain = static_cast<Real>(-2.0 / (2.0 + c));
+    Real *u = numbers_of(body_.state().u), *du = numbers_of(body_.state().increment);
+    Real* before = numbers_of(previous_force_);
+    const Real *f = numbers_of(body_.free_forces()), *inverse = numbers_of(inverse_mass_);
+    for_each_block(4 * mass_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+#pragma omp simd
+      for (std::size_t k = first; k < last; ++k) {
+        du[k] = keep * du[k] + gain * inverse[k] * f[k];
+        u[k] += du[k];
+        before[k] = f[k];
+      }
+    });
+  }
+
+  /// Kinetic energy of the last increment, J.
+  double kinetic_energy() {
+    const Real *du = numbers_of(body_.state().increment), *m = numbers_of(mass_);
+    return 0.5 * sum_over_blocks<double>(4 * mass_.size(), body_.threads(),
+                                         [=](std::size_t first, std::size_t last) {
+                                           double sum = 0.0;
+                                           for (std::size_t k = first; k < last; ++k) {
+                                             sum += static_cast<double>(du[k] * m[k] * du[k]);
+                                           }
+                                           return sum;
+                                         });
+  }
+
  private:
-  NodalField previous_;
+  ScaledMasses masses_;
+  Body<Real> body_;
+  Rows<Real> mass_;
+  Rows<Real> inverse_mass_;
+  Rows<Real> previous_force_;
 };
 
-}  // namespace
-
-Relaxation relax(const Model& model, Observer& observer) {
+template <class Real>
+Relaxation relax_body(const Model& model, const InternalForce<Real>& elements, Observer& observer) {
   const RelaxationSettings& settings = model.scene().description.relaxation;
-  const std::size_t n_nodes = model.masses().size();
   const int ramp_steps = choose_ramp_steps(model);
   const auto& constraints = model.scene().constraints;
-
-  Relaxation result{.u = NodalField(n_nodes)};
-  NodalField& u = result.u;
-  NodalField v(n_nodes);  // increment per step; zero on constrained components
-  Forces forces(model);
-  ScaledMasses masses(model);
-  AdaptiveDamping damping(model);
+  PseudoDynamics<Real> scheme(model, elements);
+  Body<Real>& body = scheme.body();
+  Relaxation result;
   std::vector<double> reactions(constraints.size(), 0.0);
   double work = 0.0;
   int frames = 0;
 
-  masses.update(u);
-  observer.frame(0.0, u, v);
+  const NodalField no_velocity(model.masses().size());
+  observer.frame(body.frame(0.0, no_velocity));
   observer.history({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0 / ramp_steps});
   const auto start = std::chrono::steady_clock::now();
   for (long step = 1; step <= settings.max_steps; ++step) {
     const double ramp = static_cast<double>(step) / ramp_steps;
     const double advance = loading_curve(ramp) - loading_curve(ramp - 1.0 / ramp_steps);
-    model.impose(loading_curve(ramp), u);
-    forces.evaluate(u);
-    const double c = damping.coefficient(masses.nodal(), v, forces.free());
-    for (std::size_t n = 0; n < n_nodes; ++n) {
-      const double mass = masses.nodal()[n];
-      for (std::size_t i = 0; i < 3; ++i) {
-        v[n][i] = ((2.0 - c) * v[n][i] - 2.0 * forces.free()[n][i] / mass) / (2.0 + c);
-      }
-    }
+    body.impose(loading_curve(ramp));
+    body.evaluate_forces();
     for (std::size_t k = 0; k < constraints.size(); ++k) {
-      work += 0.5 * (reactions[k] + forces.reactions()[k]) * advance * constraints[k].value;
-      reactions[k] = forces.reactions()[k];
+      work += 0.5 * (reactions[k] + body.reactions()[k]) * advance * constraints[k].value;
+      reactions[k] = body.reactions()[k];
     }
     result.steps = step;
-    result.residual = forces.residual();
+    result.residual = body.residual();
     result.converged = step >= ramp_steps && result.residual < settings.tolerance;
 
     const bool check =
         step % settings.check_interval == 0 || result.converged || !std::isfinite(result.residual);
+    const double damping = scheme.damping();
     if (check) {
-      require_healthy(model, u, step);
-      const StrainEnergies energies = model.internal_force().energies(u);
-      observer.history({ramp, 0.5 * weighted_dot(masses.nodal(), v, v), energies.strain, energies.hourglass,
-                        work, result.residual, 1.0 / ramp_steps});
+      body.require_healthy(step);
+      const StrainEnergies energies = body.energies();
+      observer.history({ramp, scheme.kinetic_energy(), energies.strain, energies.hourglass, work,
+                        result.residual, 1.0 / ramp_steps});
       const double digits =
           std::log(std::max(result.residual, settings.tolerance)) / std::log(settings.tolerance);
       result.interrupted =
           !observer.proceed(step, std::min(1.0, 0.5 * std::min(ramp, 1.0) + 0.5 * digits), result.residual);
-      masses.update(u);
+      scheme.update_masses();
     }
     if (step < ramp_steps && step * settings.frames >= static_cast<long>(frames + 1) * ramp_steps) {
       ++frames;
-      observer.frame(ramp, u, v);
+      observer.frame(body.frame(ramp, body.field(body.state().increment)));
     }
-    if (result.converged || result.interrupted) break;
-    if (step == settings.max_steps) break;
-    for (std::size_t n = 0; n < n_nodes; ++n) {
-      for (std::size_t i = 0; i < 3; ++i) u[n][i] += v[n][i];
-    }
+    if (result.converged || result.interrupted || step == settings.max_steps) break;
+    scheme.advance(damping);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  observer.frame(std::max(1.0, static_cast<double>(result.steps) / ramp_steps), u, NodalField(n_nodes));
+  result.u = body.field(body.state().u);
+  result.energies = body.energies();
+  observer.frame(body.frame(std::max(1.0, static_cast<double>(result.steps) / ramp_steps), no_velocity));
   return result;
+}
+
+}  // namespace
+
+Relaxation relax(const Model& model, Observer& observer) {
+  return std::visit([&](const auto& elements) { return relax_body(model, *elements, observer); },
+                    model.internal_force());
 }
 
 }  // namespace sandglass

@@ -12,6 +12,7 @@ struct Relaxation {
   double residual = 0.0;     ///< |force on free components| / |reactions|
   bool converged = false;    ///< residual below the tolerance
   bool interrupted = false;  ///< the observer asked to end
+  StrainEnergies energies;   ///< at u
   double seconds = 0.0;      ///< wall time of the steps
 };
 

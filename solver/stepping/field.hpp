@@ -15,10 +15,4 @@ inline double weighted_dot(const std::vector<double>& weight, const NodalField& 
   return sum;
 }
 
-inline double dot(const NodalField& a, const NodalField& b) {
-  double sum = 0.0;
-  for (std::size_t n = 0; n < a.size(); ++n) sum += a[n][0] * b[n][0] + a[n][1] * b[n][1] + a[n][2] * b[n][2];
-  return sum;
-}
-
 }  // namespace sandglass

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <string_view>
-
-#include "model/model.hpp"
+#include <span>
 
 namespace sandglass {
 
-/// Throws ComputationError when a displacement is not finite or an element is inverted at u; names the step,
-/// the first ten elements with det F, and a remedy.
-void require_healthy(const Model& model, const NodalField& u, long step);
+/// Throws ComputationError when an element is inverted or its det F is not a number: names the step, the
+/// first ten such elements with det F, and a remedy. `jacobians` holds the smallest det F of each element.
+void require_healthy(std::span<const double> jacobians, long step);
 
 }  // namespace sandglass

@@ -15,6 +15,15 @@ struct HistoryRow {
   double step_size;      ///< s; in quasi-static runs a share of the ramp
 };
 
+/// A state worth keeping, in the numbering of the mesh.
+struct Frame {
+  double time;
+  NodalField u;                                    ///< m
+  NodalField v;                                    ///< m/s, at the same time as u
+  std::vector<double> jacobians;                   ///< volume ratio of each element
+  std::vector<double> hourglass_energy_densities;  ///< J/m^3, per reference volume of each element
+};
+
 /// What a stepper tells while it runs. The base class listens to nothing.
 class Observer {
  public:
@@ -23,8 +32,7 @@ class Observer {
   Observer& operator=(const Observer&) = delete;
   virtual ~Observer() = default;
 
-  /// A state worth keeping: displacements (m) and velocities (m/s) that belong to the same time.
-  virtual void frame(double /*time*/, const NodalField& /*u*/, const NodalField& /*v*/) {}
+  virtual void frame(const Frame& /*frame*/) {}
 
   virtual void history(const HistoryRow& /*row*/) {}
 

@@ -2,21 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sandglass {
 
+namespace {
+
+double step_of(double stiffness, double mass) {
+  return 2.0 / std::sqrt(stiffness / (mass / 8.0));
+}
+
+std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
+  std::vector<double> bounds(model.element_masses().size());
+  std::visit([&](const auto& elements) { elements->stiffness_bounds(state_at(*elements, u), bounds); },
+             model.internal_force());
+  return bounds;
+}
+
+}  // namespace
+
 std::vector<double> stable_steps(const Model& model, const NodalField& u) {
-  const auto& masses = model.element_masses();
-  std::vector<double> steps(masses.size());
-  model.internal_force().stiffness_bounds(u, steps);
-  for (std::size_t e = 0; e < steps.size(); ++e) steps[e] = 2.0 / std::sqrt(steps[e] / (masses[e] / 8.0));
+  std::vector<double> steps = stiffness_bounds(model, u);
+  for (std::size_t e = 0; e < steps.size(); ++e) steps[e] = step_of(steps[e], model.element_masses()[e]);
   return steps;
 }
 
 StableStep stable_step(const Model& model, const NodalField& u) {
-  const auto steps = stable_steps(model, u);
-  const auto smallest = std::min_element(steps.begin(), steps.end());
-  return {*smallest, static_cast<int>(smallest - steps.begin())};
+  return stable_step(model, stiffness_bounds(model, u));
+}
+
+StableStep stable_step(const Model& model, std::span<const double> bounds) {
+  StableStep smallest{std::numeric_limits<double>::infinity(), -1};
+  for (std::size_t e = 0; e < bounds.size(); ++e) {
+    const double step = step_of(bounds[e], model.element_masses()[e]);
+    if (!(step >= smallest.step)) smallest = {step, static_cast<int>(e)};
+  }
+  return smallest;
 }
 
 }  // namespace sandglass

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "model/model.hpp"
@@ -17,6 +18,10 @@ struct StableStep {
 /// is safe.
 std::vector<double> stable_steps(const Model& model, const NodalField& u);
 
+/// The smallest of them.
 StableStep stable_step(const Model& model, const NodalField& u);
+
+/// The same from bounds of the elements' stiffness (N/m) that are known already.
+StableStep stable_step(const Model& model, std::span<const double> stiffness_bounds);
 
 }  // namespace sandglass

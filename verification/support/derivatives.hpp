@@ -14,7 +14,7 @@ using D = Dual<double>;
 
 template <int R, int C>
 Matrix<D, R, C> constant(const Matrix<double, R, C>& a) {
-  Matrix<D, R, C> result;
+  Matrix<D, R, C> result{};
   for (std::size_t n = 0; n < a.entries.size(); ++n) result.entries[n] = D(a.entries[n]);
   return result;
 }
@@ -22,14 +22,14 @@ Matrix<D, R, C> constant(const Matrix<double, R, C>& a) {
 /// a + epsilon b.
 template <int R, int C>
 Matrix<D, R, C> along(const Matrix<double, R, C>& a, const Matrix<double, R, C>& b) {
-  Matrix<D, R, C> result;
+  Matrix<D, R, C> result{};
   for (std::size_t n = 0; n < a.entries.size(); ++n) result.entries[n] = D(a.entries[n], b.entries[n]);
   return result;
 }
 
 template <int R, int C>
 Matrix<double, R, C> slope(const Matrix<D, R, C>& a) {
-  Matrix<double, R, C> result;
+  Matrix<double, R, C> result{};
   for (std::size_t n = 0; n < a.entries.size(); ++n) result.entries[n] = a.entries[n].slope;
   return result;
 }
@@ -37,7 +37,7 @@ Matrix<double, R, C> slope(const Matrix<D, R, C>& a) {
 /// The unit vector of entry `n`.
 template <int R, int C>
 Matrix<double, R, C> unit(std::size_t n) {
-  Matrix<double, R, C> e;
+  Matrix<double, R, C> e{};
   e.entries[n] = 1.0;
   return e;
 }
@@ -45,7 +45,7 @@ Matrix<double, R, C> unit(std::size_t n) {
 /// The gradient of a scalar function of a matrix.
 template <int R, int C, class Function>
 Matrix<double, R, C> gradient(const Matrix<double, R, C>& at, const Function& function) {
-  Matrix<double, R, C> result;
+  Matrix<double, R, C> result{};
   for (std::size_t n = 0; n < at.entries.size(); ++n) {
     result.entries[n] = function(along(at, unit<R, C>(n))).slope;
   }

@@ -20,7 +20,7 @@ class RandomGeometry {
 
   /// A tensor with entries in [-size, size].
   Tensor<double> tensor(double size) {
-    Tensor<double> a;
+    Tensor<double> a{};
     for (auto& entry : a.entries) entry = uniform(-size, size);
     return a;
   }
@@ -44,7 +44,7 @@ class RandomGeometry {
   /// A deformation gradient: rotation times stretches of the given range along random axes.
   Tensor<double> deformation(double smallest_stretch, double largest_stretch) {
     const Tensor<double> axes = rotation();
-    Tensor<double> stretch;
+    Tensor<double> stretch{};
     for (int i = 0; i < 3; ++i) stretch(i, i) = uniform(smallest_stretch, largest_stretch);
     return rotation() * (axes * stretch * transpose(axes));
   }
@@ -53,7 +53,7 @@ class RandomGeometry {
   /// then stretched, sheared, rotated, moved, and of millimetre, metre or kilometre size.
   NodalVectors<double> hexahedron() {
     for (;;) {
-      NodalVectors<double> X;
+      NodalVectors<double> X{};
       for (int I = 0; I < 8; ++I) {
         for (int i = 0; i < 3; ++i) X(I, i) = 0.5 * corner_signs(I, i) + uniform(-0.25, 0.25);
       }

@@ -73,15 +73,7 @@ inline double largest_distance(const NodalField& a, const NodalField& b) {
 /// Keeps everything that a stepper tells.
 class Recorder final : public Observer {
  public:
-  struct Frame {
-    double time;
-    NodalField u;
-    NodalField v;
-  };
-
-  void frame(double time, const NodalField& u, const NodalField& v) override {
-    frames.push_back({time, u, v});
-  }
+  void frame(const Frame& frame) override { frames.push_back(frame); }
   void history(const HistoryRow& row) override { rows.push_back(row); }
   bool proceed(long step, double /*share*/, double /*residual*/) override { return step < last_step; }
 

@@ -13,12 +13,12 @@
 /// edit.
 namespace sandglass::verification {
 
-/// One pair of the product method x law.
+/// One pair of the product method x law, for methods whose force follows from the displacements.
 template <class MethodType, class LawType>
 struct MethodWithLaw {
   using Method = MethodType;
   using Law = LawType;
-  using Formulation = FormulationOf<Method, Law>;
+  using Formulation = NodalForm<FormulationOf<Method, Law>>;
   static std::string label() { return std::string(Method::name) + " " + std::string(Law::name); }
 };
 
@@ -42,11 +42,16 @@ struct Concatenated<TypeList<First...>, TypeList<Second...>, Rest...> {
   using type = typename Concatenated<TypeList<First..., Second...>, Rest...>::type;
 };
 
+/// Whether a method's force depends on the path; such methods have tests of their own.
+template <class Method, class Law>
+inline constexpr bool remembers = FormulationOf<Method, Law>::remembers;
+
 template <class Method, class LawList>
 struct WithEveryLaw;
 template <class Method, class... EveryLaw>
 struct WithEveryLaw<Method, TypeList<EveryLaw...>> {
-  using type = TypeList<MethodWithLaw<Method, EveryLaw>...>;
+  using type = typename Concatenated<
+      std::conditional_t<remembers<Method, EveryLaw>, TypeList<>, TypeList<MethodWithLaw<Method, EveryLaw>>>...>::type;
 };
 
 template <class MethodList, class LawList>

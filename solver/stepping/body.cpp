@@ -1,0 +1,102 @@
+#include "stepping/body.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "stepping/health.hpp"
+#include "stepping/row_loops.hpp"
+
+namespace sandglass {
+
+template <class Real>
+Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
+    : elements_(elements),
+      threads_(model.choice().threads),
+      state_(elements.rest()),
+      force_(state_.u.size()),
+      reactions_(model.scene().constraints.size(), 0.0),
+      per_element_(model.scene().mesh.cells.size()) {
+  for (const auto& [node, component, value] : model.scene().constraints) {
+    const int row = elements.layout().row_of_node[static_cast<std::size_t>(node)];
+    constraints_.push_back(
+        {static_cast<std::size_t>(row), static_cast<std::size_t>(component), static_cast<Real>(value)});
+  }
+}
+
+template <class Real>
+void Body<Real>::evaluate_forces() {
+  clear(force_, threads_);
+  elements_.add_to(force_, state_);
+  for (std::size_t k = 0; k < constraints_.size(); ++k) {
+    Real& component = force_[constraints_[k].row][constraints_[k].component];
+    reactions_[k] = static_cast<double>(component);
+    component = Real(0);
+    state_.increment[constraints_[k].row][constraints_[k].component] = Real(0);
+  }
+}
+
+template <class Real>
+double Body<Real>::residual() const {
+  const double unbalanced = std::sqrt(dot(force_, force_, threads_));
+  const double carried =
+      std::sqrt(std::inner_product(reactions_.begin(), reactions_.end(), reactions_.begin(), 0.0));
+  return carried > 0.0 ? unbalanced / carried : unbalanced;
+}
+
+template <class Real>
+void Body<Real>::impose(double factor) {
+  for (const auto& [row, component, value] : constraints_) {
+    const Real imposed = static_cast<Real>(factor) * value;
+    state_.increment[row][component] += imposed - state_.u[row][component];
+    state_.u[row][component] = imposed;
+  }
+}
+
+template <class Real>
+Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) const {
+  const Layout& layout = elements_.layout();
+  Rows<Real> rows(layout.rows());
+  for (std::size_t r = 0; r < layout.nodes; ++r) {
+    const auto value = static_cast<Real>(nodal[static_cast<std::size_t>(layout.node_of_row[r])]);
+    for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value;
+  }
+  for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
+  return rows;
+}
+
+template <class Real>
+Frame Body<Real>::frame(double time, NodalField v) const {
+  Frame frame{time, field(state_.u), std::move(v), std::vector<double>(per_element_.size()),
+              std::vector<double>(per_element_.size())};
+  elements_.jacobians(state_, frame.jacobians);
+  elements_.hourglass_energy_densities(state_, frame.hourglass_energy_densities);
+  return frame;
+}
+
+template <class Real>
+void Body<Real>::require_healthy(long step) {
+  elements_.smallest_jacobians(state_, per_element_);
+  sandglass::require_healthy(per_element_, step);
+}
+
+template <class Real>
+const std::vector<double>& Body<Real>::stiffness_bounds() {
+  elements_.stiffness_bounds(state_, per_element_);
+  return per_element_;
+}
+
+Frame static_frame(const Model& model, double time, const NodalField& u) {
+  return std::visit(
+      [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+        Body<Real> body(model, *elements);
+        body.state() = state_at(*elements, u);
+        body.evaluate_forces();
+        return body.frame(time, NodalField(u.size()));
+      },
+      model.internal_force());
+}
+
+template class Body<double>;
+template class Body<float>;
+
+}  // namespace sandglass

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "model/model.hpp"
+#include "stepping/observer.hpp"
+
+namespace sandglass {
+
+/// A model as the time loop sees it: its state in rows, the forces on it, and what the constraints impose and
+/// carry.
+template <class Real>
+class Body {
+ public:
+  Body(const Model& model, const InternalForce<Real>& elements);
+
+  const State<Real>& state() const { return state_; }
+  State<Real>& state() { return state_; }
+
+  /// Internal forces (N) of the last evaluation; zero on constrained components.
+  const Rows<Real>& free_forces() const { return force_; }
+
+  /// Internal forces (N) on constrained components, in the order of the scene's constraints: the reactions of
+  /// a body at rest.
+  const std::vector<double>& reactions() const { return reactions_; }
+
+  /// Evaluates the internal forces of the state. The imposed increments have done their work then and are
+  /// cleared, so that an update of increments need not know of constraints.
+  void evaluate_forces();
+
+  /// |free forces| / |reactions|; without reactions the plain norm of the free forces (N).
+  double residual() const;
+
+  /// Sets constrained components to `factor` times their final value, and their increments to the change.
+  void impose(double factor);
+
+  /// One value for each node as rows, zero on constrained components and in spare rows: with inverse masses
+  /// a component moves where it may, without a branch.
+  Rows<Real> on_free_components(const std::vector<double>& nodal) const;
+
+  /// Rows in the numbering of the mesh.
+  NodalField field(const Rows<Real>& rows) const { return to_field(rows, elements_.layout()); }
+
+  StrainEnergies energies() const { return elements_.energies(state_); }
+  Frame frame(double time, NodalField v) const;
+
+  /// Throws ComputationError when a displacement is not finite or an element is inverted.
+  void require_healthy(long step);
+
+  /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
+  const std::vector<double>& stiffness_bounds();
+
+  int threads() const { return threads_; }
+
+ private:
+  struct RowConstraint {
+    std::size_t row;
+    std::size_t component;
+    Real value;
+  };
+
+  const InternalForce<Real>& elements_;
+  int threads_;
+  std::vector<RowConstraint> constraints_;
+  State<Real> state_;
+  Rows<Real> force_;
+  std::vector<double> reactions_;
+  std::vector<double> per_element_;
+};
+
+/// A frame of a model at rest at displacements u (m), reached in one step.
+Frame static_frame(const Model& model, double time, const NodalField& u);
+
+extern template class Body<double>;
+extern template class Body<float>;
+
+}  // namespace sandglass
