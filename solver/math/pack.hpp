@@ -1,8 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <concepts>
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 
 #include "math/scalar.hpp"
@@ -87,25 +87,15 @@ struct Pack {
     return each(a, [](T x) { return std::expm1(x); });
   }
 
-  /// x^(-1/3) for x > 0 without a general power or a division: a first guess from the bits of x in single
-  /// precision (within 3.4 %), then steps of fourth order from r = 1 - x y^3, y (1 - r)^(-1/3) expanded. The
-  /// second step ends at a few units in the last place; tested against cbrt.
+  /// As for plain numbers, see scalar.hpp.
   friend Pack inverse_cube_root(Pack x) {
     using FloatVector = typename detail::VectorOf<T, W>::FloatVector;
     using IntVector = typename detail::VectorOf<T, W>::IntVector;
-    FloatVector guess = __builtin_convertvector(x.lanes, FloatVector);
-    IntVector bits;
-    std::memcpy(&bits, &guess, sizeof bits);
-    // The bits of a float are a scaled, shifted logarithm: dividing them by -3 takes the root.
-    const FloatVector logarithm = __builtin_convertvector(bits, FloatVector) * (-1.0F / 3.0F) + 1.4199153e9F;
-    bits = __builtin_convertvector(logarithm, IntVector);
-    std::memcpy(&guess, &bits, sizeof bits);
-    Pack y = of(__builtin_convertvector(guess, Vector));
-    for (int step = 0; step < 2; ++step) {
-      const Pack r = Pack(T(1)) - x * (y * y * y);
-      y = y + y * (r * (Pack(T(1.0 / 3.0)) + r * (Pack(T(2.0 / 9.0)) + r * Pack(T(14.0 / 81.0)))));
-    }
-    return y;
+    const auto bits = std::bit_cast<IntVector>(__builtin_convertvector(x.lanes, FloatVector));
+    const auto root_bits = __builtin_convertvector(
+        __builtin_convertvector(bits, FloatVector) * cube_root_slope + cube_root_shift, IntVector);
+    return refined_inverse_cube_root(
+        x, of(__builtin_convertvector(std::bit_cast<FloatVector>(root_bits), Vector)));
   }
 
  private:
