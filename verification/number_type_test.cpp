@@ -58,7 +58,7 @@ TEST(Pack, every_lane_is_computed_by_itself) {
 
 template <class Pair>
 class PackedKernel : public testing::Test {};
-TYPED_TEST_SUITE(PackedKernel, MethodWithLawTypes);
+TYPED_TEST_SUITE(PackedKernel, ElasticMethodWithLawTypes);
 
 /// Every method's force on a pack of different elements against the same kernel on doubles. Both round
 /// differently (contraction, root), each some hundred operations deep on terms as large as stiffness times

@@ -48,7 +48,7 @@ class StableStepTest : public ::testing::Test {
   RandomGeometry random{17};
 };
 
-TYPED_TEST_SUITE(StableStepTest, MethodWithLawTypes, EntryName);
+TYPED_TEST_SUITE(StableStepTest, ElasticMethodWithLawTypes, EntryName);
 
 // A bound that is safe because it is huge would pass without the second half of each test. In the mean over
 // the samples it may cost a third of the step at rest, (1/1.5)^2 = .44 in the eigenvalue, and half when

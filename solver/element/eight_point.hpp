@@ -83,8 +83,6 @@ struct EightPoint {
 
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
-  template <class T>
-  using History = NoHistory<T>;
   using NoControl = NoHourglassControl;
 
   static Element<double> precompute(const NodalVectors<double>& X) {
@@ -123,7 +121,7 @@ struct EightPoint {
   /// Internal forces (N) in modes: sum_q w_q B_q (P_iso(H_q) + p_q cof F_q)^T.
   template <class Hourglass, class T, class Law>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
-                        const NoControl::Element<T>& /*control*/, History<T>& /*history*/, const Law& law) {
+                        const NoControl::Element<T>& /*control*/, NoHistory<T>& /*history*/, const Law& law) {
     const auto dilatation = Pressure::dilatations(now.J_minus_one, element);
     std::array<Tensor<T>, 8> flux;  // w P J^-T, the stress that the parent gradient carries
     for (std::size_t q = 0; q < 8; ++q) {
@@ -137,7 +135,7 @@ struct EightPoint {
   /// Strain energy (J).
   template <class Hourglass, class T, class Law>
   static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
-                                 const NoControl::Element<T>& /*control*/, const History<T>& /*history*/,
+                                 const NoControl::Element<T>& /*control*/, const NoHistory<T>& /*history*/,
                                  const Law& law) {
     const auto H = point_gradients(motion, element);
     const auto dilatation = Pressure::dilatations(point_dilatations(H), element);

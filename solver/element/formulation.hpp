@@ -14,13 +14,13 @@ struct Formulation {
   /// What is constant in time.
   template <class T>
   struct Element {
-    typename Kinematics::template Element<T> body;
+    [[no_unique_address]] typename Kinematics::template Element<T> body;
     [[no_unique_address]] typename Hourglass::template Element<T> hourglass;
   };
 
   /// What changes in time beside the displacements; empty for elements whose force follows from them.
   template <class T>
-  using History = typename Kinematics::template History<T>;
+  using History = typename Hourglass::template History<T>;
 
   static constexpr bool remembers = !std::is_empty_v<History<double>>;
   static constexpr bool needs_increment = Kinematics::needs_increment;
@@ -85,7 +85,7 @@ struct Formulation {
 /// the functions above, for who looks at a single element.
 template <class Kernel>
 struct NodalForm : Kernel {
-  static_assert(!Kernel::remembers && !Kernel::needs_increment);
+  static_assert(!Kernel::remembers && !Kernel::needs_increment && !Kernel::needs_coordinates);
 
   template <class T, class Element, class Law>
   static NodalVectors<T> force(const NodalVectors<T>& u, const Element& element, const Law& law) {

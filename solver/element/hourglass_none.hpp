@@ -1,5 +1,6 @@
 #pragma once
 
+#include "element/element_motion.hpp"
 #include "element/hourglass_settings.hpp"
 #include "math/matrix.hpp"
 
@@ -12,6 +13,8 @@ struct NoHourglassControl {
 
   template <class T>
   struct Element {};
+  template <class T>
+  using History = NoHistory<T>;
 
   template <class Law>
   static Element<double> precompute(const NodalVectors<double>& /*X*/, const Law& /*law*/,

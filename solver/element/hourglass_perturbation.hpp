@@ -3,23 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "element/element_motion.hpp"
 #include "element/hexahedron.hpp"
 #include "element/hourglass_settings.hpp"
 #include "material/laws.hpp"
 
 namespace sandglass {
 
-/// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (paper, eqs
-/// 2-14). gamma is orthogonal to linear fields, so rigid motions and uniform strains feel no force, however
-/// large.
-struct PerturbationHourglassControl {
+/// The stiffness parameter that both forms of the perturbation control take.
+struct PerturbationStiffness {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = true;
-
-  template <class T>
-  struct Element {
-    T k;  ///< stiffness of the modes, N/m (eq. 12)
-  };
 
   /// kappa = E / (9 (lambda + 2 mu)): with it a cube bends with its exact energy at every Poisson's ratio,
   /// where a fixed kappa locks as nu -> 1/2 because lambda + 2 mu does.
@@ -31,14 +25,42 @@ struct PerturbationHourglassControl {
     return E / (9.0 * (lambda + 2.0 * mu));
   }
 
+  /// kappa rho c_D^2 = kappa (lambda + 2 mu) in Pa (eqs 9 and 12).
+  template <class Law>
+  static double modulus(const Law& law, const HourglassSettings& settings) {
+    return settings.kappa.value_or(auto_kappa(law)) * (lame_lambda(law) + 2.0 * law.shear_modulus());
+  }
+};
+
+/// lambda_max(gamma^T gamma), bounded by the largest sum of absolute values in a row.
+template <class T>
+T shape_vector_bound(const Matrix<T, 8, 4>& gamma) {
+  const Matrix<T, 4, 4> product = transpose(gamma) * gamma;
+  T largest = T(0);
+  for (int a = 0; a < 4; ++a) {
+    T row = T(0);
+    for (int b = 0; b < 4; ++b) row = row + abs(product(a, b));
+    largest = max(largest, row);
+  }
+  return largest;
+}
+
+/// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (paper, eqs
+/// 2-14). gamma is orthogonal to linear fields, so rigid motions and uniform strains feel no force, however
+/// large.
+struct PerturbationHourglassControl : PerturbationStiffness {
+  template <class T>
+  struct Element {
+    T k;  ///< stiffness of the modes, N/m (eq. 12)
+  };
+  template <class T>
+  using History = NoHistory<T>;
+
   template <class Law>
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& settings) {
     const MeanGradient mean = mean_gradient(X);
-    const double P_modulus = lame_lambda(law) + 2.0 * law.shear_modulus();      // rho c_D^2, eq. 9
-    const double K_max = mean.volume * P_modulus * double_dot(mean.h, mean.h);  // eqs 6-8
-    const double kappa = settings.kappa.value_or(auto_kappa(law));
-    return {kappa * K_max / 8.0};
+    return {modulus(law, settings) * mean.volume * double_dot(mean.h, mean.h) / 8.0};  // eqs 6-8
   }
 
   /// Hourglass resistances Q = k q (N) to the hourglass displacements q = gamma^T u (m); eqs 4, 11 and 12.
@@ -53,18 +75,10 @@ struct PerturbationHourglassControl {
     return T(0.5) * element.k * double_dot(q, q);
   }
 
-  /// k lambda_max(gamma^T gamma) in N/m, the eigenvalue bounded by the largest sum of absolute values in a
-  /// row.
+  /// k lambda_max(gamma^T gamma) in N/m.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
-    const Matrix<T, 4, 4> product = transpose(gamma) * gamma;
-    T largest = T(0);
-    for (int a = 0; a < 4; ++a) {
-      T row = T(0);
-      for (int b = 0; b < 4; ++b) row = row + abs(product(a, b));
-      largest = max(largest, row);
-    }
-    return element.k * largest;
+    return element.k * shape_vector_bound(gamma);
   }
 };
 

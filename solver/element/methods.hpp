@@ -3,11 +3,14 @@
 #include <string_view>
 
 #include "base/type_list.hpp"
+#include "element/compact_one_point.hpp"
 #include "element/eight_point.hpp"
 #include "element/formulation.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
+#include "element/hourglass_rate_perturbation.hpp"
 #include "element/one_point.hpp"
+#include "element/updated_one_point.hpp"
 
 namespace sandglass {
 
@@ -29,6 +32,24 @@ struct TlPerturbation {
   using Hourglass = PerturbationHourglassControl;
 };
 
+struct TlPerturbationCompact {
+  static constexpr std::string_view name = "tl-perturbation-compact";
+  static constexpr std::string_view summary =
+      "tl-perturbation with its geometry computed anew each step instead of loaded";
+  static constexpr int integration_points = 1;
+  using Kinematics = CompactOnePoint;
+  using Hourglass = PerturbationHourglassControl;
+};
+
+struct UlPerturbation {
+  static constexpr std::string_view name = "ul-perturbation";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, the same control integrated in time and turned: what ABAQUS does";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RatePerturbationControl;
+};
+
 struct TlFull {
   static constexpr std::string_view name = "tl-full";
   static constexpr std::string_view summary = "eight points, displacement element: locks as nu -> 1/2";
@@ -48,7 +69,7 @@ struct TlMeanDilatation {
 
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
-using Methods = TypeList<TlNone, TlPerturbation, TlFull, TlMeanDilatation>;
+using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull, TlMeanDilatation>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

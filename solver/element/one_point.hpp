@@ -43,8 +43,6 @@ struct OnePoint {
 
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
-  template <class T>
-  using History = NoHistory<T>;
 
   static Element<double> precompute(const NodalVectors<double>& X) { return geometry(to_modes(X)); }
 
@@ -127,7 +125,7 @@ struct OnePoint {
   /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14).
   template <class Hourglass, class T, class Law>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
-                        const typename Hourglass::template Element<T>& control, History<T>& /*history*/,
+                        const typename Hourglass::template Element<T>& control, NoHistory<T>& /*history*/,
                         const Law& law) {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> VP = transpose(law.weighted_piola(element.V, now.H, now.change, p));
@@ -141,7 +139,7 @@ struct OnePoint {
   template <class Hourglass, class T, class Law>
   static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
                                  const typename Hourglass::template Element<T>& control,
-                                 const History<T>& /*history*/, const Law& law) {
+                                 const NoHistory<T>& /*history*/, const Law& law) {
     const Tensor<T> H = mean_gradient(motion.u, element);
     ElementEnergy<T> energy{element.V * law.energy(H), T(0)};
     if constexpr (Hourglass::active) {

@@ -33,6 +33,7 @@ class ObservedLaw {
   // clang-format off
   template <class H> auto piola(const H& h) const { return observed([&] { return law_.piola(h); }); }
   template <class T, class H, class C> auto weighted_piola(const T& V, const H& h, const C& c, const T& p) const { return observed([&] { return law_.weighted_piola(V, h, c, p); }); }
+  template <class T, class H, class C> auto weighted_kirchhoff(const T& V, const H& h, const C& c, const T& p) const { return observed([&] { return law_.weighted_kirchhoff(V, h, c, p); }); }
   template <class T> auto pressure(const T& j) const { return observed([&] { return law_.pressure(j); }); }
   // clang-format on
 

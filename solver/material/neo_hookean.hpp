@@ -87,6 +87,17 @@ struct NeoHookean {
     return P;
   }
 
+  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on: a dev(F F^T) + p J I.
+  template <class T>
+  Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+                               const T& p) const {
+    const T a = (T(shear_modulus()) * V) * (change.inverse_root * change.inverse_root);
+    Tensor<T> tau = a * deviator(left_cauchy_green_minus_identity(H));
+    const T mean = V * p * (T(1) + change.J_minus_one);
+    for (int i = 0; i < 3; ++i) tau(i, i) = tau(i, i) + mean;
+    return tau;
+  }
+
   /// The isochoric part of the first Piola-Kirchhoff stress.
   template <class T>
   Tensor<T> isochoric_piola(const Tensor<T>& H) const {

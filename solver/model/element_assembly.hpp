@@ -34,10 +34,14 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
       }
     }
     if constexpr (Kernel::needs_coordinates) {
+      // Seen from the middle of the mesh: where it stands must not cost single precision its digits.
+      const auto [low, high] = bounding_box(mesh.points);
       coordinates_.resize(layout_.rows());
       for (std::size_t r = 0; r < layout_.rows(); ++r) {
         const Vector& X = mesh.points[static_cast<std::size_t>(layout_.node_of_row[r])];
-        for (std::size_t i = 0; i < 3; ++i) coordinates_[r][i] = static_cast<Real>(X[i]);
+        for (std::size_t i = 0; i < 3; ++i) {
+          coordinates_[r][i] = static_cast<Real>(X[i] - 0.5 * (low[i] + high[i]));
+        }
       }
     }
   }

@@ -13,13 +13,19 @@
 /// edit.
 namespace sandglass::verification {
 
-/// One pair of the product method x law, for methods whose force follows from the displacements.
+/// One pair of the product method x law.
 template <class MethodType, class LawType>
 struct MethodWithLaw {
   using Method = MethodType;
   using Law = LawType;
-  using Formulation = NodalForm<FormulationOf<Method, Law>>;
+  using Kernel = FormulationOf<Method, Law>;
   static std::string label() { return std::string(Method::name) + " " + std::string(Law::name); }
+};
+
+/// A pair whose force follows from the displacements of one element, so that it can be looked at by itself.
+template <class MethodType, class LawType>
+struct ElasticMethodWithLaw : MethodWithLaw<MethodType, LawType> {
+  using Formulation = NodalForm<FormulationOf<MethodType, LawType>>;
 };
 
 namespace detail {
@@ -42,16 +48,11 @@ struct Concatenated<TypeList<First...>, TypeList<Second...>, Rest...> {
   using type = typename Concatenated<TypeList<First..., Second...>, Rest...>::type;
 };
 
-/// Whether a method's force depends on the path; such methods have tests of their own.
-template <class Method, class Law>
-inline constexpr bool remembers = FormulationOf<Method, Law>::remembers;
-
 template <class Method, class LawList>
 struct WithEveryLaw;
 template <class Method, class... EveryLaw>
 struct WithEveryLaw<Method, TypeList<EveryLaw...>> {
-  using type = typename Concatenated<
-      std::conditional_t<remembers<Method, EveryLaw>, TypeList<>, TypeList<MethodWithLaw<Method, EveryLaw>>>...>::type;
+  using type = TypeList<MethodWithLaw<Method, EveryLaw>...>;
 };
 
 template <class MethodList, class LawList>
@@ -61,12 +62,29 @@ struct Product<TypeList<EveryMethod...>, LawList> {
   using type = typename Concatenated<typename WithEveryLaw<EveryMethod, LawList>::type...>::type;
 };
 
+/// Whether an element with its constants is all that a method needs beside the displacements.
+template <class Kernel>
+inline constexpr bool stands_alone = !Kernel::remembers && !Kernel::needs_coordinates;
+
+/// The pairs that stand alone.
+template <class List>
+struct Elastic;
+template <class... Methods, class... PairedLaws>
+struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
+  using type = typename Concatenated<
+      TypeList<>, std::conditional_t<stands_alone<FormulationOf<Methods, PairedLaws>>,
+                                     TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>::type;
+};
+
 }  // namespace detail
 
 using LawTypes = detail::AsTestTypes<Laws>::type;
 using MethodTypes = detail::AsTestTypes<Methods>::type;
 using GeneratorTypes = detail::AsTestTypes<Generators>::type;
 using MethodWithLawTypes = detail::AsTestTypes<detail::Product<Methods, Laws>::type>::type;
+
+using ElasticMethodWithLawTypes =
+    detail::AsTestTypes<detail::Elastic<detail::Product<Methods, Laws>::type>::type>::type;
 
 /// How many zero eigenvalues an element at rest has. Six are the rigid motions. A method that leaves more by
 /// nature says so with `zero_energy_modes` in its own definition; one point without control leaves the twelve

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "element/one_point.hpp"
+
+namespace sandglass {
+
+/// The uniform strain hexahedron in the Updated Lagrangian formulation: nothing is precomputed. Each step
+/// rebuilds mean gradients, volume and hourglass shape vectors from the current coordinates, takes F from
+/// F^-1 = I - du/dx, and turns the Cauchy stress into forces. What it rebuilds is the geometry of OnePoint, by
+/// the same function, so that the two formulations differ by what they do, not by how well it is written.
+struct UpdatedOnePoint {
+  static constexpr bool needs_increment = true;
+  static constexpr bool needs_coordinates = true;
+
+  /// What is constant in time: nothing.
+  template <class T>
+  struct Element {};
+
+  static Element<double> precompute(const NodalVectors<double>& /*X*/) { return {}; }
+
+  /// What the force needs of the motion.
+  template <class T>
+  struct Deformation {
+    OnePoint::Element<T> current;  ///< h (1/m), c (m) and V (m^3) of the current configuration
+    Tensor<T> H;
+    VolumeChange<T> change;
+    Tensor<T> L;             ///< velocity gradient times the step
+    HourglassModes<T> rate;  ///< hourglass velocities times the step, m
+  };
+
+  template <class Hourglass, class T>
+  static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
+    Deformation<T> now;
+    now.current = OnePoint::geometry(motion.X + motion.u);
+    now.H = displacement_gradient(motion.u, now.current);
+    now.change = volume_change(now.H);
+    if constexpr (Hourglass::active) {
+      now.L = OnePoint::mean_gradient(motion.increment, now.current);
+      now.rate = OnePoint::hourglass_displacements(motion.increment, now.L, now.current);
+    }
+    return now;
+  }
+
+  /// Internal forces (N) in modes: f = h v sigma + gamma Q = h (V tau - c^T Q) + Gamma Q.
+  template <class Hourglass, class T, class Law>
+  static Modes<T> force(const Deformation<T>& now, const Element<T>& /*element*/,
+                        const typename Hourglass::template Element<T>& control,
+                        typename Hourglass::template History<T>& history, const Law& law) {
+    const T p = law.pressure(now.change.J_minus_one);
+    const Tensor<T> S = law.weighted_kirchhoff(reference_volume(now), now.H, now.change, p);
+    if constexpr (Hourglass::active) {
+      return OnePoint::modal_forces(S, Hourglass::resistance(now.rate, now.L, now.current, control, history),
+                                    now.current);
+    } else {
+      return OnePoint::body_forces(S, now.current);
+    }
+  }
+
+  template <class Hourglass, class T, class Law>
+  static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
+                                 const typename Hourglass::template Element<T>& control,
+                                 const typename Hourglass::template History<T>& history, const Law& law) {
+    const auto now = deformation<Hourglass>(motion, element);
+    ElementEnergy<T> energy{reference_volume(now) * law.energy(now.H), T(0)};
+    if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now.current, control, history);
+    return energy;
+  }
+
+  /// Reference volume, m^3.
+  template <class T>
+  static T volume(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
+    return OnePoint::geometry(motion.X).V;
+  }
+
+  /// The smallest volume ratio det F at the integration points.
+  template <class T>
+  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return mean_jacobian(motion, element);
+  }
+
+  /// det F as this element sees it.
+  template <class T>
+  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
+    return T(1) + jacobian_minus_one(
+                      displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));
+  }
+
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, as for OnePoint: h is spatial
+  /// already.
+  template <class Hourglass, class T, class Law>
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
+                           const typename Hourglass::template Element<T>& control, const Law& law) {
+    const auto now = deformation<Hourglass>(motion, element);
+    const NodalVectors<T> h = OnePoint::nodal_gradients(now.current);
+    const T body = reference_volume(now) * gradient_bound(tangent_bound(law, now.H), h);
+    if constexpr (Hourglass::active) {
+      return body + Hourglass::stiffness_bound(OnePoint::gamma(h, now.current), now.current, control);
+    }
+    return body;
+  }
+
+ private:
+  /// H = D (I - D)^-1 with D = du/dx: F - I from F^-1 without the cancellation of F - I.
+  template <class T>
+  static Tensor<T> displacement_gradient(const Modes<T>& u, const OnePoint::Element<T>& current) {
+    const Tensor<T> D = OnePoint::mean_gradient(u, current);
+    return D * inverse(identity<T>() - D);
+  }
+
+  /// v / J, with J^-1 from the root that is known.
+  template <class T>
+  static T reference_volume(const Deformation<T>& now) {
+    const T r = now.change.inverse_root;
+    return now.current.V * (r * r * r);
+  }
+};
+
+}  // namespace sandglass
