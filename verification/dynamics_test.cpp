@@ -53,7 +53,7 @@ class DynamicsTest : public ::testing::Test {
   static auto law(double nu = 0.45) { return sample_law<typename Pair::Law>(nu); }
 };
 
-TYPED_TEST_SUITE(DynamicsTest, MethodWithLawTypes, EntryName);
+TYPED_TEST_SUITE(DynamicsTest, PathIndependentPairTypes, EntryName);
 
 /// A small breathing oscillation has omega^2 = 6 K / (rho h^2): the force V 3 K (q/h) / (4 h) on the mass
 /// rho V / 8. Central differences follow it exactly in their own frequency, sin(phi / 2) = omega dt / 2: with

@@ -77,7 +77,7 @@ class PatchTest : public ::testing::Test {
   }
 };
 
-TYPED_TEST_SUITE(PatchTest, MethodWithLawTypes, EntryName);
+TYPED_TEST_SUITE(PatchTest, PathIndependentPairTypes, EntryName);
 
 TYPED_TEST(PatchTest, small_strain_is_exact) {
   this->expect_exact(macneal_harder_gradient());

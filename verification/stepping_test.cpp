@@ -44,7 +44,7 @@ class StepperTest : public ::testing::Test {
   static MethodChoice method() { return {std::string(Method::name), {}}; }
 };
 
-TYPED_TEST_SUITE(StepperTest, MethodTypes, EntryName);
+TYPED_TEST_SUITE(StepperTest, PathIndependentMethodTypes, EntryName);
 
 TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) {
   const Vector d{0.04, 0.0, 0.03};

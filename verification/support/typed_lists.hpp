@@ -76,12 +76,29 @@ struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
                                      TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>::type;
 };
 
+/// The methods whose answer does not depend on the path.
+template <class List>
+struct PathIndependent;
+template <class... EveryMethod>
+struct PathIndependent<TypeList<EveryMethod...>> {
+  using type = typename Concatenated<
+      TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers, TypeList<>,
+                                     TypeList<EveryMethod>>...>::type;
+};
+
 }  // namespace detail
 
 using LawTypes = detail::AsTestTypes<Laws>::type;
 using MethodTypes = detail::AsTestTypes<Methods>::type;
 using GeneratorTypes = detail::AsTestTypes<Generators>::type;
 using MethodWithLawTypes = detail::AsTestTypes<detail::Product<Methods, Laws>::type>::type;
+
+/// What integrates its resistances in time comes to rest where the path leads it; who expects one answer takes
+/// these.
+using PathIndependentMethods = detail::PathIndependent<Methods>::type;
+using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
+using PathIndependentPairTypes =
+    detail::AsTestTypes<detail::Product<PathIndependentMethods, Laws>::type>::type;
 
 using ElasticMethodWithLawTypes =
     detail::AsTestTypes<detail::Elastic<detail::Product<Methods, Laws>::type>::type>::type;

@@ -1,0 +1,296 @@
+/// The time loop's order of nodes and elements, and what must not depend on it: number of threads, width of the
+/// kernel, precision.
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "element/methods.hpp"
+#include "math/pack.hpp"
+#include "mesh/generators.hpp"
+#include "mesh/strips.hpp"
+#include "stepping/central_difference.hpp"
+#include "support/path.hpp"
+#include "support/patch_mesh.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.49};
+
+/// A ring of hexahedra that closes on itself: a strip without an end.
+Mesh ring(int n) {
+  Mesh mesh;
+  for (int k = 0; k < n; ++k) {
+    const double angle = 2.0 * std::acos(-1.0) * k / n;
+    for (const auto& [r, z] : {std::pair{1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}}) {
+      mesh.points.push_back({r * std::cos(angle), r * std::sin(angle), z});
+    }
+  }
+  for (int k = 0; k < n; ++k) {
+    const int a = 4 * k, b = 4 * ((k + 1) % n);
+    mesh.cells.push_back({a, b, b + 1, a + 1, a + 3, b + 3, b + 2, a + 2});
+  }
+  for (auto& cell : mesh.cells) {
+    NodalVectors<double> X = gather(mesh.points, cell);
+    if (mean_gradient(X).volume < 0.0) cell = {cell[4], cell[5], cell[6], cell[7], cell[0], cell[1], cell[2], cell[3]};
+  }
+  return mesh;
+}
+
+std::vector<Mesh> meshes() {
+  return {box({1, 1, 1}, {1, 1, 1}),
+          box({1, 2, 9}, {3, 4, 30}),
+          box({3, 2, 2.5}, {13, 11, 12}),
+          macneal_harder_patch(),
+          ring(40),
+          EllipsoidMesh{{0.10, 0.085, 0.08}, 6, 2}.build(),
+          CylinderMesh{.radius = 0.05, .height = 0.1, .core_elements = 4, .rings = 3, .layers = 9}.build()};
+}
+
+/// A displacement field that no element sees as linear, at most a tenth of a small element.
+NodalField wavy(const Mesh& mesh) {
+  RandomGeometry random(3);
+  const double size = std::cbrt(mean_gradient(gather(mesh.points, mesh.cells.front())).volume);
+  NodalField u(mesh.points.size());
+  for (auto& row : u) {
+    for (double& x : row) x = 0.1 * size * random.uniform(-1, 1);
+  }
+  return u;
+}
+
+/// Each element stands once, between two faces that hold just its nodes, in an orientation that keeps its volume
+/// positive; spare lanes hold none.
+TEST(LayoutTest, every_element_stands_once_between_its_faces) {
+  for (const Mesh& mesh : meshes()) {
+    for (const int width : {1, 2, 4, 8, 16}) {
+      const Layout layout = make_layout(mesh, width);
+      std::vector<int> met(mesh.cells.size(), 0);
+      for (const auto& group : layout.groups) {
+        for (std::size_t k = 0; k < group.levels; ++k) {
+          for (int lane = 0; lane < width; ++lane) {
+            const int e = layout.elements[(group.first_level + k) * index(width) + index(lane)];
+            NodalVectors<double> X{};
+            std::set<int> nodes;
+            for (int I = 0; I < 8; ++I) {
+              const Place place = layout.places(group.first_face + k + index(I) / 4, index(I) % 4)[lane];
+              ASSERT_EQ(e < 0, place / 4 >= layout.nodes);
+              const int node = layout.node_of_row[place / 4];
+              nodes.insert(node);
+              for (int i = 0; i < 3; ++i) X(I, i) = mesh.points[index(node)][index(i)];
+            }
+            EXPECT_GT(mean_gradient(X).volume, 0.0);
+            if (e < 0) continue;
+            ++met[index(e)];
+            const Hexahedron& cell = mesh.cells[index(e)];
+            EXPECT_EQ(nodes, std::set<int>(cell.begin(), cell.end()));
+          }
+        }
+      }
+      EXPECT_EQ(met, std::vector<int>(mesh.cells.size(), 1));
+    }
+  }
+}
+
+TEST(LayoutTest, rows_and_nodes_are_a_permutation) {
+  for (const Mesh& mesh : meshes()) {
+    const Layout layout = make_layout(mesh, 8);
+    EXPECT_EQ(layout.nodes, mesh.points.size());
+    for (std::size_t n = 0; n < layout.nodes; ++n) {
+      EXPECT_EQ(layout.node_of_row[index(layout.row_of_node[n])], static_cast<int>(n));
+    }
+  }
+}
+
+/// Threads work on chunks of one parity at a time: they must share no row.
+TEST(LayoutTest, chunks_of_one_parity_share_no_row) {
+  for (const Mesh& mesh : meshes()) {
+    for (const int width : {1, 8, 16}) {
+      const Layout layout = make_layout(mesh, width);
+      for (const std::size_t parity : {0U, 1U}) {
+        std::vector<int> owner(layout.rows(), -1);
+        for (std::size_t c = parity; c < layout.chunks.size(); c += 2) {
+          for (std::size_t g = layout.chunks[c].first; g < layout.chunks[c].last; ++g) {
+            const auto& group = layout.groups[g];
+            for (std::size_t n = 0; n < 4 * index(width) * (group.levels + 1); ++n) {
+              int& by = owner[layout.places(group.first_face, 0)[n] / 4];
+              EXPECT_TRUE(by == -1 || by == static_cast<int>(c));
+              by = static_cast<int>(c);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Going along strips is worth it only if they are long: in a box they run from side to side of a chunk.
+TEST(LayoutTest, strips_of_a_box_are_long_and_lanes_are_filled) {
+  const Layout layout = make_layout(box({3, 2, 2.5}, {24, 16, 20}), 8);
+  std::size_t levels = 0;
+  for (const auto& group : layout.groups) levels += group.levels;
+  EXPECT_GE(levels / layout.groups.size(), 8U);
+  EXPECT_LT(layout.levels() * 8, 24U * 16U * 20U * 101 / 100);
+}
+
+template <class Method>
+class AssemblyTest : public ::testing::Test {};
+TYPED_TEST_SUITE(AssemblyTest, MethodTypes, EntryName);
+
+/// Two steps of a path, so that methods that remember have something to remember.
+NodalField forces(const Mesh& mesh, const MethodChoice& choice) {
+  Path path(mesh, law, choice);
+  NodalField half = wavy(mesh);
+  for (auto& row : half) {
+    for (double& x : row) x *= 0.5;
+  }
+  path.to(half);
+  return path.to(wavy(mesh));
+}
+
+/// A face between two elements is summed in another order than node by node; each nodal force is a sum of at
+/// most eight elements' forces of bulk modulus times size squared.
+double tolerance(const Mesh& mesh, double epsilon) {
+  const double area = std::pow(mean_gradient(gather(mesh.points, mesh.cells.front())).volume, 2.0 / 3.0);
+  return 64 * epsilon * law.bulk_modulus() * area;
+}
+
+TYPED_TEST(AssemblyTest, packs_give_the_forces_of_plain_numbers) {
+  for (const Mesh& mesh : meshes()) {
+    MethodChoice choice{std::string(TypeParam::name)};
+    const NodalField packed = forces(mesh, choice);
+    choice.kernel = KernelWidth::scalar;
+    EXPECT_LT(largest_distance(packed, forces(mesh, choice)), tolerance(mesh, 2.3e-16));
+  }
+}
+
+TYPED_TEST(AssemblyTest, threads_do_not_change_a_bit) {
+  for (const Mesh& mesh : meshes()) {
+    MethodChoice choice{std::string(TypeParam::name)};
+    const NodalField one = forces(mesh, choice);
+    EXPECT_EQ(forces(mesh, choice), one);  // nor does a second run
+    for (const int threads : {2, 3, 4}) {
+      choice.threads = threads;
+      EXPECT_EQ(forces(mesh, choice), one);
+    }
+  }
+}
+
+TYPED_TEST(AssemblyTest, numbering_of_the_mesh_does_not_matter) {
+  Mesh mesh = box({1, 2, 3}, {3, 4, 5});
+  const NodalField u = wavy(mesh);
+  const NodalField f = Path(mesh, law, {std::string(TypeParam::name)}).to(u);
+  Mesh reversed = mesh;
+  std::ranges::reverse(reversed.points);
+  std::ranges::reverse(reversed.cells);
+  const int last = static_cast<int>(mesh.points.size()) - 1;
+  for (auto& cell : reversed.cells) {
+    for (int& node : cell) node = last - node;
+  }
+  NodalField reversed_u(u.rbegin(), u.rend());
+  NodalField g = Path(reversed, law, {std::string(TypeParam::name)}).to(reversed_u);
+  std::ranges::reverse(g);
+  EXPECT_LT(largest_distance(f, g), tolerance(mesh, 2.3e-16));
+}
+
+/// Single precision: unit roundoff 6e-8 in place of 1.1e-16.
+TYPED_TEST(AssemblyTest, single_precision_is_as_near_as_its_digits) {
+  for (const Mesh& mesh : meshes()) {
+    const auto elements = std::get<1>(make_internal_force(
+        mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
+    State<float> state = state_at(*elements, wavy(mesh));
+    Rows<float> force(state.u.size());
+    elements->add_to(force, state);
+    const NodalField exact = Path(mesh, law, {std::string(TypeParam::name)}).to(wavy(mesh));
+    EXPECT_LT(largest_distance(to_field(force, elements->layout()), exact), tolerance(mesh, 1.2e-7));
+  }
+}
+
+/// A body 1000 of its lengths from the origin: coordinates enter in differences or from the body's middle, so
+/// that single precision loses no more there than at the origin, up to the rounding of the coordinates
+/// themselves, which is in double.
+TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing) {
+  const Mesh here = box({1, 1, 2}, {3, 3, 6});
+  Mesh far = here;
+  for (auto& X : far.points) {
+    for (double& x : X) x += 2000.0;
+  }
+  const auto force = [&](const Mesh& mesh) {
+    const auto elements = std::get<1>(make_internal_force(
+        mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
+    State<float> state = state_at(*elements, wavy(here));
+    Rows<float> rows(state.u.size());
+    elements->add_to(rows, state);
+    return to_field(rows, elements->layout());
+  };
+  EXPECT_LT(largest_distance(force(here), force(far)), tolerance(here, 1.2e-7));
+}
+
+/// Dynamics in full: the same bits from any number of threads.
+TYPED_TEST(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads) {
+  Case description = plain_case(law);
+  description.quasi_static = false;
+  description.dynamics.duration = 0.02;
+  description.initial_velocity = {0.3, 0.1, -0.2};
+  const Mesh mesh = box({0.1, 0.1, 0.4}, {5, 5, 20});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })}};
+  description.displacements = {{"foot", {}}};
+  const Scene scene = make_scene(description, mesh, sets);
+  const auto motion = [&](int threads, Precision precision) {
+    Observer silent;
+    return integrate(Model(scene, {std::string(TypeParam::name), {}, precision, threads}), silent);
+  };
+  for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+    const Motion one = motion(1, precision);
+    for (const int threads : {2, 4}) {
+      const Motion many = motion(threads, precision);
+      EXPECT_EQ(one.u, many.u);
+      EXPECT_EQ(one.v, many.v);
+      EXPECT_EQ(one.steps, many.steps);
+    }
+  }
+}
+
+/// Computing the geometry anew changes roundoff only.
+TEST(CompactMethodTest, gives_the_forces_of_the_method_it_stands_for) {
+  for (const Mesh& mesh : meshes()) {
+    const NodalField loaded = forces(mesh, {"tl-perturbation"});
+    const NodalField computed = forces(mesh, {"tl-perturbation-compact"});
+    EXPECT_LT(largest_distance(loaded, computed), tolerance(mesh, 2.3e-16));
+  }
+}
+
+template <class Number>
+class RowsTest : public ::testing::Test {};
+using RowNumbers = ::testing::Types<double, float, Pack<double, 2>, Pack<double, 4>, Pack<double, 8>,
+                                    Pack<float, 4>, Pack<float, 8>, Pack<float, 16>>;
+TYPED_TEST_SUITE(RowsTest, RowNumbers);
+
+/// Small whole numbers, so that sums are exact in any order; two lanes name the same row.
+TYPED_TEST(RowsTest, gather_and_scatter_reach_the_rows_of_their_lanes) {
+  using Real = typename Lanes<TypeParam>::Scalar;
+  constexpr int width = Lanes<TypeParam>::width;
+  constexpr std::array<std::size_t, 16> row{3, 17, 5, 5, 0, 2, 39, 11, 12, 13, 22, 21, 20, 7, 8, 9};
+  Rows<Real> values(40), sums(40), expected(40);
+  for (std::size_t n = 0; n < 40; ++n) {
+    for (std::size_t i = 0; i < 3; ++i) values[n][i] = static_cast<Real>(10 * n + i);
+  }
+  std::array<Place, 16> places{};
+  for (std::size_t l = 0; l < 16; ++l) places[l] = place_of_row(row[l]);
+  const auto x = sandglass::gather<TypeParam>(numbers_of(std::as_const(values)), places.data());
+  for (int lane = 0; lane < width; ++lane) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(Lanes<TypeParam>::get(x[i], lane), values[row[index(lane)]][i]);
+      expected[row[index(lane)]][i] += values[row[index(lane)]][i];
+    }
+  }
+  sandglass::scatter_add<TypeParam>(x, numbers_of(sums), places.data());
+  for (std::size_t n = 0; n < 40; ++n) {
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(sums[n][i], expected[n][i]) << n << ' ' << i;
+  }
+}
+
+}  // namespace
+}  // namespace sandglass::verification

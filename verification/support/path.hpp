@@ -1,0 +1,31 @@
+#pragma once
+
+#include "model/internal_force.hpp"
+
+namespace sandglass::verification {
+
+/// The elements of a mesh in double precision, led along a path of displacements step by step: for methods that
+/// remember where they have been.
+class Path {
+ public:
+  Path(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice)
+      : elements_(std::get<0>(make_internal_force(mesh, law, choice))), state_(elements_->rest()) {}
+
+  /// Goes on to displacements u (m) and returns the forces there (N).
+  NodalField to(const NodalField& u) {
+    const Rows<double> rows = to_rows<double>(u, elements_->layout());
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (std::size_t i = 0; i < 3; ++i) state_.increment[r][i] = rows[r][i] - state_.u[r][i];
+    }
+    state_.u = rows;
+    Rows<double> force(rows.size());
+    elements_->add_to(force, state_);
+    return to_field(force, elements_->layout());
+  }
+
+ private:
+  std::unique_ptr<InternalForce<double>> elements_;
+  State<double> state_;
+};
+
+}  // namespace sandglass::verification
