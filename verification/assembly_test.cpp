@@ -202,7 +202,7 @@ TYPED_TEST(AssemblyTest, single_precision_is_as_near_as_its_digits) {
         mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
     State<float> state = state_at(*elements, wavy(mesh));
     Rows<float> force(state.u.size());
-    elements->add_to(force, state);
+    elements->evaluate(state, force);
     const NodalField exact = Path(mesh, law, {std::string(TypeParam::name)}).to(wavy(mesh));
     EXPECT_LT(largest_distance(to_field(force, elements->layout()), exact), tolerance(mesh, 1.2e-7));
   }
@@ -222,7 +222,7 @@ TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing
         mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
     State<float> state = state_at(*elements, wavy(here));
     Rows<float> rows(state.u.size());
-    elements->add_to(rows, state);
+    elements->evaluate(state, rows);
     return to_field(rows, elements->layout());
   };
   EXPECT_LT(largest_distance(force(here), force(far)), tolerance(here, 1.2e-7));

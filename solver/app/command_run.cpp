@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/execution_options.hpp"
 #include "app/kappa_option.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
@@ -22,6 +23,8 @@ struct RunOptions {
   std::string name;
   std::string method = "tl-perturbation";
   std::string kappa = "auto";
+  std::string precision = "double";
+  int threads = 1;
   std::string output;
   bool describe = false;
 };
@@ -62,7 +65,9 @@ Provenance provenance(const Model& model) {
   Provenance attributes = build_provenance();
   attributes.insert(
       attributes.end(),
-      {{"method", model.choice().method}, {"kappa", kappa_text(model)}, {"precision", "double"}});
+      {{"method", model.choice().method},
+       {"kappa", kappa_text(model)},
+       {"precision", std::string(name_of(model.choice().precision))}});
   return attributes;
 }
 
@@ -99,8 +104,10 @@ void print_accuracy(const Scene& scene, const NodalField& u) {
 }
 
 int run_case(const RunOptions& options) {
+  const Precision precision = parse_precision(options.precision);
+  require_threads(options.threads);
   const Scene scene = read_scene(find_case(options.name));
-  const Model model(scene, {options.method, parse_kappa(options.kappa)});
+  const Model model(scene, {options.method, parse_kappa(options.kappa), precision, options.threads});
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
   std::string status;
@@ -155,6 +162,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("-m,--method", options->method, "method, see `sandglass methods`")
       ->capture_default_str();
   command->add_option("-k,--kappa", options->kappa, "hourglass stiffness, a number or 'auto'")
+      ->capture_default_str();
+  command->add_option("-p,--precision", options->precision, "numbers to compute in, 'double' or 'float'")
+      ->capture_default_str();
+  command->add_option("-t,--threads", options->threads, "threads; the answer does not depend on their number")
       ->capture_default_str();
   command->add_option("-o,--output", options->output,
                       "result file (HDF5; an XDMF file for ParaView goes beside it)");

@@ -77,14 +77,14 @@ class Grouping {
   }
 
   void add_chunk(std::vector<Strip> open) {
-    const std::size_t first = layout_.groups.size();
+    const std::size_t first = layout_.groups.size(), first_row = layout_.rows();
     while (!open.empty()) add_group(choose(open));
-    layout_.chunks.push_back({first, layout_.groups.size()});
+    layout_.chunks.push_back({first, layout_.groups.size(), first_row, layout_.rows()});
   }
 
   /// The layout, after the last chunk: spare rows come behind the nodes.
   Layout finish() {
-    for (std::size_t node = 0; node < layout_.nodes; ++node) number(static_cast<int>(node));
+    for (std::size_t node = 0; node < layout_.nodes; ++node) number(static_cast<int>(node));  // in no element
     for (const int row : face_rows_) {
       layout_.face_places.push_back(place_of_row(row < 0 ? layout_.nodes + at(-row - 1) : at(row)));
     }

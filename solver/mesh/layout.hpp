@@ -16,10 +16,12 @@ struct Layout {
     std::size_t first_face;   ///< into `face_places`, counted in faces; a group has one more than levels
     std::size_t levels;
   };
-  /// Groups first to last - 1.
+  /// Groups first to last - 1, which are the first to meet rows first_row to last_row - 1.
   struct Chunk {
     std::size_t first;
     std::size_t last;
+    std::size_t first_row;
+    std::size_t last_row;
   };
 
   int width = 1;

@@ -45,9 +45,9 @@ class InternalForce {
   /// The body at rest.
   virtual State<Real> rest() const = 0;
 
-  /// Adds the internal nodal forces (N) to `force`; what elements remember goes one step on. Allocates
-  /// nothing. The bits do not depend on the number of threads.
-  virtual void add_to(Rows<Real>& force, State<Real>& state) const = 0;
+  /// Sets `force` to the internal nodal forces (N); what elements remember goes one step on. Allocates nothing.
+  /// The bits do not depend on the number of threads.
+  virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
   /// Strain and hourglass energy.
   virtual StrainEnergies energies(const State<Real>& state) const = 0;
@@ -69,6 +69,11 @@ class InternalForce {
 
 /// The numbers in which a run computes.
 enum class Precision { double_precision, single_precision };
+
+/// "double" or "float".
+constexpr std::string_view name_of(Precision precision) {
+  return precision == Precision::double_precision ? "double" : "float";
+}
 
 /// How many elements a kernel computes at a time: as many as a register holds, or one, for comparison.
 enum class KernelWidth { pack, scalar };

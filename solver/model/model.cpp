@@ -124,7 +124,7 @@ NodalField internal_forces(const Model& model, const NodalField& u) {
       [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
         State<Real> state = state_at(*elements, u);
         Rows<Real> force(state.u.size());
-        elements->add_to(force, state);
+        elements->evaluate(state, force);
         return to_field(force, elements->layout());
       },
       model.internal_force());
@@ -135,7 +135,7 @@ StrainEnergies strain_energies(const Model& model, const NodalField& u) {
       [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
         State<Real> state = state_at(*elements, u);
         Rows<Real> unused(state.u.size());
-        elements->add_to(unused, state);  // takes along what elements remember
+        elements->evaluate(state, unused);  // takes along what elements remember
         return elements->energies(state);
       },
       model.internal_force());

@@ -25,8 +25,7 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
 
 template <class Real>
 void Body<Real>::evaluate_forces() {
-  clear(force_, threads_);
-  elements_.add_to(force_, state_);
+  elements_.evaluate(state_, force_);
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     Real& component = force_[constraints_[k].row][constraints_[k].component];
     reactions_[k] = static_cast<double>(component);

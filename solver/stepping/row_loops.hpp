@@ -38,13 +38,6 @@ Sum sum_over_blocks(std::size_t n, int threads, const Function& function) {
 }
 
 template <class Real>
-void clear(Rows<Real>& rows, int threads) {
-  Real* x = numbers_of(rows);
-  for_each_block(4 * rows.size(), threads,
-                 [=](std::size_t first, std::size_t last) { std::fill(x + first, x + last, Real(0)); });
-}
-
-template <class Real>
 double dot(const Rows<Real>& a, const Rows<Real>& b, int threads) {
   const Real *x = numbers_of(a), *y = numbers_of(b);
   return sum_over_blocks<double>(4 * a.size(), threads, [=](std::size_t first, std::size_t last) {

@@ -19,7 +19,7 @@ class Path {
     }
     state_.u = rows;
     Rows<double> force(rows.size());
-    elements_->add_to(force, state_);
+    elements_->evaluate(state_, force);
     return to_field(force, elements_->layout());
   }
 

@@ -1,0 +1,118 @@
+"""Time a golden: what FEniCSx takes to set up, to compile and to solve a case with Q1-P0.
+
+Usage: /usr/bin/python3 bench/golden_timing.py CASE.toml --mesh mesh.h5 -o out.npz [--load-steps N]
+A process of its own, as the reference's command line is one; bench/time_to_rest.py starts it.
+Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium found.
+"""
+
+import argparse
+import logging
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "reference"))
+
+import dolfinx  # noqa: E402  (the path above must come first)
+import numpy as np  # noqa: E402
+
+import newton  # noqa: E402
+from accuracy import relative_errors  # noqa: E402
+from case_file import read_case  # noqa: E402
+from errors import DivergenceError, InputError  # noqa: E402
+from mesh_file import load_case_mesh  # noqa: E402
+from problem import GOLDEN, MixedProblem  # noqa: E402
+from rest_records import whole_number  # noqa: E402
+from result_file import require_writable  # noqa: E402
+from solve import LOAD_STEPS, NEWTON_TOLERANCE  # noqa: E402
+
+
+class WatchedProblem(MixedProblem):
+    """A MixedProblem that notes when Newton's method linearizes, and at which displacement."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.moments = []
+
+    def note(self):
+        """Note the present moment and displacement."""
+        self.moments.append((time.perf_counter(), self.nodal_displacement()))
+
+    def linearize(self):
+        self.note()
+        return super().linearize()
+
+
+def seconds_within(moments, limit, largest_imposed):
+    """Seconds from the first moment to the one from which on the displacement stays near the last.
+
+    moments: list of (seconds, displacement (n, 3) in m). limit: of max |u - u_last| over the nodes,
+    as a fraction of largest_imposed, m.
+    """
+    started, last = moments[0][0], moments[-1][1]
+    reached = moments[-1][0]
+    for moment, displacement in reversed(moments):
+        if relative_errors(displacement, last, largest_imposed)[0] > limit:
+            break
+        reached = moment
+    return reached - started
+
+
+def time_golden(case, mesh, load_steps):
+    """Set up twice, the first time perhaps compiling, and solve once.
+
+    case: Case. mesh: HexMesh. load_steps: from rest. Returns a dict of displacement (n, 3) in m and
+    of numbers: seconds (the keys tell of what), load_steps, iterations, residual.
+    Raises DivergenceError.
+    """
+    set_up = [time.perf_counter()]
+    for _ in range(2):
+        problem = WatchedProblem(mesh, GOLDEN, case.law, case.material)
+        set_up.append(time.perf_counter())
+    first, again = np.diff(set_up)
+    outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE)
+    problem.note()
+    within = [
+        seconds_within(problem.moments, limit, mesh.largest_imposed()) for limit in (1e-2, 1e-3)
+    ]
+    return {
+        "displacement": problem.nodal_displacement(),
+        "jit_seconds": first - again,
+        "setup_seconds": again,
+        "seconds_to_1_percent": within[0],
+        "seconds_to_0_1_percent": within[1],
+        "seconds_to_rest": problem.moments[-1][0] - problem.moments[0][0],
+        "load_steps": outcome.load_steps,
+        "iterations": outcome.newton_iterations,
+        "residual": outcome.residual,
+        "version": dolfinx.__version__,
+    }
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description="Time a golden: set-up, compilation, solution.")
+    parser.add_argument("case", metavar="CASE.toml", help="the case file")
+    parser.add_argument("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
+    parser.add_argument("-o", "--output", required=True, help="NPZ file to write")
+    parser.add_argument(
+        "--load-steps", type=whole_number(1), default=LOAD_STEPS["golden"], metavar="N"
+    )
+    parsed = parser.parse_args(arguments)
+    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
+    try:
+        case = read_case(parsed.case)
+        mesh, _ = load_case_mesh(case, parsed.mesh)
+        require_writable(parsed.output)
+        np.savez(parsed.output, **time_golden(case, mesh, parsed.load_steps))
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except DivergenceError as error:
+        print(f"error: {parsed.case}: {error}", file=sys.stderr)
+        return 3
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

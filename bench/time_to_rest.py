@@ -1,0 +1,361 @@
+"""Seconds to the answer of a quasi-static case: FEniCSx, CalculiX and Sandglass, in one run.
+
+Usage: /usr/bin/python3 bench/time_to_rest.py [CASE] [--json FILE]
+Needs the solver's binary: build/release/sandglass, or the one that SANDGLASS_BINARY names.
+A program that is not installed is named and left out.
+Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
+"""
+
+import argparse
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+import types
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "reference"))
+if importlib.util.find_spec("ufl") is None:
+    # The list of laws, which checks the case file, is written in UFL: without FEniCSx its energies
+    # are never called, but its import must not fail.
+    sys.modules["ufl"] = types.ModuleType("ufl")
+
+import h5py  # noqa: E402  (the lines above must come first)
+import numpy as np  # noqa: E402
+
+import calculix  # noqa: E402
+import rest_records  # noqa: E402
+from accuracy import relative_errors  # noqa: E402
+from case_file import read_case  # noqa: E402
+from errors import DivergenceError, InputError  # noqa: E402
+from mesh_file import load_case_mesh  # noqa: E402
+from rest_records import whole_number  # noqa: E402
+from result_file import read_result, require_writable  # noqa: E402
+from solver_binary import CASES, REPOSITORY, make_mesh  # noqa: E402
+
+METHODS = ("tl-mean-dilatation", "tl-perturbation")
+ELEMENTS = ("C3D8", "C3D8R")
+# Of CalculiX's force residual and displacement correction; the residual at which Sandglass rests.
+TOLERANCE = 1e-8
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+NOTES = """
+Seconds of wall clock. Distances are max |u - u'| over the nodes / largest imposed displacement.
+to 1 %, 0.1 %: from the start of the solution until u stays that near to the method's own end.
+to rest: until the method stops. FEniCSx: correction < 1e-10. CalculiX: residual and correction
+< 1e-8; its own time, reading and set-up included. Sandglass: residual < 1e-8.
+steps, iterations: load steps and Newton iterations of implicit programs, time steps of Sandglass.
+""".strip()
+
+
+class Unavailable(Exception):
+    """A program is not installed or cannot do the case: it is named and left out."""
+
+
+class Job:
+    """What all programs share: the case, its mesh, a folder to work in, an environment, options."""
+
+    def __init__(self, options, folder):
+        self.options, self.folder = options, Path(folder)
+        self.path = case_path(options.case)
+        self.case = read_case(self.path)
+        require_quasi_static(self.path)
+        self.mesh_path = self.folder / "mesh.h5"
+        make_mesh(self.path, self.mesh_path)
+        self.mesh, self.mesh_file = load_case_mesh(self.case, self.mesh_path)
+        threads = {name: str(options.threads) for name in THREAD_VARIABLES}
+        self.environment = {**os.environ, **threads}
+        self.versions, self.records, self.exit_code = {}, [], 0
+        self.displacements = []  # (record, displacement): to be compared with the golden
+        self.golden = None
+
+    def fail(self, text):
+        """Tell of a computation that failed; the others go on."""
+        print(f"error: {self.case.name}: {text}", file=sys.stderr, flush=True)
+        self.exit_code = 3
+
+
+def case_path(name):
+    """The absolute path of a case, given as a file or by the name of a canonical one.
+
+    Raises InputError.
+    """
+    for path in (Path(name), CASES / f"{name}.toml"):
+        if path.is_file():
+            return path.resolve()
+    known = ", ".join(sorted(path.stem for path in CASES.glob("*.toml")))
+    raise InputError(f"CASE = {name!r}: neither a file nor one of: {known}")
+
+
+def require_quasi_static(path):
+    """Raise InputError unless the case, a readable one, has a static answer."""
+    with open(path, "rb") as file:
+        answer = tomllib.load(file)["case"].get("answer")
+    if answer != "quasi-static":
+        raise InputError(f"{path}: case.answer = {answer!r}: 'quasi-static' is required here")
+
+
+def time_golden(job):
+    """Adds the golden's records, with FEniCSx, and keeps the golden. Raises Unavailable."""
+    if importlib.util.find_spec("dolfinx") is None:
+        raise Unavailable("dolfinx is not installed; package python3-dolfinx (ci/setup test)")
+    if not any(Path("/usr/lib").glob("*/openblas-pthread/libopenblas.so.0")):
+        note("package libopenblas0-pthread is not installed: FEniCSx is several times slower")
+    for steps in job.options.load_steps:
+        try:
+            timed, displacement = _golden(job, steps)
+        except DivergenceError as error:
+            job.fail(error)
+            continue
+        if job.golden is None:
+            job.golden = displacement
+        job.records.append(timed)
+        job.displacements.append((timed, displacement))
+
+
+def _golden(job, load_steps):
+    """(record, displacement (n, 3) in m) of the golden by so many load steps; 0: the reference's.
+
+    Raises DivergenceError.
+    """
+    folder = job.folder / f"golden-{load_steps}"
+    folder.mkdir()
+    output = folder / "golden.npz"
+    command = [sys.executable, REPOSITORY / "bench" / "golden_timing.py", job.path]
+    command += ["--mesh", job.mesh_path, "-o", output]
+    if load_steps:
+        command += ["--load-steps", load_steps]
+    # In an empty cache, so that what is compiled does not depend on earlier runs.
+    environment = {**job.environment, "XDG_CACHE_HOME": str(folder / "cache")}
+    started = time.perf_counter()
+    run(command, environment)
+    seconds = time.perf_counter() - started
+    with np.load(output) as found:
+        figures = {key: found[key].item() for key in found if key != "displacement"}
+        displacement = found["displacement"]
+    job.versions["dolfinx"] = figures.pop("version")
+    timed = rest_records.record(
+        program="FEniCSx",
+        case=job.case.name,
+        method=f"Q1-P0, load steps: {load_steps}" if load_steps else "golden Q1-P0",
+        precision="double",
+        steps=figures.pop("load_steps"),
+        process_seconds=seconds,
+        **figures,
+    )
+    return timed, displacement
+
+
+def time_calculix(job):
+    """Adds a record of CalculiX for every element asked for. Raises Unavailable."""
+    if shutil.which(calculix.PROGRAM) is None:
+        raise Unavailable(
+            f"{calculix.PROGRAM} is not installed; package {calculix.PACKAGE} (ci/setup bench)"
+        )
+    if job.case.law not in calculix.LAWS:
+        raise Unavailable(f"CalculiX has no law {job.case.law!r}")
+    for element in job.options.elements:
+        title = f"{job.case.name}, mesh {job.mesh_file.mesh_hash}"
+        law, material = job.case.law, job.case.material
+        deck = calculix.deck(title, job.mesh, law, material, element, TOLERANCE)
+        folder = job.folder / element
+        folder.mkdir()
+        try:
+            solution = calculix.solve(deck, len(job.mesh.points), folder, job.environment)
+        except DivergenceError as error:
+            job.fail(f"{element}: {error}")
+            continue
+        job.versions["ccx"] = solution.version
+        timed = rest_records.record(
+            program="CalculiX",
+            case=job.case.name,
+            method=element,
+            precision="double",
+            steps=solution.increments,
+            iterations=solution.iterations,
+            seconds_to_rest=solution.solver_seconds,
+            process_seconds=solution.process_seconds,
+        )
+        job.records.append(timed)
+        job.displacements.append((timed, solution.displacement))
+
+
+def time_sandglass(job):
+    """Adds the records of Sandglass, those of `sandglass bench --rest` where it is there.
+
+    METHODS that it lacks get their seconds to rest from `sandglass run`. Raises DivergenceError or
+    InputError.
+    """
+    binary = Path(os.environ.get("SANDGLASS_BINARY", REPOSITORY / "build/release/sandglass"))
+    binary = str(binary.resolve())
+    job.versions["sandglass"] = run([binary, "--version"], None).split(maxsplit=1)[-1].strip()
+    records = []
+    if "--rest" in run([binary, "bench", "--help"], None):
+        output = job.folder / "rest.json"
+        try:
+            run([binary, "bench", "--rest", job.path, "--json", output], None)
+            records = rest_records.read_solver_records(output)
+        except DivergenceError as error:
+            job.fail(error)
+    else:
+        note("this sandglass has no `bench --rest`: its seconds to 1 % and 0.1 % are not measured")
+    for method in METHODS:
+        command = [binary, "run", job.path, "-m", method]
+        output = job.folder / f"{method}.h5"
+        try:
+            if not any(timed["method"] == method for timed in records):
+                started = time.perf_counter()
+                timed = rest_records.read_run(job.case.name, method, run(command, None))
+                timed["process_seconds"] = time.perf_counter() - started
+                records.append(timed)
+            # Again for the displacement: writing frames must not count.
+            run(command + ["-o", output], None)
+        except DivergenceError as error:
+            job.fail(f"{method}: {error}")
+            continue
+        with h5py.File(output) as file:
+            last = sorted(file["frames"])[-1]
+            displacement = file[f"frames/{last}/displacement"][...]
+        for timed in records:
+            if (timed["method"], timed["precision"]) == (method, "double"):
+                job.displacements.append((timed, displacement))
+    job.records += records
+
+
+PROGRAMS = {"golden": time_golden, "calculix": time_calculix, "sandglass": time_sandglass}
+
+
+def compare(job):
+    """Fill in every record's distance from the golden: this run's, or else the stored one.
+
+    Raises InputError when the stored one is damaged.
+    """
+    golden = job.golden
+    if golden is None:
+        stored = REPOSITORY / "reference" / "golden" / f"{job.case.name}.h5"
+        if not stored.exists():
+            note("no golden: the others are compared with nothing")
+            return
+        _, golden, attributes = read_result(stored)
+        if attributes["mesh_hash"] != job.mesh_file.mesh_hash or (
+            attributes["case_hash"] != job.mesh_file.case_hash
+        ):
+            note(f"{stored}: of another state of the case: compared with nothing")
+            return
+        note(f"compared with the stored golden {stored}")
+    for timed, displacement in job.displacements:
+        errors = relative_errors(displacement, golden, job.mesh.largest_imposed())
+        timed["error_to_golden_max"], timed["error_to_golden_rms"] = map(float, errors)
+
+
+def run(command, environment):
+    """What a program prints. Raises InputError for its exit code 2, DivergenceError for others."""
+    command = [str(word) for word in command]
+    try:
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    except OSError as error:
+        raise InputError(f"{command[0]}: cannot run: {error.strerror}") from error
+    if done.returncode:
+        told = done.stderr.strip().splitlines() or ["it told no reason"]
+        kind = InputError if done.returncode == 2 else DivergenceError
+        text = told[-1].removeprefix("error: ")
+        raise kind(f"`{' '.join(command)}` ended with {done.returncode}: {text}")
+    return done.stdout
+
+
+def machine(threads):
+    """What the seconds were measured on, as a dict."""
+    name = "unknown"
+    if os.path.exists("/proc/cpuinfo"):
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                name = line.partition(": ")[2]
+                break
+    return {
+        "processor": name,
+        "cores": os.cpu_count(),
+        "threads_of_implicit_programs": threads,
+        "load_average_before": os.getloadavg()[0],
+    }
+
+
+def note(text):
+    """Tell something that is no error."""
+    print(f"note: {text}", file=sys.stderr, flush=True)
+
+
+def show(job, place):
+    """Print what was measured, and on what. place: of machine()."""
+    loads = f"{place['load_average_before']:.2f} to {place['load_average_after']:.2f}"
+    print(f"{job.case.name}: {len(job.mesh.points)} nodes, {len(job.mesh.cells)} elements")
+    print(
+        f"on {place['processor']}, {place['cores']} cores, load {loads}; implicit programs with "
+        f"{place['threads_of_implicit_programs']} threads, Sandglass with one"
+    )
+    print(", ".join(f"{name} {version}" for name, version in job.versions.items()))
+    print(f"\n{rest_records.table(job.records)}\n\n{NOTES}")
+
+
+def measure(options):
+    """Measure, print, store. Returns the exit code. Raises InputError."""
+    if options.json:
+        require_writable(options.json)
+    place = machine(options.threads)
+    with tempfile.TemporaryDirectory() as folder:
+        job = Job(options, folder)
+        for name in options.programs:
+            print(f"{job.case.name}: {name}", file=sys.stderr, flush=True)
+            try:
+                PROGRAMS[name](job)
+            except Unavailable as reason:
+                note(f"{name} is left out: {reason}")
+            except DivergenceError as error:
+                job.fail(error)
+        place["load_average_after"] = os.getloadavg()[0]
+        compare(job)
+    if job.records:
+        show(job, place)
+    if options.json:
+        document = {**place, "versions": job.versions, "records": job.records}
+        rest_records.write_json(options.json, document)
+    return job.exit_code
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(
+        description="Seconds to the answer of a case: FEniCSx, CalculiX and Sandglass in one run.",
+        epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
+    )
+    add = parser.add_argument
+    add("case", nargs="?", metavar="CASE", default="ellipsoid-indentation", help="name or file")
+    add("--json", metavar="FILE", help="write the records and the machine to this file")
+    add("--programs", nargs="+", choices=PROGRAMS, default=list(PROGRAMS), help="default: all")
+    add("--elements", nargs="+", choices=ELEMENTS, default=["C3D8"], help="of CalculiX")
+    add(
+        "--load-steps",
+        nargs="+",
+        type=whole_number(0),
+        default=[0, 1],
+        metavar="N",
+        help="of FEniCSx, timed in turn; 0: those of the reference; default: 0 1, as one is faster",
+    )
+    add(
+        "--threads",
+        type=whole_number(1),
+        default=len(os.sched_getaffinity(0)),
+        metavar="N",
+        help="of each implicit program; default: all processors",
+    )
+    try:
+        return measure(parser.parse_args(arguments))
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())
