@@ -2,16 +2,23 @@
 
 #include <cstddef>
 
+#include "base/subnormals.hpp"
+
 namespace sandglass {
 
 /// Calls body(0) to body(n - 1), shared out to so many threads in equal runs. The calls must not touch each
-/// other's data.
+/// other's data. Subnormal numbers are zero in them.
 template <class Body>
 void in_parallel(std::size_t n, int threads, const Body& body) {
   if (threads > 1 && n > 1) {
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (std::size_t k = 0; k < n; ++k) body(k);
+#pragma omp parallel num_threads(threads)
+    {
+      const FlushSubnormals flush;
+#pragma omp for schedule(static)
+      for (std::size_t k = 0; k < n; ++k) body(k);
+    }
   } else {
+    const FlushSubnormals flush;
     for (std::size_t k = 0; k < n; ++k) body(k);
   }
 }

@@ -34,6 +34,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
         blocks_[group.first_level + k] = precompute(mesh, group.first_face + k, settings);
       }
     }
+    streams_ = blocks_.size() * (sizeof(ElementBlock) + sizeof(HistoryBlock)) > cached_bytes;
     if constexpr (Kernel::needs_coordinates) {
       // Seen from the middle of the mesh: where it stands must not cost single precision its digits.
       const auto [low, high] = bounding_box(mesh.points);
@@ -118,6 +119,9 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
  private:
   using Faces = FaceModes<Number>;
 
+  /// What a core may keep of the elements in its own caches.
+  static constexpr std::size_t cached_bytes = std::size_t{2} << 20U;
+
   /// A face's part of an `ElementMotion`.
   struct FaceMotion {
     Faces u;
@@ -143,6 +147,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
       for (std::size_t k = 0; k < group.levels; ++k) {
         const std::size_t level = group.first_level + k;
         const FaceMotion upper = gather_face(state, group.first_face + k + 1);
+        if (streams_) prefetch(state, level + levels_ahead);
         HistoryBlock remembered = history(state, level);
         const Modes<Number> f = Kernel::force(Kernel::deformation(between(lower, upper), blocks_[level]), blocks_[level], remembered, law);
         keep_history(remembered, state, level);
@@ -151,6 +156,25 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
         lower = upper;
       }
       scatter_face(carried, group.first_face + group.levels, force);
+    }
+  }
+
+  /// Levels between the one that is computed and the one whose numbers are sent for: far enough for memory to
+  /// answer, near enough for the first cache.
+  static constexpr std::size_t levels_ahead = 3;
+
+  /// Asks for the constants and the history of a level, which come from memory once per step, ahead of time.
+  void prefetch(const State<Real>& state, std::size_t level) const {
+    constexpr std::size_t cache_line = 64;
+    const auto ask = [](const void* start, std::size_t size) {
+      for (std::size_t n = 0; n < size; n += cache_line) {
+        __builtin_prefetch(static_cast<const char*>(start) + n);
+      }
+    };
+    if (level >= blocks_.size()) return;
+    ask(blocks_.data() + level, sizeof(ElementBlock));
+    if constexpr (Kernel::remembers) {
+      ask(state.history.data() + level * history_numbers, sizeof(HistoryBlock));
     }
   }
 
@@ -262,6 +286,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   Rows<Real> coordinates_;  // only where the kernel needs them
   Law law_;
   int threads_;
+  bool streams_ = false;  // constants do not stay in the cache from step to step
 };
 
 }  // namespace sandglass
