@@ -18,10 +18,10 @@ namespace {
 
 using benchmark::State;
 
-/// A counter that shows nanoseconds for one of `elements`.
+/// A counter that shows the time for one of `elements`.
 void count_elements(State& state, std::size_t elements) {
-  state.counters["ns/element"] =
-      benchmark::Counter(1e-9 * static_cast<double>(elements),
+  state.counters["per_element"] =
+      benchmark::Counter(static_cast<double>(elements),
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 

@@ -1,10 +1,13 @@
 #include "benchmark/stepped_model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
-#include "element/hexahedron.hpp"
+#include "base/error.hpp"
 #include "stepping/explicit_step.hpp"
 #include "stepping/stable_step.hpp"
 
@@ -62,7 +65,15 @@ class SteppedModelOf final : public SteppedModel {
 
   void step() override { step_.take(keep_, gain_, loading_); }
 
-  void require_healthy() override { step_.body().require_healthy(0); }
+  void require_healthy() override {
+    try {
+      step_.body().require_healthy(0);
+    } catch (const ComputationError& error) {
+      throw ComputationError(fmt::format("bench of {} with {}: the waves of the start were too much: {}",
+                                         model_.scene().description.name, model_.choice().method,
+                                         error.what()));
+    }
+  }
 
   double stable_step() const override { return stable_step_; }
 
@@ -102,11 +113,17 @@ Scene box_scene(int elements) {
 }
 
 double element_size(const Scene& scene) {
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity();  // squared
   for (const auto& cell : scene.mesh.cells) {
-    smallest = std::min(smallest, mean_gradient(gather(scene.mesh.points, cell)).volume);
+    const NodalVectors<double> X = gather(scene.mesh.points, cell);
+    for (int I = 0; I < 8; ++I) {
+      for (int J = 0; J < I; ++J) {
+        const double x = X(I, 0) - X(J, 0), y = X(I, 1) - X(J, 1), z = X(I, 2) - X(J, 2);
+        smallest = std::min(smallest, x * x + y * y + z * z);
+      }
+    }
   }
-  return std::cbrt(smallest);
+  return std::sqrt(smallest);
 }
 
 NodalField wavy_field(const Scene& scene) {

@@ -11,7 +11,7 @@ namespace sandglass {
 /// at z = 0 and moved at its other end.
 Scene box_scene(int elements);
 
-/// The cube root of the smallest element's volume, m.
+/// The shortest distance between two nodes of an element, m.
 double element_size(const Scene& scene);
 
 /// Displacements (m) that strain every element by a few percent and wake its hourglass modes, whatever the
