@@ -18,6 +18,7 @@ LAYERS = [
     "stepping",
     "io",
     "comparison",
+    "benchmark",
     "app",
 ]
 

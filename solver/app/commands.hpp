@@ -11,5 +11,6 @@ void add_mesh_command(CLI::App& app);
 void add_flops_command(CLI::App& app);
 void add_run_command(CLI::App& app, int& exit_code);
 void add_verify_command(CLI::App& app, int& exit_code);
+void add_bench_command(CLI::App& app, int& exit_code);
 
 }  // namespace sandglass

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   sandglass::add_verify_command(app, exit_code);
   sandglass::add_mesh_command(app);
   sandglass::add_flops_command(app);
+  sandglass::add_bench_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

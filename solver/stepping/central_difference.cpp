@@ -8,9 +8,8 @@
 
 #include "base/error.hpp"
 #include "model/loading.hpp"
-#include "stepping/body.hpp"
+#include "stepping/explicit_step.hpp"
 #include "stepping/field.hpp"
-#include "stepping/row_loops.hpp"
 #include "stepping/stable_step.hpp"
 
 namespace sandglass {
@@ -25,8 +24,8 @@ class CentralDifference {
   CentralDifference(const Model& model, const InternalForce<Real>& elements)
       : model_(model),
         settings_(model.scene().description.dynamics),
-        body_(model, elements),
-        inverse_masses_(body_.on_free_components(inverses(model.masses()))),
+        explicit_step_(model, elements),
+        body_(explicit_step_.body()),
         reactions_(model.scene().constraints.size(), 0.0) {}
 
   Body<Real>& body() { return body_; }
@@ -41,7 +40,7 @@ class CentralDifference {
     Rows<Real>& increment = body_.state().increment;
     for (std::size_t r = 0; r < increment.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) {
-        increment[r][i] = inverse_masses_[r][i] > Real(0) ? static_cast<Real>(v[i]) : Real(0);
+        increment[r][i] = explicit_step_.inverse_masses()[r][i] > Real(0) ? static_cast<Real>(v[i]) : Real(0);
       }
     }
     increment_time_ = 1.0;
@@ -61,32 +60,20 @@ class CentralDifference {
   /// Whether the end is reached, up to the rounding of a sum of steps.
   bool finished() const { return time_ >= settings_.duration * (1.0 - 1e-12); }
 
-  /// v(t + dt/2) from v(t - dt_old/2), and u(t + dt) with it: the two half steps share the acceleration and
-  /// the damping at t. The last step is cut so that the run ends at its duration. One pass over the nodes.
+  /// v(t + dt/2) from v(t - dt_old/2), u(t + dt) with it, and the forces there: the two half steps share the
+  /// acceleration and the damping at t. The last step is cut so that the run ends at its duration.
   void advance() {
     next_step_ = std::min(next_step_, settings_.duration - time_);
     const double dt = 0.5 * (step_size_ + next_step_);
     const double c = 0.5 * settings_.damping * dt;
-    const auto keep = static_cast<Real>((1.0 - c) / (1.0 + c) * next_step_ / increment_time_);
-    const auto gain = static_cast<Real>(-dt / (1.0 + c) * next_step_);
-    Real* u = numbers_of(body_.state().u);
-    Real* increment = numbers_of(body_.state().increment);
-    const Real* force = numbers_of(body_.free_forces());
-    const Real* inverse_mass = numbers_of(inverse_masses_);
-    for_each_block(4 * inverse_masses_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
-#pragma omp simd
-      for (std::size_t k = first; k < last; ++k) {
-        increment[k] = keep * increment[k] + gain * inverse_mass[k] * force[k];
-        u[k] += increment[k];
-      }
-    });
+    const double keep = (1.0 - c) / (1.0 + c) * next_step_ / increment_time_;
+    const double gain = dt / (1.0 + c) * next_step_;
     step_size_ = next_step_;
     increment_time_ = next_step_;
     time_ += step_size_;
     ++step_;
+    explicit_step_.take(keep, gain, loading(time_));
   }
-
-  void impose_displacements() { body_.impose(loading(time_)); }
 
   /// Work of the imposed displacements over the last step, from the mean of the forces at its ends.
   void update_external_work() {
@@ -105,11 +92,12 @@ class CentralDifference {
     const double half = 0.5 * step_size_;
     const Rows<Real>& increment = body_.state().increment;
     const Rows<Real>& force = body_.free_forces();
+    const Rows<Real>& inverse_masses = explicit_step_.inverse_masses();
     Rows<Real> rows(increment.size());
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) {
         const double v_half = static_cast<double>(increment[r][i]) / increment_time_;
-        const double acceleration = -static_cast<double>(inverse_masses_[r][i] * force[r][i]);
+        const double acceleration = -static_cast<double>(inverse_masses[r][i] * force[r][i]);
         rows[r][i] = static_cast<Real>((v_half + half * acceleration) / (1.0 + half * settings_.damping));
       }
     }
@@ -121,11 +109,6 @@ class CentralDifference {
   }
 
  private:
-  static std::vector<double> inverses(std::vector<double> values) {
-    for (double& value : values) value = 1.0 / value;
-    return values;
-  }
-
   double ramp_time() const { return settings_.ramp_time > 0.0 ? settings_.ramp_time : settings_.duration; }
   double loading(double time) const { return loading_curve(time / ramp_time()); }
   double loading_rate(double time) const { return loading_curve_rate(time / ramp_time()) / ramp_time(); }
@@ -150,8 +133,8 @@ class CentralDifference {
 
   const Model& model_;
   const DynamicsSettings& settings_;
-  Body<Real> body_;
-  Rows<Real> inverse_masses_;  // 1/kg, zero where a component may not move
+  ExplicitStep<Real> explicit_step_;
+  Body<Real>& body_;
   std::vector<double> reactions_;
   double time_ = 0.0;  // s, of the displacements
   long step_ = 0;
@@ -193,8 +176,6 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   report();
   while (!scheme.finished() && !motion.interrupted) {
     scheme.advance();
-    scheme.impose_displacements();
-    body.evaluate_forces();
     scheme.update_external_work();
     motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {

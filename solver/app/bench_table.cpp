@@ -1,0 +1,99 @@
+#include "app/bench_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace sandglass {
+
+namespace {
+
+/// One column of figures.
+struct Column {
+  std::string head;
+  std::string unit;
+  std::function<std::string(const BenchRecord&, const Speed&)> text;
+};
+
+std::string ratio(const std::optional<double>& value) {
+  return value ? fmt::format("{:.2f}", *value) : "-";
+}
+
+std::string percent(double share) {
+  return fmt::format("{:.0f}", 100.0 * share);
+}
+
+const std::vector<Column>& columns() {
+  using R = const BenchRecord&;
+  using S = const Speed&;
+  static const std::vector<Column> all{
+      {"median", "ns/el/step", [](R, S s) { return fmt::format("{:.2f}", s.ns.median); }},
+      {"q1", "ns", [](R, S s) { return fmt::format("{:.2f}", s.ns.lower_quartile); }},
+      {"q3", "ns", [](R, S s) { return fmt::format("{:.2f}", s.ns.upper_quartile); }},
+      {"best", "ns", [](R, S s) { return fmt::format("{:.2f}", s.ns.best); }},
+      {"time over", "tl-pert.", [](R, S s) { return ratio(s.to_tl_perturbation); }},
+      {"speed-up", "on scalar", [](R, S s) { return ratio(s.speedup); }},
+      {"simulated", "s/s", [](R, S s) { return fmt::format("{:.3g}", s.real_time); }},
+      {"p50", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.p50_us); }},
+      {"p99", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.p99_us); }},
+      {"max", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.max_us); }},
+      {"counted", "flop", [](R r, S) { return fmt::format("{:.0f}", r.work.operations); }},
+      {"moved", "bytes", [](R r, S) { return fmt::format("{:.0f}", r.work.bytes); }},
+      {"speed", "Gflop/s", [](R, S s) { return fmt::format("{:.1f}", s.gflops); }},
+      {"of peak", "%", [](R, S s) { return percent(s.peak_share); }},
+      {"traffic", "GB/s", [](R, S s) { return fmt::format("{:.1f}", s.gbs); }},
+      {"of memory", "%", [](R, S s) { return percent(s.memory_share); }},
+      {"roofline", "%", [](R, S s) { return percent(s.roofline_fraction); }}};
+  return all;
+}
+
+/// What names a variant.
+std::string label(const BenchRecord& record) {
+  const MethodChoice& choice = record.choice;
+  return fmt::format("{:<22}{:<8}{:<8}{:>3}", choice.method, name_of(choice.kernel),
+                     name_of(choice.precision), choice.threads);
+}
+
+}  // namespace
+
+std::string bench_table(const std::vector<BenchRecord>& records) {
+  const BenchRecord& first = records.front();
+  std::string heads = fmt::format("{:<41}", "");
+  std::string units = fmt::format("{:<22}{:<8}{:<8}{:>3}", "method", "kernel", "number", "thr");
+  std::vector<std::string> lines;
+  for (const auto& record : records) lines.push_back(label(record));
+  for (const auto& column : columns()) {
+    std::size_t width = std::max(column.head.size(), column.unit.size());
+    std::vector<std::string> cells;
+    for (const auto& record : records) {
+      cells.push_back(record.speed ? column.text(record, *record.speed) : "");
+      width = std::max(width, cells.back().size());
+    }
+    heads += fmt::format("  {:>{}}", column.head, width);
+    units += fmt::format("  {:>{}}", column.unit, width);
+    for (std::size_t n = 0; n < records.size(); ++n) {
+      if (records[n].speed) lines[n] += fmt::format("  {:>{}}", cells[n], width);
+    }
+  }
+  std::string table = fmt::format("{}: {} elements, {} nodes\n{}\n{}\n", first.case_name, first.elements,
+                                  first.nodes, heads, units);
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    table += lines[n] + (records[n].speed ? "" : "  " + records[n].status) + "\n";
+  }
+  return table;
+}
+
+std::string machine_lines(const BenchPlan& plan, MachineSpeed& machine) {
+  std::string lines;
+  for (const int threads : plan.threads) {
+    lines += fmt::format(
+        "{} thread{}: peak {:.1f} Gflop/s in double, {:.1f} in float; memory {:.1f} GB/s{}\n", threads,
+        threads == 1 ? "" : "s", machine.peak_gflops(Precision::double_precision, threads),
+        machine.peak_gflops(Precision::single_precision, threads), machine.memory_gbs(threads),
+        threads > available_processors() ? "; more threads than processors" : "");
+  }
+  return lines;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmark/bench.hpp"
+
+namespace sandglass {
+
+/// The records of one scene as a table with two lines of head, what each column is and its unit.
+std::string bench_table(const std::vector<BenchRecord>& records);
+
+/// What the machine can do, one line per number of threads.
+std::string machine_lines(const BenchPlan& plan, MachineSpeed& machine);
+
+}  // namespace sandglass

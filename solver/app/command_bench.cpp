@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "app/bench_table.hpp"
+#include "app/commands.hpp"
+#include "app/execution_options.hpp"
+#include "app/machine.hpp"
+#include "app/progress.hpp"
+#include "app/workspace.hpp"
+#include "base/names.hpp"
+#include "benchmark/bench.hpp"
+#include "benchmark/bench_json.hpp"
+#include "benchmark/stepped_model.hpp"
+#include "element/methods.hpp"
+#include "io/case_file.hpp"
+#include "io/text_file.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr int most_elements = 100'000'000;
+
+struct BenchOptions {
+  std::vector<std::string> names;
+  std::vector<int> elements;
+  std::vector<std::string> methods;
+  std::vector<std::string> precisions{"double", "float"};
+  std::vector<int> threads;
+  int repetitions = MeasureSettings{}.repetitions;
+  std::string json;
+};
+
+template <class Value>
+std::vector<Value> without_repeats(const std::vector<Value>& values) {
+  std::vector<Value> kept;
+  for (const auto& value : values) {
+    if (std::find(kept.begin(), kept.end(), value) == kept.end()) kept.push_back(value);
+  }
+  return kept;
+}
+
+BenchPlan make_plan(const BenchOptions& options) {
+  BenchPlan plan;
+  const auto known = names_of(Methods{});
+  for (const auto& method : options.methods) {
+    if (std::find(known.begin(), known.end(), method) != known.end()) continue;
+    throw InputError(fmt::format("--methods: '{}' is not known; {}", method, suggestion(method, known)));
+  }
+  plan.methods = options.methods.empty() ? known : without_repeats(options.methods);
+  for (const auto& precision : options.precisions) plan.precisions.push_back(parse_precision(precision));
+  plan.precisions = without_repeats(plan.precisions);
+  for (const int threads : options.threads) require_threads(threads);
+  plan.threads = without_repeats(options.threads);
+  if (plan.threads.empty()) plan.threads = available_processors() > 1 ? std::vector{1, 2} : std::vector{1};
+  require_count("--repetitions", options.repetitions, 1'000'000);
+  plan.settings.repetitions = options.repetitions;
+  return plan;
+}
+
+/// What a scene is made of; scenes are made one after another, for large ones fill the memory.
+struct Subject {
+  std::filesystem::path file;  ///< empty for a box
+  int elements = 0;
+};
+
+std::vector<Subject> find_subjects(const BenchOptions& options) {
+  std::vector<Subject> subjects;
+  for (const auto& name : options.names) subjects.push_back({find_case(name)});
+  for (const int elements : options.elements) {
+    require_count("--elements", elements, most_elements);
+    subjects.push_back({{}, elements});
+  }
+  if (subjects.empty()) subjects.push_back({find_case("ellipsoid-indentation")});
+  return subjects;
+}
+
+int run_bench(const BenchOptions& options) {
+  const BenchPlan plan = make_plan(options);
+  const auto subjects = find_subjects(options);
+  watch_for_interrupt();
+  MachineSpeed machine;
+  std::vector<BenchRecord> records;
+  for (std::size_t n = 0; n < subjects.size(); ++n) {
+    const Subject& subject = subjects[n];
+    const Scene scene = subject.file.empty() ? box_scene(subject.elements) : read_scene(subject.file);
+    std::vector<BenchRecord> found;
+    {
+      Progress progress("bench");
+      found = bench(scene, plan, machine, [&](double share) {
+        progress.show((static_cast<double>(n) + share) / static_cast<double>(subjects.size()),
+                      fmt::format("{}, {} elements", scene.description.name, scene.mesh.cells.size()));
+        return !interrupted();
+      });
+    }
+    fmt::print("{}\n", bench_table(found));
+    records.insert(records.end(), found.begin(), found.end());
+  }
+  fmt::print("{}", machine_lines(plan, machine));
+  if (!options.json.empty()) {
+    write_text_file(options.json, to_json(build_provenance(), plan, machine, records));
+  }
+  return std::all_of(records.begin(), records.end(), [](const auto& r) { return r.status == "ok"; }) ? 0 : 1;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand(
+      "bench",
+      "time of every method per element and step, beside what the machine can do.\n"
+      "All variants are timed in turn in one process, after their forces were compared with those of the\n"
+      "scalar double kernel; one that is wrong gets no time, and the exit code is 1");
+  command->add_option(
+      "CASE", options->names,
+      "names or files of cases; ellipsoid-indentation when neither case nor --elements is given");
+  command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides");
+  command->add_option("-t,--threads", options->threads, "numbers of threads; 1 and 2 where there are two");
+  command->add_option("-m,--methods", options->methods,
+                      "methods, see `sandglass methods`; all when left out");
+  command->add_option("-p,--precision", options->precisions, "double, float or both")->capture_default_str();
+  command
+      ->add_option("-r,--repetitions", options->repetitions,
+                   "batches of about 0.5 ms for each variant, twice")
+      ->capture_default_str();
+  command->add_option("--json", options->json, "write every figure to this file");
+  command->callback([options, &exit_code] { exit_code = run_bench(*options); });
+}
+
+}  // namespace sandglass

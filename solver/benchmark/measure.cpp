@@ -1,0 +1,86 @@
+#include "benchmark/measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+#include "base/error.hpp"
+#include "benchmark/force_check.hpp"
+
+namespace sandglass {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
+}
+
+double time_steps(Candidate& candidate, int steps) {
+  const auto start = Clock::now();
+  for (int s = 0; s < steps; ++s) candidate.step();
+  return seconds_between(start, Clock::now());
+}
+
+/// Back to the start, and a step that nobody times: what it needs comes back into the caches.
+void warm_up(Candidate& candidate) {
+  candidate.restart();
+  candidate.step();
+}
+
+int steps_per_batch(Candidate& candidate, double batch_seconds) {
+  constexpr int most = 2000;
+  warm_up(candidate);
+  const double step = std::min(time_steps(candidate, 1), time_steps(candidate, 1));
+  return std::clamp(static_cast<int>(batch_seconds / std::max(step, 1e-9)), 1, most);
+}
+
+/// One batch as a whole, for its mean; another one step by step, for the spread of single steps. Two, because
+/// reading the clock would be felt in the steps of small meshes.
+void time_batches(Candidate& candidate, int steps, Timing& timing) {
+  warm_up(candidate);
+  timing.seconds_per_step.push_back(time_steps(candidate, steps) / steps);
+  auto before = Clock::now();
+  for (int s = 0; s < steps; ++s) {
+    candidate.step();
+    const auto now = Clock::now();
+    timing.seconds_of_a_step.push_back(seconds_between(before, now));
+    before = now;
+  }
+}
+
+}  // namespace
+
+std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSettings& settings,
+                            const Proceed& proceed) {
+  std::vector<Timing> timings(entries.size());
+  std::vector<int> steps(entries.size(), 0);
+  std::vector<std::size_t> order;
+  const auto require_proceed = [&](double share) {
+    if (!proceed(share)) throw ComputationError("bench: interrupted; nothing was written");
+  };
+  for (std::size_t n = 0; n < entries.size(); ++n) {
+    Candidate& candidate = *entries[n].candidate;
+    timings[n].force_difference = relative_difference(candidate.forces(), *entries[n].reference);
+    timings[n].status = force_status(timings[n].force_difference, entries[n].limit);
+    require_proceed(0.0);
+    if (timings[n].status != "ok") continue;
+    steps[n] = steps_per_batch(candidate, settings.batch_seconds);
+    time_batches(candidate, steps[n], timings[n]);  // a rehearsal: every batch goes through the same states
+    candidate.require_healthy();
+    timings[n].seconds_per_step.clear();
+    timings[n].seconds_of_a_step.clear();
+    order.push_back(n);
+  }
+  for (int repetition = 0; repetition < settings.repetitions; ++repetition) {
+    std::shuffle(order.begin(), order.end(), std::minstd_rand(static_cast<unsigned>(repetition) + 1U));
+    for (const std::size_t n : order) {
+      time_batches(*entries[n].candidate, steps[n], timings[n]);
+      require_proceed(static_cast<double>(repetition) / settings.repetitions);
+    }
+  }
+  return timings;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+
+#include "benchmark/measure.hpp"
+#include "model/model.hpp"
+
+namespace sandglass {
+
+/// A box of about so many cubes with the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3), clamped
+/// at z = 0 and moved at its other end.
+Scene box_scene(int elements);
+
+/// The shortest distance between two nodes of an element, m.
+double element_size(const Scene& scene);
+
+/// Displacements (m) that strain every element by a few percent and wake its hourglass modes, whatever the
+/// mesh: waves of some elements' length, 3 % of the element size high.
+NodalField wavy_field(const Scene& scene);
+
+/// A model that takes the steps of a dynamic run, from the wavy field on. Steps are 0.9 of the stable one and
+/// damped, so that the motion stays bounded for good. The scene must outlive it.
+class SteppedModel : public Candidate {
+ public:
+  /// s, at the stiffness of the wavy field.
+  virtual double stable_step() const = 0;
+
+  virtual const Layout& layout() const = 0;
+};
+
+std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice);
+
+}  // namespace sandglass

@@ -1,0 +1,158 @@
+"""sandglass bench: every variant is there, its figures agree with each other, wrong input is told.
+
+No time is judged: only that figures exist, are positive and follow from each other.
+"""
+
+import json
+
+import pytest
+from command_line import methods, sandglass
+
+FIGURES = (
+    "ns_per_element_step",
+    "ns_best",
+    "ns_lower_quartile",
+    "ns_upper_quartile",
+    "ratio_to_tl_perturbation",
+    "speedup_over_scalar_double",
+    "stable_step_seconds",
+    "simulated_seconds_per_second",
+    "step_p50_us",
+    "step_p99_us",
+    "step_max_us",
+    "operations_per_element_step",
+    "bytes_per_element_step",
+    "gflops",
+    "fraction_of_peak",
+    "gbs",
+    "fraction_of_bandwidth",
+    "stream_gbs_at_working_set",
+    "roofline_fraction",
+)
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    """One short run over everything: what it printed and what it wrote."""
+    file = tmp_path_factory.mktemp("bench") / "bench.json"
+    outcome = sandglass(*"bench --elements 64 --repetitions 1 --threads 1 2 --json".split(), file)
+    assert outcome.returncode == 0, outcome.stderr
+    return outcome.stdout, json.loads(file.read_text())
+
+
+def test_every_method_in_every_variant(tiny):
+    found = {(r["method"], r["kernel"], r["precision"], r["threads"]) for r in tiny[1]["records"]}
+    numbers = [("pack", "double"), ("pack", "float"), ("scalar", "double")]
+    assert found == {(m, *n, t) for m in methods() for n in numbers for t in (1, 2)}
+    assert len(tiny[1]["records"]) == len(found)
+
+
+def test_figures_are_there_and_positive(tiny):
+    for record in tiny[1]["records"]:
+        assert record["case"] == "box" and record["elements"] == 64 and record["nodes"] == 125
+        assert record["status"] == "ok"
+        assert 0.0 <= record["force_difference"] < record["force_limit"]
+        assert record["steps_timed"] >= 1
+        for figure in FIGURES:
+            assert record[figure] > 0.0, (figure, record)
+
+
+def test_figures_follow_from_each_other(tiny):
+    document = tiny[1]
+    for r in document["records"]:
+        threads, ns = str(r["threads"]), r["ns_per_element_step"]
+        peak = document["peak_gflops"][r["precision"]][threads]
+        assert r["ns_best"] <= r["ns_lower_quartile"] <= ns <= r["ns_upper_quartile"]
+        assert r["step_p50_us"] <= r["step_p99_us"] <= r["step_max_us"]
+        assert r["gflops"] == pytest.approx(r["operations_per_element_step"] / ns)
+        assert r["gbs"] == pytest.approx(r["bytes_per_element_step"] / ns)
+        assert r["fraction_of_peak"] == pytest.approx(r["gflops"] / peak)
+        bandwidth = document["bandwidth_gbs"][threads]
+        assert r["fraction_of_bandwidth"] == pytest.approx(r["gbs"] / bandwidth)
+        bound = max(
+            r["operations_per_element_step"] / peak,
+            r["bytes_per_element_step"] / r["stream_gbs_at_working_set"],
+        )
+        assert r["roofline_fraction"] == pytest.approx(bound / ns)
+        seconds = 64e-9 * ns
+        assert r["simulated_seconds_per_second"] == pytest.approx(
+            r["stable_step_seconds"] / seconds
+        )
+        yardstick = next(
+            other["ns_per_element_step"]
+            for other in document["records"]
+            if (other["method"], other["threads"], other["kernel"])
+            == (r["method"], r["threads"], "scalar")
+        )
+        assert r["speedup_over_scalar_double"] == pytest.approx(yardstick / ns)
+
+
+def test_json_tells_where_it_comes_from(tiny):
+    document = tiny[1]
+    for name in ("version", "revision", "compiler", "build_flags", "processor"):
+        assert document[name]
+    assert document["machine"]["processors"] >= 1
+    assert document["repetitions"] == 1
+
+
+def test_table_shows_every_method(tiny):
+    for text in (*methods(), "box: 64 elements, 125 nodes", "1 thread: peak", "2 threads: peak"):
+        assert text in tiny[0]
+
+
+def test_operations_are_those_of_the_flops_command(tiny, tmp_path):
+    assert sandglass("flops", "--json", tmp_path / "flops.json").returncode == 0
+    counted = {
+        r["method"]: r["total"]
+        for r in json.loads((tmp_path / "flops.json").read_text())["records"]
+        if r["form"] == "kernel" and r["part"] == "element"
+    }
+    for record in tiny[1]["records"]:
+        assert record["operations_per_element_step"] == counted[record["method"]]
+
+
+def test_a_case_and_a_choice(block):
+    json_file = block.parent / "bench.json"
+    outcome = sandglass(
+        *f"bench {block} --methods tl-full --precision float --threads 1".split(),
+        *"--repetitions 2 --json".split(),
+        json_file,
+    )
+    assert outcome.returncode == 0
+    records = json.loads(json_file.read_text())["records"]
+    assert [(r["case"], r["elements"], r["kernel"], r["precision"]) for r in records] == [
+        ("block", 16, "pack", "float"),
+        ("block", 16, "scalar", "double"),  # the yardstick
+    ]
+    assert all(r["ratio_to_tl_perturbation"] is None for r in records)
+    assert all(r["speedup_over_scalar_double"] > 0.0 for r in records)
+
+
+@pytest.mark.parametrize(
+    "arguments, text",
+    [
+        ("bench colum", "did you mean 'column'?"),
+        ("bench --methods tl-ful", "--methods: 'tl-ful' is not known; did you mean 'tl-full'?"),
+        ("bench --precision half", "--precision = 'half' must be 'double' or 'float'"),
+        ("bench --threads 0", "--threads = 0 must be in [1, 1024]"),
+        ("bench --elements 0", "--elements = 0 must be in [1, 100000000]"),
+        ("bench --elements -8", "--elements = -8 must be in [1, 100000000]"),
+        ("bench --elements many", "--elements"),
+        ("bench --repetitions 0", "--repetitions = 0 must be in [1, 1000000]"),
+    ],
+)
+def test_wrong_input(arguments, text):
+    outcome = sandglass(*arguments.split())
+    assert outcome.returncode == 2
+    assert text in outcome.stderr
+    assert not outcome.stdout
+
+
+def test_unwritable_json(tmp_path):
+    outcome = sandglass(
+        *"bench --elements 8 --repetitions 1 --methods tl-none --json".split(),
+        tmp_path / "none" / "bench.json",
+    )
+    assert outcome.returncode == 2
+    assert "bench.json: cannot be written" in outcome.stderr
+    assert list(tmp_path.iterdir()) == []
