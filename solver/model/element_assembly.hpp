@@ -54,6 +54,8 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     return state;
   }
 
+  bool needs_increment() const override { return Kernel::needs_increment; }
+
   void add_to(Rows<Real>& force, State<Real>& state) const override {
     for (const std::size_t colour : {0U, 1U}) {
       const std::size_t chunks = (layout_.chunks.size() + 1 - colour) / 2;
