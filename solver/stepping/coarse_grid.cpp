@@ -7,7 +7,8 @@ namespace sandglass {
 CoarseGrid::CoarseGrid(const NodalField& points) {
   const auto [low, high] = bounding_box(points);
   low_ = low;
-  const auto most = std::clamp<std::size_t>(points.size() / 100, 32, 125);
+  const std::size_t most =
+      std::clamp<std::size_t>(points.size() / 100, std::clamp<std::size_t>(points.size() / 8, 8, 64), 125);
   for (;;) {
     for (std::size_t i = 0; i < 3; ++i) size_[i] = (high[i] - low[i]) / counts_[i];
     const double largest = *std::max_element(size_.begin(), size_.end());

@@ -11,8 +11,9 @@ namespace sandglass {
 /// of a preconditioner.
 class CoarseGrid {
  public:
-  /// Boxes as nearly cubic as the mesh allows; one grid node for a hundred nodes of the mesh, 32 at least and
-  /// 125 at most, so that solving for them stays cheaper than an evaluation of the forces.
+  /// Boxes as nearly cubic as the mesh allows. One grid node for a hundred nodes of the mesh: at least 64
+  /// where there are eight times as many nodes, and at most 125, so that solving for them stays cheaper than
+  /// an evaluation of the forces.
   explicit CoarseGrid(const NodalField& points);
 
   /// A place in the grid.
@@ -21,6 +22,9 @@ class CoarseGrid {
     std::array<double, 3> local;  ///< 0 to 1 within the cell
   };
   Location locate(const Vector& point) const;
+
+  /// Size of a cell, m.
+  const Vector& cell_size() const { return size_; }
 
   std::size_t cells() const { return count(0) * count(1) * count(2); }
   std::size_t nodes() const { return (count(0) + 1) * (count(1) + 1) * (count(2) + 1); }
@@ -38,7 +42,7 @@ class CoarseGrid {
   std::size_t count(std::size_t i) const { return static_cast<std::size_t>(counts_[i]); }
 
   Vector low_{};
-  Vector size_{};  ///< of a cell, m
+  Vector size_{};
   std::array<int, 3> counts_{1, 1, 1};
 };
 

@@ -1,6 +1,7 @@
 #include "stepping/coarse_stiffness.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "element/hexahedron.hpp"
@@ -32,6 +33,17 @@ Vector centre(const Mesh& mesh, const Hexahedron& cell) {
   return sum;
 }
 
+/// Whether the functions of a grid hardly bend within a hexahedron: it is not much wider than half a cell.
+bool is_small(const Mesh& mesh, const Hexahedron& cell, const Vector& middle, const CoarseGrid& grid) {
+  return std::all_of(cell.begin(), cell.end(), [&](int n) {
+    bool near = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      near = near && std::abs(mesh.points[at(n)][i] - middle[i]) < 0.3 * grid.cell_size()[i];
+    }
+    return near;
+  });
+}
+
 }  // namespace
 
 CoarseStiffness::CoarseStiffness(const Scene& scene, const CoarseGrid& grid)
@@ -41,27 +53,27 @@ CoarseStiffness::CoarseStiffness(const Scene& scene, const CoarseGrid& grid)
       lambda_(std::visit([](const auto& law) { return lame_lambda(law); }, scene.description.law)),
       mu_(std::visit([](const auto& law) { return law.shear_modulus(); }, scene.description.law)),
       cells_(grid.cells()),
-      constrained_((size_ + 1) * stride_),
-      matrix_(constrained_.size()),
-      pivot_column_(size_),
-      diagonal_(size_) {
+      fixed_(stride_ * stride_),
+      matrix_(fixed_.size()),
+      panel_(panel * stride_),
+      diagonal_(stride_) {
   for (std::size_t c = 0; c < cells_.size(); ++c) cells_[c].nodes = grid.nodes_of(c);
   const NodalField free = free_components(scene);
   const auto& hexahedra = scene.mesh.cells;
   for (std::size_t e = 0; e < hexahedra.size(); ++e) {
-    if (touches_constraint(hexahedra[e], free)) {
-      add_constrained_element(scene, hexahedra[e], free);
-    } else {
-      const auto [cell, local] = grid.locate(centre(scene.mesh, hexahedra[e]));
+    const Vector middle = centre(scene.mesh, hexahedra[e]);
+    if (!touches_constraint(hexahedra[e], free) && is_small(scene.mesh, hexahedra[e], middle, grid)) {
+      const auto [cell, local] = grid.locate(middle);
       cells_[cell].elements.push_back({e, local});
+    } else {
+      add_fixed_element(scene, hexahedra[e], free);
     }
   }
 }
 
 /// V (lambda A_ii B_jj + mu A_ij B_ji + mu delta_ij A_i . B_i), where A_i is the gradient of a grid function
 /// that moves component i of the free nodes.
-void CoarseStiffness::add_constrained_element(const Scene& scene, const Hexahedron& cell,
-                                              const NodalField& free) {
+void CoarseStiffness::add_fixed_element(const Scene& scene, const Hexahedron& cell, const NodalField& free) {
   const MeanGradient mean = mean_gradient(gather(scene.mesh.points, cell));
   std::map<std::size_t, Tensor<double>> gradients;  // of each grid node that reaches the element
   for (int I = 0; I < 8; ++I) {
@@ -81,7 +93,7 @@ void CoarseStiffness::add_constrained_element(const Scene& scene, const Hexahedr
   for (const auto& [a, A] : gradients) {
     for (const auto& [b, B] : gradients) {
       for (int i = 0; i < 3; ++i) {
-        double* row = &constrained_[(3 * a + at(i)) * stride_ + 3 * b];
+        double* row = &fixed_[(3 * a + at(i)) * stride_ + 3 * b];
         for (int j = 0; j < 3; ++j) row[j] += lambda * A(i, i) * B(j, j) + mu * A(i, j) * B(j, i);
         row[i] += mu * (A(i, 0) * B(i, 0) + A(i, 1) * B(i, 1) + A(i, 2) * B(i, 2));
       }
@@ -108,7 +120,7 @@ void CoarseStiffness::add_element(Products& T, const std::array<Vector, 8>& refe
 }
 
 void CoarseStiffness::assemble() {
-  matrix_ = constrained_;
+  matrix_ = fixed_;
   for (const auto& [nodes, elements, T] : cells_) {
     for (std::size_t a = 0; a < 8; ++a) {
       for (std::size_t b = 0; b < 8; ++b) {
@@ -125,30 +137,58 @@ void CoarseStiffness::assemble() {
   }
 }
 
-/// The sweep operator (Goodnight 1979) on the lower triangle: it needs no exchange, for the matrix is
-/// positive. A function that adds nothing to those before it (all its nodes are constrained, or it repeats
-/// them) is left out: its row becomes zero.
+/// Inverts the panel's own block by the sweep operator (Goodnight 1979), which needs no exchange, for the
+/// matrix is positive. A function that adds nothing to those before it (all its nodes are constrained, or it
+/// repeats them) is left out: its row becomes zero.
+void CoarseStiffness::invert_block(std::size_t first, double floor, Block& B) const {
+  for (std::size_t p = 0; p < panel; ++p) {
+    for (std::size_t q = 0; q < panel; ++q) B[p][q] = panel_[p * stride_ + first + q];
+  }
+  for (std::size_t k = 0; k < panel; ++k) {
+    const double pivot = B[k][k], original = diagonal_[first + k];
+    const bool left_out = pivot <= 1e-6 * original || original <= floor;
+    const double reciprocal = left_out ? 0.0 : 1.0 / pivot;
+    const std::array<double, panel> row = B[k];
+    for (std::size_t p = 0; p < panel; ++p) {
+      for (std::size_t q = 0; q < panel; ++q) B[p][q] -= reciprocal * row[p] * row[q];
+    }
+    for (std::size_t p = 0; p < panel; ++p) B[k][p] = B[p][k] = reciprocal * row[p];
+    B[k][k] = -reciprocal;
+  }
+  for (auto& row : B) {
+    for (double& x : row) x = -x;
+  }
+}
+
+/// The sweep operator on the lower triangle, several pivots at a time: with V their columns and B the inverse
+/// of their block, A <- A - V B V^T elsewhere, V B in their columns and -B in their block. In the end A holds
+/// its negative inverse.
 void CoarseStiffness::invert() {
-  const std::size_t n = size_;
+  const std::size_t n = stride_;
   for (std::size_t i = 0; i < n; ++i) diagonal_[i] = entry(i, i);
   const double floor = 1e-8 * *std::max_element(diagonal_.begin(), diagonal_.end());
-  double* const v = pivot_column_.data();
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t j = 0; j < n; ++j) v[j] = j <= k ? entry(k, j) : entry(j, k);
-    const double pivot = v[k];
-    const bool left_out = pivot <= 1e-6 * diagonal_[k] || diagonal_[k] <= floor;
+  Block B;
+  for (std::size_t first = 0; first < n; first += panel) {
+    const double* const V = panel_.data();
+    for (std::size_t p = 0; p < panel; ++p) {
+      for (std::size_t j = 0; j < n; ++j) {
+        panel_[p * n + j] = j <= first + p ? entry(first + p, j) : entry(j, first + p);
+      }
+    }
+    invert_block(first, floor, B);
     for (std::size_t i = 0; i < n; ++i) {
       double* const row = &entry(i, 0);
-      const double factor = left_out ? 0.0 : v[i] / pivot;
-      if (i == k) {
-        for (std::size_t j = 0; j < k; ++j) row[j] = left_out ? 0.0 : v[j] / pivot;
-        row[k] = left_out ? 0.0 : -1.0 / pivot;
+      if (i >= first && i < first + panel) {
+        const auto& b = B[i - first];
+        for (std::size_t j = 0; j < first; ++j) row[j] = product(b, V + j);
+        for (std::size_t q = 0; q < panel; ++q) row[first + q] = -b[q];
         continue;
       }
-      const double at_pivot = factor;
+      std::array<double, panel> w;
+      for (std::size_t p = 0; p < panel; ++p) w[p] = product(B[p], V + i);
 #pragma omp simd
-      for (std::size_t j = 0; j <= i; ++j) row[j] -= factor * v[j];
-      if (k < i) row[k] = at_pivot;
+      for (std::size_t j = 0; j <= i; ++j) row[j] -= product(w, V + j);
+      if (i >= first) std::copy(w.begin(), w.end(), row + first);
     }
   }
   for (std::size_t i = 0; i < n; ++i) {

@@ -12,10 +12,10 @@ struct ElementTangent {
   double volume;           ///< reference volume, m^3
 };
 
-/// The tangent stiffness on a coarse grid and its inverse, by the law's moduli at rest (N/m). Elements whose
-/// nodes are all free see the gradients of the grid's functions at their centre, pushed forward with their
-/// own deformation. Elements that touch a constraint see the functions as the constraint cuts them off,
-/// exactly; their stiff part is that at rest.
+/// The tangent stiffness on a coarse grid and its inverse, by the law's moduli at rest (N/m). Elements that
+/// are free and small see the gradients of the grid's functions at their centre, pushed forward with their
+/// own deformation. Elements that touch a constraint, or are no smaller than the grid's cells, see the
+/// functions as their nodes take them, exactly, but stay as they are at rest.
 class CoarseStiffness {
  public:
   CoarseStiffness(const Scene& scene, const CoarseGrid& grid);
@@ -49,14 +49,26 @@ class CoarseStiffness {
   };
   struct Cell {
     std::array<std::size_t, 8> nodes;
-    std::vector<Element> elements;  ///< those without constraints
+    std::vector<Element> elements;  ///< free and small, by their centres
     Products products;
   };
 
   static void add_element(Products& T, const std::array<Vector, 8>& reference, const ElementTangent& tangent);
-  void add_constrained_element(const Scene& scene, const Hexahedron& cell, const NodalField& free);
+  void add_fixed_element(const Scene& scene, const Hexahedron& cell, const NodalField& free);
   void assemble();
+
+  /// Pivots taken at a time.
+  static constexpr std::size_t panel = 8;
+  using Block = std::array<std::array<double, panel>, panel>;
+
+  void invert_block(std::size_t first, double floor, Block& B) const;
   void invert();
+  /// b . V_j for a row j of the panel's columns.
+  double product(const std::array<double, panel>& b, const double* V_j) const {
+    double sum = b[0] * V_j[0];
+    for (std::size_t p = 1; p < panel; ++p) sum += b[p] * V_j[p * stride_];
+    return sum;
+  }
   double& entry(std::size_t row, std::size_t column) { return matrix_[row * stride_ + column]; }
 
   CoarseGrid grid_;
@@ -68,9 +80,9 @@ class CoarseStiffness {
   double lambda_;
   double mu_;
   std::vector<Cell> cells_;
-  std::vector<double> constrained_;  // the part of elements that touch a constraint
-  std::vector<double> matrix_;       // A, then its inverse; by rows, and one more
-  std::vector<double> pivot_column_;
+  std::vector<double> fixed_;   // what does not follow the deformation
+  std::vector<double> matrix_;  // A, then its inverse; by rows
+  std::vector<double> panel_;   // columns of the pivots, one after another
   std::vector<double> diagonal_;
 };
 
