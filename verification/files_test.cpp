@@ -10,7 +10,7 @@
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "stepping/body.hpp"
-#include "stepping/dynamic_relaxation.hpp"
+#include "stepping/relaxation.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "stepping/central_difference.hpp"
-#include "stepping/dynamic_relaxation.hpp"
+#include "stepping/relaxation.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/typed_lists.hpp"

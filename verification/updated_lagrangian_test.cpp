@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "stepping/dynamic_relaxation.hpp"
+#include "stepping/relaxation.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"
 #include "support/random_hexahedra.hpp"

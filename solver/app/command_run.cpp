@@ -13,7 +13,7 @@
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
 #include "stepping/central_difference.hpp"
-#include "stepping/dynamic_relaxation.hpp"
+#include "stepping/relaxation.hpp"
 
 namespace sandglass {
 
@@ -122,11 +122,10 @@ int run_case(const RunOptions& options) {
       u = std::move(relaxation.u);
       steps = relaxation.steps;
       seconds = relaxation.seconds;
-      status = relaxation.converged     ? "complete"
-               : relaxation.interrupted ? fmt::format("interrupted at step {}", steps)
-                                        : fmt::format("not at rest after {} steps", steps);
+      const std::string ending = outcome(relaxation, model.choice().precision);
+      status = at_rest(relaxation, model.choice().precision) ? "complete" : ending;
       fmt::print("{} {} {}: {} after {} steps, residual {:.2e}\n", scene.description.name, options.method,
-                 kappa_text(model), relaxation.converged ? "at rest" : status, steps, relaxation.residual);
+                 kappa_text(model), ending, steps, relaxation.residual);
     } else {
       Motion motion = integrate(model, observer);
       u = std::move(motion.u);

@@ -56,9 +56,10 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
     Relaxation relaxation = relax(model, silent);
     u = std::move(relaxation.u);
     const StrainEnergies energies = relaxation.energies;
-    verdict.status = relaxation.converged ? "ok"
-                                          : fmt::format("failed: not at rest after {} steps, residual {:.1e}",
-                                                        relaxation.steps, relaxation.residual);
+    verdict.status = at_rest(relaxation, choice.precision)
+                         ? "ok"
+                         : fmt::format("failed: {}, residual {:.1e}", outcome(relaxation, choice.precision),
+                                       relaxation.residual);
     verdict.steps = relaxation.steps;
     verdict.residual = relaxation.residual;
     verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;

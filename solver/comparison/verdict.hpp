@@ -6,7 +6,7 @@
 
 #include "comparison/accuracy.hpp"
 #include "model/model.hpp"
-#include "stepping/dynamic_relaxation.hpp"
+#include "stepping/relaxation.hpp"
 
 namespace sandglass {
 

@@ -55,7 +55,7 @@ struct OnePoint {
     for (int m = 0; m < 6; ++m) {
       for (int i = 0; i < 3; ++i) a[static_cast<std::size_t>(m)](i, 0) = T(0.125) * x(m, i);
     }
-    const T third(1.0 / 3.0);
+    const auto third = T(1.0 / 3.0);
     const Triple<T> a65 = third * cross(a[5], a[4]);
     const Triple<T> a46 = third * cross(a[3], a[5]);
     const Triple<T> a54 = third * cross(a[4], a[3]);

@@ -56,6 +56,8 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     return state;
   }
 
+  bool needs_increment() const override { return Kernel::needs_increment; }
+
   /// Each thread takes a run of slabs and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of even
   /// number comes before its neighbour, as it does for any number of threads, and finds what it needs still in
   /// the cache. The last slab of a run waits for the thread that has the next one.
@@ -137,7 +139,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
 
   /// Adds the forces of one chunk. Without `flatten` the compiler leaves small matrix functions out of line, which
   /// costs a third of the time.
-  [[gnu::flatten]] void add_chunk(std::size_t c, State<Real>& state, Real* force) const {
+  [[gnu::flatten, gnu::aligned(64)]] void add_chunk(std::size_t c, State<Real>& state, Real* force) const {
     const Layout::Chunk chunk = layout_.chunks[c];
     const Law law = law_;  // a copy that no store can alias: its moduli are computed once
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {

@@ -45,6 +45,9 @@ class InternalForce {
   /// The body at rest.
   virtual State<Real> rest() const = 0;
 
+  /// Whether the forces follow from the increment of the state too; else nobody needs to write it.
+  virtual bool needs_increment() const = 0;
+
   /// Sets `force` to the internal nodal forces (N); what elements remember goes one step on. Allocates nothing.
   /// The bits do not depend on the number of threads.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;

@@ -23,7 +23,4 @@ constexpr double loading_curve_acceleration(double relative_time) {
   return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t);
 }
 
-/// The largest slope of the loading curve, at relative time 1/2.
-inline constexpr double steepest_loading = 15.0 / 8.0;
-
 }  // namespace sandglass

@@ -7,29 +7,26 @@
 
 namespace sandglass {
 
-/// How a quasi-static answer is found: ramp of the imposed displacements, then adaptive dynamic relaxation.
+/// How a quasi-static answer is found: levels of the imposed displacements, relaxed by conjugate gradients.
 struct RelaxationSettings {
   double tolerance = 1e-8;
-  int ramp_steps = 0;
+  int levels = 0;
   int max_steps = 200000;
-  double step_fraction = 0.9;
   int check_interval = 50;
-  int frames = 10;
 
   static constexpr auto parameters() {
     using S = RelaxationSettings;
     return std::tuple{
         Parameter{&S::tolerance, "tolerance", "-", Range::positive(),
                   "stop when |residual| / |reaction| falls below this", false},
-        Parameter{&S::ramp_steps, "ramp_steps", "-", Range::at_least(0),
-                  "steps of the ramp; 0 chooses them from shear wave speed and imposed displacement", false},
-        Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1), "give up after this many steps",
-                  false},
-        Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},
-                  "pseudo time step over the stable one", false},
+        Parameter{
+            &S::levels, "levels", "-", Range::at_least(0),
+            "load levels; 0 chooses them so that no element's displacement gradient changes by more than 0.3",
+            false},
+        Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1),
+                  "give up after this many evaluations of the forces", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
-                  "steps between checks for inversion, divergence and stiffening", false},
-        Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written during the ramp", false}};
+                  "evaluations between reports", false}};
   }
 };
 

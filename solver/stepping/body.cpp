@@ -1,7 +1,7 @@
 #include "stepping/body.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "stepping/health.hpp"
 #include "stepping/row_loops.hpp"
@@ -36,9 +36,16 @@ void Body<Real>::evaluate_forces() {
 
 template <class Real>
 double Body<Real>::residual() const {
-  const double unbalanced = std::sqrt(dot(force_, force_, threads_));
-  const double carried =
-      std::sqrt(std::inner_product(reactions_.begin(), reactions_.end(), reactions_.begin(), 0.0));
+  return residual(dot(force_, force_, threads_));
+}
+
+template <class Real>
+double Body<Real>::residual(double free_square) const {
+  const double unbalanced = std::sqrt(free_square);
+  double carried_square = 0.0;
+#pragma omp simd reduction(+ : carried_square)
+  for (std::size_t k = 0; k < reactions_.size(); ++k) carried_square += reactions_[k] * reactions_[k];
+  const double carried = std::sqrt(carried_square);
   return carried > 0.0 ? unbalanced / carried : unbalanced;
 }
 
@@ -49,6 +56,19 @@ void Body<Real>::impose(double factor) {
     state_.increment[row][component] += imposed - state_.u[row][component];
     state_.u[row][component] = imposed;
   }
+}
+
+template <class Real>
+void Body<Real>::move_to(const Rows<Real>& target) {
+  Real *u = numbers_of(state_.u), *increment = numbers_of(state_.increment);
+  const Real* to = numbers_of(target);
+  for_each_block(4 * target.size(), threads_, [=](std::size_t first, std::size_t last) {
+#pragma omp simd
+    for (std::size_t k = first; k < last; ++k) {
+      increment[k] = to[k] - u[k];
+      u[k] = to[k];
+    }
+  });
 }
 
 template <class Real>
@@ -76,6 +96,12 @@ template <class Real>
 void Body<Real>::require_healthy(long step) {
   elements_.smallest_jacobians(state_, per_element_);
   sandglass::require_healthy(per_element_, step);
+}
+
+template <class Real>
+bool Body<Real>::healthy() {
+  elements_.smallest_jacobians(state_, per_element_);
+  return std::all_of(per_element_.begin(), per_element_.end(), [](double J) { return J > 0.0; });
 }
 
 template <class Real>

@@ -29,6 +29,12 @@ class Body {
   /// |free forces| / |reactions|; without reactions the plain norm of the free forces (N).
   double residual() const;
 
+  /// The same where the square of the free forces' norm (N^2) is known already.
+  double residual(double free_square) const;
+
+  /// Goes to displacements `target` (m); `impose` sets the constrained components afterwards.
+  void move_to(const Rows<Real>& target);
+
   /// Sets constrained components to `factor` times their final value, and their increments to the change.
   void impose(double factor);
 
@@ -44,6 +50,9 @@ class Body {
 
   /// Throws ComputationError when a displacement is not finite or an element is inverted.
   void require_healthy(long step);
+
+  /// Whether all displacements are finite and no element is inverted.
+  bool healthy();
 
   /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
   const std::vector<double>& stiffness_bounds();

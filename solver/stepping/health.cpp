@@ -23,7 +23,7 @@ void require_healthy(std::span<const double> jacobians, long step) {
       "remedy: {}",
       step, ill, jacobians.size(), finite ? "are inverted" : "hold no finite number any more",
       std::min(ill, 10), listed,
-      finite ? "impose less displacement or more slowly (ramp_steps, ramp_time), refine the mesh, or use an "
+      finite ? "impose less displacement or more slowly (levels, ramp_time), refine the mesh, or use an "
                "hourglass "
                "control (method tl-perturbation or tl-mean-dilatation)"
              : "take a smaller step (step_fraction, time_step) or check more often (check_interval)"));

@@ -6,13 +6,13 @@ namespace sandglass {
 
 /// One row of the dense history.
 struct HistoryRow {
-  double time;       ///< s; relative time of the ramp in quasi-static runs, growing beyond 1 while relaxing
-  double kinetic;    ///< J; of the scaled masses in quasi-static runs
-  double strain;     ///< J
-  double hourglass;  ///< J
+  double time;           ///< s; relative load in quasi-static runs, growing beyond 1 while relaxing
+  double kinetic;        ///< J; zero in quasi-static runs
+  double strain;         ///< J
+  double hourglass;      ///< J
   double external_work;  ///< J, done by the imposed displacements
   double residual;       ///< |force on free components| / |force on constrained components|, -
-  double step_size;      ///< s; in quasi-static runs a share of the ramp
+  double step_size;      ///< s; in quasi-static runs the increment of the load
 };
 
 /// A state worth keeping, in the numbering of the mesh.

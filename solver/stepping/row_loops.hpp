@@ -1,40 +1,49 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
-#include <vector>
+#include <array>
 
 #include "base/parallel.hpp"
 #include "math/rows.hpp"
 
-/// Loops over all rows as one run of numbers, in blocks of fixed size: a block's sum does not depend on who
+/// Loops over all rows as one run of numbers, in blocks whose size depends on their number
+/// alone: a block's sum does not depend on who
 /// computes it, so that the same bits come from any number of threads.
 namespace sandglass {
 
-inline constexpr std::size_t numbers_per_block = 4096;
+inline constexpr std::size_t most_blocks = 256;
 
-inline std::size_t blocks_of(std::size_t numbers) {
-  return (numbers + numbers_per_block - 1) / numbers_per_block;
+/// Numbers in a block: 4096, or as many more as keep the number of blocks small.
+inline std::size_t block_size(std::size_t numbers) {
+  constexpr std::size_t unit = 4096;
+  return unit * std::max<std::size_t>(1, (numbers + most_blocks * unit - 1) / (most_blocks * unit));
 }
 
 /// Calls body(first, last) for the blocks of n numbers.
 template <class Function>
 void for_each_block(std::size_t n, int threads, const Function& body) {
-  in_parallel(blocks_of(n), threads, [&](std::size_t b) {
-    body(b * numbers_per_block, std::min(n, (b + 1) * numbers_per_block));
-  });
+  const std::size_t size = block_size(n);
+  in_parallel((n + size - 1) / size, threads,
+              [&](std::size_t b) { body(b * size, std::min(n, (b + 1) * size)); });
 }
 
 /// The sum over blocks, in order, of what function(first, last) returns for each.
 template <class Sum, class Function>
 Sum sum_over_blocks(std::size_t n, int threads, const Function& function) {
-  std::vector<Sum> partial(blocks_of(n));
-  in_parallel(partial.size(), threads, [&](std::size_t b) {
-    partial[b] = function(b * numbers_per_block, std::min(n, (b + 1) * numbers_per_block));
-  });
+  std::array<Sum, most_blocks> partial;
+  const std::size_t size = block_size(n), blocks = (n + size - 1) / size;
+  in_parallel(blocks, threads,
+              [&](std::size_t b) { partial[b] = function(b * size, std::min(n, (b + 1) * size)); });
   Sum sum{};
-  for (const Sum& part : partial) sum += part;
+  for (std::size_t b = 0; b < blocks; ++b) sum += partial[b];
   return sum;
+}
+
+template <class Real>
+void clear(Rows<Real>& rows, int threads) {
+  Real* x = numbers_of(rows);
+  for_each_block(4 * rows.size(), threads,
+                 [=](std::size_t first, std::size_t last) { std::fill(x + first, x + last, Real(0)); });
 }
 
 template <class Real>

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace sandglass {
+
+/// A grid of a few boxes around a mesh, with trilinear functions between its nodes: the coarse displacements
+/// of a preconditioner.
+class CoarseGrid {
+ public:
+  /// Boxes as nearly cubic as the mesh allows. One grid node for a hundred nodes of the mesh: at least 64
+  /// where there are eight times as many nodes, and at most 125, so that solving for them stays cheaper than
+  /// an evaluation of the forces.
+  explicit CoarseGrid(const NodalField& points);
+
+  /// A place in the grid.
+  struct Location {
+    std::size_t cell;
+    std::array<double, 3> local;  ///< 0 to 1 within the cell
+  };
+  Location locate(const Vector& point) const;
+
+  /// Size of a cell, m.
+  const Vector& cell_size() const { return size_; }
+
+  std::size_t cells() const { return count(0) * count(1) * count(2); }
+  std::size_t nodes() const { return (count(0) + 1) * (count(1) + 1) * (count(2) + 1); }
+
+  /// The nodes of a cell: x alternates first, then y, then z.
+  std::array<std::size_t, 8> nodes_of(std::size_t cell) const;
+
+  /// The functions of a cell's nodes at a place within it, -.
+  static std::array<double, 8> weights(const std::array<double, 3>& local);
+
+  /// Their gradients, 1/m.
+  std::array<Vector, 8> gradients(const std::array<double, 3>& local) const;
+
+ private:
+  std::size_t count(std::size_t i) const { return static_cast<std::size_t>(counts_[i]); }
+
+  Vector low_{};
+  Vector size_{};
+  std::array<int, 3> counts_{1, 1, 1};
+};
+
+}  // namespace sandglass

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "element/one_point.hpp"
+#include "stepping/body.hpp"
+#include "stepping/row_loops.hpp"
+
+namespace sandglass {
+
+/// A load so small that elements hold it wherever it acts: the largest imposed displacement is a hundredth of
+/// the smallest element.
+inline double first_load(const Model& model) {
+  const auto& masses = model.element_masses();
+  const double volume = *std::min_element(masses.begin(), masses.end()) / model.scene().description.density;
+  return std::min(1.0, 0.01 * std::cbrt(volume) / largest_imposed(model.scene()));
+}
+
+/// Largest norm of an element's mean displacement gradient, -.
+inline double largest_gradient(const Mesh& mesh, const NodalField& u) {
+  double square = 0.0;
+  for (const auto& cell : mesh.cells) {
+    const auto element = OnePoint::geometry(to_modes(gather(mesh.points, cell)));
+    const Tensor<double> H = OnePoint::mean_gradient(to_modes(gather(u, cell)), element);
+    square = std::max(square, double_dot(H, H));
+  }
+  return std::sqrt(square);
+}
+
+/// The levels of the imposed displacements: how far to go, and where to start. Times are relative loads.
+template <class Real>
+class LoadLevels {
+ public:
+  LoadLevels(const Model& model, const Body<Real>& at_rest)
+      : model_(model), load_(first_load(model)), before_(at_rest.state().u), last_(at_rest.state()) {}
+
+  double load() const { return load_; }
+  double increment() const { return load_ - last_load_; }
+  bool full() const { return load_ >= 1.0; }
+
+  /// Moves a body that is at the last level along the line through the last two, and imposes this load.
+  void predict(Body<Real>& body) const {
+    if (last_load_ > before_load_) {
+      const auto t = static_cast<Real>((load_ - last_load_) / (last_load_ - before_load_));
+      Rows<Real> target = last_.u;
+      const Real* before = numbers_of(before_);
+      Real* to = numbers_of(target);
+      for (std::size_t k = 0; k < 4 * target.size(); ++k) to[k] += t * (to[k] - before[k]);
+      body.move_to(target);
+    } else {
+      body.move_to(last_.u);
+    }
+    body.impose(load_);
+  }
+
+  /// Goes on from a solved level.
+  void solved(const Body<Real>& body) {
+    if (last_load_ == 0.0) increment_ = choose_increment(body.field(body.state().u));
+    before_ = std::move(last_.u);
+    before_load_ = last_load_;
+    last_ = body.state();
+    last_load_ = load_;
+    aim();
+  }
+
+  /// Brings the body back to the last level and aims half as far; false when that was tried often enough.
+  bool failed(Body<Real>& body) {
+    body.state() = last_;
+    increment_ = 0.5 * increment();
+    aim();
+    return ++failures_ <= most_failures;
+  }
+
+ private:
+  static constexpr int most_failures = 10;
+
+  /// Equal levels in which no element's displacement gradient changes by more than 0.3, or the user's number.
+  double choose_increment(const NodalField& u) const {
+    const int chosen = model_.scene().description.relaxation.levels;
+    if (chosen > 0) return 1.0 / chosen;
+    const double gradient = largest_gradient(model_.scene().mesh, u) / load_;
+    return 1.0 / std::clamp(std::ceil(gradient / 0.3), 2.0, 50.0);
+  }
+
+  void aim() {
+    load_ = last_load_ + increment_;
+    if (load_ > 1.0 - 0.1 * increment_) load_ = 1.0;
+  }
+
+  const Model& model_;
+  double load_;
+  double increment_ = 1.0;
+  double before_load_ = 0.0;
+  Rows<Real> before_;
+  double last_load_ = 0.0;
+  State<Real> last_;
+  int failures_ = 0;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "model/model.hpp"
+#include "stepping/observer.hpp"
+
+namespace sandglass {
+
+/// A static answer and how it was found.
+struct Relaxation {
+  NodalField u;              ///< m
+  long steps = 0;            ///< evaluations of the internal forces
+  double residual = 0.0;     ///< |force on free components| / |reactions|
+  bool converged = false;    ///< residual below the tolerance
+  bool stagnated = false;    ///< the residual stopped falling before it was there
+  bool interrupted = false;  ///< the observer asked to end
+  StrainEnergies energies;   ///< at u
+  double seconds = 0.0;      ///< wall time from the model to the answer
+};
+
+/// Finds the displacements at which the internal forces balance. The imposed displacements grow in load
+/// levels; each starts from the line through the two answers before it, and is relaxed with preconditioned
+/// conjugate gradients: coarsely on the way, to the tolerance at the end. A level that fails is tried again
+/// at half the distance. Settings are the case's. Throws ComputationError when an element stays inverted or
+/// no level is short enough.
+Relaxation relax(const Model& model, Observer& observer);
+
+/// Whether the answer is as good as asked for, or as the numbers allow: in single precision the rounding of
+/// the forces may keep the residual above the tolerance.
+bool at_rest(const Relaxation& relaxation, Precision precision);
+
+/// How the search ended, in words: "at rest", or why not.
+std::string outcome(const Relaxation& relaxation, Precision precision);
+
+}  // namespace sandglass
