@@ -48,21 +48,26 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-/// What names a variant.
-std::string label(const BenchRecord& record) {
-  const MethodChoice& choice = record.choice;
-  return fmt::format("{:<22}{:<8}{:<8}{:>3}", choice.method, name_of(choice.kernel),
-                     name_of(choice.precision), choice.threads);
+/// What names a variant, or the head of these columns; methods take `width` characters.
+std::string label(std::string_view method, std::string_view kernel, std::string_view number,
+                  const std::string& threads, std::size_t width) {
+  return fmt::format("{:<{}}  {:<6}  {:<6}  {:>3}", method, width, kernel, number, threads);
 }
 
 }  // namespace
 
 std::string bench_table(const std::vector<BenchRecord>& records) {
   const BenchRecord& first = records.front();
-  std::string heads = fmt::format("{:<41}", "");
-  std::string units = fmt::format("{:<22}{:<8}{:<8}{:>3}", "method", "kernel", "number", "thr");
+  std::size_t longest = 0;
+  for (const auto& record : records) longest = std::max(longest, record.choice.method.size());
+  std::string heads = label("", "", "", "", longest);
+  std::string units = label("method", "kernel", "number", "thr", longest);
   std::vector<std::string> lines;
-  for (const auto& record : records) lines.push_back(label(record));
+  for (const auto& record : records) {
+    const MethodChoice& choice = record.choice;
+    lines.push_back(label(choice.method, name_of(choice.kernel), name_of(choice.precision),
+                          fmt::to_string(choice.threads), longest));
+  }
   for (const auto& column : columns()) {
     std::size_t width = std::max(column.head.size(), column.unit.size());
     std::vector<std::string> cells;
