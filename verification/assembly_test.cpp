@@ -1,5 +1,5 @@
-/// The time loop's order of nodes and elements, and what must not depend on it: number of threads, width of the
-/// kernel, precision.
+/// The time loop's order of nodes and elements, and what must not depend on it: number of threads, width of
+/// the kernel, precision.
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include "mesh/generators.hpp"
 #include "mesh/strips.hpp"
 #include "stepping/central_difference.hpp"
-#include "support/path.hpp"
 #include "support/patch_mesh.hpp"
+#include "support/path.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/typed_lists.hpp"
 
@@ -35,7 +35,8 @@ Mesh ring(int n) {
   }
   for (auto& cell : mesh.cells) {
     NodalVectors<double> X = gather(mesh.points, cell);
-    if (mean_gradient(X).volume < 0.0) cell = {cell[4], cell[5], cell[6], cell[7], cell[0], cell[1], cell[2], cell[3]};
+    if (mean_gradient(X).volume < 0.0)
+      cell = {cell[4], cell[5], cell[6], cell[7], cell[0], cell[1], cell[2], cell[3]};
   }
   return mesh;
 }
@@ -61,8 +62,8 @@ NodalField wavy(const Mesh& mesh) {
   return u;
 }
 
-/// Each element stands once, between two faces that hold just its nodes, in an orientation that keeps its volume
-/// positive; spare lanes hold none.
+/// Each element stands once, between two faces that hold just its nodes, in an orientation that keeps its
+/// volume positive; spare lanes hold none.
 TEST(LayoutTest, every_element_stands_once_between_its_faces) {
   for (const Mesh& mesh : meshes()) {
     for (const int width : {1, 2, 4, 8, 16}) {
@@ -198,8 +199,8 @@ TYPED_TEST(AssemblyTest, numbering_of_the_mesh_does_not_matter) {
 /// Single precision: unit roundoff 6e-8 in place of 1.1e-16.
 TYPED_TEST(AssemblyTest, single_precision_is_as_near_as_its_digits) {
   for (const Mesh& mesh : meshes()) {
-    const auto elements = std::get<1>(make_internal_force(
-        mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
+    const auto elements = std::get<1>(
+        make_internal_force(mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
     State<float> state = state_at(*elements, wavy(mesh));
     Rows<float> force(state.u.size());
     elements->evaluate(state, force);
@@ -218,8 +219,8 @@ TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing
     for (double& x : X) x += 2000.0;
   }
   const auto force = [&](const Mesh& mesh) {
-    const auto elements = std::get<1>(make_internal_force(
-        mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
+    const auto elements = std::get<1>(
+        make_internal_force(mesh, law, {std::string(TypeParam::name), {}, Precision::single_precision}));
     State<float> state = state_at(*elements, wavy(here));
     Rows<float> rows(state.u.size());
     elements->evaluate(state, rows);

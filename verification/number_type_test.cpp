@@ -94,7 +94,8 @@ class PackedKernel : public testing::Test {
     const NodalVectors<double> X = random.hexahedron();
     const double size = std::cbrt(mean_gradient(X).volume);
     Sample s{{to_modes(random.displacements(X, 0.7, 1.4, 0.1)), {}, to_modes(X)},
-             Kernel::precompute(X, law, {}), {}};
+             Kernel::precompute(X, law, {}),
+             {}};
     for (auto& entry : s.motion.increment.entries) entry = random.uniform(-0.01, 0.01) * size;
     if constexpr (Kernel::remembers) {
       for (auto& entry : s.history.Q.entries) entry = random.uniform(-1, 1) * size * size;
@@ -116,8 +117,8 @@ class PackedKernel : public testing::Test {
       auto& s = samples[static_cast<std::size_t>(lane)];
       const auto plain =
           Kernel::force(Kernel::deformation(s.motion, s.constants), s.constants, s.history, law);
-      const double size = Kernel::stiffness_bound(s.motion, s.constants, law) *
-                          std::sqrt(double_dot(s.motion.u, s.motion.u));
+      const double size =
+          Kernel::stiffness_bound(s.motion, s.constants, law) * std::sqrt(double_dot(s.motion.u, s.motion.u));
       for (std::size_t k = 0; k < 21; ++k) {
         const double difference = std::abs(packed.entries[k].lanes[lane] - plain.entries[k]);
         EXPECT_LE(difference, strict ? 0.0 : 64 * eps * size) << "lane " << lane;

@@ -1,5 +1,5 @@
-/// The Updated Lagrangian twin of the paper's method: what it must share with the Total Lagrangian one, and how
-/// far apart the two may be.
+/// The Updated Lagrangian twin of the paper's method: what it must share with the Total Lagrangian one, and
+/// how far apart the two may be.
 
 #include <gtest/gtest.h>
 
@@ -51,8 +51,8 @@ NodalField turned(const NodalField& field, const Tensor<double>& R) {
 }
 
 /// The patch test of a method that integrates: along an affine path of a distorted mesh no hourglass velocity
-/// arises, so that at its end the forces are those of the Total Lagrangian element, V h P^T, and the inner nodes
-/// feel none. Roundoff of 400 steps: each leaves eps of the coordinates in the resistances.
+/// arises, so that at its end the forces are those of the Total Lagrangian element, V h P^T, and the inner
+/// nodes feel none. Roundoff of 400 steps: each leaves eps of the coordinates in the resistances.
 TEST(UpdatedLagrangianTest, affine_path_passes_the_patch_test) {
   const Mesh mesh = macneal_harder_patch();
   Path updated(mesh, law, method("ul-perturbation"));
@@ -80,9 +80,9 @@ TEST(UpdatedLagrangianTest, rigid_rotation_gives_no_force) {
   }
 }
 
-/// A bent element that turns by 90 degrees keeps its forces and takes them along. The spin of one step is taken
-/// at its end, sin(angle) for angle: the turn is short by angle^3/4 per step, that is by the square of the step
-/// in all.
+/// A bent element that turns by 90 degrees keeps its forces and takes them along. The spin of one step is
+/// taken at its end, sin(angle) for angle: the turn is short by angle^3/4 per step, that is by the square of
+/// the step in all.
 TEST(UpdatedLagrangianTest, resistances_turn_with_the_element) {
   const Mesh mesh = box({1, 1, 1}, {1, 1, 1});
   RandomGeometry random(5);
@@ -140,8 +140,8 @@ TEST(UpdatedLagrangianTest, agrees_with_total_lagrangian_to_first_order_in_strai
   EXPECT_GT(large / small, 5.0);
 }
 
-/// At strains of tens of percent the difference is less than what kappa a quarter larger or smaller makes: the
-/// current geometry scales the stiffness of the modes by about the square of a stretch.
+/// At strains of tens of percent the difference is less than what kappa a quarter larger or smaller makes:
+/// the current geometry scales the stiffness of the modes by about the square of a stretch.
 TEST(UpdatedLagrangianTest, differs_less_than_kappa_by_a_quarter) {
   const Scene scene = bent_cantilever(0.2);
   const double kappa = *auto_kappa("tl-perturbation", law);

@@ -63,11 +63,9 @@ std::string kappa_text(const Model& model) {
 
 Provenance provenance(const Model& model) {
   Provenance attributes = build_provenance();
-  attributes.insert(
-      attributes.end(),
-      {{"method", model.choice().method},
-       {"kappa", kappa_text(model)},
-       {"precision", std::string(name_of(model.choice().precision))}});
+  attributes.insert(attributes.end(), {{"method", model.choice().method},
+                                       {"kappa", kappa_text(model)},
+                                       {"precision", std::string(name_of(model.choice().precision))}});
   return attributes;
 }
 

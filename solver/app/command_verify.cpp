@@ -16,8 +16,8 @@
 #include "element/methods.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
-#include "stepping/body.hpp"
 #include "io/text_file.hpp"
+#include "stepping/body.hpp"
 
 namespace sandglass {
 

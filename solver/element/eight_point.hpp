@@ -38,8 +38,8 @@ struct MeanPressure {
 
 namespace detail {
 
-/// A parent axis: the two others, and which of the hourglass modes eta zeta, xi zeta, xi eta vary along it with
-/// the second axis and with the third; xi eta zeta varies with both.
+/// A parent axis: the two others, and which of the hourglass modes eta zeta, xi zeta, xi eta vary along it
+/// with the second axis and with the third; xi eta zeta varies with both.
 struct ParentAxis {
   int second;
   int third;
@@ -209,7 +209,7 @@ struct EightPoint {
         const auto axis = static_cast<std::size_t>(k);
         const T b = bilinear[detail::parent_axes[axis].with_second];
         const T c = bilinear[detail::parent_axes[axis].with_third];
-        const T low = modes(k, i) - b, high = modes(k, i) + b;    // by the sign along the second axis
+        const T low = modes(k, i) - b, high = modes(k, i) + b;  // by the sign along the second axis
         const T low_c = c - trilinear, high_c = c + trilinear;  // what the sign along the third multiplies
         const std::array<T, 4> values{low - low_c, high - high_c, low + low_c, high + high_c};
         for (std::size_t line = 0; line < 4; ++line) {

@@ -5,17 +5,17 @@
 
 namespace sandglass {
 
-/// R v for the rotation of a spin: Cayley's form of the rotation vector 2 b, exact in length (Hughes and Winget
-/// 1980).
+/// R v for the rotation of a spin: Cayley's form of the rotation vector 2 b, exact in length (Hughes and
+/// Winget 1980).
 template <class T>
 Triple<T> rotated(const Triple<T>& v, const Triple<T>& b, const T& scale) {
   const Triple<T> turn = cross(b, v);
   return v + scale * (turn + cross(b, turn));
 }
 
-/// Perturbation hourglass control of Flanagan and Belytschko 1981 as Updated Lagrangian codes run it: hourglass
-/// resistances are integrated from hourglass velocities, turn with the element's spin, and their stiffness
-/// follows the current geometry.
+/// Perturbation hourglass control of Flanagan and Belytschko 1981 as Updated Lagrangian codes run it:
+/// hourglass resistances are integrated from hourglass velocities, turn with the element's spin, and their
+/// stiffness follows the current geometry.
 struct RatePerturbationControl : PerturbationStiffness {
   template <class T>
   struct Element {
@@ -40,8 +40,8 @@ struct RatePerturbationControl : PerturbationStiffness {
                                       const OnePoint::Element<T>& current, const Element<T>& element,
                                       History<T>& history) {
     const T quarter(0.25);  // half of the spin vector, itself half of these differences
-    const Triple<T> b{{quarter * (L(2, 1) - L(1, 2)), quarter * (L(0, 2) - L(2, 0)),
-                       quarter * (L(1, 0) - L(0, 1))}};
+    const Triple<T> b{
+        {quarter * (L(2, 1) - L(1, 2)), quarter * (L(0, 2) - L(2, 0)), quarter * (L(1, 0) - L(0, 1))}};
     const T scale = T(2) / (T(1) + double_dot(b, b));
     const T k = stiffness(current, element);
     for (int a = 0; a < 4; ++a) {
@@ -66,8 +66,8 @@ struct RatePerturbationControl : PerturbationStiffness {
   }
 
  private:
-  /// k = kappa K_max / 8 of the current configuration, N/m (eqs 6-8 and 12); sum_I h_I^2 is 8 times that of the
-  /// modes.
+  /// k = kappa K_max / 8 of the current configuration, N/m (eqs 6-8 and 12); sum_I h_I^2 is 8 times that of
+  /// the modes.
   template <class T>
   static T stiffness(const OnePoint::Element<T>& current, const Element<T>& element) {
     return element.modulus * current.V * double_dot(current.h, current.h);

@@ -69,7 +69,8 @@ struct TlMeanDilatation {
 
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
-using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull, TlMeanDilatation>;
+using Methods =
+    TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull, TlMeanDilatation>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

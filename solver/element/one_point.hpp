@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "element/hexahedron.hpp"
 #include "element/element_motion.hpp"
+#include "element/hexahedron.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 
@@ -48,7 +48,8 @@ struct OnePoint {
 
   /// The same from the modes of the nodal coordinates x (m), in closed form: with a_m = x_m / 8 the volume is
   ///   V = 8 ([a1 a2 a3] + ([a1 a6 a5] + [a6 a2 a4] + [a5 a4 a3]) / 3),  [a b c] = a . (b x c),
-  /// and h_m = dV/dx_m / V. It is Flanagan and Belytschko's closed form of B and V, in modes; a7 is not in it.
+  /// and h_m = dV/dx_m / V. It is Flanagan and Belytschko's closed form of B and V, in modes; a7 is not in
+  /// it.
   template <class T>
   static Element<T> geometry(const Modes<T>& x) {
     std::array<Triple<T>, 6> a;

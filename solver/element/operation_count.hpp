@@ -109,7 +109,8 @@ OperationCount count_operations(const Law& law) {
   }
   const detail::ObservedLaw<Law> observed(law, tally);
   const auto now = Kernel::deformation(motion, element);
-  const auto f = Kinematics::template force<Hourglass>(now, element.body, element.hourglass, history, observed);
+  const auto f =
+      Kinematics::template force<Hourglass>(now, element.body, element.hourglass, history, observed);
   from_face_modes(carried + lower_face(f));
   upper_face(f);
 

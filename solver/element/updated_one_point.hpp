@@ -6,8 +6,8 @@ namespace sandglass {
 
 /// The uniform strain hexahedron in the Updated Lagrangian formulation: nothing is precomputed. Each step
 /// rebuilds mean gradients, volume and hourglass shape vectors from the current coordinates, takes F from
-/// F^-1 = I - du/dx, and turns the Cauchy stress into forces. What it rebuilds is the geometry of OnePoint, by
-/// the same function, so that the two formulations differ by what they do, not by how well it is written.
+/// F^-1 = I - du/dx, and turns the Cauchy stress into forces. What it rebuilds is the geometry of OnePoint,
+/// by the same function, so that the two formulations differ by what they do, not by how well it is written.
 struct UpdatedOnePoint {
   static constexpr bool needs_increment = true;
   static constexpr bool needs_coordinates = true;
@@ -81,8 +81,8 @@ struct UpdatedOnePoint {
   /// det F as this element sees it.
   template <class T>
   static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
-    return T(1) + jacobian_minus_one(
-                      displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));
+    return T(1) +
+           jacobian_minus_one(displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, as for OnePoint: h is spatial

@@ -60,20 +60,21 @@ struct NeoHookean {
     return T(bulk_modulus());
   }
 
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure p
-  /// (Pa, tension positive) that need not be the law's own:
-  /// P = a F + (p - a tr(F^T F) / (3 J)) cof F with a = mu J^(-2/3). With cof F = (1 + tr H) I - H^T + cof H
-  /// the unit tensors cancel by hand, and what is left is linear in H at rest:
+  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
+  /// p (Pa, tension positive) that need not be the law's own: P = a F + (p - a tr(F^T F) / (3 J)) cof F with
+  /// a = mu J^(-2/3). With cof F = (1 + tr H) I - H^T + cof H the unit tensors cancel by hand, and what is
+  /// left is linear in H at rest:
   ///   P = c (I - W) + a (H + W),  W = H^T - tr H I - cof H,  c = p + a (3 (J - 1) - 2 tr H - H:H) / (3 J).
-  /// H + W is formed first, so that a small rotation, where H^T = -H, leaves no more than its square's roundoff.
+  /// H + W is formed first, so that a small rotation, where H^T = -H, leaves no more than its square's
+  /// roundoff.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
     const T r = change.inverse_root;
     const T r2 = r * r;
     const T a = (T(shear_modulus()) * V) * r2;
     const T tr = trace(H);
-    const T c = V * p + (T(1.0 / 3.0) * a) * (r2 * r) *
-                        (T(3) * change.J_minus_one - (T(2) * tr + double_dot(H, H)));
+    const T c =
+        V * p + (T(1.0 / 3.0) * a) * (r2 * r) * (T(3) * change.J_minus_one - (T(2) * tr + double_dot(H, H)));
     const Tensor<T> cof_H = cofactor(H);
     Tensor<T> P;  // times V
     for (int i = 0; i < 3; ++i) {

@@ -48,8 +48,7 @@ struct Pack {
   Pack() = default;
   explicit(false) Pack(T same) : lanes(same - Vector{}) {}
   template <std::floating_point S>
-    requires(!std::same_as<S, T>)
-  explicit Pack(S same) : Pack(static_cast<T>(same)) {}
+  requires(!std::same_as<S, T>) explicit Pack(S same) : Pack(static_cast<T>(same)) {}
 
   /// From the compiler's vector; a constructor would collide with the one from a number.
   static Pack of(Vector lanes) {

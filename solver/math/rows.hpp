@@ -117,8 +117,8 @@ inline constexpr bool transposes = Lanes<Number>::width % 4 == 0;
 
 }  // namespace detail
 
-/// The three components of as many rows as `Number` has lanes, the row at place[l] in lane l: vector loads and a
-/// transpose in registers where vectors hold rows of four.
+/// The three components of as many rows as `Number` has lanes, the row at place[l] in lane l: vector loads
+/// and a transpose in registers where vectors hold rows of four.
 template <class Number, class T>
 std::array<Number, 3> gather(const T* rows, const Place* place) {
   constexpr int W = Lanes<Number>::width;
@@ -146,8 +146,8 @@ std::array<Number, 3> gather(const T* rows, const Place* place) {
   }
 }
 
-/// Adds the three components of lane l to the row at place[l]; lanes one after another, so that two lanes may name
-/// the same row.
+/// Adds the three components of lane l to the row at place[l]; lanes one after another, so that two lanes may
+/// name the same row.
 template <class Number, class T>
 void scatter_add(const std::array<Number, 3>& x, T* rows, const Place* place) {
   constexpr int W = Lanes<Number>::width;

@@ -13,8 +13,8 @@ constexpr T jacobian_minus_one(const Tensor<T>& H) {
   return trace(H) + (second_invariant + determinant(H));
 }
 
-/// How a point's volume changes: J - 1 and J^(-1/3), which isochoric laws scale F with. The root is a long chain
-/// of operations; who computes it early has it when the stress needs it.
+/// How a point's volume changes: J - 1 and J^(-1/3), which isochoric laws scale F with. The root is a long
+/// chain of operations; who computes it early has it when the stress needs it.
 template <class T>
 struct VolumeChange {
   T J_minus_one;

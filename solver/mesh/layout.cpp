@@ -36,7 +36,8 @@ std::vector<int> sorted_along_the_mesh(const Mesh& mesh) {
   }
   std::vector<int> order(mesh.cells.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return position[at(a)] < position[at(b)]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return position[at(a)] < position[at(b)]; });
   return order;
 }
 
@@ -159,7 +160,8 @@ class Grouping {
     const std::size_t first_spare = spare_.size();
     for (std::size_t k = 0; k <= length; ++k) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
-        for (const auto& strip : strips) face_rows_.push_back(layout_.row_of_node[at(strip.faces[k][corner])]);
+        for (const auto& strip : strips)
+          face_rows_.push_back(layout_.row_of_node[at(strip.faces[k][corner])]);
         const auto spare_row = -static_cast<int>(first_spare + 4 * k + corner) - 1;
         face_rows_.resize(face_rows_.size() + at(layout_.width) - strips.size(), spare_row);
         if (spare) spare_.push_back(strips.front().faces[k][corner]);

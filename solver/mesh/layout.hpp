@@ -31,7 +31,7 @@ struct Layout {
   std::vector<int> node_of_row;
   std::vector<int> row_of_node;
   std::vector<Place> face_places;  ///< [face][corner][lane], places of rows
-  std::vector<int> elements;            ///< [level][lane]; -1 in spare lanes
+  std::vector<int> elements;       ///< [level][lane]; -1 in spare lanes
   std::vector<Group> groups;
   std::vector<Chunk> chunks;
 

@@ -15,9 +15,8 @@ std::size_t at(int n) {
 /// The lower and the upper face of an element across each parent axis, as local nodes; every pair is the
 /// element in VTK order again, turned.
 using LocalFaces = std::array<std::array<std::size_t, 4>, 2>;
-constexpr std::array<LocalFaces, 3> faces_across{{{{{0, 1, 2, 3}, {4, 5, 6, 7}}},
-                                                  {{{0, 3, 7, 4}, {1, 2, 6, 5}}},
-                                                  {{{0, 4, 5, 1}, {3, 7, 6, 2}}}}};
+constexpr std::array<LocalFaces, 3> faces_across{
+    {{{{0, 1, 2, 3}, {4, 5, 6, 7}}}, {{{0, 3, 7, 4}, {1, 2, 6, 5}}}, {{{0, 4, 5, 1}, {3, 7, 6, 2}}}}};
 
 /// The node at the other end of the edge that leaves `face` at its given corner.
 int opposite_node(const Hexahedron& cell, const Quadrilateral& face, std::size_t corner) {

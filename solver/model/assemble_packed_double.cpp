@@ -3,7 +3,7 @@
 namespace sandglass {
 
 std::unique_ptr<InternalForce<double>> make_packed_double(const Mesh& mesh, const AnyLaw& law,
-                                                   const MethodChoice& choice) {
+                                                          const MethodChoice& choice) {
   return assemble<Pack<double>>(mesh, law, choice);
 }
 

@@ -3,7 +3,7 @@
 namespace sandglass {
 
 std::unique_ptr<InternalForce<float>> make_packed_float(const Mesh& mesh, const AnyLaw& law,
-                                                   const MethodChoice& choice) {
+                                                        const MethodChoice& choice) {
   return assemble<Pack<float>>(mesh, law, choice);
 }
 

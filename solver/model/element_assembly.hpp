@@ -58,9 +58,9 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
 
   bool needs_increment() const override { return Kernel::needs_increment; }
 
-  /// Each thread takes a run of slabs and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of even
-  /// number comes before its neighbour, as it does for any number of threads, and finds what it needs still in
-  /// the cache. The last slab of a run waits for the thread that has the next one.
+  /// Each thread takes a run of slabs and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of
+  /// even number comes before its neighbour, as it does for any number of threads, and finds what it needs
+  /// still in the cache. The last slab of a run waits for the thread that has the next one.
   void evaluate(State<Real>& state, Rows<Real>& force) const override {
     const std::size_t pairs = (layout_.chunks.size() + 1) / 2;
     const std::size_t runs = std::min(pairs, static_cast<std::size_t>(threads_));
@@ -137,8 +137,8 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
               Row<Real>{});
   }
 
-  /// Adds the forces of one chunk. Without `flatten` the compiler leaves small matrix functions out of line, which
-  /// costs a third of the time.
+  /// Adds the forces of one chunk. Without `flatten` the compiler leaves small matrix functions out of line,
+  /// which costs a third of the time.
   [[gnu::flatten, gnu::aligned(64)]] void add_chunk(std::size_t c, State<Real>& state, Real* force) const {
     const Layout::Chunk chunk = layout_.chunks[c];
     const Law law = law_;  // a copy that no store can alias: its moduli are computed once
@@ -151,7 +151,8 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
         const FaceMotion upper = gather_face(state, group.first_face + k + 1);
         if (streams_) prefetch(state, level + levels_ahead);
         HistoryBlock remembered = history(state, level);
-        const Modes<Number> f = Kernel::force(Kernel::deformation(between(lower, upper), blocks_[level]), blocks_[level], remembered, law);
+        const Modes<Number> f = Kernel::force(Kernel::deformation(between(lower, upper), blocks_[level]),
+                                              blocks_[level], remembered, law);
         keep_history(remembered, state, level);
         scatter_face(carried + lower_face(f), group.first_face + k, force);
         carried = upper_face(f);
@@ -254,7 +255,8 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
       const Number value = evaluate(level, motion);
       for (int lane = 0; lane < width; ++lane) {
         const int e = element_at(level, lane);
-        if (e >= 0) values[static_cast<std::size_t>(e)] = static_cast<double>(Lanes<Number>::get(value, lane));
+        if (e >= 0)
+          values[static_cast<std::size_t>(e)] = static_cast<double>(Lanes<Number>::get(value, lane));
       }
     });
   }

@@ -48,8 +48,8 @@ class InternalForce {
   /// Whether the forces follow from the increment of the state too; else nobody needs to write it.
   virtual bool needs_increment() const = 0;
 
-  /// Sets `force` to the internal nodal forces (N); what elements remember goes one step on. Allocates nothing.
-  /// The bits do not depend on the number of threads.
+  /// Sets `force` to the internal nodal forces (N); what elements remember goes one step on. Allocates
+  /// nothing. The bits do not depend on the number of threads.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
   /// Strain and hourglass energy.

@@ -16,8 +16,8 @@ namespace sandglass {
 
 namespace {
 
-/// The recipe's quantities, one function each; the order of calls is in `integrate_body`. Velocities stand half
-/// a step before the displacements, as increments over `increment_time_`.
+/// The recipe's quantities, one function each; the order of calls is in `integrate_body`. Velocities stand
+/// half a step before the displacements, as increments over `increment_time_`.
 template <class Real>
 class CentralDifference {
  public:
@@ -126,8 +126,7 @@ class CentralDifference {
         "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by element {} at step {}; "
         "allowed: at most the stable step, or 0 to let the program choose",
         settings_.time_step, stable.step, stable.element, step_);
-    if (step_ == 0)
-      throw InputError(fmt::format("{}: {}", model_.scene().description.file.string(), text));
+    if (step_ == 0) throw InputError(fmt::format("{}: {}", model_.scene().description.file.string(), text));
     throw ComputationError(text);
   }
 
@@ -164,8 +163,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
       observer.frame(body.frame(scheme.time(), std::move(v)));
       ++frames;
     }
-    motion.interrupted =
-        !observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
+    motion.interrupted = !observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
   };
 
   const auto start = std::chrono::steady_clock::now();

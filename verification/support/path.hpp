@@ -4,8 +4,8 @@
 
 namespace sandglass::verification {
 
-/// The elements of a mesh in double precision, led along a path of displacements step by step: for methods that
-/// remember where they have been.
+/// The elements of a mesh in double precision, led along a path of displacements step by step: for methods
+/// that remember where they have been.
 class Path {
  public:
   Path(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice)

@@ -72,8 +72,9 @@ struct Elastic;
 template <class... Methods, class... PairedLaws>
 struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
   using type = typename Concatenated<
-      TypeList<>, std::conditional_t<stands_alone<FormulationOf<Methods, PairedLaws>>,
-                                     TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>::type;
+      TypeList<>,
+      std::conditional_t<stands_alone<FormulationOf<Methods, PairedLaws>>,
+                         TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>::type;
 };
 
 /// The methods whose answer does not depend on the path.
@@ -81,9 +82,9 @@ template <class List>
 struct PathIndependent;
 template <class... EveryMethod>
 struct PathIndependent<TypeList<EveryMethod...>> {
-  using type = typename Concatenated<
-      TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers, TypeList<>,
-                                     TypeList<EveryMethod>>...>::type;
+  using type =
+      typename Concatenated<TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers,
+                                                           TypeList<>, TypeList<EveryMethod>>...>::type;
 };
 
 }  // namespace detail
@@ -93,8 +94,8 @@ using MethodTypes = detail::AsTestTypes<Methods>::type;
 using GeneratorTypes = detail::AsTestTypes<Generators>::type;
 using MethodWithLawTypes = detail::AsTestTypes<detail::Product<Methods, Laws>::type>::type;
 
-/// What integrates its resistances in time comes to rest where the path leads it; who expects one answer takes
-/// these.
+/// What integrates its resistances in time comes to rest where the path leads it; who expects one answer
+/// takes these.
 using PathIndependentMethods = detail::PathIndependent<Methods>::type;
 using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
 using PathIndependentPairTypes =
