@@ -254,6 +254,21 @@ TYPED_TEST(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads
   }
 }
 
+/// Displacements that fade out below the normal numbers count as none, and the caller's arithmetic is as
+/// before.
+TEST(SubnormalTest, fading_displacements_give_no_force_and_leave_the_processor_as_it_was) {
+  const Mesh mesh = box({1, 1, 1}, {2, 2, 2});
+  const auto elements =
+      std::get<1>(make_internal_force(mesh, law, {"tl-perturbation", {}, Precision::single_precision}));
+  State<float> state = elements->rest();
+  for (auto& row : state.u) row = {{1e-40F, -2e-40F, 3e-40F, 0.0F}};
+  Rows<float> force(state.u.size());
+  elements->evaluate(state, force);
+  EXPECT_EQ(largest_distance(to_field(force, elements->layout()), NodalField(mesh.points.size())), 0.0);
+  const volatile float tiny = 1e-30F, less = 1e-10F;
+  EXPECT_GT(tiny * less, 0.0F);
+}
+
 /// Computing the geometry anew changes roundoff only.
 TEST(CompactMethodTest, gives_the_forces_of_the_method_it_stands_for) {
   for (const Mesh& mesh : meshes()) {

@@ -65,12 +65,13 @@ void add_flops_command(CLI::App& app) {
   command->callback([json] {
     const auto rows = count_all();
     fmt::print(
-        "operations per element and step with the law {}; bytes: constants in double and node numbers\n"
-        "{:<22}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n",
+        "operations per element and step with the law {}; bytes: constants in double, places of nodes, "
+        "history\n"
+        "{:<25}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n",
         NeoHookean::name, "method", "form", "part", "add", "mul", "div", "special", "total", "bytes");
     for (const auto& row : rows) {
       const auto& n = row.operations;
-      fmt::print("{:<22}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n", row.method, row.form, row.part, n.add,
+      fmt::print("{:<25}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n", row.method, row.form, row.part, n.add,
                  n.mul, n.div, n.special, n.total(), row.bytes > 0 ? fmt::to_string(row.bytes) : "");
     }
     if (!json->empty()) write_json(rows, *json);
