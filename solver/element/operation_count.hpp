@@ -74,6 +74,23 @@ Aggregate counted(Operations& tally, double value) {
   return std::bit_cast<Aggregate>(entries);
 }
 
+/// The constants of a cube, if the kernel has any, known to a tally.
+template <class Kernel, class Law>
+auto counted_constants(const Law& law, Operations& tally) {
+  using Element = typename Kernel::template Element<double>;
+  using CountedElement = typename Kernel::template Element<Counted>;
+  if constexpr (std::is_empty_v<Element>) {
+    return CountedElement{};
+  } else {
+    constexpr std::size_t numbers = sizeof(CountedElement) / sizeof(Counted);
+    const auto plain =
+        std::bit_cast<std::array<double, numbers>>(Kernel::precompute(0.5 * corner_signs, law, {}));
+    std::array<Counted, numbers> constants;
+    for (std::size_t n = 0; n < numbers; ++n) constants[n] = Counted(plain[n], tally);
+    return std::bit_cast<CountedElement>(constants);
+  }
+}
+
 /// The modes of an element in a strip: those of its lower face are known from the element before.
 inline Modes<Counted> modes_in_strip(const FaceModes<Counted>& lower, Operations& tally, double value) {
   const auto upper = counted<FaceVectors<Counted>>(tally, value);
@@ -87,13 +104,8 @@ inline Modes<Counted> modes_in_strip(const FaceModes<Counted>& lower, Operations
 template <class Kinematics, class Hourglass, class Law>
 OperationCount count_operations(const Law& law) {
   using Kernel = Formulation<Kinematics, Hourglass, Law>;
-  constexpr std::size_t numbers = sizeof(typename Kernel::template Element<double>) / sizeof(double);
   Operations tally;
-  const auto plain =
-      std::bit_cast<std::array<double, numbers>>(Kernel::precompute(0.5 * corner_signs, law, {}));
-  std::array<Counted, numbers> constants;
-  for (std::size_t n = 0; n < numbers; ++n) constants[n] = Counted(plain[n], tally);
-  const auto element = std::bit_cast<typename Kernel::template Element<Counted>>(constants);
+  const auto element = detail::counted_constants<Kernel>(law, tally);
   const auto lower = detail::counted<FaceModes<Counted>>(tally, 1e-3);
   const auto carried = detail::counted<FaceModes<Counted>>(tally, 1.0);
 
@@ -117,7 +129,8 @@ OperationCount count_operations(const Law& law) {
   count.gradient = observed.before();
   count.law = observed.inside();
   count.total = tally;
-  count.bytes += static_cast<long>(numbers * sizeof(double) + 4 * sizeof(Place));
+  using Element = typename Kernel::template Element<double>;
+  count.bytes += static_cast<long>((std::is_empty_v<Element> ? 0 : sizeof(Element)) + 4 * sizeof(Place));
   count.force = tally - count.gradient - count.law;
   if constexpr (Hourglass::active) {
     const OperationCount without = count_operations<Kinematics, NoHourglassControl>(law);

@@ -124,7 +124,7 @@ void CoarseStiffness::assemble() {
   for (const auto& [nodes, elements, T] : cells_) {
     for (std::size_t a = 0; a < 8; ++a) {
       for (std::size_t b = 0; b < 8; ++b) {
-        const double* const corner = T.data() + 24 * 3 * a + 3 * b;
+        const double* const corner = T.data() + 72 * a + 3 * b;
         const auto product = [&](std::size_t i, std::size_t j) { return corner[24 * i + j]; };
         const double dot = product(0, 0) + product(1, 1) + product(2, 2);
         for (std::size_t i = 0; i < 3; ++i) {

@@ -41,7 +41,7 @@ class CoarseStiffness {
 
  private:
   /// Sums of V G_ai G_bj over the elements of a cell, G_a the gradients of its eight functions.
-  using Products = std::array<double, 24 * 24>;
+  using Products = std::array<double, std::size_t{24} * 24>;
 
   struct Element {
     std::size_t index;
