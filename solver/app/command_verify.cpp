@@ -127,13 +127,13 @@ std::string percents(const std::optional<Accuracy>& accuracy) {
 void print_verdicts(const std::vector<Verdict>& verdicts) {
   fmt::print(
       "errors in % of the imposed displacement: max over all nodes, max over the profile, rms\n"
-      "{:<22}{:<20}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
+      "{:<22}{:<24}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
       "case", "method", "kappa", "against the golden", "against the truth", "hg/int%", "steps", "residual",
       "wall s", "ns/el", "status");
   for (const auto& v : verdicts) {
     const std::string kappa =
         v.kappa ? fmt::format("{}{:.4g}", v.kappa_is_auto ? "auto " : "", *v.kappa) : "";
-    fmt::print("{:<22}{:<20}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method,
+    fmt::print("{:<22}{:<24}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method,
                kappa, percents(v.golden), percents(v.truth), percent(v.hourglass_energy_ratio), v.steps,
                v.residual, v.wall_seconds, v.ns_per_element_step, v.status);
   }
