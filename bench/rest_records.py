@@ -46,19 +46,22 @@ def record(**known):
 
 
 def read_solver_records(path):
-    """The records that `sandglass bench --rest` wrote: a JSON list of objects with SOLVER_KEYS.
+    """The records of the document that `sandglass bench --rest` wrote: objects with SOLVER_KEYS.
 
-    Other keys are ignored. Returns a list of records with program "sandglass". Raises InputError
-    naming file, entry, key, value and rule.
+    Other keys, of the document and of a record, are ignored. Returns a list of records with
+    program "sandglass". Raises InputError naming file, entry, key, value and rule.
     """
     try:
-        entries = json.loads(Path(path).read_text(encoding="utf-8"))
+        document = json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot read the records: {error.strerror}") from error
     except ValueError as error:
         raise InputError(f"{path}: not a JSON file: {error}") from error
+    if not isinstance(document, dict):
+        raise InputError(f"{path}: an object is required, not {type(document).__name__}")
+    entries = document.get("records")
     if not isinstance(entries, list):
-        raise InputError(f"{path}: a list of records is required, not {type(entries).__name__}")
+        raise InputError(f"{path}: records = {entries!r}: a list is required")
     return [_checked(path, number, entry) for number, entry in enumerate(entries)]
 
 

@@ -33,7 +33,9 @@ def _stored(tmp_path, document):
 
 
 def test_records_of_the_solver(tmp_path):
-    (found,) = rest_records.read_solver_records(_stored(tmp_path, [{**ENTRY, "kappa": 1}]))
+    (found,) = rest_records.read_solver_records(
+        _stored(tmp_path, {"version": "1", "records": [{**ENTRY, "kappa": 1}]})
+    )
     assert found == {**dict.fromkeys(rest_records.KEYS), "program": "sandglass", **ENTRY}
 
 
@@ -41,7 +43,19 @@ def test_records_of_the_solver(tmp_path):
     "document, told",
     [
         ("[", "not a JSON file"),
-        ({}, "a list of records is required, not dict"),
+        ([], "an object is required, not list"),
+        ({}, "records = None: a list is required"),
+        ({"records": {}}, "records = {}: a list is required"),
+    ],
+)
+def test_damaged_documents(tmp_path, document, told):
+    with pytest.raises(InputError, match=f"rest.json: {told}"):
+        rest_records.read_solver_records(_stored(tmp_path, document))
+
+
+@pytest.mark.parametrize(
+    "records, told",
+    [
         ([ENTRY, 1], "record 1 = 1: an object"),
         ([{"case": "block"}], "record 0: method is missing"),
         ([{**ENTRY, "method": None}], "method = None: a text"),
@@ -51,9 +65,9 @@ def test_records_of_the_solver(tmp_path):
         ([{**ENTRY, "residual": float("nan")}], "residual = nan: a number >= 0 or null"),
     ],
 )
-def test_damaged_records(tmp_path, document, told):
-    with pytest.raises(InputError, match=f"rest.json: .*{told}|rest.json: {told}"):
-        rest_records.read_solver_records(_stored(tmp_path, document))
+def test_damaged_records(tmp_path, records, told):
+    with pytest.raises(InputError, match=f"rest.json: .*{told}"):
+        rest_records.read_solver_records(_stored(tmp_path, {"records": records}))
 
 
 def test_missing_records(tmp_path):

@@ -7,6 +7,7 @@
 #include "benchmark/force_check.hpp"
 #include "benchmark/machine_speed.hpp"
 #include "benchmark/measure.hpp"
+#include "benchmark/rest.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "benchmark/work.hpp"
 #include "mesh/box.hpp"
@@ -197,6 +198,47 @@ TEST(Bench, ratios_compare_like_with_like) {
   EXPECT_EQ(records[3].speed->to_tl_perturbation, 2.0);
   EXPECT_FALSE(records[4].speed->to_tl_perturbation);
   EXPECT_EQ(records[4].speed->speedup, 8.0);
+}
+
+/// A made-up error that falls as 1 / (1 + n) is below 1 / k from n = k on; every limit is found to the very
+/// evaluation, with as many looks as the last one has binary digits.
+TEST(Rest, bisection_finds_the_first_below) {
+  int looks = 0;
+  const auto error = [&](long n) {
+    ++looks;
+    EXPECT_GE(n, 0);
+    EXPECT_LT(n, 1000);  // at the last one the error is known to be below
+    return 1.0 / static_cast<double>(1 + n);
+  };
+  for (const long k : {1L, 2L, 99L, 100L, 511L, 512L, 999L, 1000L}) {
+    looks = 0;
+    EXPECT_EQ(first_below(1000, 1.0 / static_cast<double>(k), error), k);
+    EXPECT_LE(looks, 10);
+  }
+  EXPECT_EQ(first_below(1000, 1.5, error), 0);
+  EXPECT_EQ(first_below(0, 0.5, error), 0);
+}
+
+/// An error that rises once more: what is found is a crossing.
+TEST(Rest, bisection_finds_a_crossing_where_there_are_more) {
+  const auto error = [](long n) { return n < 10 || (n >= 40 && n < 60) ? 1.0 : 0.0; };
+  const long found = first_below(100, 0.5, error);
+  EXPECT_TRUE(found == 10 || found == 60) << found;
+}
+
+TEST(Rest, seconds_are_in_order_and_a_failure_is_a_status) {
+  Scene scene = box_scene(64);
+  const RestRecord record = time_to_rest(scene, {"tl-perturbation", {}}, [](double) { return true; });
+  ASSERT_EQ(record.status, "ok");
+  ASSERT_TRUE(record.times);
+  EXPECT_GT(record.times->to_1_percent, 0.0);
+  EXPECT_LE(record.times->to_1_percent, record.times->to_0_1_percent);
+  EXPECT_LT(record.times->to_0_1_percent, record.times->to_rest);
+  scene.description.relaxation.max_steps = 5;
+  const RestRecord failed = time_to_rest(scene, {"tl-perturbation", {}}, [](double) { return true; });
+  EXPECT_EQ(failed.status.rfind("failed: not at rest after ", 0), 0U) << failed.status;
+  EXPECT_FALSE(failed.times);
+  EXPECT_THROW(time_to_rest(scene, {"tl-perturbation", {}}, [](double) { return false; }), ComputationError);
 }
 
 TEST(MachineSpeed, is_a_positive_number) {

@@ -84,6 +84,11 @@ TEST_F(LimitTest, figure_and_reference_are_the_ones_asked_for) {
   EXPECT_FALSE(check(expected, curve).holds);  // there is none
 }
 
+TEST_F(LimitTest, limits_are_for_double) {
+  for (auto& v : curve) v.precision = "float";
+  EXPECT_FALSE(check(below("tl-perturbation", "auto", 1.0), curve).figure);
+}
+
 TEST_F(LimitTest, method_that_must_fail_is_caught_when_it_does_not) {
   EXPECT_TRUE(check(above("tl-none", 0.05), curve).holds);
   EXPECT_FALSE(check(above("tl-none", 0.5), curve).holds);

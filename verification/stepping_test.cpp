@@ -77,6 +77,27 @@ TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) 
   }
 }
 
+/// When the evaluations run out, the displacements of that moment are returned: from the first guess on they
+/// approach the answer, and with as many evaluations as the answer took they are it, bit by bit.
+TYPED_TEST(StepperTest, relaxation_returns_where_it_is_when_steps_run_out) {
+  Scene scene = driven_block({0.04, 0.0, 0.03});
+  const Model model(scene, this->method());
+  Observer silent;
+  const Relaxation answer = relax(model, silent);
+  double before = std::numeric_limits<double>::infinity();
+  for (const long share : {0L, 50L, 75L, 95L}) {
+    scene.description.relaxation.max_steps = static_cast<int>(answer.steps * share / 100);
+    const Relaxation part = relax(model, silent);
+    EXPECT_FALSE(part.converged);
+    const double distance = largest_distance(part.u, answer.u);
+    EXPECT_GT(distance, 0.0);
+    EXPECT_LT(distance, before);
+    before = distance;
+  }
+  scene.description.relaxation.max_steps = static_cast<int>(answer.steps);
+  EXPECT_EQ(relax(model, silent).u, answer.u);
+}
+
 /// The answer does not depend on the path: other load levels end at the same displacements. Modes
 /// without energy have no answer of their own and keep what the path gave them.
 TYPED_TEST(StepperTest, relaxed_answer_does_not_depend_on_the_settings) {

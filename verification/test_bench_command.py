@@ -138,6 +138,9 @@ def test_a_case_and_a_choice(block):
         ("bench --elements 0", "--elements = 0 must be in [1, 100000000]"),
         ("bench --elements -8", "--elements = -8 must be in [1, 100000000]"),
         ("bench --elements many", "--elements"),
+        ("bench --rest --elements 8", "--rest"),
+        ("bench --rest --repetitions 8", "--rest"),
+        ("bench --rest --methods tl-ful", "did you mean 'tl-full'?"),
         ("bench --repetitions 0", "--repetitions = 0 must be in [1, 1000000]"),
     ],
 )
@@ -146,6 +149,47 @@ def test_wrong_input(arguments, text):
     assert outcome.returncode == 2
     assert text in outcome.stderr
     assert not outcome.stdout
+
+
+def test_rest(block):
+    """Every method and precision, seconds in order; the solver's records as bench/ reads them."""
+    json_file = block.parent / "rest.json"
+    outcome = sandglass("bench", "--rest", block, "--json", json_file)
+    assert outcome.returncode == 0, outcome.stderr
+    assert "block: 16 elements, 45 nodes" in outcome.stdout
+    document = json.loads(json_file.read_text())
+    assert document["revision"] and document["processor"]
+    found = [(r["case"], r["method"], r["precision"], r["threads"]) for r in document["records"]]
+    default = ("tl-perturbation", "tl-mean-dilatation")
+    assert found == [("block", m, p, 1) for m in default for p in ("double", "float")]
+    for record in document["records"]:
+        assert record["status"] == "ok" and record["method"] in outcome.stdout
+        seconds = [record[f"seconds_to_{name}"] for name in ("1_percent", "0_1_percent", "rest")]
+        assert 0 < seconds[0] <= seconds[1] <= seconds[2]
+        # They are shares of the evaluations.
+        for share in (seconds[0] / seconds[2], seconds[1] / seconds[2]):
+            assert record["steps"] * share == pytest.approx(round(record["steps"] * share))
+        assert record["precision"] == "float" or record["residual"] < 1e-8
+
+
+def test_rest_that_is_not_reached_ends_with_3(block):
+    block.write_text(block.read_text() + "\n[relaxation]\nmax_steps = 5\n")
+    json_file = block.parent / "rest.json"
+    choice = "--methods tl-full --precision double --json".split()
+    outcome = sandglass("bench", "--rest", block, *choice, json_file)
+    assert outcome.returncode == 3
+    assert "failed: not at rest after" in outcome.stdout
+    assert "1 of 1 did not come to rest" in outcome.stderr
+    (record,) = json.loads(json_file.read_text())["records"]
+    assert record["seconds_to_rest"] is None and record["status"].startswith("failed: ")
+
+
+def test_dynamic_case_has_no_rest(block):
+    text = block.read_text().replace('"quasi-static"', '"dynamic"')
+    block.write_text(text + "\n[dynamics]\nduration = 1.0\n")
+    outcome = sandglass("bench", "--rest", block)
+    assert outcome.returncode == 2
+    assert "block.toml: a dynamic case has no rest to come to" in outcome.stderr
 
 
 def test_unwritable_json(tmp_path):

@@ -27,7 +27,8 @@ def test_verify_holds_and_writes_every_figure(block):
         assert (
             record["steps"] > 0 and record["residual"] < 1e-8 and record["ns_per_element_step"] > 0
         )
-    assert [r["kappa"] for r in records if r["kappa"] and not r["kappa_is_auto"]] == [0.01]
+    perturbation = [r for r in records if r["method"] == "tl-perturbation"]
+    assert [r["kappa"] for r in perturbation if not r["kappa_is_auto"]] == [0.01]
     assert [limit["holds"] for limit in document["limits"]] == [True]
     assert len(list((block.parent / "states").glob("*.h5"))) == len(records)
 
@@ -43,6 +44,27 @@ def test_verify_gives_the_same_figures_for_any_number_of_threads(block):
             [(r["method"], r["kappa"], r["steps"], r["golden"], r["residual"]) for r in records]
         )
     assert figures[0] == figures[1]
+
+
+def test_verify_in_float_gives_figures_and_checks_no_limit(block):
+    """The figures are those of a rounding of 6e-8, grown by less than four decades."""
+    write_golden(block)
+    block.write_text(BLOCK + LIMIT.format(method="tl-mean-dilatation", below=1e-30))
+    verdicts = block.parent / "verdicts.json"
+    outcome = sandglass("verify", block, "--precision", "float", "--json", verdicts)
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    assert "limits of the cases are for double: none was checked in float" in outcome.stdout
+    document = json.loads(verdicts.read_text())
+    assert document["limits"] == []
+    assert {r["precision"] for r in document["records"]} == {"float"}
+    (same,) = (r for r in document["records"] if r["method"] == "tl-mean-dilatation")
+    assert same["status"] == "ok" and 1e-9 < same["golden"]["max_relative_error"] < 6e-4
+
+
+def test_unknown_precision_ends_with_2(block):
+    outcome = sandglass("verify", block, "--precision", "half")
+    assert outcome.returncode == 2
+    assert "--precision = 'half' must be 'double' or 'float'" in outcome.stderr
 
 
 def test_broken_limit_ends_with_1(block):

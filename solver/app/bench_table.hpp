@@ -4,11 +4,15 @@
 #include <vector>
 
 #include "benchmark/bench.hpp"
+#include "benchmark/rest.hpp"
 
 namespace sandglass {
 
 /// The records of one scene as a table with two lines of head, what each column is and its unit.
 std::string bench_table(const std::vector<BenchRecord>& records);
+
+/// The times to rest of one scene as a table.
+std::string rest_table(const Scene& scene, const std::vector<RestRecord>& records);
 
 /// What the machine can do, one line per number of threads.
 std::string machine_lines(const BenchPlan& plan, MachineSpeed& machine);

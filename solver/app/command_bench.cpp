@@ -9,9 +9,11 @@
 #include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "app/workspace.hpp"
+#include "base/error.hpp"
 #include "base/names.hpp"
 #include "benchmark/bench.hpp"
 #include "benchmark/bench_json.hpp"
+#include "benchmark/rest.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "element/methods.hpp"
 #include "io/case_file.hpp"
@@ -30,6 +32,7 @@ struct BenchOptions {
   std::vector<std::string> precisions{"double", "float"};
   std::vector<int> threads;
   int repetitions = MeasureSettings{}.repetitions;
+  bool rest = false;
   std::string json;
 };
 
@@ -105,6 +108,45 @@ int run_bench(const BenchOptions& options) {
   return std::all_of(records.begin(), records.end(), [](const auto& r) { return r.status == "ok"; }) ? 0 : 1;
 }
 
+/// The variants that --rest times: packs only, and by default one thread and the two methods to compare, with
+/// one point and with eight.
+std::vector<MethodChoice> rest_variants(BenchOptions options) {
+  if (options.methods.empty())
+    options.methods = {std::string(TlPerturbation::name), std::string(TlMeanDilatation::name)};
+  if (options.threads.empty()) options.threads = {1};
+  auto variants = variants_of(make_plan(options));
+  std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });
+  return variants;
+}
+
+int run_rest(const BenchOptions& options) {
+  const auto variants = rest_variants(options);
+  const auto scenes = read_static_scenes(options.names, "rest to come to");
+  watch_for_interrupt();
+  std::vector<RestRecord> records;
+  for (const auto& scene : scenes) {
+    std::vector<RestRecord> found;
+    {
+      Progress progress("bench");
+      for (const auto& choice : variants) {
+        found.push_back(time_to_rest(scene, choice, [&](double share) {
+          const auto done = static_cast<double>(records.size() + found.size()) + share;
+          progress.show(done / static_cast<double>(scenes.size() * variants.size()),
+                        fmt::format("{}, {}", scene.description.name, choice.method));
+          return !interrupted();
+        }));
+      }
+    }
+    fmt::print("{}\n", rest_table(scene, found));
+    records.insert(records.end(), found.begin(), found.end());
+  }
+  if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), records));
+  const auto failed = std::count_if(records.begin(), records.end(), [](const auto& r) { return !r.times; });
+  if (failed > 0)
+    throw ComputationError(fmt::format("bench: {} of {} did not come to rest", failed, records.size()));
+  return 0;
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
@@ -116,21 +158,31 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "scalar double kernel; one that is wrong gets no time, and the exit code is 1. Traffic counts every\n"
       "constant and row of a step once. Above 100 % of memory a mesh stays in a cache; the roofline holds "
       "it\n"
-      "against the triad over arrays of its own size");
+      "against the triad over arrays of its own size.\n"
+      "With --rest: wall time from the model to rest, the median of three runs. Further runs, stopped after\n"
+      "fewer force evaluations, find by bisection after how many of them all displacements are within 1 %\n"
+      "and 0.1 % of the largest imposed one from those at rest; their seconds are that share of the median");
   command->add_option(
       "CASE", options->names,
-      "names or files of cases; ellipsoid-indentation when neither case nor --elements is given");
-  command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides");
-  command->add_option("-t,--threads", options->threads, "numbers of threads; 1 and 2 where there are two");
+      "names or files of cases; ellipsoid-indentation when neither case nor --elements is given, with --rest "
+      "all canonical quasi-static ones");
+  auto* rest = command->add_flag("--rest", options->rest, "time quasi-static cases until they are at rest");
+  command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides")
+      ->excludes(rest);
+  command->add_option("-t,--threads", options->threads,
+                      "numbers of threads; 1 and 2 where there are two, with --rest 1");
   command->add_option("-m,--methods", options->methods,
-                      "methods, see `sandglass methods`; all when left out");
+                      "methods, see `sandglass methods`; all when left out, with --rest tl-perturbation and "
+                      "tl-mean-dilatation");
   command->add_option("-p,--precision", options->precisions, "double, float or both")->capture_default_str();
   command
       ->add_option("-r,--repetitions", options->repetitions,
                    "batches of about 0.5 ms for each variant, twice")
+      ->excludes(rest)
       ->capture_default_str();
   command->add_option("--json", options->json, "write every figure to this file");
-  command->callback([options, &exit_code] { exit_code = run_bench(*options); });
+  command->callback(
+      [options, &exit_code] { exit_code = options->rest ? run_rest(*options) : run_bench(*options); });
 }
 
 }  // namespace sandglass

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/commands.hpp"
+#include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
 #include "app/workspace.hpp"
@@ -14,7 +15,6 @@
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
 #include "element/methods.hpp"
-#include "io/case_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "stepping/body.hpp"
@@ -27,6 +27,7 @@ struct VerifyOptions {
   std::vector<std::string> names;
   std::string json;
   std::string results;
+  std::string precision = "double";
   int threads = 0;
 };
 
@@ -43,16 +44,8 @@ struct Task {
 };
 
 std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& name : names) files.push_back(find_case(name));
-  if (names.empty()) files = canonical_cases();
   std::deque<Subject> subjects;  // a deque, because tasks point into it
-  for (const auto& file : files) {
-    Scene scene = read_scene(file);
-    if (!scene.description.quasi_static) {
-      if (names.empty()) continue;
-      throw InputError(fmt::format("{}: a dynamic case has no golden to be compared with", file.string()));
-    }
+  for (auto& scene : read_static_scenes(names, "golden to be compared with")) {
     References references = read_references(scene);
     subjects.push_back({std::move(scene), std::move(references)});
   }
@@ -60,14 +53,14 @@ std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
 }
 
 /// Every method of the list on every scene; those with a kappa at `auto` and along the case's curve.
-std::vector<Task> make_tasks(const std::deque<Subject>& subjects) {
+std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision) {
   std::vector<Task> tasks;
   for (const auto& subject : subjects) {
     for_each_type(Methods{}, [&]<class Method>() {
-      tasks.push_back({&subject, {std::string(Method::name), {}}});
+      tasks.push_back({&subject, {std::string(Method::name), {}, precision}});
       if (!Method::Hourglass::takes_kappa) return;
       for (const double kappa : subject.scene.description.kappas) {
-        tasks.push_back({&subject, {std::string(Method::name), kappa}});
+        tasks.push_back({&subject, {std::string(Method::name), kappa, precision}});
       }
     });
   }
@@ -134,13 +127,13 @@ std::string percents(const std::optional<Accuracy>& accuracy) {
 void print_verdicts(const std::vector<Verdict>& verdicts) {
   fmt::print(
       "errors in % of the imposed displacement: max over all nodes, max over the profile, rms\n"
-      "{:<22}{:<20}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
+      "{:<22}{:<24}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
       "case", "method", "kappa", "against the golden", "against the truth", "hg/int%", "steps", "residual",
       "wall s", "ns/el", "status");
   for (const auto& v : verdicts) {
     const std::string kappa =
         v.kappa ? fmt::format("{}{:.4g}", v.kappa_is_auto ? "auto " : "", *v.kappa) : "";
-    fmt::print("{:<22}{:<20}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method,
+    fmt::print("{:<22}{:<24}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method,
                kappa, percents(v.golden), percents(v.truth), percent(v.hourglass_energy_ratio), v.steps,
                v.residual, v.wall_seconds, v.ns_per_element_step, v.status);
   }
@@ -161,16 +154,21 @@ void print_limits(const std::vector<LimitCheck>& limits) {
 }
 
 int verify(const VerifyOptions& options) {
+  const Precision precision = parse_precision(options.precision);
   watch_for_interrupt();
   const auto subjects = read_subjects(options.names);
-  const auto verdicts = run_tasks(make_tasks(subjects), options);
+  const auto verdicts = run_tasks(make_tasks(subjects, precision), options);
   std::vector<LimitCheck> limits;
   for (const auto& subject : subjects) {
+    if (precision != Precision::double_precision) break;
     const auto checks = check_limits(subject.scene, verdicts);
     limits.insert(limits.end(), checks.begin(), checks.end());
   }
   print_verdicts(verdicts);
   print_limits(limits);
+  if (precision != Precision::double_precision) {
+    fmt::print("\nlimits of the cases are for double: none was checked in {}\n", options.precision);
+  }
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), verdicts, limits));
   return std::all_of(limits.begin(), limits.end(), [](const auto& check) { return check.holds; }) ? 0 : 1;
 }
@@ -184,6 +182,10 @@ void add_verify_command(CLI::App& app, int& exit_code) {
   command->add_option("CASE", options->names, "names or files of cases; all canonical ones when left out");
   command->add_option("--json", options->json, "write every figure to this file");
   command->add_option("--results", options->results, "write the final state of every run to this folder");
+  command
+      ->add_option("-p,--precision", options->precision,
+                   "numbers to compute in, 'double' or 'float'; limits are checked in double only")
+      ->capture_default_str();
   command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "io/case_file.hpp"
 
 namespace sandglass {
 
@@ -41,6 +42,22 @@ fs::path find_case(const std::string& name_or_path) {
   for (const auto& file : canonical_cases()) known.push_back(file.stem().string());
   throw InputError(fmt::format("case: '{}' is neither a file nor a known case; {}", name_or_path,
                                suggestion(name_or_path, known)));
+}
+
+std::deque<Scene> read_static_scenes(const std::vector<std::string>& names, const std::string& has_not) {
+  std::vector<fs::path> files;
+  for (const auto& name : names) files.push_back(find_case(name));
+  if (names.empty()) files = canonical_cases();
+  std::deque<Scene> scenes;
+  for (const auto& file : files) {
+    Scene scene = read_scene(file);
+    if (scene.description.quasi_static) {
+      scenes.push_back(std::move(scene));
+    } else if (!names.empty()) {
+      throw InputError(fmt::format("{}: a dynamic case has no {}", file.string(), has_not));
+    }
+  }
+  return scenes;
 }
 
 }  // namespace sandglass

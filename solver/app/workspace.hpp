@@ -1,8 +1,11 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "model/model.hpp"
 
 namespace sandglass {
 
@@ -15,5 +18,9 @@ std::vector<std::filesystem::path> canonical_cases();
 
 /// The file of a case given by path or by name. Throws InputError that lists the known names.
 std::filesystem::path find_case(const std::string& name_or_path);
+
+/// The scenes of the quasi-static cases named, by path or by name, or of all canonical ones when there are no
+/// names. Throws InputError that tells what a dynamic case has not, when one is named.
+std::deque<Scene> read_static_scenes(const std::vector<std::string>& names, const std::string& has_not);
 
 }  // namespace sandglass

@@ -26,7 +26,7 @@ std::optional<double> figure_of(const Verdict& verdict, const Expectation& expec
 }
 
 bool concerns(const Expectation& expected, const Verdict& verdict) {
-  if (verdict.method != expected.method) return false;
+  if (verdict.method != expected.method || verdict.precision != "double") return false;
   if (!verdict.kappa || expected.kappa == "best") return true;
   if (expected.kappa == "auto") return verdict.kappa_is_auto;
   return !verdict.kappa_is_auto && fmt::to_string(*verdict.kappa) == expected.kappa;
@@ -49,7 +49,8 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
   Verdict verdict{.case_name = scene.description.name,
                   .method = choice.method,
                   .kappa = choice.kappa ? choice.kappa : auto_kappa(choice.method, scene.description.law),
-                  .kappa_is_auto = takes_kappa(choice.method) && !choice.kappa};
+                  .kappa_is_auto = takes_kappa(choice.method) && !choice.kappa,
+                  .precision = std::string(name_of(choice.precision))};
   try {
     const Model model(scene, choice);
     Observer silent;

@@ -56,7 +56,8 @@ struct LimitCheck {
   bool holds = false;
 };
 
-/// Holds the verdicts of a scene to its expectations.
+/// Holds the verdicts of a scene to its expectations, which are for double precision: verdicts in another are
+/// no concern of theirs.
 std::vector<LimitCheck> check_limits(const Scene& scene, const std::vector<Verdict>& verdicts);
 
 }  // namespace sandglass
