@@ -79,7 +79,7 @@ class FloatBudgetTest : public ::testing::TestWithParam<std::string> {
 /// size h that is a strain of D eps / h, a pressure of K D eps / h, and the neighbours give way in shear
 /// until they balance it, h K / (mu h) D eps: the size of elements cancels, bulk over shear modulus stays. So
 /// the budget is D eps K / mu, times three: the root of the eight nodes whose roundings meet in an element.
-/// Measured: 1.3 to 2.7e-6 of D, a third of the budget of 8.4e-6. A law that took differences to 1 near rest
+/// Measured: 1.3 to 2.7e-6 of D, a third of the budget of 8.9e-6. A law that took differences to 1 near rest
 /// would lose another 1 / strain.
 double budget_at_rest(const Scene& scene) {
   const auto& law = std::get<NeoHookean>(scene.description.law);
