@@ -14,7 +14,7 @@ void in_parallel(std::size_t n, int threads, const Body& body) {
 #pragma omp parallel num_threads(threads)
     {
       const FlushSubnormals flush;
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
       for (std::size_t k = 0; k < n; ++k) body(k);
     }
   } else {

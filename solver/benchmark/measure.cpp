@@ -23,15 +23,16 @@ double time_steps(Candidate& candidate, int steps) {
   return seconds_between(start, Clock::now());
 }
 
-/// Back to the start, and a step that nobody times: what it needs comes back into the caches.
-void warm_up(Candidate& candidate) {
+/// Back to the start, and steps that nobody times: sleeping threads wake, and what each needs comes back into
+/// its caches.
+void warm_up(Candidate& candidate, int steps) {
   candidate.restart();
-  candidate.step();
+  for (int s = 0; s < steps; ++s) candidate.step();
 }
 
 int steps_per_batch(Candidate& candidate, double batch_seconds) {
   constexpr int most = 2000;
-  warm_up(candidate);
+  warm_up(candidate, 1);
   const double step = std::min(time_steps(candidate, 1), time_steps(candidate, 1));
   return std::clamp(static_cast<int>(batch_seconds / std::max(step, 1e-9)), 1, most);
 }
@@ -39,7 +40,7 @@ int steps_per_batch(Candidate& candidate, double batch_seconds) {
 /// One batch as a whole, for its mean; another one step by step, for the spread of single steps. Two, because
 /// reading the clock would be felt in the steps of small meshes.
 void time_batches(Candidate& candidate, int steps, Timing& timing) {
-  warm_up(candidate);
+  warm_up(candidate, (steps + 1) / 2);
   timing.seconds_per_step.push_back(time_steps(candidate, steps) / steps);
   auto before = Clock::now();
   for (int s = 0; s < steps; ++s) {

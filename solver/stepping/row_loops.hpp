@@ -13,9 +13,9 @@ namespace sandglass {
 
 inline constexpr std::size_t most_blocks = 256;
 
-/// Numbers in a block: 4096, or as many more as keep the number of blocks small.
+/// Numbers in a block: 512, or as many more as keep the number of blocks small.
 inline std::size_t block_size(std::size_t numbers) {
-  constexpr std::size_t unit = 4096;
+  constexpr std::size_t unit = 512;
   return unit * std::max<std::size_t>(1, (numbers + most_blocks * unit - 1) / (most_blocks * unit));
 }
 
