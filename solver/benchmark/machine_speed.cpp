@@ -1,6 +1,5 @@
 #include "benchmark/machine_speed.hpp"
 
-#include <omp.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <chrono>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -89,7 +89,7 @@ std::size_t available_memory() {
 }
 
 int available_processors() {
-  return std::max(1, omp_get_num_procs());
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 double measure_peak_gflops(Precision precision, int threads) {
