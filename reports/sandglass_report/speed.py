@@ -11,6 +11,7 @@ from sandglass_report.plates import Panel, Plate
 
 FIGURES = (("max", "max over all nodes"), ("rms", "rms over all nodes"))
 REFERENCES = ("golden", "truth")
+MOST_LABELS = 4  # more names than these do not fit at their points
 
 
 def speed_panels(subject, palette, costs):
@@ -74,11 +75,15 @@ def _panel(subject, palette, reference, figure, words, limits, costs):
         helpers.percent_scale(axes.yaxis, limits)
         axes.set_xlabel("ns per element and step")
         axes.figure.canvas.draw()  # the layout must stand before labels are pushed apart
-        labels = []
+        labels = []  # x, y, text, colour, method
         for method in dict.fromkeys(run.method for run in found):
             of_method = [run for run in found if run.method == method]
             labels += _draw_method(axes, of_method, palette, reference, figure, limits)
-        helpers.label_points(axes, labels)
+        crowded = len(labels) > MOST_LABELS
+        shown = [one[:4] for one in labels if not crowded or one[2] != one[4]]
+        helpers.label_points(axes, shown)
+        if crowded:
+            _legend(axes, found, palette)
         _name_missing(axes, subject, reference)
 
     return Panel(
@@ -91,6 +96,14 @@ def _panel(subject, palette, reference, figure, words, limits, costs):
         250,
         "" if found else style.why_empty(subject, reference),
     )
+
+
+def _legend(axes, runs, palette):
+    """Names beside their marks, low in the panel: at the points they would cover each other."""
+    for method in dict.fromkeys(run.method for run in runs):
+        axes.plot([], [], palette.mark(method), color=palette.colour(method), label=method)
+    place = {"loc": "lower center", "bbox_to_anchor": (0.5, 0.09)}
+    axes.legend(**place, fontsize=6.5, ncol=2, handletextpad=0.2, columnspacing=0.8)
 
 
 def _draw_method(axes, runs, palette, reference, figure, limits):
@@ -124,7 +137,7 @@ def _draw_method(axes, runs, palette, reference, figure, limits):
             linestyle="",
             zorder=4,
         )
-        labels.append((late, y, text if run.ok else f"{text} (failed)", colour))
+        labels.append((late, y, text if run.ok else f"{text} (failed)", colour, run.method))
     return labels
 
 
