@@ -8,7 +8,7 @@ namespace sandglass {
 /// THE list of material laws. A new law is one header and one entry here.
 /// Each gives: name, summary, parameters(), shear_modulus(), bulk_modulus() at rest, and templated on the
 /// number type isochoric_energy, volumetric_energy, pressure, bulk_tangent, isochoric_piola, energy, piola,
-/// isochoric_tangent_bound.
+/// isochoric_tangent_bound; and what the kernels run, weighted_piola and weighted_kirchhoff.
 using Laws = TypeList<NeoHookean>;
 
 /// A law chosen at run time.

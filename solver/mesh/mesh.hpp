@@ -40,14 +40,6 @@ inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& ce
   return rows;
 }
 
-/// Adds the rows of one element to a nodal field: the scatter at the other edge.
-inline void scatter_add(const NodalVectors<double>& rows, const Hexahedron& cell, NodalField& field) {
-  for (int I = 0; I < 8; ++I) {
-    Vector& row = field[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])];
-    for (int i = 0; i < 3; ++i) row[static_cast<std::size_t>(i)] += rows(I, i);
-  }
-}
-
 /// The faces that belong to one hexahedron only, in the order of the cells.
 std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells);
 

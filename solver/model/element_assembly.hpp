@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "math/lanes.hpp"
+#include "model/face_gather.hpp"
 #include "model/internal_force.hpp"
 
 namespace sandglass {
@@ -36,15 +37,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     }
     streams_ = blocks_.size() * (sizeof(ElementBlock) + sizeof(HistoryBlock)) > cached_bytes;
     if constexpr (Kernel::needs_coordinates) {
-      // Seen from the middle of the mesh: where it stands must not cost single precision its digits.
-      const auto [low, high] = bounding_box(mesh.points);
-      coordinates_.resize(layout_.rows());
-      for (std::size_t r = 0; r < layout_.rows(); ++r) {
-        const Vector& X = mesh.points[static_cast<std::size_t>(layout_.node_of_row[r])];
-        for (std::size_t i = 0; i < 3; ++i) {
-          coordinates_[r][i] = static_cast<Real>(X[i] - 0.5 * (low[i] + high[i]));
-        }
-      }
+      coordinates_ = centred_coordinates<Real>(mesh.points, layout_);
     }
   }
 
@@ -182,12 +175,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   }
 
   Faces gather_rows(const Rows<Real>& rows, std::size_t face) const {
-    FaceVectors<Number> corners;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const auto x = gather<Number>(numbers_of(rows), layout_.places(face, c));
-      for (std::size_t i = 0; i < 3; ++i) corners(static_cast<int>(c), static_cast<int>(i)) = x[i];
-    }
-    return to_face_modes(corners);
+    return gather_face_modes<Number>(rows, layout_, face);
   }
 
   FaceMotion gather_face(const State<Real>& state, std::size_t face) const {

@@ -1,6 +1,7 @@
 #include "stepping/preconditioner.hpp"
 
 #include "element/one_point.hpp"
+#include "model/face_gather.hpp"
 #include "stepping/row_loops.hpp"
 
 namespace sandglass {
@@ -13,17 +14,6 @@ constexpr std::size_t tangent_numbers = 10;
 /// Share of an element's stiffness bound in its nodal blocks, which keeps them firm against hourglassing.
 constexpr double bound_share = 0.25;
 
-/// Reference coordinates (m), spare rows included.
-template <class Real>
-Rows<Real> coordinate_rows(const NodalField& points, const Layout& layout) {
-  Rows<Real> rows(layout.rows());
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const Vector& X = points[static_cast<std::size_t>(layout.node_of_row[r])];
-    for (std::size_t i = 0; i < 3; ++i) rows[r][i] = static_cast<Real>(X[i]);
-  }
-  return rows;
-}
-
 }  // namespace
 
 template <class Real>
@@ -32,7 +22,7 @@ Preconditioner<Real>::Preconditioner(const Model& model, const InternalForce<Rea
     : layout_(elements.layout()),
       lambda_(std::visit([](const auto& law) { return lame_lambda(law); }, model.scene().description.law)),
       mu_(std::visit([](const auto& law) { return law.shear_modulus(); }, model.scene().description.law)),
-      coordinates_(coordinate_rows<Real>(model.scene().mesh.points, layout_)),
+      coordinates_(centred_coordinates<Real>(model.scene().mesh.points, layout_)),
       free_(body.on_free_components(std::vector<double>(layout_.nodes, 1.0))),
       diagonal_(layout_.rows()),
       mixed_(layout_.rows()),
@@ -79,20 +69,13 @@ template <class Number>
 [[gnu::flatten]] void Preconditioner<Real>::add_chunk(const Layout::Chunk& chunk, const Body<Real>& body,
                                                       const std::vector<double>& bounds) {
   constexpr int width = Lanes<Number>::width;
-  const auto gather_face = [&](const Rows<Real>& rows, std::size_t face) {
-    FaceVectors<Number> corners;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const auto x = gather<Number>(numbers_of(rows), layout_.places(face, c));
-      for (std::size_t i = 0; i < 3; ++i) corners(static_cast<int>(c), static_cast<int>(i)) = x[i];
-    }
-    return to_face_modes(corners);
-  };
   for (std::size_t group = chunk.first; group < chunk.last; ++group) {
     const auto [first_level, first_face, levels] = layout_.groups[group];
     for (std::size_t k = 0; k < levels; ++k) {
       const std::size_t face = first_face + k, level = first_level + k;
       const auto modes = [&](const Rows<Real>& rows) {
-        return modes_between(gather_face(rows, face), gather_face(rows, face + 1));
+        return modes_between(gather_face_modes<Number>(rows, layout_, face),
+                             gather_face_modes<Number>(rows, layout_, face + 1));
       };
       const auto element = OnePoint::geometry(modes(coordinates_));
       const Tensor<Number> F_inverse =
