@@ -56,6 +56,7 @@ void element(State& state) {
   }
   ElementMotion<Number> motion;
   motion.u = filled<Modes<Number>, Number>(1e-3);
+  motion.inverse_step = Number(Scalar(1e3));
   if constexpr (Kernel::needs_increment) motion.increment = filled<Modes<Number>, Number>(1e-6);
   if constexpr (Kernel::needs_coordinates) {
     NodalVectors<Number> X;  // the cube of edge 1 that the constants belong to

@@ -36,8 +36,9 @@ class SteppedModelOf final : public SteppedModel {
     start_ = body.state();
     stable_step_ = sandglass::stable_step(model_, body.stiffness_bounds()).step;
     constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
+    step_size_ = step_fraction * stable_step_;
     keep_ = (1.0 - damping) / (1.0 + damping);
-    gain_ = std::pow(step_fraction * stable_step_, 2) / (1.0 + damping);
+    gain_ = step_size_ * step_size_ / (1.0 + damping);
   }
 
   NodalField forces() override {
@@ -63,7 +64,7 @@ class SteppedModelOf final : public SteppedModel {
     step_.body().evaluate_forces();
   }
 
-  void step() override { step_.take(keep_, gain_, loading_); }
+  void step() override { step_.take(step_size_, keep_, gain_, loading_); }
 
   void require_healthy() override {
     try {
@@ -87,6 +88,7 @@ class SteppedModelOf final : public SteppedModel {
   State<Real> start_;
   double loading_ = 0.0;
   double stable_step_ = 0.0;
+  double step_size_ = 0.0;
   double keep_ = 0.0;
   double gain_ = 0.0;
 };

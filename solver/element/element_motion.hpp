@@ -11,6 +11,7 @@ struct ElementMotion {
   Modes<T> u;          ///< displacements, m
   Modes<T> increment;  ///< what the last step added to them, m
   Modes<T> X;          ///< reference coordinates, m
+  T inverse_step;      ///< 1/s, of the time that the increment took; 0 where time plays no part
 };
 
 /// The history of an element that remembers nothing: its force follows from the displacements.

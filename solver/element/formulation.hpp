@@ -116,7 +116,7 @@ struct NodalForm : Kernel {
  private:
   template <class T>
   static ElementMotion<T> motion(const NodalVectors<T>& u) {
-    return {.u = to_modes(u), .increment = {}, .X = {}};
+    return {.u = to_modes(u), .increment = {}, .X = {}, .inverse_step = T(0)};
   }
 };
 

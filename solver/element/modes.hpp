@@ -15,6 +15,10 @@ namespace sandglass {
 template <class T>
 using Modes = Matrix<T, 7, 3>;
 
+/// Amplitudes q_ai of the four hourglass modes and of what resists them, three components each.
+template <class T>
+using HourglassModes = Matrix<T, 4, 3>;
+
 /// Sums over the four nodes of a face with the signs of 1, xi, eta and xi eta: what two elements that share
 /// the face need of it. Corners in the order of the lower face of a VTK hexahedron.
 template <class T>

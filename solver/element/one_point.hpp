@@ -16,10 +16,6 @@ struct ElementEnergy {
   T hourglass;
 };
 
-/// Amplitudes q_ai of the four hourglass modes and of what resists them, three components each.
-template <class T>
-using HourglassModes = Matrix<T, 4, 3>;
-
 /// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): the largest eigenvalue per
 /// volume that a tangent bound allows, from (tr L)^2 <= |g|^2 |v|^2 and |L|^2 <= lambda_max |v|^2 for L = v^T
 /// g.

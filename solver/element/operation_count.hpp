@@ -112,6 +112,7 @@ OperationCount count_operations(const Law& law) {
   ElementMotion<Counted> motion;
   motion.u = detail::modes_in_strip(lower, tally, 2e-3);
   if constexpr (Kernel::needs_increment) motion.increment = detail::modes_in_strip(lower, tally, 1e-4);
+  motion.inverse_step = Counted(1e3, tally);
   if constexpr (Kernel::needs_coordinates) motion.X = detail::modes_in_strip(lower, tally, 1.0);
   OperationCount count;
   typename Kernel::template History<Counted> history;

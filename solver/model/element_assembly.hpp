@@ -135,6 +135,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   [[gnu::flatten, gnu::aligned(64)]] void add_chunk(std::size_t c, State<Real>& state, Real* force) const {
     const Layout::Chunk chunk = layout_.chunks[c];
     const Law law = law_;  // a copy that no store can alias: its moduli are computed once
+    const Number inverse_step(static_cast<Real>(1.0 / state.step));
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const Layout::Group group = layout_.groups[g];
       FaceMotion lower = gather_face(state, group.first_face);
@@ -144,8 +145,9 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
         const FaceMotion upper = gather_face(state, group.first_face + k + 1);
         if (streams_) prefetch(state, level + levels_ahead);
         HistoryBlock remembered = history(state, level);
-        const Modes<Number> f = Kernel::force(Kernel::deformation(between(lower, upper), blocks_[level]),
-                                              blocks_[level], remembered, law);
+        const Modes<Number> f =
+            Kernel::force(Kernel::deformation(between(lower, upper, inverse_step), blocks_[level]),
+                          blocks_[level], remembered, law);
         keep_history(remembered, state, level);
         scatter_face(carried + lower_face(f), group.first_face + k, force);
         carried = upper_face(f);
@@ -186,8 +188,10 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     return motion;
   }
 
-  static ElementMotion<Number> between(const FaceMotion& lower, const FaceMotion& upper) {
+  static ElementMotion<Number> between(const FaceMotion& lower, const FaceMotion& upper,
+                                       const Number& inverse_step) {
     ElementMotion<Number> motion;
+    motion.inverse_step = inverse_step;
     motion.u = modes_between(lower.u, upper.u);
     if constexpr (Kernel::needs_increment) motion.increment = modes_between(lower.increment, upper.increment);
     if constexpr (Kernel::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
@@ -226,11 +230,12 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   /// Calls visit(level, motion) for every block.
   template <class Visit>
   void for_each_level(const State<Real>& state, const Visit& visit) const {
+    const Number inverse_step(static_cast<Real>(1.0 / state.step));
     for (const auto& group : layout_.groups) {
       FaceMotion lower = gather_face(state, group.first_face);
       for (std::size_t k = 0; k < group.levels; ++k) {
         const FaceMotion upper = gather_face(state, group.first_face + k + 1);
-        visit(group.first_level + k, between(lower, upper));
+        visit(group.first_level + k, between(lower, upper, inverse_step));
         lower = upper;
       }
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,9 +24,11 @@ struct StrainEnergies {
 /// What changes in time: nodal values in rows, in the order of the layout, and what elements remember.
 template <class Real>
 struct State {
-  Rows<Real> u;               ///< displacements, m
-  Rows<Real> increment;       ///< what the last step added to them, m
-  std::vector<Real> history;  ///< of the elements; only they know its meaning
+  Rows<Real> u;                                           ///< displacements, m
+  Rows<Real> increment;                                   ///< what the last step added to them, m
+  std::vector<Real> history;                              ///< of the elements; only they know its meaning
+  double step = std::numeric_limits<double>::infinity();  ///< s, that the increment took; infinite where time
+                                                          ///< plays no part
 };
 
 /// The elements of a mesh with one method and one law: displacements in, internal forces out. This interface

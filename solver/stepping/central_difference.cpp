@@ -72,7 +72,7 @@ class CentralDifference {
     increment_time_ = next_step_;
     time_ += step_size_;
     ++step_;
-    explicit_step_.take(keep, gain, loading(time_));
+    explicit_step_.take(step_size_, keep, gain, loading(time_));
   }
 
   /// Work of the imposed displacements over the last step, from the mean of the forces at its ends.

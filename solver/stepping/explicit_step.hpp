@@ -17,10 +17,10 @@ class ExplicitStep {
   /// 1/kg of the lumped masses, zero where a component may not move.
   const Rows<Real>& inverse_masses() const { return inverse_masses_; }
 
-  /// increment := keep * increment - gain * force / mass, with gain in s^2, and u := u + increment; then
-  /// constrained components go to `loading` times their final values, and the forces are evaluated there.
-  /// Allocates nothing.
-  void take(double keep, double gain, double loading);
+  /// One step of `step` s: increment := keep * increment - gain * force / mass, with gain in s^2, and u := u
+  /// + increment; then constrained components go to `loading` times their final values, and the forces are
+  /// evaluated there. Allocates nothing.
+  void take(double step, double keep, double gain, double loading);
 
  private:
   Body<Real> body_;
