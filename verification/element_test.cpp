@@ -193,5 +193,21 @@ TEST(PerturbationHourglassControl, auto_kappa_has_the_tabulated_values) {
   }
 }
 
+/// On mu the best kappa is 2 (1 + nu) / 9, nearly one number, and the stiffness is the same.
+TEST(PerturbationHourglassControl, auto_gives_the_same_stiffness_on_either_modulus) {
+  const NodalVectors<double> X = 0.02 * corner_signs;
+  for (const double nu : poisson_ratios) {
+    const auto law = sample_law<NeoHookean>(nu);
+    const double kappa = PerturbationHourglassControl::auto_kappa(law, KappaModulus::shear);
+    EXPECT_NEAR(kappa, 2.0 * (1.0 + nu) / 9.0, 1e-12);  // 1 - 2 nu amplifies roundoff
+    const auto stiffness = [&](const HourglassSettings& settings) {
+      return PerturbationHourglassControl::precompute(X, law, settings).k;
+    };
+    EXPECT_NEAR(stiffness({{}, KappaModulus::shear}) / stiffness({}), 1.0, 8 * eps);
+    const double ratio = p_wave_modulus(law) / law.shear_modulus();
+    EXPECT_NEAR(stiffness({0.02 * ratio, KappaModulus::shear}) / stiffness({0.02}), 1.0, 8 * eps);
+  }
+}
+
 }  // namespace
 }  // namespace sandglass::verification

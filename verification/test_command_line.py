@@ -125,6 +125,12 @@ def test_wrong_kappa(block, kappa):
     assert "kappa" in outcome.stderr
 
 
+def test_unknown_kappa_modulus(block):
+    outcome = sandglass("run", block, "--kappa-modulus", "bulk")
+    assert outcome.returncode == 2
+    assert "--kappa-modulus = 'bulk' must be 'p-wave' or 'shear'" in outcome.stderr
+
+
 def test_kappa_for_a_method_without(block):
     outcome = sandglass("run", block, "--method", "tl-full", "--kappa", "0.1")
     assert outcome.returncode == 2

@@ -34,7 +34,7 @@ def line_plate(subject, experiment, palette):
 
 
 def _lines(subject, palette):
-    """Every answer there is: truth, golden, and the methods' main runs in the solver's order."""
+    """Truth, golden, and the main runs of the methods that the paper's figure compares."""
     lines = []
     if subject.golden is not None:
         strokes = {"color": style.GOLDEN[0], "linewidth": 4.5, "alpha": 0.75, "zorder": 2}
@@ -42,7 +42,7 @@ def _lines(subject, palette):
     if subject.truth is not None:
         strokes = {"color": style.INK[0], "linewidth": 1.2, "linestyle": (0, (4, 2)), "zorder": 5}
         lines.append(Line("truth", subject.truth.displacement, strokes))
-    for method in palette.methods:
+    for method in paper.LINE_METHODS:
         u = subject.displacement(method)
         if u is None:
             continue

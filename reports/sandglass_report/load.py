@@ -20,8 +20,11 @@ class Run:
     kappa_is_auto: bool
     precision: str
     status: str
+    finding: str | None  # how it went wrong, or "good"; None without a golden to tell by
     golden: Accuracy | None
     truth: Accuracy | None
+    operations: int  # per element and step
+    stable_step: float  # s, at rest
     steps: int
     residual: float
     hourglass_energy_ratio: float  # of the strain energy
@@ -160,8 +163,11 @@ def _run(path, index, record):
         kappa_is_auto=_field(where, record, "kappa_is_auto", bool),
         precision=_field(where, record, "precision", str),
         status=_field(where, record, "status", str),
+        finding=_field(where, record, "finding", str, none_allowed=True),
         golden=_accuracy(where, record, "golden"),
         truth=_accuracy(where, record, "truth"),
+        operations=_field(where, record, "operations", int),
+        stable_step=_field(where, record, "stable_step", NUMBER),
         steps=_field(where, record, "steps", int),
         residual=_field(where, record, "residual", NUMBER),
         hourglass_energy_ratio=_field(where, record, "hourglass_energy_ratio", NUMBER),

@@ -90,6 +90,7 @@ def render(verdicts, subjects, palette, sections):
         kappa={s.name: kappa.kappa_panels(s, palette) for s in subjects},
         sections=sections,
         paper_method=paper.METHOD,
+        line_methods=paper.LINE_METHODS,
     )
 
 

@@ -25,3 +25,4 @@ EXPERIMENTS = (
 
 METHOD = "tl-perturbation"
 WITHOUT_CONTROL = "tl-none"
+LINE_METHODS = (WITHOUT_CONTROL, METHOD, "ul-perturbation", "tl-full", "tl-mean-dilatation")

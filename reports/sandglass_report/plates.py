@@ -10,10 +10,12 @@ import matplotlib
 matplotlib.use("agg")
 
 from matplotlib import pyplot  # noqa: E402 (the backend must be chosen first)
+from matplotlib.lines import Line2D  # noqa: E402
 
 from sandglass_report import style  # noqa: E402
 
 PIXELS_PER_INCH = 96
+LEGEND_WIDTH = 1.8  # inches
 TEXT = style.INK[0]
 MUTED = style.MUTED[0]
 
@@ -68,6 +70,7 @@ class Plate:
     panels: tuple
     columns: int
     note: str = ""
+    legend: tuple = ()  # (words, colour, mark) of what the panels leave unnamed
 
 
 def inline_svg(panel):
@@ -113,6 +116,7 @@ def save_plate(plate, folder):
     rows = -(-len(plate.panels) // plate.columns)
     unused = rows * plate.columns - len(plate.panels)
     width = plate.columns * plate.panels[0].width / PIXELS_PER_INCH
+    width += LEGEND_WIDTH if plate.legend else 0
     height = rows * (min(max(p.height for p in plate.panels), 440) + 14) / PIXELS_PER_INCH + 0.45
     colours = {"figure.facecolor": "#ffffff", "svg.fonttype": "path"}
     with matplotlib.rc_context(BASE | colours):
@@ -127,6 +131,8 @@ def save_plate(plate, folder):
             for axes in list(grid.flat)[-unused:] if unused else []:
                 axes.set_axis_off()
             figure.suptitle(plate.title, x=0.01, ha="left", fontsize=12, fontweight="bold")
+            if plate.legend:
+                _draw_legend(figure, plate.legend)
             if plate.note:
                 figure.supxlabel(plate.note, x=0.01, ha="left", fontsize=8.25, color=MUTED)
             paths = folder / f"{plate.name}.svg", folder / f"{plate.name}.png"
@@ -135,6 +141,18 @@ def save_plate(plate, folder):
         finally:
             pyplot.close(figure)
     return paths
+
+
+def _draw_legend(figure, entries):
+    """Names beside their marks, to the right of all panels."""
+    share = LEGEND_WIDTH / figure.get_figwidth()
+    figure.get_layout_engine().set(rect=(0, 0, 1 - share, 1))
+    marks = [
+        Line2D([], [], linestyle="", marker=mark, color=colour, label=words)
+        for words, colour, mark in entries
+    ]
+    place = {"loc": "center left", "bbox_to_anchor": (1 - share, 0.5)}
+    figure.legend(handles=marks, **place, frameon=False, fontsize=8.25)
 
 
 def _draw(panel, axes):

@@ -38,10 +38,11 @@ def speed_plate(subjects, palette, costs):
         "Speed and accuracy of every method: lower left is better",
         tuple(panels),
         len(subjects),
-        "Error: largest distance of any node from the reference, in % of the imposed displacement. "
+        note="Error: largest distance of any node from the reference, in % of the imposed displacement. "
         "Golden: the mixed element on the same mesh. Truth: quadratic mixed element.\n"
         "Large marks: the method as it comes; small ones: other values of kappa; bar: middle half "
         "of the timings. Triangle: below the scale.",
+        legend=tuple((m, palette.colour(m), palette.mark(m)) for m in palette.methods),
     )
 
 
@@ -81,9 +82,7 @@ def _panel(subject, palette, reference, figure, words, limits, costs):
             labels += _draw_method(axes, of_method, palette, reference, figure, limits)
         crowded = len(labels) > MOST_LABELS
         shown = [one[:4] for one in labels if not crowded or one[2] != one[4]]
-        helpers.label_points(axes, shown)
-        if crowded:
-            _legend(axes, found, palette)
+        helpers.label_points(axes, shown[:MOST_LABELS])
         _name_missing(axes, subject, reference)
 
     return Panel(
@@ -96,14 +95,6 @@ def _panel(subject, palette, reference, figure, words, limits, costs):
         250,
         "" if found else style.why_empty(subject, reference),
     )
-
-
-def _legend(axes, runs, palette):
-    """Names beside their marks, low in the panel: at the points they would cover each other."""
-    for method in dict.fromkeys(run.method for run in runs):
-        axes.plot([], [], palette.mark(method), color=palette.colour(method), label=method)
-    place = {"loc": "lower center", "bbox_to_anchor": (0.5, 0.09)}
-    axes.legend(**place, fontsize=6.5, ncol=2, handletextpad=0.2, columnspacing=0.8)
 
 
 def _draw_method(axes, runs, palette, reference, figure, limits):

@@ -14,6 +14,7 @@ METHOD_COLOURS = (
     ("#7a4a2b", "#d0986f"),  # brown
 )
 METHOD_MARKS = ("X", "o", "s", "D", "^", "v", "P", "h")
+GLYPHS = dict(zip(METHOD_MARKS, "✖●■◆▲▼✚⬢"))  # the marks in running text
 
 GOLDEN = ("#d99200", "#f5bd41")
 INK = ("#1d232b", "#e8ebef")
@@ -76,6 +77,10 @@ class Palette:
         """Marker of matplotlib; beyond the colours' number the pairs differ still."""
         shift = self._index[method] // len(METHOD_COLOURS)
         return METHOD_MARKS[(self._index[method] + shift) % len(METHOD_MARKS)]
+
+    def glyph(self, method):
+        """The mark as a character."""
+        return GLYPHS[self.mark(method)]
 
 
 def percent(fraction, digits=3):

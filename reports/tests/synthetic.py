@@ -67,7 +67,11 @@ class DataSet:
             self.run("tl-perturbation", 0.002, kappa=0.0065, auto=True),
             self.run("tl-perturbation", 0.004, kappa=0.02),
         ]
-        failed = self.run("tl-full", 0.0) | {"status": "failed: <inverted>", "golden": None}
+        failed = self.run("tl-full", 0.0) | {
+            "status": "failed: <inverted>",
+            "finding": "inverted",
+            "golden": None,
+        }
         (self.folder / "results/column.tl-full.h5").unlink()
         self.records.append(failed)
         self.limits = [
@@ -113,8 +117,11 @@ class DataSet:
             "kappa_is_auto": auto,
             "precision": "double",
             "status": "ok",
+            "finding": "good",
             "golden": figures,
             "truth": None,
+            "operations": 598,
+            "stable_step": 1e-4,
             "steps": 100,
             "residual": 1e-8,
             "hourglass_energy_ratio": 0.01,

@@ -23,6 +23,7 @@ struct RunOptions {
   std::string name;
   std::string method = "tl-perturbation";
   std::string kappa = "auto";
+  std::string kappa_modulus = "p-wave";
   std::string precision = "double";
   int threads = 1;
   std::string output;
@@ -56,9 +57,10 @@ class RunObserver final : public Observer {
 std::string kappa_text(const Model& model) {
   const auto& choice = model.choice();
   if (!takes_kappa(choice.method)) return "";
-  const double value =
-      choice.kappa.value_or(auto_kappa(choice.method, model.scene().description.law).value_or(0.0));
-  return fmt::format("{:.6g}{}", value, choice.kappa ? "" : " (auto)");
+  const auto automatic = auto_kappa(choice.method, model.scene().description.law, choice.kappa_modulus);
+  const double value = choice.kappa.value_or(automatic.value_or(0.0));
+  return fmt::format("{:.6g}{}{}", value, choice.kappa ? "" : " (auto)",
+                     choice.kappa_modulus == KappaModulus::shear ? " of the shear modulus" : "");
 }
 
 Provenance provenance(const Model& model) {
@@ -105,7 +107,11 @@ int run_case(const RunOptions& options) {
   const Precision precision = parse_precision(options.precision);
   require_threads(options.threads);
   const Scene scene = read_scene(find_case(options.name));
-  const Model model(scene, {options.method, parse_kappa(options.kappa), precision, options.threads});
+  const Model model(scene, {.method = options.method,
+                            .kappa = parse_kappa(options.kappa),
+                            .precision = precision,
+                            .threads = options.threads,
+                            .kappa_modulus = parse_kappa_modulus(options.kappa_modulus)});
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
   std::string status;
@@ -159,6 +165,12 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("-m,--method", options->method, "method, see `sandglass methods`")
       ->capture_default_str();
   command->add_option("-k,--kappa", options->kappa, "hourglass stiffness, a number or 'auto'")
+      ->capture_default_str();
+  command
+      ->add_option("--kappa-modulus", options->kappa_modulus,
+                   "what kappa multiplies: 'p-wave' (lambda + 2 mu, the paper) or 'shear' (mu), whose best "
+                   "kappa hardly "
+                   "depends on Poisson's ratio; 'auto' gives the same stiffness with both")
       ->capture_default_str();
   command->add_option("-p,--precision", options->precision, "numbers to compute in, 'double' or 'float'")
       ->capture_default_str();

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "element/hourglass_settings.hpp"
 
 namespace sandglass {
 
@@ -19,6 +20,13 @@ inline std::optional<double> parse_kappa(const std::string& text) {
     throw InputError(fmt::format("--kappa = '{}' must be a number in [0, inf), or 'auto'", text));
   }
   return value;
+}
+
+/// The value of --kappa-modulus. Throws InputError for anything but "p-wave" and "shear".
+inline KappaModulus parse_kappa_modulus(const std::string& text) {
+  if (text == "p-wave") return KappaModulus::p_wave;
+  if (text == "shear") return KappaModulus::shear;
+  throw InputError(fmt::format("--kappa-modulus = '{}' must be 'p-wave' or 'shear'", text));
 }
 
 }  // namespace sandglass

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace sandglass {
 
@@ -11,11 +12,20 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// How a computation broke down, where that is known.
+enum class Breakdown { other, inverted, not_finite, no_balance };
+
 /// The computation failed: it diverged, an element inverted, or it was interrupted. The command line exits
 /// with 3. The text names the step, the element and a remedy.
 class ComputationError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ComputationError(const std::string& text, Breakdown breakdown = Breakdown::other)
+      : std::runtime_error(text), breakdown_(breakdown) {}
+
+  Breakdown breakdown() const { return breakdown_; }
+
+ private:
+  Breakdown breakdown_;
 };
 
 }  // namespace sandglass

@@ -1,7 +1,8 @@
 #include "benchmark/work.hpp"
 
+#include "element/formulation.hpp"
 #include "element/methods.hpp"
-#include "element/operation_count.hpp"
+#include "model/operations.hpp"
 
 namespace sandglass {
 
@@ -18,10 +19,8 @@ Work work_of(const MethodChoice& choice, const AnyLaw& any_law, const Layout& la
   Work work{};
   with_named_type(Methods{}, choice.method, [&]<class Method>() {
     std::visit(
-        [&]<class Law>(const Law& law) {
+        [&]<class Law>(const Law& /*law*/) {
           using Kernel = FormulationOf<Method, Law>;
-          const Operations operations =
-              count_operations<typename Method::Kinematics, typename Method::Hourglass>(law).total;
           Traffic traffic{sizeof(typename Kernel::template Element<double>) / sizeof(double), 0, 1};
           if constexpr (Kernel::remembers) {
             traffic.history = sizeof(typename Kernel::template History<double>) / sizeof(double);
@@ -29,7 +28,7 @@ Work work_of(const MethodChoice& choice, const AnyLaw& any_law, const Layout& la
           if constexpr (Kernel::needs_increment) ++traffic.rows_of_motion;
           if constexpr (Kernel::needs_coordinates) ++traffic.rows_of_motion;
           const bool is_double = choice.precision == Precision::double_precision;
-          work = {static_cast<double>(operations.total()),
+          work = {static_cast<double>(operations_of(choice.method, any_law).total()),
                   bytes_per_element(traffic, is_double ? sizeof(double) : sizeof(float), layout, elements)};
         },
         any_law);

@@ -6,6 +6,8 @@
 
 #include "base/error.hpp"
 #include "io/reference_file.hpp"
+#include "model/operations.hpp"
+#include "stepping/stable_step.hpp"
 
 namespace sandglass {
 
@@ -45,18 +47,37 @@ std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
   return accuracy(u, *reference, profile, largest_imposed(scene));
 }
 
+namespace {
+
+Finding finding_of(Breakdown breakdown) {
+  if (breakdown == Breakdown::inverted) return Finding::inverted;
+  return breakdown == Breakdown::not_finite ? Finding::unstable : Finding::not_at_rest;
+}
+
+/// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
+std::optional<double> golden_to_truth(const Scene& scene, const References& references) {
+  if (!references.golden || !references.truth) return std::nullopt;
+  return accuracy_of(scene, *references.golden, references.truth)->max_relative_error;
+}
+
+}  // namespace
+
 Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
   Verdict verdict{.case_name = scene.description.name,
                   .method = choice.method,
                   .kappa = choice.kappa ? choice.kappa : auto_kappa(choice.method, scene.description.law),
                   .kappa_is_auto = takes_kappa(choice.method) && !choice.kappa,
-                  .precision = std::string(name_of(choice.precision))};
+                  .precision = std::string(name_of(choice.precision)),
+                  .operations = operations_of(choice.method, scene.description.law).total()};
+  double energy = 0.0;
   try {
     const Model model(scene, choice);
+    verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
     Observer silent;
     Relaxation relaxation = relax(model, silent);
     u = std::move(relaxation.u);
     const StrainEnergies energies = relaxation.energies;
+    energy = energies.strain + energies.hourglass;
     verdict.status = at_rest(relaxation, choice.precision)
                          ? "ok"
                          : fmt::format("failed: {}, residual {:.1e}", outcome(relaxation, choice.precision),
@@ -70,10 +91,18 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
+    verdict.finding = finding_of(error.breakdown());
     return verdict;
   }
   verdict.golden = accuracy_of(scene, u, references.golden);
   verdict.truth = accuracy_of(scene, u, references.truth);
+  if (references.golden) {
+    const double unit = largest_imposed(scene);
+    verdict.symptoms = symptoms(scene, u, energy, *references.golden, unit);
+    verdict.finding = verdict.ok()
+                          ? diagnose(*verdict.symptoms, good_limit(golden_to_truth(scene, references)))
+                          : Finding::not_at_rest;
+  }
   return verdict;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "comparison/accuracy.hpp"
+#include "comparison/finding.hpp"
 #include "model/model.hpp"
 #include "stepping/relaxation.hpp"
 
@@ -34,6 +35,10 @@ struct Verdict {
   std::string status;  ///< "ok" or "failed: why"
   std::optional<Accuracy> golden;
   std::optional<Accuracy> truth;
+  std::optional<Finding> finding;    ///< none where there is no golden to tell by
+  std::optional<Symptoms> symptoms;  ///< what it was found by; none for a computation that broke down
+  double stable_step = 0.0;          ///< s, at rest; 0 where unknown
+  long operations = 0;               ///< per element and step
   long steps = 0;
   double residual = 0.0;
   double hourglass_energy_ratio = 0.0;  ///< hourglass over strain energy

@@ -20,6 +20,13 @@ Json to_record(const std::optional<Accuracy>& accuracy) {
           {"rms_relative_error", accuracy->rms_relative_error}};
 }
 
+Json to_record(const std::optional<Symptoms>& symptoms) {
+  if (!symptoms) return nullptr;
+  return {{"zigzag_share", symptoms->zigzag_share},
+          {"bending_ratio", symptoms->bending_ratio},
+          {"stiffness_ratio", symptoms->stiffness_ratio}};
+}
+
 Json to_record(const Verdict& verdict) {
   return {{"case", verdict.case_name},
           {"method", verdict.method},
@@ -27,8 +34,12 @@ Json to_record(const Verdict& verdict) {
           {"kappa_is_auto", verdict.kappa_is_auto},
           {"precision", verdict.precision},
           {"status", verdict.status},
+          {"finding", verdict.finding ? Json(name_of(*verdict.finding)) : Json(nullptr)},
+          {"symptoms", to_record(verdict.symptoms)},
           {"golden", to_record(verdict.golden)},
           {"truth", to_record(verdict.truth)},
+          {"operations", verdict.operations},
+          {"stable_step", verdict.stable_step},
           {"steps", verdict.steps},
           {"residual", verdict.residual},
           {"hourglass_energy_ratio", verdict.hourglass_energy_ratio},

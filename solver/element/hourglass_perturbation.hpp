@@ -15,20 +15,28 @@ struct PerturbationStiffness {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = true;
 
-  /// kappa = E / (9 (lambda + 2 mu)): with it a cube bends with its exact energy at every Poisson's ratio,
-  /// where a fixed kappa locks as nu -> 1/2 because lambda + 2 mu does.
+  /// The modulus that kappa multiplies, Pa: rho c_D^2 = lambda + 2 mu (eq. 9), or mu.
   template <class Law>
-  static double auto_kappa(const Law& law) {
+  static double kappa_modulus(const Law& law, KappaModulus modulus) {
+    const double mu = law.shear_modulus();
+    return modulus == KappaModulus::shear ? mu : lame_lambda(law) + 2.0 * mu;
+  }
+
+  /// kappa times its modulus = E/9: with it a cube bends with its exact energy at every Poisson's ratio. A
+  /// fixed kappa on lambda + 2 mu locks as nu -> 1/2; on mu it may stay between .278 (nu = .25) and .333.
+  template <class Law>
+  static double auto_kappa(const Law& law, KappaModulus modulus = KappaModulus::p_wave) {
     const double mu = law.shear_modulus();
     const double lambda = lame_lambda(law);
     const double E = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-    return E / (9.0 * (lambda + 2.0 * mu));
+    return E / (9.0 * kappa_modulus(law, modulus));
   }
 
-  /// kappa rho c_D^2 = kappa (lambda + 2 mu) in Pa (eqs 9 and 12).
+  /// kappa rho c_D^2 in Pa (eqs 9 and 12), with either modulus.
   template <class Law>
   static double modulus(const Law& law, const HourglassSettings& settings) {
-    return settings.kappa.value_or(auto_kappa(law)) * (lame_lambda(law) + 2.0 * law.shear_modulus());
+    const double kappa = settings.kappa.value_or(auto_kappa(law, settings.kappa_modulus));
+    return kappa * kappa_modulus(law, settings.kappa_modulus);
   }
 };
 

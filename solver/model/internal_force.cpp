@@ -41,11 +41,12 @@ bool takes_kappa(std::string_view method) {
   return takes;
 }
 
-std::optional<double> auto_kappa(std::string_view method, const AnyLaw& any_law) {
+std::optional<double> auto_kappa(std::string_view method, const AnyLaw& any_law, KappaModulus modulus) {
   std::optional<double> kappa;
   with_method(method, [&]<class Method>() {
     if constexpr (Method::Hourglass::takes_kappa) {
-      kappa = std::visit([](const auto& law) { return Method::Hourglass::auto_kappa(law); }, any_law);
+      kappa =
+          std::visit([&](const auto& law) { return Method::Hourglass::auto_kappa(law, modulus); }, any_law);
     }
   });
   return kappa;

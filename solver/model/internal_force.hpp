@@ -91,6 +91,7 @@ struct MethodChoice {
   Precision precision = Precision::double_precision;
   int threads = 1;
   KernelWidth kernel = KernelWidth::pack;
+  KappaModulus kappa_modulus = KappaModulus::p_wave;
 };
 
 /// Elements in one of the two precisions.
@@ -107,7 +108,8 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const 
 bool takes_kappa(std::string_view method);
 
 /// The number that `auto` stands for, or none when the method takes no kappa.
-std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law);
+std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law,
+                                 KappaModulus modulus = KappaModulus::p_wave);
 
 /// The state in which a body finds itself when nodes go from rest to `u` (m) in one step.
 template <class Real>

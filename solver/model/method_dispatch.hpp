@@ -27,7 +27,7 @@ auto assemble(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choic
     std::visit(
         [&]<class Law>(const Law& law) {
           force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Number>>(
-              mesh, law, HourglassSettings{choice.kappa}, choice.threads);
+              mesh, law, HourglassSettings{choice.kappa, choice.kappa_modulus}, choice.threads);
         },
         any_law);
   });

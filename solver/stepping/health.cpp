@@ -18,7 +18,7 @@ void require_healthy(std::span<const double> jacobians, long step) {
     if (++ill <= 10) listed += fmt::format("\n  element {}: det F = {:.4g}", e, jacobians[e]);
   }
   if (ill == 0) return;
-  throw ComputationError(fmt::format(
+  const std::string text = fmt::format(
       "step {}: {} of {} elements {}; det F must be positive; the first {}:{}\n"
       "remedy: {}",
       step, ill, jacobians.size(), finite ? "are inverted" : "hold no finite number any more",
@@ -26,7 +26,8 @@ void require_healthy(std::span<const double> jacobians, long step) {
       finite ? "impose less displacement or more slowly (levels, ramp_time), refine the mesh, or use an "
                "hourglass "
                "control (method tl-perturbation or tl-mean-dilatation)"
-             : "take a smaller step (step_fraction, time_step) or check more often (check_interval)"));
+             : "take a smaller step (step_fraction, time_step) or check more often (check_interval)");
+  throw ComputationError(text, finite ? Breakdown::inverted : Breakdown::not_finite);
 }
 
 }  // namespace sandglass

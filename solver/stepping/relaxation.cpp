@@ -109,7 +109,8 @@ class Search {
     body().state() = failed;
     body().require_healthy(equilibrium_.evaluations());
     throw ComputationError(
-        "the forces found no balance, however short the way; remedy: impose less, or refine the mesh");
+        "the forces found no balance, however short the way; remedy: impose less, or refine the mesh",
+        Breakdown::no_balance);
   }
 
   /// Ends the run when the observer wants it or the evaluations are used up.

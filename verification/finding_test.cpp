@@ -1,0 +1,105 @@
+/// How a run went wrong, told from its displacements.
+
+#include "comparison/finding.hpp"
+
+#include <gtest/gtest.h>
+
+#include "stepping/relaxation.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+/// A box of cubes whose nodes are numbered x fastest; (-1)^(i+j+k) is the zigzag of all of them.
+class HourglassContentTest : public ::testing::Test {
+ protected:
+  NodalField zigzag(double amplitude) const {
+    NodalField u;
+    for (const auto& X : mesh.points) {
+      const long sum = std::lround(X[0] / 0.1) + std::lround(X[1] / 0.1) + std::lround(X[2] / 0.1);
+      u.push_back({sum % 2 == 0 ? amplitude : -amplitude, 0.0, 0.0});
+    }
+    return u;
+  }
+
+  Mesh mesh = box({0.3, 0.2, 0.4}, {3, 2, 4});
+};
+
+TEST_F(HourglassContentTest, zigzag_is_all_hourglass) {
+  const auto content = hourglass_content(mesh, zigzag(0.02));
+  EXPECT_NEAR(content.hourglass, 0.02, 64 * eps * 0.02);
+  EXPECT_NEAR(content.total, 0.02, 64 * eps * 0.02);
+}
+
+/// u_x = x y bends: in an element of edge h the mode xi eta has amplitude h^2 / 4, and no other is there.
+TEST_F(HourglassContentTest, bending_has_the_amplitude_of_its_mode) {
+  NodalField u;
+  for (const auto& X : mesh.points) u.push_back({X[0] * X[1], 0.0, 0.0});
+  EXPECT_NEAR(hourglass_content(mesh, u).hourglass, 0.0025, 256 * eps);
+}
+
+TEST(HourglassContent, linear_fields_have_none_on_distorted_elements) {
+  RandomGeometry random(31);
+  for (int n = 0; n < 50; ++n) {
+    const auto X = random.hexahedron();
+    Mesh mesh;
+    mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+    NodalField u;
+    const Tensor<double> H = random.tensor(1.0);
+    for (int I = 0; I < 8; ++I) {
+      mesh.points.push_back({X(I, 0), X(I, 1), X(I, 2)});
+      u.push_back(linear(H, mesh.points.back()));
+    }
+    const auto content = hourglass_content(mesh, u);
+    EXPECT_LT(content.hourglass, 256 * eps * largest_entry(X) * (1 + largest_entry(X)));
+    EXPECT_GT(content.total, 0.0);
+  }
+}
+
+TEST(GoodLimit, is_one_percent_or_what_the_golden_is_worth) {
+  EXPECT_EQ(good_limit({}), 0.01);
+  EXPECT_EQ(good_limit(0.003), 0.01);
+  EXPECT_EQ(good_limit(0.12), 0.12);
+}
+
+TEST(Diagnose, tells_the_ways_to_be_wrong_from_each_other) {
+  const double limit = 0.02;
+  EXPECT_EQ(diagnose({0.02, 0.9, 3.0, 1.5}, limit), Finding::good);
+  EXPECT_EQ(diagnose({0.03, 0.1, 1.5, 1.5}, limit), Finding::hourglassing);
+  EXPECT_EQ(diagnose({0.03, 0.09, 1.5, 1.03}, limit), Finding::locking);  // smooth
+  EXPECT_EQ(diagnose({0.03, 0.9, 1.4, 1.03}, limit), Finding::locking);   // rough, and not large
+  EXPECT_EQ(diagnose({0.03, 0.9, 1.4, 1.02}, limit), Finding::inaccurate);
+  EXPECT_EQ(diagnose({0.03, 0.1, 1.0, 0.5}, limit), Finding::inaccurate);  // soft in the whole
+  EXPECT_EQ(diagnose({std::nan(""), 0.1, 1.0, 1.0}, limit), Finding::inaccurate);
+}
+
+/// A bent cantilever, nearly incompressible, one element thick, beside mean dilatation: the known failures
+/// are found, and the paper's method is good.
+TEST(Symptoms, show_the_known_failures) {
+  Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
+  const Mesh mesh = box({1.0, 0.2, 0.2}, {10, 2, 2});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[0] > 0.99; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.0, 0.0, 0.2}}};
+  const Scene scene = make_scene(description, mesh, sets);
+  const auto relaxed = [&](const char* method) {
+    Observer silent;
+    return relax(Model(scene, {method}), silent);
+  };
+  const Relaxation golden = relaxed("tl-mean-dilatation");
+  const auto found = [&](const char* method) {
+    const Relaxation answer = relaxed(method);
+    const double energy = answer.energies.strain + answer.energies.hourglass;
+    return diagnose(symptoms(scene, answer.u, energy, golden.u, 0.2), 0.01);
+  };
+  EXPECT_EQ(found("tl-mean-dilatation"), Finding::good);
+  EXPECT_EQ(found("tl-perturbation"), Finding::good);
+  EXPECT_EQ(found("tl-none"), Finding::hourglassing);
+  EXPECT_EQ(found("tl-full"), Finding::locking);
+}
+
+}  // namespace
+}  // namespace sandglass::verification
