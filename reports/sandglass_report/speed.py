@@ -38,7 +38,7 @@ def speed_plate(subjects, palette, costs):
         "Speed and accuracy of every method: lower left is better",
         tuple(panels),
         len(subjects),
-        note="Error: largest distance of any node from the reference, in % of the imposed displacement. "
+        note="Error: largest distance of any node from the reference, in % of the imposed one. "
         "Golden: the mixed element on the same mesh. Truth: quadratic mixed element.\n"
         "Large marks: the method as it comes; small ones: other values of kappa; bar: middle half "
         "of the timings. Triangle: below the scale.",
