@@ -10,8 +10,8 @@
 
 namespace sandglass {
 
-/// The law of Mooney and Rivlin with isochoric invariants of C = F^T F (e.g. Holzapfel, Nonlinear Solid
-/// Mechanics, 2000, eqs 6.146 and 6.147),
+/// The law of Mooney and Rivlin with isochoric invariants of C = F^T F (Mooney, J. Applied Physics 11,
+/// 1940, 582-592; Rivlin, Phil. Trans. R. Soc. A 241, 1948, 379-397; isochoric as in ABAQUS),
 ///   W = c10 (J^(-2/3) tr C - 3) + c01 (J^(-4/3) (tr^2 C - tr C^2) / 2 - 3) + K/2 (J - 1)^2.
 struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
   static constexpr std::string_view name = "mooney-rivlin";

@@ -13,9 +13,8 @@ namespace sandglass {
 
 /// The law of St. Venant and Kirchhoff, Hooke's law of the Green strain E = (F^T F - I)/2,
 ///   W = K/2 tr^2 E + mu |dev E|^2.
-/// It is for small strains and large rotations. In compression it softens: P' = 0 at a uniaxial stretch of
-/// 1/sqrt(3) = .577, and pressed further it gives way (e.g. Holzapfel, Nonlinear Solid Mechanics, 2000, p.
-/// 251).
+/// It is for small strains and large rotations. In compression it softens and gives way; see
+/// softening_stretch.
 ///
 /// It is no sum of an isochoric and a volumetric part. What is called isochoric here is W - K/2 (J - 1)^2,
 /// whose tangent at rest is isochoric; elements that average K/2 (J - 1)^2 therefore average the pressure.
@@ -23,6 +22,10 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
   static constexpr std::string_view name = "st-venant-kirchhoff";
   static constexpr std::string_view summary = "Hooke's law of the Green strain; soft in strong compression";
   static constexpr bool splits_volume = false;
+
+  /// The stretch below which the law gives way, 1/sqrt(3): stress falls when it is pressed on, and its
+  /// largest stiffness need not be positive.
+  static constexpr double softening_stretch = 0.57735026918962576;
 
   double young_modulus = 0.0;
   double poisson_ratio = 0.0;
@@ -111,11 +114,13 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
     const Tensor<T> tau = (T(0.5 * lambda) * trace(e)) * (identity<T>() + e) + mu * (e + e * e);
     const T stretch = m + T(std::sqrt(2.0 / 3.0)) * d;  // largest eigenvalue of b
     const T stiff(std::max(lambda, 0.0));
-    const T gradient = largest_eigenvalue_bound(tau) + T(2) * mu * (stretch * stretch) +
-                       stiff * d * (T(std::sqrt(3.0)) * m + d);
+    const T last = T(2) * mu * (stretch * stretch);
+    const T gradient = largest_eigenvalue_bound(tau) + last + stiff * d * (T(std::sqrt(3.0)) * m + d);
     const T volumetric = stiff * (m * m - T(1.0 / 3.0) * (d * d));
-    // A negative factor of |L|^2 bounds nothing; |L|^2 >= (tr L)^2 / 3 hands it to the trace.
-    return {.volumetric = volumetric + T(1.0 / 3.0) * min(gradient, T(0)), .gradient = max(gradient, T(0))};
+    // Pressure makes tau negative, but a negative factor of |L|^2 bounds nothing: |L|^2 >= (tr L)^2 / 3 hands
+    // it to the trace. The last term stays, so that what gives way still has a finite step.
+    return {.volumetric = volumetric + T(1.0 / 3.0) * min(gradient - last, T(0)),
+            .gradient = max(gradient, last)};
   }
 
   /// The same without K/2 (J - 1)^2.

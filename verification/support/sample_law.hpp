@@ -15,8 +15,9 @@ inline constexpr std::array<double, 4> poisson_ratios{0.25, 0.45, 0.49, 0.499};
 
 inline constexpr double sample_young_modulus = 3000.0;
 
-/// A sensible value for a parameter that a law declares: known names get numbers that give the moduli of E and
-/// nu at rest; an unknown one in Pa gets E, any other the middle of its range. A new law needs no edit here.
+/// A sensible value for a parameter that a law declares: known names get numbers that give the moduli of E
+/// and nu at rest; an unknown one in Pa gets E, any other the middle of its range. A new law needs no edit
+/// here.
 inline double sample_value(std::string_view name, std::string_view unit, const Range& range, double E,
                            double nu) {
   const double mu = E / 2.0 / (1.0 + nu);
