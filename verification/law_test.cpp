@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "material/laws.hpp"
+#include "material/small_strain.hpp"
 #include "support/derivatives.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/random_hexahedra.hpp"
@@ -21,11 +22,10 @@ Tensor<T> converted(const Tensor<double>& a) {
   return result;
 }
 
-/// The stress of linear elasticity, lambda tr(e) I + 2 mu e.
+/// The stress of linear elasticity.
 template <class Law>
 Tensor<double> linear_stress(const Law& law, const Tensor<double>& H) {
-  const Tensor<double> strain = 0.5 * (H + transpose(H));
-  return (lame_lambda(law) * trace(strain)) * identity<double>() + (2.0 * law.shear_modulus()) * strain;
+  return small_strain_stress(law, 0.5 * (H + transpose(H)));
 }
 
 /// L : A : L of the tangent in the current configuration for a basis of the spatial gradients L, with dF = L
@@ -110,7 +110,9 @@ TYPED_TEST(LawTest, energy_splits_into_isochoric_and_volumetric) {
     EXPECT_NEAR(law.energy(H), sum, 16 * eps * sum);
     const auto stress = law.isochoric_piola(H) + law.pressure(J_minus_one) * cofactor(identity<double>() + H);
     EXPECT_LT(largest_entry(law.piola(H) - stress), this->tolerance(law, H));
-    // An isochoric energy does not see a change of size: F and 1.3 F have the same.
+    // An isochoric energy does not see a change of size: F and 1.3 F have the same. A law that does not split
+    // calls isochoric what is so at rest only.
+    if (!TypeParam::splits_volume) continue;
     const auto larger = 1.3 * (identity<double>() + H) - identity<double>();
     EXPECT_NEAR(law.isochoric_energy(larger), law.isochoric_energy(H), this->tolerance(law, H));
   }
@@ -128,6 +130,7 @@ TYPED_TEST(LawTest, energy_and_stress_do_not_depend_on_the_observer) {
 }
 
 TYPED_TEST(LawTest, energy_does_not_depend_on_the_material_direction) {
+  if (!is_isotropic<TypeParam>) GTEST_SKIP() << "the law has directions; they are tested by themselves";
   for (int n = 0; n < this->samples; ++n) {
     const auto law = this->law(n);
     const auto H = this->large_gradient();
@@ -217,8 +220,35 @@ TYPED_TEST(LawTest, tangent_bound_is_sharp_at_rest) {
   for (int n = 0; n < 4; ++n) {
     const auto law = this->law(n);
     const auto bound = tangent_bound(law, Tensor<double>{});
-    EXPECT_NEAR(bound.volumetric, lame_lambda(law), 16 * eps * law.bulk_modulus());
-    EXPECT_NEAR(bound.gradient, 2.0 * law.shear_modulus(), 16 * eps * law.bulk_modulus());
+    const double tolerance = 64 * eps * (law.bulk_modulus() + bound.gradient);
+    if (is_isotropic<TypeParam>) {
+      EXPECT_NEAR(bound.volumetric, lame_lambda(law), tolerance);
+      EXPECT_NEAR(bound.gradient, 2.0 * law.shear_modulus(), tolerance);
+    }
+    // Whatever the law: no slack under a change of size, none under the stiffest change of shape, and the two
+    // fix both numbers. A stiff penalty takes the change of size out of sight.
+    auto left = slack(bound, current_tangent(law, Tensor<double>{}));
+    double under_change_of_size = 0.0;
+    for (int i = 0; i < 9; i += 4) {
+      for (int j = 0; j < 9; j += 4) {
+        under_change_of_size += left(i, j);
+        left(i, j) += law.bulk_modulus();
+      }
+    }
+    EXPECT_NEAR(under_change_of_size, 0.0, 9 * tolerance);
+    EXPECT_NEAR(eigenvalues(left).front(), 0.0, tolerance);
+  }
+}
+
+/// The smallest stretch of a range in which a bound should be sharp: that of strong compression, or a
+/// twentieth above the stretch at which the law says that it softens until there is no stiffness to compare
+/// with.
+template <class Law>
+constexpr double smallest_sharp_stretch() {
+  if constexpr (requires { Law::softening_stretch; }) {
+    return 1.05 * Law::softening_stretch;
+  } else {
+    return 0.3;
   }
 }
 
@@ -226,9 +256,10 @@ TYPED_TEST(LawTest, tangent_bound_is_sharp_at_rest) {
 /// (0.3) to strong stretch (3).
 TYPED_TEST(LawTest, tangent_bound_holds) {
   double loosest = 1.0;
-  for (int n = 0; n < 2000; ++n) {
+  for (int n = 0; n < 4000; ++n) {
     const auto law = this->law(n);
-    const auto H = this->random.deformation(0.3, 3.0) - identity<double>();
+    const double smallest = n % 2 == 0 ? 0.3 : smallest_sharp_stretch<TypeParam>();
+    const auto H = this->random.deformation(smallest, 3.0) - identity<double>();
     const auto A = current_tangent(law, H);
     const auto bound = tangent_bound(law, H);
     const auto symmetric = 0.5 * (A + transpose(A));
@@ -237,10 +268,63 @@ TYPED_TEST(LawTest, tangent_bound_holds) {
     ASSERT_GT(eigenvalues(slack(bound, symmetric)).front(), -1e-12 * scale);
     // How much the step loses to the bound: the true largest quadratic form over 3 volumetric + gradient.
     const double top = std::max(bound.volumetric, 0.0) * 3.0 + bound.gradient;
-    loosest = std::min(loosest, eigenvalues(symmetric).back() / top);
+    ASSERT_GT(top, 0.0);  // no step is infinite
+    if (smallest == smallest_sharp_stretch<TypeParam>()) {
+      loosest = std::min(loosest, eigenvalues(symmetric).back() / top);
+    }
   }
   this->RecordProperty("smallest_true_over_bound", std::to_string(loosest));
   EXPECT_GT(loosest, 0.3);  // the law's bound may cost at most sqrt(3) in the step, anywhere in this range
+}
+
+/// Elements replace the volumetric part by one of their own; bounds of the isochoric part must hold without
+/// it, and with any other.
+TYPED_TEST(LawTest, isochoric_tangent_bound_holds) {
+  for (int n = 0; n < 1000; ++n) {
+    const auto law = this->law(n);
+    const auto H = this->random.deformation(0.3, 3.0) - identity<double>();
+    const Tensor<double> F = identity<double>() + H;
+    const double J_minus_one = jacobian_minus_one(H);
+    const double p = this->random.uniform(-1.0, 1.0) * law.bulk_modulus();
+    const double bulk = this->random.uniform(0.0, 2.0) * law.bulk_modulus();
+    Matrix<double, 9, 9> isochoric{};
+    Matrix<double, 9, 9> replaced{};
+    for (int k = 0; k < 9; ++k) {
+      const auto dual = along(H, unit<3, 3>(static_cast<std::size_t>(k)) * F);
+      const auto change = volume_change(dual);
+      const D pressure(p, bulk * change.J_minus_one.slope);
+      const auto column = slope(law.isochoric_piola(dual)) * transpose(F);
+      const auto with_pressure = slope(law.weighted_piola(D(1), dual, change, pressure)) * transpose(F);
+      for (int m = 0; m < 9; ++m) {
+        isochoric(m, k) = column.entries[static_cast<std::size_t>(m)];
+        replaced(m, k) = with_pressure.entries[static_cast<std::size_t>(m)];
+      }
+    }
+    const auto holds = [](const TangentBound<double>& bound, const Matrix<double, 9, 9>& A) {
+      const auto symmetric = 0.5 * (A + transpose(A));
+      return eigenvalues(slack(bound, symmetric)).front() > -1e-12 * largest_entry(symmetric);
+    };
+    ASSERT_TRUE(holds(law.isochoric_tangent_bound(H), isochoric));
+    ASSERT_TRUE(holds(tangent_bound(law, H, J_minus_one, p, bulk), replaced));
+  }
+}
+
+/// J sigma = P F^T for any pressure, near rest and far from it.
+TYPED_TEST(LawTest, kirchhoff_stress_is_that_of_piola) {
+  const double V = 0.7;
+  for (const double size : {0.3, 1e-3, 1e-6}) {
+    for (int n = 0; n < this->samples; ++n) {
+      const auto law = this->law(n);
+      const auto H = this->random.tensor(size);
+      const auto change = volume_change(H);
+      const double p = this->random.uniform(-1.0, 1.0) * size * law.shear_modulus();
+      const auto expected = law.weighted_piola(V, H, change, p) * transpose(identity<double>() + H);
+      const auto difference = law.weighted_kirchhoff(V, H, change, p) - expected;
+      // Without the bulk modulus, which may hide nothing; a law that does not split has it times |H|^2.
+      const double unsplit = TypeParam::splits_volume ? 0.0 : size * size * law.bulk_modulus();
+      EXPECT_LT(largest_entry(difference), 256 * eps * (size * tangent_bound(law, H).gradient + unsplit));
+    }
+  }
 }
 
 // The neo-Hookean law in closed form.

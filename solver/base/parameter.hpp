@@ -49,4 +49,11 @@ template <class Owner, class Value>
 Parameter(Value Owner::*, std::string_view, std::string_view, Range, std::string_view, bool = true)
     -> Parameter<Owner, Value>;
 
+/// A rule that no range of a single parameter can say, and that does not hold. An `Owner` with such rules has
+/// a function `std::optional<BrokenRule> broken_rule() const`; the reader of case files asks it.
+struct BrokenRule {
+  std::string_view parameter;  ///< the one that the message is about
+  std::string message;         ///< what follows its name: value, rule, what is allowed
+};
+
 }  // namespace sandglass

@@ -181,9 +181,7 @@ struct EightPoint {
       const NodalVectors<T> g = from_double<T>(parent_gradient(points[q])) * to_space;
       const T J = T(1) + own_dilatation[q];
       const T bulk = Pressure::shared ? T(0) : law.bulk_tangent(dilatation[q]);
-      const auto vol = volumetric_tangent_bound(J, law.pressure(dilatation[q]), bulk);
-      const auto iso = law.isochoric_tangent_bound(H[q]);
-      const TangentBound<T> point{iso.volumetric + vol.volumetric, iso.gradient + vol.gradient};
+      const auto point = tangent_bound(law, H[q], own_dilatation[q], law.pressure(dilatation[q]), bulk);
       bound = bound + element.weight[q] * gradient_bound(point, g);
       mean_spatial_gradient += (element.weight[q] * J / element.V) * g;
     }

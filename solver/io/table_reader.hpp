@@ -52,10 +52,14 @@ class TableReader {
   /// All keys of this table; reading them counts as asking for them.
   std::vector<std::string> keys() const;
 
-  /// Reads all declared parameters of an aggregate, each within its range.
+  /// Reads all declared parameters of an aggregate, each within its range, and asks the aggregate whether a
+  /// rule between them is broken.
   template <class Aggregate>
   void parameters(Aggregate& aggregate) {
     std::apply([&](const auto&... parameter) { (read(aggregate, parameter), ...); }, Aggregate::parameters());
+    if constexpr (requires { aggregate.broken_rule(); }) {
+      if (const auto broken = aggregate.broken_rule()) fail(std::string(broken->parameter), broken->message);
+    }
   }
 
   /// Throws when a value is out of range.

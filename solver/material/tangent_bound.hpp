@@ -13,6 +13,10 @@ template <class T>
 struct TangentBound {
   T volumetric;
   T gradient;
+
+  friend TangentBound operator+(const TangentBound& a, const TangentBound& b) {
+    return {a.volumetric + b.volumetric, a.gradient + b.gradient};
+  }
 };
 
 /// The bound of U(J) with p = U' and bulk = U'': d^2 U = bulk (J tr L)^2 + p J ((tr L)^2 - tr(L L)).
@@ -21,14 +25,26 @@ TangentBound<T> volumetric_tangent_bound(const T& J, const T& p, const T& bulk) 
   return {.volumetric = bulk * J * J + p * J, .gradient = abs(p * J)};
 }
 
+/// The bound of a law whose volumetric part is replaced by one of slope p and curvature `bulk` (Pa), as
+/// elements do that average it. A law that is no sum of an isochoric and a volumetric part knows a bound of
+/// the whole, and the difference is what is added.
+template <class Law, class T>
+TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one, const T& p,
+                              const T& bulk) {
+  const T J = T(1) + J_minus_one;
+  if constexpr (requires { law.tangent_bound(H); }) {
+    return law.tangent_bound(H) +
+           volumetric_tangent_bound(J, p - law.pressure(J_minus_one), bulk - law.bulk_tangent(J_minus_one));
+  } else {
+    return law.isochoric_tangent_bound(H) + volumetric_tangent_bound(J, p, bulk);
+  }
+}
+
 /// The bound of a whole law at the displacement gradient H.
 template <class Law, class T>
 TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H) {
   const T J_minus_one = jacobian_minus_one(H);
-  const auto iso = law.isochoric_tangent_bound(H);
-  const auto vol =
-      volumetric_tangent_bound(T(1) + J_minus_one, law.pressure(J_minus_one), law.bulk_tangent(J_minus_one));
-  return {.volumetric = iso.volumetric + vol.volumetric, .gradient = iso.gradient + vol.gradient};
+  return tangent_bound(law, H, J_minus_one, law.pressure(J_minus_one), law.bulk_tangent(J_minus_one));
 }
 
 }  // namespace sandglass

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <string_view>
 #include <tuple>
+#include <type_traits>
 
 #include "material/laws.hpp"
 
@@ -12,24 +15,43 @@ inline constexpr std::array<double, 4> poisson_ratios{0.25, 0.45, 0.49, 0.499};
 
 inline constexpr double sample_young_modulus = 3000.0;
 
-/// A law of the list with sensible parameters, from its own declarations: known names get the usual numbers,
-/// a new parameter the middle of its range, so that a new law is tested without an edit here.
+/// A sensible value for a parameter that a law declares: known names get numbers that give the moduli of E
+/// and nu at rest; an unknown one in Pa gets E, any other the middle of its range. A new law needs no edit
+/// here.
+inline double sample_value(std::string_view name, std::string_view unit, const Range& range, double E,
+                           double nu) {
+  const double mu = E / 2.0 / (1.0 + nu);
+  if (name == "young_modulus") return E;
+  if (name == "poisson_ratio") return nu;
+  if (name == "shear_modulus") return mu;
+  if (name == "bulk_modulus") return E / 3.0 / (1.0 - 2.0 * nu);
+  // Mooney-Rivlin: mu = 2 (c10 + c01). Yeoh: mu = 2 c1, and signs such that the law softens and stiffens.
+  if (name == "c10" || name == "c01") return mu / 4.0;
+  if (name == "c1") return mu / 2.0;
+  if (name == "c2") return -mu / 20.0;
+  if (name == "c3") return mu / 100.0;
+  if (unit == "Pa") return E;
+  if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
+  return std::isfinite(range.low) ? range.low + 1.0 : 1.0;
+}
+
+/// A law of the list with sensible parameters, from its own declarations. The entries of a vector differ, so
+/// that a direction is none of the axes.
 template <class Law>
 Law sample_law(double poisson_ratio, double young_modulus = sample_young_modulus) {
   Law law;
-  const auto value_of = [&](std::string_view name, const Range& range) {
-    if (name == "young_modulus") return young_modulus;
-    if (name == "poisson_ratio") return poisson_ratio;
-    if (name == "shear_modulus") return young_modulus / 2.0 / (1.0 + poisson_ratio);
-    if (name == "bulk_modulus") return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio);
-    if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
-    return std::isfinite(range.low) ? range.low + 1.0 : 1.0;
+  const auto set = [&](const auto& parameter) {
+    auto& member = law.*(parameter.member);
+    const double value =
+        sample_value(parameter.name, parameter.unit, parameter.range, young_modulus, poisson_ratio);
+    if constexpr (std::is_arithmetic_v<std::remove_reference_t<decltype(member)>>) {
+      member = value;
+    } else {
+      double divisor = 1.0;
+      for (auto& entry : member) entry = value / divisor++;
+    }
   };
-  std::apply(
-      [&](const auto&... parameter) {
-        ((law.*(parameter.member) = value_of(parameter.name, parameter.range)), ...);
-      },
-      Law::parameters());
+  std::apply([&](const auto&... parameter) { (set(parameter), ...); }, Law::parameters());
   return law;
 }
 

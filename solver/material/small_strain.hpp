@@ -1,0 +1,27 @@
+#pragma once
+
+#include "math/matrix.hpp"
+
+namespace sandglass {
+
+/// Whether a law answers alike in all directions. One that does not gives small_strain_stress(strain) itself.
+template <class Law>
+constexpr bool is_isotropic = !requires(const Law& law) {
+  law.small_strain_stress(Tensor<double>{});
+};
+
+/// The stress (Pa) of a law at rest for a small strain, the symmetric part of the displacement gradient:
+/// linear elasticity K tr(e) I + 2 mu dev(e), or what an anisotropic law says.
+template <class Law, class T>
+Tensor<T> small_strain_stress(const Law& law, const Tensor<T>& strain) {
+  if constexpr (is_isotropic<Law>) {
+    Tensor<T> stress = T(2.0 * law.shear_modulus()) * deviator(strain);
+    const T mean = T(law.bulk_modulus()) * trace(strain);
+    for (int i = 0; i < 3; ++i) stress(i, i) = stress(i, i) + mean;
+    return stress;
+  } else {
+    return law.small_strain_stress(strain);
+  }
+}
+
+}  // namespace sandglass

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+#include "base/parameter.hpp"
+#include "material/first_invariant.hpp"
+#include "material/quadratic_volume.hpp"
+
+namespace sandglass {
+
+/// The law of Yeoh (Rubber Chemistry and Technology 66, 1993, 754-771) with an isochoric first invariant,
+///   W = c1 x + c2 x^2 + c3 x^3 + K/2 (J - 1)^2,  x = J^(-2/3) tr(F^T F) - 3.
+/// With c2 < 0 < c3 it softens first and stiffens later, as rubber and many tissues do.
+struct Yeoh : QuadraticVolume<Yeoh> {
+  static constexpr std::string_view name = "yeoh";
+  static constexpr std::string_view summary =
+      "cubic in the isochoric first invariant: softens, then stiffens";
+
+  double c1 = 0.0;
+  double c2 = 0.0;
+  double c3 = 0.0;
+  double bulk = 0.0;
+
+  static constexpr auto parameters() {
+    return std::tuple{
+        Parameter{&Yeoh::c1, "c1", "Pa", Range::positive(), "half of the shear modulus at rest"},
+        Parameter{&Yeoh::c2, "c2", "Pa", Range::any(), "factor of the first invariant squared"},
+        Parameter{&Yeoh::c3, "c3", "Pa", Range::at_least(0.0), "factor of the first invariant cubed"},
+        Parameter{&Yeoh::bulk, "bulk_modulus", "Pa", Range::positive(), "bulk modulus at rest"}};
+  }
+
+  /// c1 + 2 c2 x + 3 c3 x^2, a quarter of the shear modulus at x, stays positive for all x > 0.
+  std::optional<BrokenRule> broken_rule() const {
+    if (c2 >= 0.0 || c2 * c2 < 3.0 * c1 * c3) return std::nullopt;
+    return BrokenRule{"c2", fmt::format("= {} must be at least 0, or c2^2 less than 3 c1 c3 = {}: the shear "
+                                        "modulus would become negative under stretch",
+                                        c2, 3.0 * c1 * c3)};
+  }
+
+  constexpr double shear_modulus() const { return 2.0 * c1; }
+  constexpr double bulk_modulus() const { return bulk; }
+
+  /// c1 x + c2 x^2 + c3 x^3, in J/m^3.
+  template <class T>
+  T isochoric_energy(const Tensor<T>& H) const {
+    const T x = T(3) * third_of_first_invariant_growth(H);
+    return x * (T(c1) + x * (T(c2) + x * T(c3)));
+  }
+
+  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
+  /// p (Pa, tension positive) that need not be the law's own.
+  template <class T>
+  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
+    return first_invariant_piola(V * modulus(first_invariant_growth(H, change)), V * p, H, change);
+  }
+
+  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on.
+  template <class T>
+  Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+                               const T& p) const {
+    return first_invariant_kirchhoff(V * modulus(first_invariant_growth(H, change)), V * p,
+                                     left_cauchy_green_minus_identity(H), change);
+  }
+
+  /// Bound of the isochoric tangent; see TangentBound. d^2 w(x) = w' d^2 x + w'' (dx)^2, and
+  /// dx = 2 J^(-2/3) dev b : L sees no more than the deviator of L, |dev L|^2 = |L|^2 - (tr L)^2 / 3.
+  template <class T>
+  TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
+    const VolumeChange<T> change = volume_change(H);
+    const T x = first_invariant_growth(H, change);
+    const Tensor<T> d = deviator(left_cauchy_green_minus_identity(H));
+    const T r2 = change.inverse_root * change.inverse_root;
+    const T steepening = max(T(2.0 * c2) + T(6.0 * c3) * x, T(0)) * (T(4) * r2 * r2 * double_dot(d, d));
+    return first_invariant_tangent_bound(modulus(x), H) +
+           TangentBound<T>{.volumetric = T(-1.0 / 3.0) * steepening, .gradient = steepening};
+  }
+
+ private:
+  /// The shear modulus at x, 2 w'(x).
+  template <class T>
+  T modulus(const T& x) const {
+    return T(2.0 * c1) + x * (T(4.0 * c2) + x * T(6.0 * c3));
+  }
+};
+
+}  // namespace sandglass

@@ -1,0 +1,346 @@
+/// The laws in closed form: textbook stresses in long double, and answers that fit on a line.
+
+#include <gtest/gtest.h>
+
+#include "material/laws.hpp"
+#include "material/small_strain.hpp"
+#include "support/derivatives.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/sample_law.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+using Real = long double;
+
+Tensor<Real> with_all_digits(const Tensor<double>& a) {
+  Tensor<Real> result{};
+  for (std::size_t n = 0; n < 9; ++n) result.entries[n] = a.entries[n];
+  return result;
+}
+
+/// a - tr(a)/3 I; the kernels' own multiplies by the double nearest to 1/3, which has 16 digits.
+Tensor<Real> exact_deviator(const Tensor<Real>& a) {
+  return a - (trace(a) / 3) * identity<Real>();
+}
+
+/// P = J sigma F^-T = sigma cof F.
+Tensor<Real> piola_of(const Tensor<Real>& cauchy, const Tensor<Real>& F) {
+  return cauchy * cofactor(F);
+}
+
+Tensor<Real> isochoric_left_cauchy_green(const Tensor<Real>& F) {
+  const Real J = determinant(F);
+  return (1 / std::cbrt(J * J)) * (F * transpose(F));
+}
+
+template <class Law>
+Tensor<Real> hydrostatic(const Law& law, const Tensor<Real>& F) {
+  return (static_cast<Real>(law.bulk_modulus()) * (determinant(F) - 1)) * identity<Real>();
+}
+
+// First Piola-Kirchhoff stresses in F, in the forms of the textbooks: Cauchy stresses of the invariants of
+// bbar = J^(-2/3) F F^T, and Hooke's law of the Green strain.
+
+Tensor<Real> textbook_piola(const StVenantKirchhoff& law, const Tensor<Real>& F) {
+  const Tensor<Real> E = Real(0.5) * (transpose(F) * F - identity<Real>());
+  const Real mu = law.shear_modulus();
+  const Real lambda = static_cast<Real>(law.bulk_modulus()) - 2 * mu / 3;
+  return F * ((lambda * trace(E)) * identity<Real>() + (2 * mu) * E);
+}
+
+Tensor<Real> textbook_piola(const MooneyRivlin& law, const Tensor<Real>& F) {
+  const Tensor<Real> b = isochoric_left_cauchy_green(F);
+  const Real c10 = law.c10, c01 = law.c01;
+  const Tensor<Real> s = exact_deviator((2 * (c10 + c01 * trace(b))) * b - (2 * c01) * (b * b));
+  return piola_of((1 / determinant(F)) * s + hydrostatic(law, F), F);
+}
+
+Tensor<Real> textbook_piola(const Yeoh& law, const Tensor<Real>& F) {
+  const Tensor<Real> b = isochoric_left_cauchy_green(F);
+  const Real x = trace(b) - 3;
+  const Real slope = law.c1 + 2 * static_cast<Real>(law.c2) * x + 3 * static_cast<Real>(law.c3) * x * x;
+  return piola_of((2 * slope / determinant(F)) * exact_deviator(b) + hydrostatic(law, F), F);
+}
+
+Tensor<Real> textbook_piola(const FibreNeoHookean& law, const Tensor<Real>& F) {
+  const Tensor<Real> b = isochoric_left_cauchy_green(F);
+  const auto& [x, y, z] = law.fibre_direction;
+  const Real length =
+      std::sqrt(static_cast<Real>(x) * x + static_cast<Real>(y) * y + static_cast<Real>(z) * z);
+  const Triple<Real> a{{x / length, y / length, z / length}};
+  const Real J = determinant(F);
+  const Triple<Real> v = (1 / std::cbrt(J)) * (F * a);
+  const Real slope = static_cast<Real>(law.fibre_modulus) / 4 * (double_dot(v, v) - 1);  // dW/dI4bar
+  const Tensor<Real> s = static_cast<Real>(law.shear_modulus()) * exact_deviator(b) +
+                         (2 * slope) * exact_deviator(v * transpose(v));
+  return piola_of((1 / J) * s + hydrostatic(law, F), F);
+}
+
+template <class Law>
+class LawOracleTest : public ::testing::Test {};
+
+struct LawName {
+  template <class Law>
+  static std::string GetName(int /*index*/) {
+    std::string name(Law::name);
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+  }
+};
+
+using LawsWithTextbooks = ::testing::Types<StVenantKirchhoff, MooneyRivlin, Yeoh, FibreNeoHookean>;
+TYPED_TEST_SUITE(LawOracleTest, LawsWithTextbooks, LawName);
+
+/// In long double the textbook's cancellation costs 1e-19/|H|. Without the bulk modulus' part too, as
+/// elements see it that put a pressure of their own there.
+TYPED_TEST(LawOracleTest, agrees_with_the_textbook_form_in_long_double) {
+  RandomGeometry random(13);
+  for (const double size : {0.3, 1e-3, 1e-6}) {
+    for (int n = 0; n < 100; ++n) {
+      const auto law = sample_law<TypeParam>(poisson_ratios[static_cast<std::size_t>(n) % 4]);
+      const auto H = random.tensor(size);
+      const auto F = identity<Real>() + with_all_digits(H);
+      const auto whole = textbook_piola(law, F);
+      const auto isochoric = whole - piola_of(hydrostatic(law, F), F);
+      const auto difference = [](const Tensor<double>& P, const Tensor<Real>& exact) {
+        return largest_entry(with_all_digits(P) - exact);
+      };
+      const double oracle_error = 1e-18 * (law.bulk_modulus() + law.shear_modulus());
+      EXPECT_LT(difference(law.piola(H), whole), 64 * eps * size * law.bulk_modulus() + oracle_error);
+      // What is isochoric is as stiff as it is sheared; without the split K times |H|^2 stays.
+      const double stiffness =
+          tangent_bound(law, H).gradient + (TypeParam::splits_volume ? 0.0 : size * law.bulk_modulus());
+      EXPECT_LT(difference(law.isochoric_piola(H), isochoric),
+                64 * eps * size * stiffness + 4 * oracle_error);
+    }
+  }
+}
+
+Tensor<double> diagonal_gradient(double a, double b, double c) {
+  return {{a - 1, 0, 0, 0, b - 1, 0, 0, 0, c - 1}};
+}
+
+/// tau_11 - tau_33 at constant volume: the axial Kirchhoff stress of a bar without lateral stress, whatever
+/// the pressure.
+template <class Law>
+double axial_stress(const Law& law, double a, double b, double c) {
+  const auto P = law.piola(diagonal_gradient(a, b, c));
+  return P(0, 0) * a - P(2, 2) * c;
+}
+
+template <class Law>
+Tensor<double> kirchhoff_in_shear(const Law& law, double gamma) {
+  Tensor<double> H{};
+  H(0, 1) = gamma;
+  return law.piola(H) * transpose(identity<double>() + H);
+}
+
+/// Roundoff of stresses that the bulk modulus is in: J is 1 to eps.
+template <class Law>
+double tolerance(const Law& law, const Tensor<double>& H) {
+  const auto bound = tangent_bound(law, H);
+  return 64 * eps * (std::abs(bound.volumetric) + bound.gradient);
+}
+
+constexpr std::array<double, 5> stretches{0.4, 0.9, 1.01, 1.5, 3.0};
+constexpr std::array<double, 4> shears{-1.5, 1e-3, 0.4, 2.0};
+
+/// Uniaxial, equibiaxial and pure shear at constant volume: s P = (s^2 - t^2) 2 (W1 + W2 u^2), where t is the
+/// stretch without stress and u the third one.
+TEST(MooneyRivlin, incompressible_stretches) {
+  const MooneyRivlin law{.c10 = 400.0, .c01 = 130.0, .bulk = 1e5};
+  EXPECT_EQ(law.shear_modulus(), 1060.0);
+  for (const double s : stretches) {
+    const double t = 1 / std::sqrt(s);
+    EXPECT_NEAR(axial_stress(law, s, t, t), s * 2 * (s - 1 / (s * s)) * (law.c10 + law.c01 / s),
+                tolerance(law, diagonal_gradient(s, t, t)));
+    EXPECT_NEAR(axial_stress(law, s, s, 1 / (s * s)),
+                s * 2 * (s - std::pow(s, -5)) * (law.c10 + law.c01 * s * s),
+                tolerance(law, diagonal_gradient(s, s, 1 / (s * s))));
+    EXPECT_NEAR(axial_stress(law, s, 1.0, 1 / s), s * 2 * (s - std::pow(s, -3)) * (law.c10 + law.c01),
+                tolerance(law, diagonal_gradient(s, 1.0, 1 / s)));
+  }
+}
+
+/// tau_12 = 2 (c10 + c01) gamma; the second invariant shows in tau_22 - tau_33 = -2 c01 gamma^2.
+TEST(MooneyRivlin, simple_shear) {
+  const MooneyRivlin law{.c10 = 400.0, .c01 = 130.0, .bulk = 1e4};
+  for (const double g : shears) {
+    const auto tau = kirchhoff_in_shear(law, g);
+    const double roundoff = 64 * eps * law.shear_modulus() * (1 + std::pow(g, 4));
+    EXPECT_NEAR(tau(0, 1), 530.0 * 2 * g, roundoff);
+    EXPECT_NEAR(tau(0, 0) - tau(2, 2), 800.0 * g * g, roundoff);
+    EXPECT_NEAR(tau(1, 1) - tau(2, 2), -260.0 * g * g, roundoff);
+  }
+}
+
+/// Without the second invariant it is neo-Hookean.
+TEST(MooneyRivlin, contains_the_neo_hookean_law) {
+  RandomGeometry random(5);
+  const auto neo_hookean = sample_law<NeoHookean>(0.45);
+  const MooneyRivlin law{
+      .c10 = neo_hookean.shear_modulus() / 2, .c01 = 0.0, .bulk = neo_hookean.bulk_modulus()};
+  for (int n = 0; n < 50; ++n) {
+    const auto H = random.deformation(0.5, 2.0) - identity<double>();
+    EXPECT_LT(largest_entry(law.piola(H) - neo_hookean.piola(H)), tolerance(law, H));
+    EXPECT_NEAR(law.energy(H), neo_hookean.energy(H), tolerance(law, H));
+  }
+}
+
+TEST(Yeoh, incompressible_stretches) {
+  const Yeoh law{.c1 = 500.0, .c2 = -40.0, .c3 = 9.0, .bulk = 1e5};
+  EXPECT_EQ(law.shear_modulus(), 1000.0);
+  const auto slope = [&](double x) { return law.c1 + 2 * law.c2 * x + 3 * law.c3 * x * x; };
+  for (const double s : stretches) {
+    const double t = 1 / std::sqrt(s);
+    EXPECT_NEAR(axial_stress(law, s, t, t), 2 * (s * s - 1 / s) * slope(s * s + 2 / s - 3),
+                tolerance(law, diagonal_gradient(s, t, t)));
+    EXPECT_NEAR(axial_stress(law, s, s, 1 / (s * s)),
+                2 * (s * s - std::pow(s, -4)) * slope(2 * s * s + std::pow(s, -4) - 3),
+                tolerance(law, diagonal_gradient(s, s, 1 / (s * s))));
+  }
+}
+
+TEST(Yeoh, simple_shear) {
+  const Yeoh law{.c1 = 500.0, .c2 = -40.0, .c3 = 9.0, .bulk = 1e4};
+  for (const double g : shears) {
+    Tensor<double> H{};
+    H(0, 1) = g;
+    const auto tau = kirchhoff_in_shear(law, g);
+    const double x = g * g;  // I1bar - 3
+    const double mu = 2 * (law.c1 + 2 * law.c2 * x + 3 * law.c3 * x * x);
+    EXPECT_NEAR(tau(0, 1), mu * g, tolerance(law, H));
+    EXPECT_NEAR(tau(0, 0) - tau(2, 2), mu * g * g, tolerance(law, H));
+    EXPECT_NEAR(law.energy(H), x * (law.c1 + x * (law.c2 + x * law.c3)), tolerance(law, H));
+  }
+}
+
+/// The rule of the parameters: at its border the shear modulus touches zero, within it stays positive.
+TEST(Yeoh, refuses_parameters_that_lose_the_shear_modulus) {
+  EXPECT_FALSE((Yeoh{.c1 = 500.0, .c2 = 10.0, .c3 = 0.0, .bulk = 1e4}.broken_rule()));
+  EXPECT_FALSE((Yeoh{.c1 = 500.0, .c2 = -119.0, .c3 = 9.5, .bulk = 1e4}.broken_rule()));
+  EXPECT_TRUE((Yeoh{.c1 = 500.0, .c2 = -120.0, .c3 = 9.5, .bulk = 1e4}.broken_rule()));  // 14400 > 14250
+  EXPECT_TRUE((Yeoh{.c1 = 500.0, .c2 = -1.0, .c3 = 0.0, .bulk = 1e4}.broken_rule()));
+}
+
+TEST(StVenantKirchhoff, uniaxial_strain) {
+  for (const double nu : poisson_ratios) {
+    const auto law = sample_law<StVenantKirchhoff>(nu);
+    const double lambda = lame_lambda(law);
+    for (const double s : stretches) {
+      const auto H = diagonal_gradient(s, 1.0, 1.0);
+      const auto P = law.piola(H);
+      EXPECT_NEAR(P(0, 0), (lambda + 2 * law.shear_modulus()) * s * (s * s - 1) / 2, tolerance(law, H));
+      EXPECT_NEAR(P(1, 1), lambda * (s * s - 1) / 2, tolerance(law, H));
+    }
+    // It gives way at the stretch that it declares: the tangent of that stress is zero there.
+    const auto H = diagonal_gradient(StVenantKirchhoff::softening_stretch, 1.0, 1.0);
+    EXPECT_NEAR(slope(law.piola(along(H, unit<3, 3>(0))))(0, 0), 0.0, 1e-14 * p_wave_modulus(law));
+  }
+}
+
+/// Without lateral stress P = E s (s^2 - 1)/2, and lateral stretches are sqrt(1 - nu (s^2 - 1)).
+TEST(StVenantKirchhoff, uniaxial_stress) {
+  for (const double nu : poisson_ratios) {
+    const auto law = sample_law<StVenantKirchhoff>(nu);
+    for (const double s : {0.7, 0.99, 1.1, 1.5}) {
+      const double t = std::sqrt(1 - nu * (s * s - 1));
+      const auto H = diagonal_gradient(s, t, t);
+      const auto P = law.piola(H);
+      EXPECT_NEAR(P(0, 0), sample_young_modulus * s * (s * s - 1) / 2, tolerance(law, H));
+      EXPECT_NEAR(P(1, 1), 0.0, tolerance(law, H));
+      const double green = (s * s - 1) / 2;
+      EXPECT_NEAR(law.energy(H), sample_young_modulus * green * green / 2, tolerance(law, H));
+    }
+  }
+}
+
+TEST(StVenantKirchhoff, simple_shear) {
+  const auto law = sample_law<StVenantKirchhoff>(0.45);
+  const double mu = law.shear_modulus();
+  const double lambda = lame_lambda(law);
+  for (const double g : shears) {
+    Tensor<double> H{};
+    H(0, 1) = g;
+    const double g2 = g * g;
+    const Tensor<double> S{
+        {lambda * g2 / 2, mu * g, 0, mu * g, (lambda / 2 + mu) * g2, 0, 0, 0, lambda * g2 / 2}};
+    EXPECT_LT(largest_entry(law.piola(H) - (identity<double>() + H) * S), tolerance(law, H));
+  }
+}
+
+FibreNeoHookean fibres_along(double x, double y, double z, double nu = 0.49) {
+  return {
+      .young_modulus = 3000.0, .poisson_ratio = nu, .fibre_modulus = 7000.0, .fibre_direction = {x, y, z}};
+}
+
+/// Along the fibres k/2 s^2 (s^2 - 1) is added to the neo-Hookean stress; across them, where they follow the
+/// lateral stretch t, k/2 t^2 (t^2 - 1) is taken away.
+TEST(FibreNeoHookean, incompressible_stretches) {
+  for (const double s : stretches) {
+    const double t = 1 / std::sqrt(s);
+    const auto along_fibre = fibres_along(2.0, 0.0, 0.0);
+    const double matrix = along_fibre.shear_modulus() * (s * s - t * t);
+    EXPECT_NEAR(axial_stress(along_fibre, s, t, t), matrix + 3500.0 * s * s * (s * s - 1),
+                tolerance(along_fibre, diagonal_gradient(s, t, t)));
+    const auto across = fibres_along(0.0, 0.0, -0.1);
+    EXPECT_NEAR(axial_stress(across, s, t, t), matrix - 3500.0 * t * t * (t * t - 1),
+                tolerance(across, diagonal_gradient(s, t, t)));
+  }
+}
+
+/// Shear along fibres stretches none of them; across, they turn and are stretched by 1 + gamma^2.
+TEST(FibreNeoHookean, simple_shear) {
+  for (const double g : shears) {
+    Tensor<double> H{};
+    H(0, 1) = g;
+    const auto sliding = fibres_along(1.0, 0.0, 0.0);
+    EXPECT_NEAR(kirchhoff_in_shear(sliding, g)(0, 1), sliding.shear_modulus() * g, tolerance(sliding, H));
+    const auto turning = fibres_along(0.0, 3.0, 0.0);
+    EXPECT_NEAR(kirchhoff_in_shear(turning, g)(0, 1), turning.shear_modulus() * g + 3500.0 * g * g * g,
+                tolerance(turning, H));
+  }
+}
+
+/// The meaning of k: Young's modulus along the fibres of an incompressible solid is E + k.
+TEST(FibreNeoHookean, fibre_modulus_adds_to_youngs_modulus) {
+  const auto law = fibres_along(0.0, 0.5, 0.0, 0.5 - 1e-12);
+  const auto stress = small_strain_stress(law, Tensor<double>{{-0.5, 0, 0, 0, 1, 0, 0, 0, -0.5}});
+  EXPECT_NEAR(stress(1, 1) - stress(0, 0), 10000.0, 1e-7);
+}
+
+/// Turned about its fibres, reversed or given at another length, it is the same material; turned otherwise it
+/// is the material with turned fibres.
+TEST(FibreNeoHookean, has_the_symmetry_of_its_fibres) {
+  RandomGeometry random(3);
+  for (int n = 0; n < 100; ++n) {
+    const double x = random.uniform(0.2, 1.0), y = random.uniform(-1.0, 1.0), z = random.uniform(-1.0, 1.0);
+    const auto law = fibres_along(x, y, z);
+    const auto F = random.deformation(0.5, 2.0);
+    const auto H = F - identity<double>();
+    const auto P = law.piola(H);
+    const double roundoff = 16 * tolerance(law, H);
+    EXPECT_LT(largest_entry(fibres_along(-x, -y, -z).piola(H) - P), roundoff);
+    EXPECT_LT(largest_entry(fibres_along(40 * x, 40 * y, 40 * z).piola(H) - P), roundoff);
+    // Half a turn about a: Q = 2 a a^T - I.
+    const Triple<double> a{{x, y, z}};
+    const Tensor<double> half_turn = (2 / double_dot(a, a)) * (a * transpose(a)) - identity<double>();
+    EXPECT_NEAR(law.energy(F * half_turn - identity<double>()), law.energy(H), roundoff);
+    const auto Q = random.rotation();
+    const Triple<double> turned = transpose(Q) * a;
+    EXPECT_NEAR(fibres_along(turned(0, 0), turned(1, 0), turned(2, 0)).energy(F * Q - identity<double>()),
+                law.energy(H), roundoff);
+    EXPECT_GT(std::abs(law.energy(F * Q - identity<double>()) - law.energy(H)), 1e3 * roundoff);
+  }
+}
+
+TEST(FibreNeoHookean, needs_a_direction) {
+  EXPECT_TRUE(fibres_along(0.0, 0.0, 0.0).broken_rule());
+  EXPECT_TRUE(fibres_along(1e-200, 0.0, 0.0).broken_rule());  // its square is no number to divide by
+  EXPECT_FALSE(fibres_along(0.0, 1e-3, 0.0).broken_rule());
+}
+
+}  // namespace
+}  // namespace sandglass::verification
