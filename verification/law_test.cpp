@@ -107,7 +107,10 @@ TYPED_TEST(LawTest, energy_splits_into_isochoric_and_volumetric) {
     const auto H = this->large_gradient();
     const double J_minus_one = jacobian_minus_one(H);
     const double sum = law.isochoric_energy(H) + law.volumetric_energy(J_minus_one);
-    EXPECT_NEAR(law.energy(H), sum, 16 * eps * sum);
+    // The same sum twice, which the compiler may contract differently. Each is within 32 roundings: the terms
+    // of the neo-Hookean r have some twenty between them and are up to five times their difference, of which
+    // the root leaves a third.
+    EXPECT_NEAR(law.energy(H), sum, 64 * eps * sum);
     const auto stress = law.isochoric_piola(H) + law.pressure(J_minus_one) * cofactor(identity<double>() + H);
     EXPECT_LT(largest_entry(law.piola(H) - stress), this->tolerance(law, H));
     // An isochoric energy does not see a change of size: F and 1.3 F have the same.

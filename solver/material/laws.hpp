@@ -2,6 +2,7 @@
 
 #include "base/type_list.hpp"
 #include "material/neo_hookean.hpp"
+#include "material/ogden.hpp"
 
 namespace sandglass {
 
@@ -9,7 +10,7 @@ namespace sandglass {
 /// Each gives: name, summary, parameters(), shear_modulus(), bulk_modulus() at rest, and templated on the
 /// number type isochoric_energy, volumetric_energy, pressure, bulk_tangent, isochoric_piola, energy, piola,
 /// isochoric_tangent_bound; and what the kernels run, weighted_piola and weighted_kirchhoff.
-using Laws = TypeList<NeoHookean>;
+using Laws = TypeList<NeoHookean, Ogden>;
 
 /// A law chosen at run time.
 using AnyLaw = VariantOf<Laws>;
