@@ -21,7 +21,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// Swine brain of Miller and Chinzei (J. Biomech. 35 (2002) 483, table 1) before it relaxes.
+/// Swine brain of Miller and Chinzei (J. Biomech. 35 (2002) 483) before it relaxes.
 constexpr Ogden brain{.mu1 = 842.0, .alpha1 = -4.7, .K = 1e5};
 
 /// Two terms as different as soft materials have them.
@@ -72,8 +72,8 @@ TEST(Ogden, has_the_moduli_of_its_parameters) {
   }
 }
 
-/// Nominal stress 2 mu / alpha (l^(alpha - 1) - l^(-alpha/2 - 1)), eq. 7 of Miller and Chinzei for a quick
-/// load: from compression to two thirds to their largest extension and beyond.
+/// Nominal stress 2 mu / alpha (l^(alpha - 1) - l^(-alpha/2 - 1)): Miller and Chinzei's for a load so quick
+/// that nothing relaxes. From compression by a third, where it stiffens, to stretches beyond theirs.
 TEST(Ogden, uniaxial_stress_of_the_brain) {
   for (const double l : {0.65, 0.7, 0.9, 1.0001, 1.2, 1.6, 2.5}) {
     const double side = 1 / std::sqrt(l);

@@ -85,13 +85,15 @@ Tensor<T> from_principal(const Tensor<T>& axes, const std::array<T, 3>& t) {
 /// the roundoff of the largest entry.
 template <class T>
 Spectrum<T> spectrum(Tensor<T> S) {
-  Tensor<T> axes = identity<T>();
+  Spectrum<T> found;
+  found.axes = identity<T>();
   for (int sweep = 0; sweep < 4; ++sweep) {
-    detail::rotate<0, 1>(S, axes);
-    detail::rotate<0, 2>(S, axes);
-    detail::rotate<1, 2>(S, axes);
+    detail::rotate<0, 1>(S, found.axes);
+    detail::rotate<0, 2>(S, found.axes);
+    detail::rotate<1, 2>(S, found.axes);
   }
-  return {{S(0, 0), S(1, 1), S(2, 2)}, axes};
+  found.values = {S(0, 0), S(1, 1), S(2, 2)};
+  return found;
 }
 
 /// The same of a dual tensor.
