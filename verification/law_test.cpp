@@ -4,6 +4,7 @@
 
 #include "material/laws.hpp"
 #include "material/small_strain.hpp"
+#include "support/current_tangent.hpp"
 #include "support/derivatives.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/random_hexahedra.hpp"
@@ -26,30 +27,6 @@ Tensor<T> converted(const Tensor<double>& a) {
 template <class Law>
 Tensor<double> linear_stress(const Law& law, const Tensor<double>& H) {
   return small_strain_stress(law, 0.5 * (H + transpose(H)));
-}
-
-/// L : A : L of the tangent in the current configuration for a basis of the spatial gradients L, with dF = L
-/// F.
-template <class Law>
-Matrix<double, 9, 9> current_tangent(const Law& law, const Tensor<double>& H) {
-  const Tensor<double> F = identity<double>() + H;
-  Matrix<double, 9, 9> A{};
-  for (int n = 0; n < 9; ++n) {
-    const Tensor<double> dF = unit<3, 3>(static_cast<std::size_t>(n)) * F;
-    const Tensor<double> current = slope(law.piola(along(H, dF))) * transpose(F);
-    for (int m = 0; m < 9; ++m) A(m, n) = current.entries[static_cast<std::size_t>(m)];
-  }
-  return A;
-}
-
-/// bound - A for the bound volumetric (tr L)^2 + gradient |L|^2.
-Matrix<double, 9, 9> slack(const TangentBound<double>& bound, const Matrix<double, 9, 9>& A) {
-  Matrix<double, 9, 9> difference = -1.0 * A;
-  for (int n = 0; n < 9; ++n) difference(n, n) += bound.gradient;
-  for (int i = 0; i < 9; i += 4) {
-    for (int j = 0; j < 9; j += 4) difference(i, j) += bound.volumetric;
-  }
-  return difference;
 }
 
 template <class Law>
@@ -107,7 +84,10 @@ TYPED_TEST(LawTest, energy_splits_into_isochoric_and_volumetric) {
     const auto H = this->large_gradient();
     const double J_minus_one = jacobian_minus_one(H);
     const double sum = law.isochoric_energy(H) + law.volumetric_energy(J_minus_one);
-    EXPECT_NEAR(law.energy(H), sum, 16 * eps * sum);
+    // The same sum twice, which the compiler may contract differently. Each is within 32 roundings: the terms
+    // of the neo-Hookean r have some twenty between them and are up to five times their difference, of which
+    // the root leaves a third.
+    EXPECT_NEAR(law.energy(H), sum, 64 * eps * sum);
     const auto stress = law.isochoric_piola(H) + law.pressure(J_minus_one) * cofactor(identity<double>() + H);
     EXPECT_LT(largest_entry(law.piola(H) - stress), this->tolerance(law, H));
     // An isochoric energy does not see a change of size: F and 1.3 F have the same. A law that does not split

@@ -4,6 +4,7 @@
 #include "material/fibre_neo_hookean.hpp"
 #include "material/mooney_rivlin.hpp"
 #include "material/neo_hookean.hpp"
+#include "material/ogden.hpp"
 #include "material/st_venant_kirchhoff.hpp"
 #include "material/yeoh.hpp"
 
@@ -15,7 +16,7 @@ namespace sandglass {
 /// isochoric_tangent_bound; and what the kernels run, weighted_piola and weighted_kirchhoff. QuadraticVolume
 /// holds what they have in common. A law that is not isotropic gives small_strain_stress; one with rules
 /// between its parameters broken_rule.
-using Laws = TypeList<NeoHookean, StVenantKirchhoff, MooneyRivlin, Yeoh, FibreNeoHookean>;
+using Laws = TypeList<NeoHookean, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, FibreNeoHookean>;
 
 /// A law chosen at run time.
 using AnyLaw = VariantOf<Laws>;

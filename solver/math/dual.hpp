@@ -1,6 +1,6 @@
 #pragma once
 
-#include "math/scalar.hpp"
+#include "math/exponential.hpp"
 
 namespace sandglass {
 

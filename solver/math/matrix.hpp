@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "math/scalar.hpp"
+#include "math/exponential.hpp"
 
 namespace sandglass {
 

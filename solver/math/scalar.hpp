@@ -8,7 +8,8 @@
 
 /// The vocabulary of scalar functions that kernels may use. A number type (double, float, a pack, a counter,
 /// a dual number) joins by giving these overloads in this namespace; kernels then need no change. There is no
-/// `if` on a value in a kernel: `select` and `any` take its place, because a pack cannot branch.
+/// `if` on a value in a kernel: `select` and `any` take its place, because a pack cannot branch. expm1 and
+/// log1p belong to it too; they are in exponential.hpp.
 namespace sandglass {
 
 // clang-format off
@@ -16,8 +17,6 @@ template <std::floating_point T> T sqrt(T x) { return std::sqrt(x); }
 template <std::floating_point T> T abs(T x) { return std::abs(x); }
 template <std::floating_point T> T max(T a, T b) { return std::max(a, b); }
 template <std::floating_point T> T min(T a, T b) { return std::min(a, b); }
-template <std::floating_point T> T log1p(T x) { return std::log1p(x); }
-template <std::floating_point T> T expm1(T x) { return std::expm1(x); }
 // clang-format on
 
 /// x^(-1/3) from a guess y within 3.4 %: two steps of fourth order from r = 1 - x y^3, y (1 - r)^(-1/3)

@@ -30,6 +30,11 @@ inline double sample_value(std::string_view name, std::string_view unit, const R
   if (name == "c1") return mu / 2.0;
   if (name == "c2") return -mu / 20.0;
   if (name == "c3") return mu / 100.0;
+  // Ogden: mu = mu1 + mu2, brain tissue's exponent and a stiffening one.
+  if (name == "mu1") return 0.7 * mu;
+  if (name == "mu2") return 0.3 * mu;
+  if (name == "alpha1") return -4.7;
+  if (name == "alpha2") return 3.0;
   if (unit == "Pa") return E;
   if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
   return std::isfinite(range.low) ? range.low + 1.0 : 1.0;

@@ -1,0 +1,190 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <tuple>
+
+#include "base/parameter.hpp"
+#include "material/quadratic_volume.hpp"
+#include "material/tangent_bound.hpp"
+#include "math/spectral.hpp"
+#include "math/strain.hpp"
+
+namespace sandglass {
+
+/// Ogden's law in isochoric principal stretches lbar_a = J^(-1/3) l_a, with two terms,
+///   W = sum_p 2 mu_p / alpha_p^2 (lbar_1^alpha_p + lbar_2^alpha_p + lbar_3^alpha_p - 3) + K/2 (J - 1)^2.
+/// The sum of the mu_p is the shear modulus at rest: the convention of ABAQUS, and of Miller and Chinzei for
+/// the brain (J. Biomech. 35 (2002) 483: mu = 842 Pa, alpha = -4.7 at once). alpha = 2 is the neo-Hookean
+/// law, 2 and -2 together Mooney and Rivlin's, 0 Hencky's. Energies in J/m^3, stresses in Pa, per reference
+/// volume.
+///
+/// Written in logarithmic stretches x_a = ln lbar_a, which sum to zero, so that nothing cancels near rest.
+/// With b = F F^T = m (I + S), m its mean and S its relative deviator, x_a is half the deviator of
+/// log1p(S_a): the change of volume never enters.
+struct Ogden : QuadraticVolume<Ogden> {
+  static constexpr std::string_view name = "ogden";
+  static constexpr std::string_view summary = "two powers of the isochoric principal stretches";
+
+  double mu1 = 0.0;
+  double alpha1 = 2.0;
+  double mu2 = 0.0;
+  double alpha2 = 2.0;
+  double K = 0.0;
+
+  static constexpr auto parameters() {
+    return std::tuple{
+        Parameter{&Ogden::mu1, "mu1", "Pa", Range::positive(), "shear modulus of the first term"},
+        Parameter{&Ogden::alpha1, "alpha1", "-", Range::any(), "exponent of the first term"},
+        Parameter{&Ogden::mu2, "mu2", "Pa", Range::at_least(0.0), "shear modulus of the second term", false},
+        Parameter{&Ogden::alpha2, "alpha2", "-", Range::any(), "exponent of the second term", false},
+        Parameter{&Ogden::K, "bulk_modulus", "Pa", Range::positive(), "bulk modulus at rest"}};
+  }
+
+  constexpr double shear_modulus() const { return mu1 + mu2; }
+  constexpr double bulk_modulus() const { return K; }
+
+  /// sum_p 2 mu_p / alpha_p^2 sum_a (e^(alpha x_a) - 1): because the x_a sum to zero, alpha x_a may be
+  /// subtracted, and what is left is positive term by term.
+  template <class T>
+  T isochoric_energy(const Tensor<T>& H) const {
+    const auto x = logarithmic_stretches(spectrum(relative_deviator(H)).values);
+    T W = T(0);
+    for (const T& x_a : x)
+      W = W + x_a * x_a * sum_of_terms(x_a, [](const T& y) { return relative_exponential_remainder(y); });
+    return W;
+  }
+
+  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
+  /// p (Pa, tension positive) that need not be the law's own: P = (tau / J + p I) cof F with the isochoric
+  /// Kirchhoff stress tau, which is of the first order in strain by itself.
+  template <class T>
+  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
+    const T r = change.inverse_root;
+    Tensor<T> sigma = (V * (r * r * r)) * isochoric_kirchhoff(H);
+    Tensor<T> cof_F = cofactor(H) - transpose(H);
+    const T diagonal = T(1) + trace(H);
+    for (int i = 0; i < 3; ++i) {
+      sigma(i, i) = sigma(i, i) + V * p;
+      cof_F(i, i) = cof_F(i, i) + diagonal;
+    }
+    return sigma * cof_F;
+  }
+
+  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on, with p J I in it.
+  template <class T>
+  Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+                               const T& p) const {
+    Tensor<T> tau = V * isochoric_kirchhoff(H);
+    const T mean = V * p * (T(1) + change.J_minus_one);
+    for (int i = 0; i < 3; ++i) tau(i, i) = tau(i, i) + mean;
+    return tau;
+  }
+
+  /// Bound of the isochoric tangent in the current configuration; see TangentBound. In the principal frame
+  /// (Ogden, Non-linear Elastic Deformations, section 6.1.4) d^2 W falls apart.
+  ///
+  /// Shear in a plane of two axes, with the secant g = (t_a - t_b)/(S_a - S_b) of the principal stresses t:
+  /// a form of (L_ab, L_ba) with g (1 + S_b) and g (1 + S_a) on its diagonal and c = g (1 + S_a) - t_a beside
+  /// it. Its larger eigenvalue is a bound of `gradient`.
+  ///
+  /// Stretch along the axes, l_a = L_aa: sum_a (k_a (dev l)_a^2 - t_a l_a^2) with k_a = sum_p 2 mu_p
+  /// lbar_a^alpha_p. With l = s u + w, u = (1, 1, 1)/sqrt 3, w normal to it, that is at most
+  /// top |w|^2 + 2 |t|/sqrt 3 |s| |w|, since the t_a sum to zero; top = mean(k - t) + |dev(k - t)|/sqrt 6 is
+  /// the larger eigenvalue of diag(k - t) between such w. The mixed term is halved between s^2 and |w|^2.
+  template <class T>
+  TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
+    const std::array<T, 3> S = spectrum(relative_deviator(H)).values;
+    const std::array<T, 3> x = logarithmic_stretches(S);
+    const std::array<T, 3> t = principal_stresses(x);
+    const std::array<T, 3> g = stress_secants(S);
+    T gradient = T(0);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t a = (c + 1) % 3, b = (c + 2) % 3;
+      const T half = T(0.5) * g[c] * (T(2) + S[a] + S[b]);
+      const T mixed = half - T(0.5) * (t[a] + t[b]);
+      const T apart = T(0.5) * (t[a] - t[b]);
+      gradient = max(gradient, half + sqrt(apart * apart + mixed * mixed));
+    }
+    std::array<T, 3> k_minus_t;
+    for (std::size_t a = 0; a < 3; ++a) {
+      k_minus_t[a] = T(2) * sum_of_terms(x[a], [](const T& y) { return T(1) + expm1(y); }) - t[a];
+    }
+    const T mean = T(1.0 / 3.0) * (k_minus_t[0] + k_minus_t[1] + k_minus_t[2]);
+    const T top = mean + T(1.0 / std::sqrt(6.0)) * length(without_mean(k_minus_t));
+    const T mixed = T(1.0 / std::sqrt(3.0)) * length(t);
+    gradient = max(gradient, top + mixed);
+    return {.volumetric = T(1.0 / 3.0) * (mixed - gradient), .gradient = gradient};
+  }
+
+ private:
+  /// S = b/m - I with b = F F^T and m = tr b / 3.
+  template <class T>
+  static Tensor<T> relative_deviator(const Tensor<T>& H) {
+    const Tensor<T> e = left_cauchy_green_minus_identity(H);
+    return (T(1) / (T(1) + T(1.0 / 3.0) * trace(e))) * deviator(e);
+  }
+
+  template <class T>
+  static std::array<T, 3> without_mean(const std::array<T, 3>& a) {
+    const T mean = T(1.0 / 3.0) * (a[0] + a[1] + a[2]);
+    return {a[0] - mean, a[1] - mean, a[2] - mean};
+  }
+  template <class T>
+  static T length(const std::array<T, 3>& a) {
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+  }
+
+  /// x_a = ln lbar_a from the principal values of the relative deviator.
+  template <class T>
+  static std::array<T, 3> logarithmic_stretches(const std::array<T, 3>& S) {
+    return without_mean(std::array<T, 3>{T(0.5) * log1p(S[0]), T(0.5) * log1p(S[1]), T(0.5) * log1p(S[2])});
+  }
+
+  /// sum_p mu_p f(alpha_p x).
+  template <class T, class Function>
+  T sum_of_terms(const T& x, const Function& f) const {
+    return T(mu1) * f(T(alpha1) * x) + T(mu2) * f(T(alpha2) * x);
+  }
+
+  /// t_a = dW/dx_a: the deviator of 2 mu / alpha (e^(alpha x_a) - 1), whose quotient knows alpha = 0.
+  template <class T>
+  std::array<T, 3> principal_stresses(const std::array<T, 3>& x) const {
+    std::array<T, 3> t;
+    for (std::size_t a = 0; a < 3; ++a) {
+      t[a] = T(2) * x[a] * sum_of_terms(x[a], [](const T& y) { return relative_expm1(y); });
+    }
+    return without_mean(t);
+  }
+
+  /// (t_a - t_b)/(S_a - S_b) for the pairs of axes, each at its third one. With l = ln((1 + S_a)/(1 + S_b)),
+  /// a the larger of both, it is sum_p mu_p e^(alpha x_b) (e^(alpha l/2) - 1)/(alpha l/2) times l/(S_a -
+  /// S_b).
+  template <class T>
+  std::array<T, 3> stress_secants(const std::array<T, 3>& S) const {
+    const std::array<T, 3> x = logarithmic_stretches(S);
+    std::array<T, 3> secants;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t a = (c + 1) % 3, b = (c + 2) % 3;
+      const T low = min(S[a], S[b]);
+      const T x_low = min(x[a], x[b]);
+      const T z = (max(S[a], S[b]) - low) / (T(1) + low);
+      const T l = log1p(z);
+      const auto term = [&](double mu, double alpha) {
+        return T(mu) * (T(1) + expm1(T(alpha) * x_low)) * relative_expm1(T(0.5 * alpha) * l);
+      };
+      secants[c] = (term(mu1, alpha1) + term(mu2, alpha2)) * relative_log1p(z) / (T(1) + low);
+    }
+    return secants;
+  }
+
+  /// The isochoric part of the Kirchhoff stress.
+  template <class T>
+  Tensor<T> isochoric_kirchhoff(const Tensor<T>& H) const {
+    const Spectrum<T> S = spectrum(relative_deviator(H));
+    return isotropic_tensor(S, principal_stresses(logarithmic_stretches(S.values)),
+                            [this](const auto& values) { return stress_secants(values); });
+  }
+};
+
+}  // namespace sandglass
