@@ -65,9 +65,16 @@ void element(State& state) {
     }
     motion.X = to_modes(X);
   }
+  if constexpr (Kernel::averages_over_nodes) {
+    motion.dilatation = filled<decltype(motion.dilatation), Number>(1e-3);
+  }
   for ([[maybe_unused]] auto _ : state) {
     for (std::size_t block = 0; block < blocks; ++block) {
       benchmark::DoNotOptimize(motion);
+      if constexpr (Kernel::averages_over_nodes) {
+        const auto volumes = Kernel::nodal_volumes(motion, constants[block]);
+        benchmark::DoNotOptimize(volumes);
+      }
       const auto f = Kernel::force(Kernel::deformation(motion, constants[block]), constants[block],
                                    histories[block], law);
       benchmark::DoNotOptimize(f);

@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 #include "model/internal_force.hpp"
-#include "support/random_hexahedra.hpp"
+#include "support/fitting_elements.hpp"
 #include "support/sample_law.hpp"
 #include "support/tangent.hpp"
 #include "support/typed_lists.hpp"
@@ -38,13 +38,13 @@ class FormulationTest : public ::testing::Test {
   };
 
   Sample sample(int n) {
-    const auto X = random.hexahedron();
+    const auto X = fitting_hexahedron<typename Pair::Kernel>(random);
     const Law law = sample_law<Law>(poisson_ratios[static_cast<std::size_t>(n) % poisson_ratios.size()]);
     return {X, law, Kernel::precompute(X, law, {})};
   }
 
   NodalVectors<double> large_displacements(const NodalVectors<double>& X) {
-    return random.displacements(X, 0.6, 1.6, 0.15);
+    return fitting_displacements<typename Pair::Kernel, Law>(random, X, 0.6, 1.6, 0.15);
   }
 
   static constexpr int samples = 60;

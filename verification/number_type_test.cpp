@@ -10,7 +10,7 @@
 #include "element/operation_count.hpp"
 #include "math/counted.hpp"
 #include "math/pack.hpp"
-#include "support/random_hexahedra.hpp"
+#include "support/fitting_elements.hpp"
 #include "support/sample_law.hpp"
 #include "support/typed_lists.hpp"
 
@@ -91,12 +91,12 @@ class PackedKernel : public testing::Test {
   }
 
   Sample sample(const typename Pair::Law& law) {
-    const NodalVectors<double> X = random.hexahedron();
+    const NodalVectors<double> X = fitting_hexahedron<Kernel>(random);
+    const auto u = fitting_displacements<Kernel, typename Pair::Law>(random, X, 0.7, 1.4, 0.1);
     const double size = std::cbrt(mean_gradient(X).volume);
-    Sample s{{to_modes(random.displacements(X, 0.7, 1.4, 0.1)), {}, to_modes(X)},
-             Kernel::precompute(X, law, {}),
-             {}};
+    Sample s{{to_modes(u), {}, to_modes(X)}, Kernel::precompute(X, law, {}), {}};
     for (auto& entry : s.motion.increment.entries) entry = random.uniform(-0.01, 0.01) * size;
+    for (auto& entry : s.motion.dilatation) entry = random.uniform(-0.1, 0.1);
     if constexpr (Kernel::remembers) {
       for (auto& entry : s.history.Q.entries) entry = random.uniform(-1, 1) * size * size;
     }

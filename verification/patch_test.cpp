@@ -24,6 +24,9 @@ class PatchTest : public ::testing::Test {
   using Law = typename Pair::Law;
 
   static Law law() { return sample_law<Law>(poisson_ratio, young_modulus); }
+  static Scene patch(const Tensor<double>& H) {
+    return patch_scene(law(), H, fitting_patch<typename Pair::Kernel>());
+  }
   static MethodChoice method() { return {std::string(Pair::Method::name), {}}; }
 
   /// How far the displacements are from H X, over the largest of them.
@@ -60,7 +63,7 @@ class PatchTest : public ::testing::Test {
 
   /// Relaxes and expects the exact answer.
   static void expect_exact(const Tensor<double>& H) {
-    Scene scene = patch_scene(law(), H);
+    Scene scene = patch(H);
     scene.description.relaxation.tolerance = 1e-12;
     const Model model(scene, method());
     Observer silent;
@@ -91,7 +94,7 @@ TYPED_TEST(PatchTest, finite_strain_is_exact) {
 /// 1e-6. Centre gradients would give 1766 to 2150, weights 8 det J(0) 1967 to 2040.
 TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
   const double factor = 1e-4;  // strain 1e-7
-  Scene scene = patch_scene(this->law(), macneal_harder_gradient(factor));
+  Scene scene = this->patch(macneal_harder_gradient(factor));
   scene.description.relaxation.tolerance = 1e-10;
   const Model model(scene, this->method());
   Observer silent;
@@ -119,7 +122,7 @@ TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
 /// after the ramp.
 TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
   for (const auto& H : {macneal_harder_gradient(), finite_gradient}) {
-    Scene scene = patch_scene(this->law(), H);
+    Scene scene = this->patch(H);
     scene.description.quasi_static = false;
     scene.description.dynamics.duration = 30.0;
     scene.description.dynamics.ramp_time = 5.0;
@@ -137,7 +140,7 @@ TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
 
 /// The affine state is not only found but is an equilibrium: no force at the inner nodes, to roundoff.
 TYPED_TEST(PatchTest, affine_displacements_are_an_equilibrium) {
-  const Scene scene = patch_scene(this->law(), finite_gradient);
+  const Scene scene = this->patch(finite_gradient);
   const Model model(scene, this->method());
   NodalField u;
   for (const auto& X : scene.mesh.points) u.push_back(linear(finite_gradient, X));

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "stepping/central_difference.hpp"
-#include "support/random_hexahedra.hpp"
+#include "support/fitting_elements.hpp"
 #include "support/sample_law.hpp"
 #include "support/scenes.hpp"
 #include "support/tangent.hpp"
@@ -30,7 +30,7 @@ class StableStepTest : public ::testing::Test {
   Sharpness sharpness(int samples, const Deform& deform, const HourglassSettings& settings = {}) {
     Sharpness result;
     for (int n = 0; n < samples; ++n) {
-      const auto X = random.hexahedron();
+      const auto X = fitting_hexahedron<typename Pair::Kernel>(random);
       const Law law = sample_law<Law>(poisson_ratios[index(n) % poisson_ratios.size()]);
       const auto element = Kernel::precompute(X, law, settings);
       const NodalVectors<double> u = deform(X);
@@ -43,6 +43,14 @@ class StableStepTest : public ::testing::Test {
     this->RecordProperty("mean_true_over_bound", std::to_string(result.mean));
     this->RecordProperty("smallest_true_over_bound", std::to_string(result.worst));
     return result;
+  }
+
+  /// Displacements for `sharpness`.
+  auto deformed(double smallest_stretch, double largest_stretch, double waviness) {
+    return [=, this](const NodalVectors<double>& X) {
+      return fitting_displacements<typename Pair::Kernel, Law>(random, X, smallest_stretch, largest_stretch,
+                                                               waviness);
+    };
   }
 
   RandomGeometry random{17};
@@ -59,14 +67,12 @@ TYPED_TEST(StableStepTest, bound_holds_at_rest) {
 }
 
 TYPED_TEST(StableStepTest, bound_holds_when_deformed) {
-  const auto sharp =
-      this->sharpness(1000, [this](const auto& X) { return this->random.displacements(X, 0.7, 1.5, 0.15); });
+  const auto sharp = this->sharpness(1000, this->deformed(0.7, 1.5, 0.15));
   EXPECT_GT(sharp.mean, 0.25);
 }
 
 TYPED_TEST(StableStepTest, bound_holds_under_strong_compression) {
-  const auto sharp =
-      this->sharpness(500, [this](const auto& X) { return this->random.displacements(X, 0.35, 1.0, 0.03); });
+  const auto sharp = this->sharpness(500, this->deformed(0.35, 1.0, 0.03));
   EXPECT_GT(sharp.mean, 0.25);
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "element/corner_gradients.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/one_point.hpp"
 
@@ -35,37 +36,6 @@ struct MeanPressure {
     return mean;
   }
 };
-
-namespace detail {
-
-/// A parent axis: the two others, and which of the hourglass modes eta zeta, xi zeta, xi eta vary along it
-/// with the second axis and with the third; xi eta zeta varies with both.
-struct ParentAxis {
-  int second;
-  int third;
-  std::size_t with_second;
-  std::size_t with_third;
-};
-inline constexpr std::array<ParentAxis, 3> parent_axes{{{1, 2, 2, 1}, {0, 2, 2, 0}, {0, 1, 1, 0}}};
-
-/// The two Gauss points on each of the four lines along a parent axis; lines are ordered by the signs along
-/// the second, then the third axis. Gauss points stand in the order of the corners.
-using GaussLines = std::array<std::array<std::size_t, 2>, 4>;
-constexpr GaussLines gauss_lines(const ParentAxis& axis) {
-  GaussLines lines{};
-  std::array<std::size_t, 4> found{};
-  for (std::size_t q = 0; q < 8; ++q) {
-    const auto corner = static_cast<int>(q);
-    const std::size_t line = (corner_signs(corner, axis.second) > 0.0 ? 1U : 0U) +
-                             (corner_signs(corner, axis.third) > 0.0 ? 2U : 0U);
-    lines[line][found[line]++] = q;
-  }
-  return lines;
-}
-inline constexpr std::array<GaussLines, 3> lines_along{
-    gauss_lines(parent_axes[0]), gauss_lines(parent_axes[1]), gauss_lines(parent_axes[2])};
-
-}  // namespace detail
 
 /// The hexahedron with 2x2x2 Gauss points. Pressure is a policy: `PointPressure` gives the displacement
 /// element, which locks as nu -> 1/2; `MeanPressure` the mean-dilatation element, the explicit twin of the
@@ -195,56 +165,26 @@ struct EightPoint {
  private:
   static constexpr double g = gauss_coordinate;
 
-  /// Parent gradients du_i/dxi_k at the Gauss points, times 8. Along each axis the gradient is bilinear in
-  /// the two others, so that it has four values: additions of modes scaled once by g and g^2.
+  /// Modes as the corners of a cube of half edge g see them: its gradients are those at the Gauss points.
+  template <class T>
+  static Modes<T> at_gauss_points(Modes<T> modes) {
+    for (int i = 0; i < 3; ++i) {
+      for (int m = 3; m < 6; ++m) modes(m, i) = T(g) * modes(m, i);
+      modes(6, i) = T(g * g) * modes(6, i);
+    }
+    return modes;
+  }
+
+  /// Parent gradients du_i/dxi_k at the Gauss points, times 8.
   template <class T>
   static std::array<Tensor<T>, 8> parent_gradients(const Modes<T>& modes) {
-    std::array<Tensor<T>, 8> gradients;
-    for (int i = 0; i < 3; ++i) {
-      const std::array<T, 3> bilinear{T(g) * modes(3, i), T(g) * modes(4, i), T(g) * modes(5, i)};
-      const T trilinear = T(g * g) * modes(6, i);
-      for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        const T b = bilinear[detail::parent_axes[axis].with_second];
-        const T c = bilinear[detail::parent_axes[axis].with_third];
-        const T low = modes(k, i) - b, high = modes(k, i) + b;  // by the sign along the second axis
-        const T low_c = c - trilinear, high_c = c + trilinear;  // what the sign along the third multiplies
-        const std::array<T, 4> values{low - low_c, high - high_c, low + low_c, high + high_c};
-        for (std::size_t line = 0; line < 4; ++line) {
-          for (const std::size_t q : detail::lines_along[axis][line]) gradients[q](i, k) = values[line];
-        }
-      }
-    }
-    return gradients;
+    return corner_gradients(at_gauss_points(modes));
   }
 
   /// The transpose of `parent_gradients`: what fluxes at the points do to the modes.
   template <class T>
   static Modes<T> parent_divergence(const std::array<Tensor<T>, 8>& flux) {
-    Modes<T> f;
-    for (int i = 0; i < 3; ++i) {
-      std::array<T, 3> bilinear{T(0), T(0), T(0)};
-      T trilinear = T(0);
-      for (int k = 0; k < 3; ++k) {
-        const auto axis = static_cast<std::size_t>(k);
-        std::array<T, 4> values;
-        for (std::size_t line = 0; line < 4; ++line) {
-          const auto& [q, r] = detail::lines_along[axis][line];
-          values[line] = flux[q](i, k) + flux[r](i, k);
-        }
-        const T low = values[0] + values[1], high = values[2] + values[3];
-        const T low_b = values[1] - values[0], high_b = values[3] - values[2];
-        T& second = bilinear[detail::parent_axes[axis].with_second];
-        T& third = bilinear[detail::parent_axes[axis].with_third];
-        f(k, i) = low + high;
-        second = second + (low_b + high_b);
-        third = third + (high - low);
-        trilinear = trilinear + (high_b - low_b);
-      }
-      for (int a = 0; a < 3; ++a) f(3 + a, i) = T(g) * bilinear[static_cast<std::size_t>(a)];
-      f(6, i) = T(g * g) * trilinear;
-    }
-    return f;
+    return at_gauss_points(corner_divergence(flux));
   }
 
   /// Displacement gradients at the Gauss points.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <type_traits>
 
 #include "element/hourglass_settings.hpp"
@@ -26,10 +27,39 @@ struct Formulation {
   static constexpr bool needs_increment = Kinematics::needs_increment;
   static constexpr bool needs_coordinates = Kinematics::needs_coordinates;
 
+  /// Whether the force needs the dilatation around each node: the assembly then goes twice through the
+  /// elements, first for their `nodal_volumes`. Kinematics that do not say so look at their element alone.
+  static constexpr bool averages_over_nodes = [] {
+    if constexpr (requires { Kinematics::averages_over_nodes; }) return Kinematics::averages_over_nodes;
+    return false;
+  }();
+
+  /// How often the assembly goes through the elements in a step.
+  static constexpr int passes = averages_over_nodes ? 2 : 1;
+
+  /// Whether the element can be made of these reference coordinates (m), of a hexahedron whose Gauss points
+  /// all have a positive measure. Kinematics that do not say so can.
+  static bool accepts(const NodalVectors<double>& X) {
+    if constexpr (requires { Kinematics::accepts(X); }) return Kinematics::accepts(X);
+    return true;
+  }
+
+  /// What `accepts` asks of it, in words.
+  static constexpr std::string_view demand = [] {
+    if constexpr (requires { Kinematics::demand; }) return Kinematics::demand;
+    return std::string_view{};
+  }();
+
   /// The constants of an element with reference coordinates X (m).
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& settings) {
     return {Kinematics::precompute(X), Hourglass::precompute(X, law, settings)};
+  }
+
+  /// What the element adds to its nodes in the first of two passes; of the motion, u alone is known.
+  template <class T>
+  static NodalVolumes<T> nodal_volumes(const ElementMotion<T>& motion, const Element<T>& element) {
+    return Kinematics::nodal_volumes(motion, element.body);
   }
 
   /// What the force needs of the motion: the first half of a step. Two halves let a loop begin the next
@@ -81,11 +111,12 @@ struct Formulation {
   }
 };
 
-/// One element that remembers nothing, from nodal displacements u (m) to nodal forces (N): the plain form of
-/// the functions above, for who looks at a single element.
+/// One element that remembers nothing and stands alone, from nodal displacements u (m) to nodal forces (N):
+/// the plain form of the functions above, for who looks at a single element.
 template <class Kernel>
 struct NodalForm : Kernel {
-  static_assert(!Kernel::remembers && !Kernel::needs_increment && !Kernel::needs_coordinates);
+  static_assert(!Kernel::remembers && !Kernel::needs_increment && !Kernel::needs_coordinates &&
+                !Kernel::averages_over_nodes);
 
   template <class T, class Element, class Law>
   static NodalVectors<T> force(const NodalVectors<T>& u, const Element& element, const Law& law) {
@@ -116,7 +147,7 @@ struct NodalForm : Kernel {
  private:
   template <class T>
   static ElementMotion<T> motion(const NodalVectors<T>& u) {
-    return {.u = to_modes(u), .increment = {}, .X = {}, .inverse_step = T(0)};
+    return {.u = to_modes(u), .increment = {}, .X = {}, .inverse_step = T(0), .dilatation = {}};
   }
 };
 

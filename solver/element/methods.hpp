@@ -10,6 +10,7 @@
 #include "element/hourglass_perturbation.hpp"
 #include "element/hourglass_rate_perturbation.hpp"
 #include "element/one_point.hpp"
+#include "element/tetrahedra.hpp"
 #include "element/updated_one_point.hpp"
 
 namespace sandglass {
@@ -67,10 +68,27 @@ struct TlMeanDilatation {
   using Hourglass = NoHourglassControl;
 };
 
+struct T4 {
+  static constexpr std::string_view name = "t4";
+  static constexpr std::string_view summary =
+      "linear tetrahedra, both cuts of a hexahedron into five: locks as nu -> 1/2";
+  static constexpr int integration_points = 10;
+  using Kinematics = Tetrahedra<OwnPressure>;
+  using Hourglass = NoHourglassControl;
+};
+
+struct T4Anp {
+  static constexpr std::string_view name = "t4-anp";
+  static constexpr std::string_view summary = "the same tetrahedra with pressures averaged at the nodes";
+  static constexpr int integration_points = 10;
+  using Kinematics = Tetrahedra<NodalPressure>;
+  using Hourglass = NoHourglassControl;
+};
+
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
-using Methods =
-    TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull, TlMeanDilatation>;
+using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull,
+                         TlMeanDilatation, T4, T4Anp>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

@@ -97,6 +97,23 @@ inline Modes<Counted> modes_in_strip(const FaceModes<Counted>& lower, Operations
   return modes_between(lower, to_face_modes(upper));
 }
 
+/// The first pass of kernels that average over nodes, and what the second gathers of it: the lower face is
+/// known from the element before.
+template <class Kernel>
+std::array<Counted, 8> averages(const typename Kernel::template Element<Counted>& element,
+                                Operations& tally) {
+  ElementMotion<Counted> motion;
+  motion.u = modes_in_strip(counted<FaceModes<Counted>>(tally, 1e-3), tally, 2e-3);
+  const auto volumes = Kernel::nodal_volumes(motion, element);
+  const auto carried = counted<NodalVolumes<Counted>>(tally, 1.0);
+  auto dilatation = counted<std::array<Counted, 8>>(tally, 1e-3);
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const Counted change = carried.change[4 + corner] + volumes.change[corner];
+    dilatation[4 + corner] = change / (carried.rest[4 + corner] + volumes.rest[corner]);
+  }
+  return dilatation;
+}
+
 }  // namespace detail
 
 /// Counts what one element costs in one step, as the assembly runs it: in a strip, where a face's modes serve
@@ -115,6 +132,7 @@ OperationCount count_operations(const Law& law) {
   motion.inverse_step = Counted(1e3, tally);
   if constexpr (Kernel::needs_coordinates) motion.X = detail::modes_in_strip(lower, tally, 1.0);
   OperationCount count;
+  if constexpr (Kernel::averages_over_nodes) motion.dilatation = detail::averages<Kernel>(element, tally);
   typename Kernel::template History<Counted> history;
   if constexpr (Kernel::remembers) {
     history = detail::counted<typename Kernel::template History<Counted>>(tally, 1e-2);
@@ -131,7 +149,8 @@ OperationCount count_operations(const Law& law) {
   count.law = observed.inside();
   count.total = tally;
   using Element = typename Kernel::template Element<double>;
-  count.bytes += static_cast<long>((std::is_empty_v<Element> ? 0 : sizeof(Element)) + 4 * sizeof(Place));
+  count.bytes += Kernel::passes *
+                 static_cast<long>((std::is_empty_v<Element> ? 0 : sizeof(Element)) + 4 * sizeof(Place));
   count.force = tally - count.gradient - count.law;
   if constexpr (Hourglass::active) {
     const OperationCount without = count_operations<Kinematics, NoHourglassControl>(law);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -7,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "math/lanes.hpp"
 #include "model/face_gather.hpp"
@@ -44,33 +47,17 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   const Layout& layout() const override { return layout_; }
 
   State<Real> rest() const override {
-    State<Real> state{Rows<Real>(layout_.rows()), Rows<Real>(layout_.rows()), {}};
+    State<Real> state{Rows<Real>(layout_.rows()), Rows<Real>(layout_.rows()), {}, {}};
+    if constexpr (Kernel::averages_over_nodes) state.volumes.resize(layout_.rows());
     if constexpr (Kernel::remembers) state.history.resize(blocks_.size() * history_numbers);
     return state;
   }
 
   bool needs_increment() const override { return Kernel::needs_increment; }
 
-  /// Each thread takes a run of slabs and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of
-  /// even number comes before its neighbour, as it does for any number of threads, and finds what it needs
-  /// still in the cache. The last slab of a run waits for the thread that has the next one.
   void evaluate(State<Real>& state, Rows<Real>& force) const override {
-    const std::size_t pairs = (layout_.chunks.size() + 1) / 2;
-    const std::size_t runs = std::min(pairs, static_cast<std::size_t>(threads_));
-    const auto first_pair = [=](std::size_t run) { return pairs * run / runs; };
-    in_parallel(runs, threads_, [&](std::size_t run) {
-      for (std::size_t pair = first_pair(run); pair < first_pair(run + 1); ++pair) {
-        if (pair > 0) clear_rows_of(2 * pair - 1, force);
-        clear_rows_of(2 * pair, force);
-        add_chunk(2 * pair, state, numbers_of(force));
-        if (pair > first_pair(run)) add_chunk(2 * pair - 1, state, numbers_of(force));
-      }
-    });
-    if (layout_.chunks.size() % 2 == 0) clear_rows_of(layout_.chunks.size() - 1, force);
-    in_parallel(runs, threads_, [&](std::size_t run) {
-      const std::size_t last = 2 * first_pair(run + 1) - 1;
-      if (last < layout_.chunks.size()) add_chunk(last, state, numbers_of(force));
-    });
+    if constexpr (Kernel::averages_over_nodes) sum_volumes(state.u, state.volumes);
+    sum_over_elements(force, [&](std::size_t c) { add_chunk(c, state, numbers_of(force)); });
   }
 
   StrainEnergies energies(const State<Real>& state) const override {
@@ -122,12 +109,83 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     Faces u;
     Faces increment;
     Faces X;
+    std::array<Number, 4> dilatation;
   };
 
+  /// Clears the rows and adds to them what add(chunk) adds, chunk by chunk. Each thread takes a run of slabs
+  /// and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of even number comes before its
+  /// neighbour, as it does for any number of threads, and finds what it needs still in the cache. The last
+  /// slab of a run waits for the thread that has the next one.
+  template <class Add>
+  void sum_over_elements(Rows<Real>& rows, const Add& add) const {
+    const std::size_t pairs = (layout_.chunks.size() + 1) / 2;
+    const std::size_t runs = std::min(pairs, static_cast<std::size_t>(threads_));
+    const auto first_pair = [=](std::size_t run) { return pairs * run / runs; };
+    in_parallel(runs, threads_, [&](std::size_t run) {
+      for (std::size_t pair = first_pair(run); pair < first_pair(run + 1); ++pair) {
+        if (pair > 0) clear_rows_of(2 * pair - 1, rows);
+        clear_rows_of(2 * pair, rows);
+        add(2 * pair);
+        if (pair > first_pair(run)) add(2 * pair - 1);
+      }
+    });
+    if (layout_.chunks.size() % 2 == 0) clear_rows_of(layout_.chunks.size() - 1, rows);
+    in_parallel(runs, threads_, [&](std::size_t run) {
+      const std::size_t last = 2 * first_pair(run + 1) - 1;
+      if (last < layout_.chunks.size()) add(last);
+    });
+  }
+
   /// Clears the rows that a chunk is the first to meet.
-  void clear_rows_of(std::size_t c, Rows<Real>& force) const {
-    std::fill(force.data() + layout_.chunks[c].first_row, force.data() + layout_.chunks[c].last_row,
+  void clear_rows_of(std::size_t c, Rows<Real>& rows) const {
+    std::fill(rows.data() + layout_.chunks[c].first_row, rows.data() + layout_.chunks[c].last_row,
               Row<Real>{});
+  }
+
+  /// Sets each row of `volumes` to the change of volume around the node and to that volume at rest (m^3), a
+  /// third number unused.
+  void sum_volumes(const Rows<Real>& u, Rows<Real>& volumes) const {
+    sum_over_elements(volumes, [&](std::size_t c) { add_volumes(c, u, numbers_of(volumes)); });
+  }
+
+  /// Adds those of one chunk, as `add_chunk` does forces.
+  [[gnu::flatten, gnu::aligned(64)]] void add_volumes(std::size_t c, const Rows<Real>& u,
+                                                      Real* volumes) const {
+    const Layout::Chunk chunk = layout_.chunks[c];
+    for (std::size_t g = chunk.first; g < chunk.last; ++g) {
+      const Layout::Group group = layout_.groups[g];
+      Faces lower = gather_rows(u, group.first_face);
+      NodalVolumes<Number> carried{};
+      for (std::size_t k = 0; k < group.levels; ++k) {
+        const Faces upper = gather_rows(u, group.first_face + k + 1);
+        ElementMotion<Number> motion;
+        motion.u = modes_between(lower, upper);
+        const auto own = Kernel::nodal_volumes(motion, blocks_[group.first_level + k]);
+        scatter_volumes(carried, own, group.first_face + k, volumes);
+        carried = own;
+        lower = upper;
+      }
+      scatter_volumes(carried, NodalVolumes<Number>{}, group.first_face + group.levels, volumes);
+    }
+  }
+
+  /// Adds to the rows of a face what the element below and the one above have there.
+  void scatter_volumes(const NodalVolumes<Number>& below, const NodalVolumes<Number>& above, std::size_t face,
+                       Real* volumes) const {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      scatter_add<Number>({below.change[4 + corner] + above.change[corner],
+                           below.rest[4 + corner] + above.rest[corner], Number(Real(0))},
+                          volumes, layout_.places(face, corner));
+    }
+  }
+
+  std::array<Number, 4> gather_dilatations(const Rows<Real>& volumes, std::size_t face) const {
+    std::array<Number, 4> dilatations;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const auto [change, rest, unused] = gather<Number>(numbers_of(volumes), layout_.places(face, corner));
+      dilatations[corner] = change / rest;
+    }
+    return dilatations;
   }
 
   /// Adds the forces of one chunk. Without `flatten` the compiler leaves small matrix functions out of line,
@@ -138,11 +196,11 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const Layout::Group group = layout_.groups[g];
-      FaceMotion lower = gather_face(state, group.first_face);
+      FaceMotion lower = gather_face(state, state.volumes, group.first_face);
       Faces carried{};
       for (std::size_t k = 0; k < group.levels; ++k) {
         const std::size_t level = group.first_level + k;
-        const FaceMotion upper = gather_face(state, group.first_face + k + 1);
+        const FaceMotion upper = gather_face(state, state.volumes, group.first_face + k + 1);
         if (streams_) prefetch(state, level + levels_ahead);
         HistoryBlock remembered = history(state, level);
         const Modes<Number> f =
@@ -180,11 +238,12 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     return gather_face_modes<Number>(rows, layout_, face);
   }
 
-  FaceMotion gather_face(const State<Real>& state, std::size_t face) const {
+  FaceMotion gather_face(const State<Real>& state, const Rows<Real>& volumes, std::size_t face) const {
     FaceMotion motion;
     motion.u = gather_rows(state.u, face);
     if constexpr (Kernel::needs_increment) motion.increment = gather_rows(state.increment, face);
     if constexpr (Kernel::needs_coordinates) motion.X = gather_rows(coordinates_, face);
+    if constexpr (Kernel::averages_over_nodes) motion.dilatation = gather_dilatations(volumes, face);
     return motion;
   }
 
@@ -195,6 +254,10 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     motion.u = modes_between(lower.u, upper.u);
     if constexpr (Kernel::needs_increment) motion.increment = modes_between(lower.increment, upper.increment);
     if constexpr (Kernel::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
+    if constexpr (Kernel::averages_over_nodes) {
+      std::copy(lower.dilatation.begin(), lower.dilatation.end(), motion.dilatation.begin());
+      std::copy(upper.dilatation.begin(), upper.dilatation.end(), motion.dilatation.begin() + 4);
+    }
     return motion;
   }
 
@@ -231,10 +294,15 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   template <class Visit>
   void for_each_level(const State<Real>& state, const Visit& visit) const {
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
+    Rows<Real> volumes;
+    if constexpr (Kernel::averages_over_nodes) {
+      volumes.resize(layout_.rows());
+      sum_volumes(state.u, volumes);
+    }
     for (const auto& group : layout_.groups) {
-      FaceMotion lower = gather_face(state, group.first_face);
+      FaceMotion lower = gather_face(state, volumes, group.first_face);
       for (std::size_t k = 0; k < group.levels; ++k) {
-        const FaceMotion upper = gather_face(state, group.first_face + k + 1);
+        const FaceMotion upper = gather_face(state, volumes, group.first_face + k + 1);
         visit(group.first_level + k, between(lower, upper, inverse_step));
         lower = upper;
       }
@@ -258,6 +326,19 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   static_assert(sizeof(ElementBlock) == numbers * sizeof(Number),
                 "an element's constants must all be of its number type");
 
+  /// Throws InputError when the kernel cannot be made of an element with coordinates X (m).
+  static void require_accepted(const NodalVectors<double>& X) {
+    if (Kernel::accepts(X)) return;
+    Vector centre{};
+    for (int I = 0; I < 8; ++I) {
+      for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
+    }
+    throw InputError(
+        fmt::format("mesh: the element with centre ({:.6g}, {:.6g}, {:.6g}) does not suit the method; {}; "
+                    "mend the mesh or choose another method",
+                    centre[0], centre[1], centre[2], Kernel::demand));
+  }
+
   /// The constants of the elements between a face of the layout and the next.
   ElementBlock precompute(const Mesh& mesh, std::size_t face, const HourglassSettings& settings) const {
     std::array<Number, numbers> block;
@@ -269,6 +350,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
         const Vector& point = mesh.points[static_cast<std::size_t>(layout_.node_of_row[row])];
         for (int i = 0; i < 3; ++i) X(I, i) = point[static_cast<std::size_t>(i)];
       }
+      require_accepted(X);
       const auto constants =
           std::bit_cast<std::array<double, numbers>>(Kernel::precompute(X, law_, settings));
       for (std::size_t n = 0; n < numbers; ++n) {

@@ -24,9 +24,10 @@ struct StrainEnergies {
 /// What changes in time: nodal values in rows, in the order of the layout, and what elements remember.
 template <class Real>
 struct State {
-  Rows<Real> u;                                           ///< displacements, m
-  Rows<Real> increment;                                   ///< what the last step added to them, m
-  std::vector<Real> history;                              ///< of the elements; only they know its meaning
+  Rows<Real> u;               ///< displacements, m
+  Rows<Real> increment;       ///< what the last step added to them, m
+  std::vector<Real> history;  ///< of the elements; only they know its meaning
+  Rows<Real> volumes;         ///< scratch of `evaluate`, where elements average over nodes; else empty
   double step = std::numeric_limits<double>::infinity();  ///< s, that the increment took; infinite where time
                                                           ///< plays no part
 };

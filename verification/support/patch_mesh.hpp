@@ -21,10 +21,29 @@ inline Mesh macneal_harder_patch() {
 
 inline constexpr int first_corner = 8;
 
-/// The patch with u = H X imposed on its corners.
-inline Scene patch_scene(const AnyLaw& law, const Tensor<double>& H) {
+/// The same with its inner nodes moved towards those of a regular patch, by as many quarters of the way as
+/// the kernel asks for: none for hexahedra; but an element of the patch has a corner whose edges span a
+/// negative volume, which tetrahedra cannot have.
+template <class Kernel>
+Mesh fitting_patch() {
+  Mesh mesh = macneal_harder_patch();
+  const NodalField distorted = mesh.points;
+  const auto accepted = [&](const Hexahedron& cell) { return Kernel::accepts(gather(mesh.points, cell)); };
+  for (double share = 0.25; !std::ranges::all_of(mesh.cells, accepted); share += 0.25) {
+    for (int n = 0; n < first_corner; ++n) {
+      for (int i = 0; i < 3; ++i) {
+        const double regular = 0.5 + 0.25 * corner_signs(n, i);
+        double& x = mesh.points[index(n)][index(i)];
+        x = distorted[index(n)][index(i)] + share * (regular - distorted[index(n)][index(i)]);
+      }
+    }
+  }
+  return mesh;
+}
+
+/// A patch with u = H X imposed on its corners.
+inline Scene patch_scene(const AnyLaw& law, const Tensor<double>& H, const Mesh& mesh) {
   Case description = plain_case(law);
-  const Mesh mesh = macneal_harder_patch();
   NodeSets sets;
   std::vector<int> corners;
   for (int n = first_corner; n < first_corner + 8; ++n) corners.push_back(n);

@@ -64,7 +64,8 @@ struct Product<TypeList<EveryMethod...>, LawList> {
 
 /// Whether an element with its constants is all that a method needs beside the displacements.
 template <class Kernel>
-inline constexpr bool stands_alone = !Kernel::remembers && !Kernel::needs_coordinates;
+inline constexpr bool stands_alone =
+    !Kernel::remembers && !Kernel::needs_coordinates && !Kernel::averages_over_nodes;
 
 /// The pairs that stand alone.
 template <class List>

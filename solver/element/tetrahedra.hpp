@@ -1,0 +1,208 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/corner_gradients.hpp"
+#include "element/hourglass_none.hpp"
+#include "element/one_point.hpp"
+#include "element/tetrahedron_pressure.hpp"
+
+namespace sandglass {
+
+/// A hexahedron as linear tetrahedra: both ways to cut it into five, each at half its weight. Every face
+/// carries both diagonals from both sides, so that no colouring of the mesh is needed for neighbours to
+/// agree, no direction is preferred, the volume is that of the trilinear hexahedron, and so are the nodal
+/// forces of a uniform stress, for under a bilinear face lies the mean of what lies under its two
+/// triangulations: the patch test holds. A single cut costs half, prefers its diagonals, and fits its
+/// neighbours only in meshes whose elements can be coloured like a chess-board. Written in modes: eight of
+/// the displacement gradients are the corner gradients of the trilinear field, times 8
+///   a_k + s_j a_kj + s_l a_kl + s_j s_l a_123,
+/// the two inner ones a_k -+ a_jl, where k, j, l are the three axes. `Pressure` is a policy: `OwnPressure` or
+/// `NodalPressure`.
+template <class Pressure>
+struct Tetrahedra {
+  /// What is constant in time.
+  template <class T>
+  using Element = TetrahedronConstants<T>;
+
+  static constexpr bool needs_increment = false;
+  static constexpr bool needs_coordinates = false;
+  static constexpr bool averages_over_nodes = Pressure::averages_over_nodes;
+  using NoControl = NoHourglassControl;
+
+  static Element<double> precompute(const NodalVectors<double>& X) {
+    Element<double> element{};
+    const auto jacobians = parent_gradients(to_modes(X));  // times 8
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) {
+      element.inverse_jacobian[e] = inverse(jacobians[e]);
+      element.weight[e] = parent_weight(e) * determinant(0.125 * jacobians[e]);
+    }
+    return element;
+  }
+
+  /// What `accepts` asks of an element.
+  static constexpr std::string_view demand = "all tetrahedra it is cut into must have a positive volume";
+
+  static bool accepts(const NodalVectors<double>& X) {
+    const auto jacobians = parent_gradients(to_modes(X));
+    for (const auto& jacobian : jacobians) {
+      if (!(determinant(jacobian) > 0.0)) return false;
+    }
+    return true;
+  }
+
+  /// What the force needs of the motion, in each tetrahedron.
+  template <class T>
+  struct Deformation {
+    TetrahedronTensors<T> H;
+    TetrahedronValues<T> inverse_root;
+    TetrahedronValues<T> J_minus_one;
+    [[no_unique_address]] typename Pressure::template Around<T> around;
+  };
+
+  template <class Hourglass, class T>
+  static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
+    Deformation<T> now;
+    now.H = gradients(motion, element);
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) {
+      const VolumeChange<T> change = volume_change(now.H[e]);
+      now.J_minus_one[e] = change.J_minus_one;
+      now.inverse_root[e] = change.inverse_root;
+    }
+    now.around = Pressure::around(motion);
+    return now;
+  }
+
+  /// Internal forces (N) in modes: sum_e w_e B_e (P_iso(H_e) + p_e cof F_e)^T.
+  template <class Hourglass, class T, class Law>
+  static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
+                        const NoControl::Element<T>& /*control*/, NoHistory<T>& /*history*/, const Law& law) {
+    const TetrahedronValues<T> p = Pressure::pressures(now.J_minus_one, now.around, law);
+    TetrahedronTensors<T> flux;  // w P J^-T, the stress that the parent gradient carries
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) {
+      const VolumeChange<T> change{now.J_minus_one[e], now.inverse_root[e]};
+      flux[e] = law.weighted_piola(element.weight[e], now.H[e], change, p[e]) *
+                transpose(element.inverse_jacobian[e]);
+    }
+    return parent_divergence(flux);
+  }
+
+  /// A quarter of each tetrahedron's volume goes to each of its nodes.
+  template <class T>
+  static NodalVolumes<T> nodal_volumes(const ElementMotion<T>& motion, const Element<T>& element) {
+    TetrahedronValues<T> change = dilatations(gradients(motion, element));
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) change[e] = element.weight[e] * change[e];
+    return {nodal_shares(change), nodal_shares(element.weight)};
+  }
+
+  /// Strain energy (J); of the energy at a node the share that the element has in its volume.
+  template <class Hourglass, class T, class Law>
+  static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
+                                 const NoControl::Element<T>& /*control*/, const NoHistory<T>& /*history*/,
+                                 const Law& law) {
+    const TetrahedronTensors<T> H = gradients(motion, element);
+    T W = Pressure::volumetric_energy(dilatations(H), Pressure::around(motion), element, law);
+    for (std::size_t e = 0; e < tetrahedron_count; ++e)
+      W = W + element.weight[e] * law.isochoric_energy(H[e]);
+    return {W, T(0)};
+  }
+
+  /// Reference volume, m^3.
+  template <class T>
+  static T volume(const ElementMotion<T>& /*motion*/, const Element<T>& element) {
+    T V = element.weight[0];
+    for (std::size_t e = 1; e < tetrahedron_count; ++e) V = V + element.weight[e];
+    return V;
+  }
+
+  template <class T>
+  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    const TetrahedronValues<T> dilatation = dilatations(gradients(motion, element));
+    T smallest = dilatation[0];
+    for (std::size_t e = 1; e < tetrahedron_count; ++e) smallest = min(smallest, dilatation[e]);
+    return T(1) + smallest;
+  }
+
+  template <class T>
+  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    const TetrahedronValues<T> dilatation = dilatations(gradients(motion, element));
+    T sum = element.weight[0] * dilatation[0];
+    for (std::size_t e = 1; e < tetrahedron_count; ++e) sum = sum + element.weight[e] * dilatation[e];
+    return T(1) + sum / volume(motion, element);
+  }
+
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, see gram_bound.hpp; with nodal
+  /// pressures of a stiffness that, summed over the mesh, is not below the true one.
+  template <class Hourglass, class T, class Law>
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
+                           const NoControl::Element<T>& /*control*/, const Law& law) {
+    const TetrahedronTensors<T> H = gradients(motion, element);
+    const TetrahedronValues<T> dilatation = dilatations(H);
+    const auto around = Pressure::around(motion);
+    const TetrahedronValues<T> p = Pressure::pressures(dilatation, around, law);
+    std::array<NodalVectors<T>, tetrahedron_count> g;  // spatial gradients of the shape functions
+    TetrahedronValues<T> volumetric, gradient;
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) {
+      const Tensor<T> to_space = T(8) * (element.inverse_jacobian[e] * inverse(identity<T>() + H[e]));
+      g[e] = from_double<T>(detail::tetrahedron_gradient(e)) * to_space;
+      const T J = T(1) + dilatation[e];
+      const auto iso = law.isochoric_tangent_bound(H[e]);
+      const auto vol = volumetric_tangent_bound(J, p[e], Pressure::own_bulk_tangent(dilatation[e], law));
+      volumetric[e] = element.weight[e] * max(iso.volumetric + vol.volumetric, T(0));
+      gradient[e] = element.weight[e] * (iso.gradient + vol.gradient);
+    }
+    return gradients_bound(gradient, g) + gram_bound(volumetric, g) +
+           Pressure::shared_bulk_bound(dilatation, around, element, g, law);
+  }
+
+ private:
+  /// Half the volume of a tetrahedron in the parent cube: 4/3 at a corner, 8/3 inside.
+  static constexpr double parent_weight(std::size_t e) { return e < 8 ? 2.0 / 3.0 : 4.0 / 3.0; }
+
+  /// Parent gradients du_i/dxi_k, times 8.
+  template <class T>
+  static TetrahedronTensors<T> parent_gradients(const Modes<T>& modes) {
+    TetrahedronTensors<T> gradients;
+    const auto corners = corner_gradients(modes);
+    std::copy(corners.begin(), corners.end(), gradients.begin());
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        gradients[8](i, k) = modes(k, i) - modes(3 + k, i);
+        gradients[9](i, k) = modes(k, i) + modes(3 + k, i);
+      }
+    }
+    return gradients;
+  }
+
+  /// The transpose of `parent_gradients`.
+  template <class T>
+  static Modes<T> parent_divergence(const TetrahedronTensors<T>& flux) {
+    std::array<Tensor<T>, 8> corners;
+    std::copy_n(flux.begin(), 8, corners.begin());
+    Modes<T> f = corner_divergence(corners);
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        f(k, i) = f(k, i) + (flux[8](i, k) + flux[9](i, k));
+        f(3 + k, i) = f(3 + k, i) + (flux[9](i, k) - flux[8](i, k));
+      }
+    }
+    return f;
+  }
+
+  /// Displacement gradients.
+  template <class T>
+  static TetrahedronTensors<T> gradients(const ElementMotion<T>& motion, const Element<T>& element) {
+    TetrahedronTensors<T> H = parent_gradients(motion.u);
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) H[e] = H[e] * element.inverse_jacobian[e];
+    return H;
+  }
+
+  template <class T>
+  static TetrahedronValues<T> dilatations(const TetrahedronTensors<T>& H) {
+    TetrahedronValues<T> dilatation;
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) dilatation[e] = jacobian_minus_one(H[e]);
+    return dilatation;
+  }
+};
+
+}  // namespace sandglass

@@ -1,0 +1,116 @@
+#pragma once
+
+#include "element/element_motion.hpp"
+#include "element/gram_bound.hpp"
+#include "element/tetrahedron_split.hpp"
+
+/// Where the pressure of a tetrahedron comes from: policies of `Tetrahedra`.
+namespace sandglass {
+
+/// Each tetrahedron its own pressure: the linear tetrahedron, which locks as nu -> 1/2.
+struct OwnPressure {
+  static constexpr bool averages_over_nodes = false;
+
+  /// What the pressure needs of the elements around.
+  template <class T>
+  struct Around {};
+  template <class T>
+  static Around<T> around(const ElementMotion<T>& /*motion*/) {
+    return {};
+  }
+
+  template <class T, class Law>
+  static TetrahedronValues<T> pressures(const TetrahedronValues<T>& dilatation, const Around<T>& /*around*/,
+                                        const Law& law) {
+    TetrahedronValues<T> p;
+    for (std::size_t e = 0; e < tetrahedron_count; ++e) p[e] = law.pressure(dilatation[e]);
+    return p;
+  }
+
+  template <class T, class Law>
+  static T volumetric_energy(const TetrahedronValues<T>& dilatation, const Around<T>& /*around*/,
+                             const TetrahedronConstants<T>& element, const Law& law) {
+    T U = element.weight[0] * law.volumetric_energy(dilatation[0]);
+    for (std::size_t e = 1; e < tetrahedron_count; ++e) {
+      U = U + element.weight[e] * law.volumetric_energy(dilatation[e]);
+    }
+    return U;
+  }
+
+  template <class T, class Law>
+  static T own_bulk_tangent(const T& dilatation, const Law& law) {
+    return law.bulk_tangent(dilatation);
+  }
+
+  template <class T, class Law>
+  static T shared_bulk_bound(const TetrahedronValues<T>& /*dilatation*/, const Around<T>& /*around*/,
+                             const TetrahedronConstants<T>& /*element*/,
+                             const std::array<NodalVectors<T>, tetrahedron_count>& /*g*/,
+                             const Law& /*law*/) {
+    return T(0);
+  }
+};
+
+/// Averaged nodal pressures (Bonet & Burton 1998; Joldes, Wittek & Miller 2009): a quarter of each
+/// tetrahedron belongs to each of its nodes; with J_I the volume ratio of what belongs to node I and V_I its
+/// volume at rest the energy is
+///   sum_e V_e W_iso(F_e) + sum_I V_I U(J_I),
+/// whence the pressure of a tetrahedron is the mean of its nodes' p_I = U'(J_I), and its stress
+/// P_iso(F) + p cof F: Bonet and Burton's. Joldes et al. give the law F scaled to the mean volume ratio
+/// instead; the two agree to first order in the difference of volume ratios, but theirs is no derivative of
+/// an energy.
+struct NodalPressure {
+  static constexpr bool averages_over_nodes = true;
+
+  template <class T>
+  using Around = std::array<T, 8>;  ///< J_I - 1
+  template <class T>
+  static Around<T> around(const ElementMotion<T>& motion) {
+    return motion.dilatation;
+  }
+
+  template <class T, class Law>
+  static TetrahedronValues<T> pressures(const TetrahedronValues<T>& /*dilatation*/, const Around<T>& around,
+                                        const Law& law) {
+    std::array<T, 8> quarter;
+    for (std::size_t I = 0; I < 8; ++I) quarter[I] = T(0.25) * law.pressure(around[I]);
+    return sums_over_nodes(quarter);
+  }
+
+  template <class T, class Law>
+  static T volumetric_energy(const TetrahedronValues<T>& /*dilatation*/, const Around<T>& around,
+                             const TetrahedronConstants<T>& element, const Law& law) {
+    const std::array<T, 8> V = nodal_shares(element.weight);
+    T U = V[0] * law.volumetric_energy(around[0]);
+    for (std::size_t I = 1; I < 8; ++I) U = U + V[I] * law.volumetric_energy(around[I]);
+    return U;
+  }
+
+  template <class T, class Law>
+  static T own_bulk_tangent(const T& /*dilatation*/, const Law& /*law*/) {
+    return T(0);
+  }
+
+  /// A bound of the element's share in V_I U''(J_I) (dJ_I)^2, which couples all neighbours of a node: dJ_I is
+  /// the mean, weighted by volume, of what each hexahedron around has of it, and the square of a mean is not
+  /// above the mean of the squares. So each hexahedron h answers for v_hI U''(J_I) (G_hI . v)^2 alone, with
+  /// v_hI its share of V_I and G_hI = sum_e (V_e / 4) J_e g_e / v_hI over its own tetrahedra.
+  template <class T, class Law>
+  static T shared_bulk_bound(const TetrahedronValues<T>& dilatation, const Around<T>& around,
+                             const TetrahedronConstants<T>& element,
+                             const std::array<NodalVectors<T>, tetrahedron_count>& g, const Law& law) {
+    const std::array<T, 8> v = nodal_shares(element.weight);
+    std::array<T, 8> stiffness;
+    std::array<NodalVectors<T>, 8> G{};
+    for (std::size_t I = 0; I < 8; ++I) {
+      stiffness[I] = v[I] * max(law.bulk_tangent(around[I]), T(0));
+      for (std::size_t e = 0; e < tetrahedron_count; ++e) {
+        if (!detail::belongs(static_cast<int>(I), e)) continue;
+        G[I] += (T(0.25) * element.weight[e] * (T(1) + dilatation[e]) / v[I]) * g[e];
+      }
+    }
+    return gram_bound(stiffness, G);
+  }
+};
+
+}  // namespace sandglass
