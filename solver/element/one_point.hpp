@@ -4,6 +4,7 @@
 
 #include "element/element_motion.hpp"
 #include "element/hexahedron.hpp"
+#include "element/hourglass_response.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 
@@ -119,14 +120,18 @@ struct OnePoint {
     return now;
   }
 
-  /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14).
+  /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14). A control
+  /// that follows the mean deformation adds its own stress to V P^T.
   template <class Hourglass, class T, class Law>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
                         const typename Hourglass::template Element<T>& control, NoHistory<T>& /*history*/,
                         const Law& law) {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> VP = transpose(law.weighted_piola(element.V, now.H, now.change, p));
-    if constexpr (Hourglass::active) {
+    if constexpr (FollowsDeformation<Hourglass>) {
+      const HourglassResponse<T> control_force = Hourglass::response(now.q, now.H, control);
+      return modal_forces(VP + control_force.S, control_force.Q, element);
+    } else if constexpr (Hourglass::active) {
       return modal_forces(VP, Hourglass::resistance(now.q, control), element);
     } else {
       return body_forces(VP, element);
@@ -139,7 +144,9 @@ struct OnePoint {
                                  const NoHistory<T>& /*history*/, const Law& law) {
     const Tensor<T> H = mean_gradient(motion.u, element);
     ElementEnergy<T> energy{element.V * law.energy(H), T(0)};
-    if constexpr (Hourglass::active) {
+    if constexpr (FollowsDeformation<Hourglass>) {
+      energy.hourglass = Hourglass::energy(hourglass_displacements(motion.u, H, element), H, control);
+    } else if constexpr (Hourglass::active) {
       energy.hourglass = Hourglass::energy(hourglass_displacements(motion.u, H, element), control);
     }
     return energy;
@@ -173,7 +180,12 @@ struct OnePoint {
     const Tensor<T> H = mean_gradient(motion.u, element);
     const NodalVectors<T> h = nodal_gradients(element);
     const T body = element.V * gradient_bound(tangent_bound(law, H), h * inverse(identity<T>() + H));
-    if constexpr (Hourglass::active) return body + Hourglass::stiffness_bound(gamma(h, element), control);
+    if constexpr (FollowsDeformation<Hourglass>) {
+      const HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
+      return body + Hourglass::stiffness_bound(gamma(h, element), h, q, H, control);
+    } else if constexpr (Hourglass::active) {
+      return body + Hourglass::stiffness_bound(gamma(h, element), control);
+    }
     return body;
   }
 
