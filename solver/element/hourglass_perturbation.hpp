@@ -1,12 +1,12 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "element/element_motion.hpp"
 #include "element/hexahedron.hpp"
 #include "element/hourglass_settings.hpp"
 #include "material/laws.hpp"
+#include "math/symmetric_matrix.hpp"
 
 namespace sandglass {
 
@@ -43,14 +43,7 @@ struct PerturbationStiffness {
 /// lambda_max(gamma^T gamma), bounded by the largest sum of absolute values in a row.
 template <class T>
 T shape_vector_bound(const Matrix<T, 8, 4>& gamma) {
-  const Matrix<T, 4, 4> product = transpose(gamma) * gamma;
-  T largest = T(0);
-  for (int a = 0; a < 4; ++a) {
-    T row = T(0);
-    for (int b = 0; b < 4; ++b) row = row + abs(product(a, b));
-    largest = max(largest, row);
-  }
-  return largest;
+  return row_sum_bound(transpose(gamma) * gamma);
 }
 
 /// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (paper, eqs

@@ -6,10 +6,13 @@
 #include "element/compact_one_point.hpp"
 #include "element/eight_point.hpp"
 #include "element/formulation.hpp"
+#include "element/hourglass_energy_sampling.hpp"
+#include "element/hourglass_matrix.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
 #include "element/hourglass_rate_perturbation.hpp"
 #include "element/one_point.hpp"
+#include "element/stabilization_matrix.hpp"
 #include "element/tetrahedra.hpp"
 #include "element/updated_one_point.hpp"
 
@@ -40,6 +43,24 @@ struct TlPerturbationCompact {
   static constexpr int integration_points = 1;
   using Kinematics = CompactOnePoint;
   using Hourglass = PerturbationHourglassControl;
+};
+
+struct TlEnergySampling {
+  static constexpr std::string_view name = "tl-energy-sampling";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, the missing part of the energy (mu/2) F : F restored: no parameter";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = EnergySamplingControl;
+};
+
+struct TlStabilizationMatrix {
+  static constexpr std::string_view name = "tl-stabilization-matrix";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, what the mean-dilatation element has more at rest as a constant matrix";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = HourglassMatrixControl<StabilizationMatrix>;
 };
 
 struct UlPerturbation {
@@ -87,8 +108,8 @@ struct T4Anp {
 
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
-using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull,
-                         TlMeanDilatation, T4, T4Anp>;
+using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
+                         TlStabilizationMatrix, UlPerturbation, TlFull, TlMeanDilatation, T4, T4Anp>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

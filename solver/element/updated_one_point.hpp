@@ -50,7 +50,7 @@ struct UpdatedOnePoint {
     const Tensor<T> S = law.weighted_kirchhoff(reference_volume(now), now.H, now.change, p);
     if constexpr (Hourglass::active) {
       return OnePoint::modal_forces(S, Hourglass::resistance(now.rate, now.L, now.current, control, history),
-                                    now.current);
+                                    now.current.c, now.current);
     } else {
       return OnePoint::body_forces(S, now.current);
     }

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "element/element_motion.hpp"
+#include "element/hourglass_fluctuation.hpp"
+#include "element/hourglass_settings.hpp"
+
+namespace sandglass {
+
+/// Hourglass control without a number to choose, after the energy sampling of Krysl 2015: one point misses
+/// the fluctuating part of the energy (mu/2) F : F, whose integral is (1/2) q S q with a constant matrix S of
+/// 4 by 4. F : F does not change under rotation, so that nothing needs to be turned; lambda does not enter,
+/// so that nothing locks.
+struct EnergySamplingControl {
+  static constexpr bool active = true;
+  static constexpr bool takes_kappa = false;
+
+  template <class T>
+  struct Element {
+    SymmetricMatrix<T, 4> S;  ///< N/m
+  };
+  template <class T>
+  using History = NoHistory<T>;
+
+  /// S_ab = mu integral of grad w_a . grad w_b, w_a the fluctuation that a unit of q_a makes.
+  template <class Law>
+  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
+                                    const HourglassSettings& /*settings*/) {
+    const HourglassFluctuation fluctuation = hourglass_fluctuation(X);
+    Matrix<double, 4, 4> S{};
+    for (std::size_t p = 0; p < 8; ++p) {
+      const Matrix<double, 4, 3>& g = fluctuation.gradient[p];
+      S += (law.shear_modulus() * fluctuation.weight[p]) * (g * transpose(g));
+    }
+    return {symmetric_part(S)};
+  }
+
+  /// Hourglass resistances Q = S q (N).
+  template <class T>
+  static HourglassModes<T> resistance(const HourglassModes<T>& q, const Element<T>& element) {
+    return element.S * q;
+  }
+
+  /// (1/2) q S q, in J.
+  template <class T>
+  static T energy(const HourglassModes<T>& q, const Element<T>& element) {
+    return T(0.5) * double_dot(q, element.S * q);
+  }
+
+  /// gamma S gamma^T has the eigenvalues of S gamma^T gamma, N/m.
+  template <class T>
+  static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
+    return row_sum_bound(element.S * (transpose(gamma) * gamma));
+  }
+};
+
+}  // namespace sandglass

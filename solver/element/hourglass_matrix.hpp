@@ -1,0 +1,64 @@
+#pragma once
+
+#include "element/element_motion.hpp"
+#include "element/hourglass_settings.hpp"
+#include "math/symmetric_matrix.hpp"
+
+namespace sandglass {
+
+/// A constant matrix between the twelve hourglass displacements: row and column 3 a + i belong to q_ai.
+template <class T>
+using HourglassMatrix = SymmetricMatrix<T, 12>;
+
+/// Hourglass control by a constant matrix K (N/m) that `Source::matrix(X, law)` makes at set-up. It follows
+/// the mean deformation: the energy is r K r / 2 with r_a = F^-1 q_a.
+template <class Source>
+struct HourglassMatrixControl {
+  static constexpr bool active = true;
+  static constexpr bool takes_kappa = false;
+  static constexpr bool follows_deformation = true;
+
+  template <class T>
+  struct Element {
+    HourglassMatrix<T> K;  ///< N/m
+  };
+  template <class T>
+  using History = NoHistory<T>;
+
+  template <class Law>
+  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
+                                    const HourglassSettings& /*settings*/) {
+    return {Source::matrix(X, law)};
+  }
+
+  /// K r, in N.
+  template <class T>
+  static HourglassModes<T> resistance(const HourglassModes<T>& r, const Element<T>& element) {
+    return {(element.K * Matrix<T, 12, 1>{r.entries}).entries};
+  }
+
+  /// r K r / 2, in J.
+  template <class T>
+  static T energy(const HourglassModes<T>& r, const Element<T>& element) {
+    return T(0.5) * double_dot(r, resistance(r, element));
+  }
+
+  /// With G = gamma (x) I, G K G^T has the eigenvalues of K G^T G, N/m.
+  template <class T>
+  static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
+    const Matrix<T, 4, 4> product = transpose(gamma) * gamma;
+    Matrix<T, 12, 12> KGG;
+    for (int row = 0; row < 12; ++row) {
+      for (int b = 0; b < 4; ++b) {
+        for (int i = 0; i < 3; ++i) {
+          T sum = element.K(row, i) * product(0, b);
+          for (int a = 1; a < 4; ++a) sum = sum + element.K(row, 3 * a + i) * product(a, b);
+          KGG(row, 3 * b + i) = sum;
+        }
+      }
+    }
+    return row_sum_bound(KGG);
+  }
+};
+
+}  // namespace sandglass

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <algorithm>
+
+#include "math/matrix.hpp"
+
+namespace sandglass {
+
+/// A symmetric matrix of N rows that keeps each of its N (N + 1) / 2 different numbers once: the upper
+/// triangle by rows.
+template <class T, int N>
+struct SymmetricMatrix {
+  std::array<T, static_cast<std::size_t>(N) * static_cast<std::size_t>(N + 1) / 2> entries;
+
+  constexpr T& operator()(int i, int j) { return entries[index(i, j)]; }
+  constexpr const T& operator()(int i, int j) const { return entries[index(i, j)]; }
+
+  static constexpr std::size_t index(int i, int j) {
+    const int row = std::min(i, j);
+    return static_cast<std::size_t>(row * (2 * N - row - 1) / 2 + std::max(i, j));
+  }
+};
+
+/// The symmetric part of a matrix.
+template <class T, int N>
+constexpr SymmetricMatrix<T, N> symmetric_part(const Matrix<T, N, N>& a) {
+  SymmetricMatrix<T, N> s;
+  for (int i = 0; i < N; ++i) {
+    for (int j = i; j < N; ++j) s(i, j) = T(0.5) * (a(i, j) + a(j, i));
+  }
+  return s;
+}
+
+/// All N^2 entries.
+template <class T, int N>
+constexpr Matrix<T, N, N> dense(const SymmetricMatrix<T, N>& s) {
+  Matrix<T, N, N> a;
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) a(i, j) = s(i, j);
+  }
+  return a;
+}
+
+template <class T, int N, int C>
+constexpr Matrix<T, N, C> operator*(const SymmetricMatrix<T, N>& a, const Matrix<T, N, C>& b) {
+  Matrix<T, N, C> c;
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < C; ++j) {
+      T sum = a(i, 0) * b(0, j);
+      for (int n = 1; n < N; ++n) sum = sum + a(i, n) * b(n, j);
+      c(i, j) = sum;
+    }
+  }
+  return c;
+}
+
+/// The largest sum of absolute values in a row: no eigenvalue of the matrix is larger.
+template <class T, int N>
+T row_sum_bound(const Matrix<T, N, N>& a) {
+  T largest = T(0);
+  for (int i = 0; i < N; ++i) {
+    T row = abs(a(i, 0));
+    for (int j = 1; j < N; ++j) row = row + abs(a(i, j));
+    largest = max(largest, row);
+  }
+  return largest;
+}
+
+}  // namespace sandglass
