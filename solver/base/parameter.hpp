@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 namespace sandglass {
 
@@ -48,5 +49,21 @@ struct Parameter {
 template <class Owner, class Value>
 Parameter(Value Owner::*, std::string_view, std::string_view, Range, std::string_view, bool = true)
     -> Parameter<Owner, Value>;
+
+/// What is wrong with parameters that are each in range but do not fit together. An `Owner` that can tell has
+/// `std::optional<Misfit> misfit() const`.
+struct Misfit {
+  std::string name;  ///< of the parameter to blame
+  std::string text;  ///< "= VALUE must ..."
+};
+
+/// The declarations of a base class as those of a class derived from it.
+template <class Derived, class Parameters>
+constexpr auto inherited_parameters(const Parameters& parameters) {
+  const auto inherited = []<class Owner, class Value>(const Parameter<Owner, Value>& p) {
+    return Parameter<Derived, Value>{p.member, p.name, p.unit, p.range, p.meaning, p.required};
+  };
+  return std::apply([&](const auto&... p) { return std::tuple{inherited(p)...}; }, parameters);
+}
 
 }  // namespace sandglass

@@ -52,10 +52,14 @@ class TableReader {
   /// All keys of this table; reading them counts as asking for them.
   std::vector<std::string> keys() const;
 
-  /// Reads all declared parameters of an aggregate, each within its range.
+  /// Reads all declared parameters of an aggregate, each within its range. One that has
+  /// `misfit()` is asked whether they fit together.
   template <class Aggregate>
   void parameters(Aggregate& aggregate) {
     std::apply([&](const auto&... parameter) { (read(aggregate, parameter), ...); }, Aggregate::parameters());
+    if constexpr (requires { aggregate.misfit(); }) {
+      if (const auto misfit = aggregate.misfit()) fail(misfit->name, misfit->text);
+    }
   }
 
   /// Throws when a value is out of range.

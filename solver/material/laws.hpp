@@ -2,14 +2,19 @@
 
 #include "base/type_list.hpp"
 #include "material/neo_hookean.hpp"
+#include "material/viscoelastic.hpp"
 
 namespace sandglass {
 
-/// THE list of material laws. A new law is one header and one entry here.
+/// THE list of material laws. A new law is one header and one entry here; it comes in two forms, as it is and
+/// viscoelastic.
 /// Each gives: name, summary, parameters(), shear_modulus(), bulk_modulus() at rest, and templated on the
 /// number type isochoric_energy, volumetric_energy, pressure, bulk_tangent, isochoric_piola, energy, piola,
 /// isochoric_tangent_bound; and what the kernels run, weighted_piola and weighted_kirchhoff.
-using Laws = TypeList<NeoHookean>;
+using ElasticLaws = TypeList<NeoHookean>;
+
+/// All laws that a case may name.
+using Laws = Concatenated<ElasticLaws, Wrapped<Viscoelastic, ElasticLaws>>;
 
 /// A law chosen at run time.
 using AnyLaw = VariantOf<Laws>;
