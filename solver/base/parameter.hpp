@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 namespace sandglass {
 
@@ -52,8 +53,17 @@ Parameter(Value Owner::*, std::string_view, std::string_view, Range, std::string
 /// A rule that no range of a single parameter can say, and that does not hold. An `Owner` with such rules has
 /// a function `std::optional<BrokenRule> broken_rule() const`; the reader of case files asks it.
 struct BrokenRule {
-  std::string_view parameter;  ///< the one that the message is about
-  std::string message;         ///< what follows its name: value, rule, what is allowed
+  std::string parameter;  ///< the one that the message is about
+  std::string message;    ///< what follows its name: value, rule, what is allowed
 };
+
+/// The declarations of a base class as those of a class derived from it.
+template <class Derived, class Parameters>
+constexpr auto inherited_parameters(const Parameters& parameters) {
+  const auto inherited = []<class Owner, class Value>(const Parameter<Owner, Value>& p) {
+    return Parameter<Derived, Value>{p.member, p.name, p.unit, p.range, p.meaning, p.required};
+  };
+  return std::apply([&](const auto&... p) { return std::tuple{inherited(p)...}; }, parameters);
+}
 
 }  // namespace sandglass

@@ -39,7 +39,33 @@ template <class... Types>
 struct VariantOf<TypeList<Types...>> {
   using type = std::variant<Types...>;
 };
+template <class... Lists>
+struct Concatenated;
+template <class... Types>
+struct Concatenated<TypeList<Types...>> {
+  using type = TypeList<Types...>;
+};
+template <class... First, class... Second, class... Rest>
+struct Concatenated<TypeList<First...>, TypeList<Second...>, Rest...> {
+  using type = typename Concatenated<TypeList<First..., Second...>, Rest...>::type;
+};
+
+template <template <class> class Wrapper, class List>
+struct Wrapped;
+template <template <class> class Wrapper, class... Types>
+struct Wrapped<Wrapper, TypeList<Types...>> {
+  using type = TypeList<Wrapper<Types>...>;
+};
+
 }  // namespace detail
+
+/// Lists one after another as one list.
+template <class... Lists>
+using Concatenated = typename detail::Concatenated<Lists...>::type;
+
+/// The list of Wrapper<Type> for each type of a list.
+template <template <class> class Wrapper, class List>
+using Wrapped = typename detail::Wrapped<Wrapper, List>::type;
 
 /// A value that is one of the types of a list.
 template <class List>

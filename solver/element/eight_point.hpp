@@ -5,6 +5,7 @@
 #include "element/corner_gradients.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/one_point.hpp"
+#include "material/memory.hpp"
 
 namespace sandglass {
 
@@ -51,6 +52,7 @@ struct EightPoint {
     T V;                      ///< reference volume, m^3
   };
 
+  static constexpr int points = 8;
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
   using NoControl = NoHourglassControl;
@@ -96,7 +98,8 @@ struct EightPoint {
     std::array<Tensor<T>, 8> flux;  // w P J^-T, the stress that the parent gradient carries
     for (std::size_t q = 0; q < 8; ++q) {
       const VolumeChange<T> change{now.J_minus_one[q], now.inverse_root[q]};
-      flux[q] = law.weighted_piola(element.weight[q], now.H[q], change, law.pressure(dilatation[q])) *
+      const T p = law.pressure(dilatation[q]);
+      flux[q] = at_point(law, q).weighted_piola(element.weight[q], now.H[q], change, p) *
                 transpose(element.inverse_jacobian[q]);
     }
     return parent_divergence(flux);
@@ -111,7 +114,8 @@ struct EightPoint {
     const auto dilatation = Pressure::dilatations(point_dilatations(H), element);
     T W = T(0);
     for (std::size_t q = 0; q < 8; ++q) {
-      W = W + element.weight[q] * (law.isochoric_energy(H[q]) + law.volumetric_energy(dilatation[q]));
+      W = W + element.weight[q] *
+                  (at_point(law, q).isochoric_energy(H[q]) + law.volumetric_energy(dilatation[q]));
     }
     return {W, T(0)};
   }
@@ -151,7 +155,8 @@ struct EightPoint {
       const NodalVectors<T> g = from_double<T>(parent_gradient(points[q])) * to_space;
       const T J = T(1) + own_dilatation[q];
       const T bulk = Pressure::shared ? T(0) : law.bulk_tangent(dilatation[q]);
-      const auto point = tangent_bound(law, H[q], own_dilatation[q], law.pressure(dilatation[q]), bulk);
+      const auto point =
+          tangent_bound(at_point(law, q), H[q], own_dilatation[q], law.pressure(dilatation[q]), bulk);
       bound = bound + element.weight[q] * gradient_bound(point, g);
       mean_spatial_gradient += (element.weight[q] * J / element.V) * g;
     }

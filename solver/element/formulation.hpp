@@ -5,8 +5,19 @@
 
 #include "element/hourglass_settings.hpp"
 #include "element/one_point.hpp"
+#include "material/memory.hpp"
 
 namespace sandglass {
+
+/// The integration points of a kinematics: one, where it does not say `points`.
+template <class Kinematics>
+constexpr int integration_points_of() {
+  if constexpr (requires { Kinematics::points; }) {
+    return Kinematics::points;
+  } else {
+    return 1;
+  }
+}
 
 /// An element: kinematics (how stress becomes force), an hourglass control and a material law, bundled.
 /// All functions are templated on the number type T: double, a pack, a counting or a dual number.
@@ -21,7 +32,10 @@ struct Formulation {
 
   /// What changes in time beside the displacements; empty for elements whose force follows from them.
   template <class T>
-  using History = typename Hourglass::template History<T>;
+  struct History {
+    [[no_unique_address]] typename Hourglass::template History<T> hourglass;
+    [[no_unique_address]] PointMemories<MemoryOf<Law, T>, integration_points_of<Kinematics>()> law;
+  };
 
   static constexpr bool remembers = !std::is_empty_v<History<double>>;
   static constexpr bool needs_increment = Kinematics::needs_increment;
@@ -72,18 +86,20 @@ struct Formulation {
     return Kinematics::template deformation<Hourglass>(motion, element.body);
   }
 
-  /// Internal forces (N) in modes. What the element remembers goes one step on.
-  template <class T>
+  /// Internal forces (N) in modes, with the law at its step. What the element remembers goes one step on.
+  template <class T, class LawAtStep>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element, History<T>& history,
-                        const Law& law) {
-    return Kinematics::template force<Hourglass>(now, element.body, element.hourglass, history, law);
+                        const LawAtStep& law) {
+    return Kinematics::template force<Hourglass>(now, element.body, element.hourglass, history.hourglass,
+                                                 recalling(law, history.law));
   }
 
-  /// Strain and hourglass energy (J).
-  template <class T>
+  /// Strain and hourglass energy (J) stored in an element that remembers this motion.
+  template <class T, class LawAtStep>
   static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
-                                 const History<T>& history, const Law& law) {
-    return Kinematics::template energy<Hourglass>(motion, element.body, element.hourglass, history, law);
+                                 const History<T>& history, const LawAtStep& law) {
+    return Kinematics::template energy<Hourglass>(motion, element.body, element.hourglass, history.hourglass,
+                                                  recalling(law, history.law));
   }
 
   /// The reference volume, m^3.
@@ -104,10 +120,13 @@ struct Formulation {
     return Kinematics::mean_jacobian(motion, element.body);
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, hourglass part included.
-  template <class T>
-  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element, const Law& law) {
-    return Kinematics::template stiffness_bound<Hourglass>(motion, element.body, element.hourglass, law);
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, hourglass part included, for a
+  /// step of any length.
+  template <class T, class LawAtStep>
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
+                           const History<T>& history, const LawAtStep& law) {
+    return Kinematics::template stiffness_bound<Hourglass>(motion, element.body, element.hourglass,
+                                                           recalling(law, history.law));
   }
 };
 
@@ -141,7 +160,7 @@ struct NodalForm : Kernel {
 
   template <class T, class Element, class Law>
   static T stiffness_bound(const NodalVectors<T>& u, const Element& element, const Law& law) {
-    return Kernel::stiffness_bound(motion(u), element, law);
+    return Kernel::stiffness_bound(motion(u), element, typename Kernel::template History<T>{}, law);
   }
 
  private:

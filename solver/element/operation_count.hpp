@@ -6,6 +6,7 @@
 #include "element/formulation.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
+#include "material/memory.hpp"
 #include "math/counted.hpp"
 #include "math/rows.hpp"
 
@@ -24,11 +25,19 @@ struct OperationCount {
 
 namespace detail {
 
-/// A law that notes how the tally stands when it is called and when it returns.
+/// How the tally stood when a law was first called, and what was counted inside of calls.
+struct CallRecord {
+  const Operations& tally;
+  bool called = false;
+  Operations before = {};
+  Operations inside = {};
+};
+
+/// A law that notes what its calls count.
 template <class Law>
 class ObservedLaw {
  public:
-  ObservedLaw(const Law& law, const Operations& tally) : law_(law), tally_(tally) {}
+  ObservedLaw(const Law& law, CallRecord& record) : law_(law), record_(record) {}
 
   // clang-format off
   template <class H> auto piola(const H& h) const { return observed([&] { return law_.piola(h); }); }
@@ -37,26 +46,24 @@ class ObservedLaw {
   template <class T> auto pressure(const T& j) const { return observed([&] { return law_.pressure(j); }); }
   // clang-format on
 
-  /// The tally before the first call, and all that was counted inside of calls.
-  Operations before() const { return before_; }
-  Operations inside() const { return inside_; }
+  auto at_point(std::size_t q) const {
+    auto law = sandglass::at_point(law_, q);
+    return ObservedLaw<decltype(law)>(law, record_);
+  }
 
  private:
   template <class Call>
   auto observed(Call call) const {
-    const Operations start = tally_;
-    if (!called_) before_ = start;
-    called_ = true;
+    const Operations start = record_.tally;
+    if (!record_.called) record_.before = start;
+    record_.called = true;
     auto result = call();
-    inside_ = inside_ + (tally_ - start);
+    record_.inside = record_.inside + (record_.tally - start);
     return result;
   }
 
-  const Law& law_;
-  const Operations& tally_;
-  mutable bool called_ = false;
-  mutable Operations before_;
-  mutable Operations inside_;
+  Law law_;
+  CallRecord& record_;
 };
 
 }  // namespace detail
@@ -138,15 +145,17 @@ OperationCount count_operations(const Law& law) {
     history = detail::counted<typename Kernel::template History<Counted>>(tally, 1e-2);
     count.bytes += static_cast<long>(2 * sizeof(typename Kernel::template History<double>));
   }
-  const detail::ObservedLaw<Law> observed(law, tally);
+  const auto law_at_step = at_step(law, 1e-3);
+  detail::CallRecord record{tally};
+  const detail::ObservedLaw observed(recalling(law_at_step, history.law), record);
   const auto now = Kernel::deformation(motion, element);
-  const auto f =
-      Kinematics::template force<Hourglass>(now, element.body, element.hourglass, history, observed);
+  const auto f = Kinematics::template force<Hourglass>(now, element.body, element.hourglass,
+                                                       history.hourglass, observed);
   from_face_modes(carried + lower_face(f));
   upper_face(f);
 
-  count.gradient = observed.before();
-  count.law = observed.inside();
+  count.gradient = record.before;
+  count.law = record.inside;
   count.total = tally;
   using Element = typename Kernel::template Element<double>;
   count.bytes += Kernel::passes *

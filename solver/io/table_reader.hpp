@@ -58,7 +58,7 @@ class TableReader {
   void parameters(Aggregate& aggregate) {
     std::apply([&](const auto&... parameter) { (read(aggregate, parameter), ...); }, Aggregate::parameters());
     if constexpr (requires { aggregate.broken_rule(); }) {
-      if (const auto broken = aggregate.broken_rule()) fail(std::string(broken->parameter), broken->message);
+      if (const auto broken = aggregate.broken_rule()) fail(broken->parameter, broken->message);
     }
   }
 

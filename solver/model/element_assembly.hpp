@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -62,8 +63,9 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
 
   StrainEnergies energies(const State<Real>& state) const override {
     StrainEnergies sum;
+    const auto law = at_step(law_, state.step);
     for_each_level(state, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law_);
+      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law);
       for (int lane = 0; lane < width; ++lane) {
         if (element_at(level, lane) < 0) continue;
         sum.strain += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
@@ -74,8 +76,9 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   }
 
   void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const override {
+    const auto law = at_step(law_, state.step);
     per_element(state, densities, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law_);
+      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law);
       return energy.hourglass / Kernel::volume(motion, blocks_[level]);
     });
   }
@@ -93,8 +96,9 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   }
 
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
+    const auto law = at_step(law_, state.step);
     per_element(state, bounds, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      return Kernel::stiffness_bound(motion, blocks_[level], law_);
+      return Kernel::stiffness_bound(motion, blocks_[level], history(state, level), law);
     });
   }
 
@@ -192,7 +196,8 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   /// which costs a third of the time.
   [[gnu::flatten, gnu::aligned(64)]] void add_chunk(std::size_t c, State<Real>& state, Real* force) const {
     const Layout::Chunk chunk = layout_.chunks[c];
-    const Law law = law_;  // a copy that no store can alias: its moduli are computed once
+    const auto law = at_step(law_, state.step);  // a copy that no store can alias: moduli are computed once
+    const bool timeless = !(state.step < std::numeric_limits<double>::infinity());
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const Layout::Group group = layout_.groups[g];
@@ -203,6 +208,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
         const FaceMotion upper = gather_face(state, state.volumes, group.first_face + k + 1);
         if (streams_) prefetch(state, level + levels_ahead);
         HistoryBlock remembered = history(state, level);
+        if (timeless) remembered.law = {};  // nothing of it counts, and a trial that failed may have left it
         const Modes<Number> f =
             Kernel::force(Kernel::deformation(between(lower, upper, inverse_step), blocks_[level]),
                           blocks_[level], remembered, law);

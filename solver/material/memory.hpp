@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+
+/// Laws that remember. Such a law has a `Memory<T>`, what it keeps at each integration point beside the
+/// deformation, and two steps towards a law that elements run like an elastic one: `at_step(dt)`, the law for
+/// a step of time, and that one's `recalling(memory)`, the law at a point. The functions here take any law
+/// there; one without memory stays what it is.
+namespace sandglass {
+
+/// The memory of a law that has none.
+template <class T>
+struct NoMemory {};
+
+namespace detail {
+
+template <class Law, class T>
+struct MemoryOf {
+  using type = NoMemory<T>;
+};
+template <class Law, class T>
+requires requires {
+  typename Law::template Memory<T>;
+}
+struct MemoryOf<Law, T> {
+  using type = typename Law::template Memory<T>;
+};
+
+}  // namespace detail
+
+/// What a law keeps at an integration point.
+template <class Law, class T>
+using MemoryOf = typename detail::MemoryOf<Law, T>::type;
+
+/// Whether a law's stress depends on more than the deformation.
+template <class Law>
+inline constexpr bool law_remembers = !std::is_empty_v<MemoryOf<Law, double>>;
+
+/// The memories of all points of an element; empty where there is nothing to remember.
+template <class Memory, int points>
+struct PointMemories {
+  std::array<Memory, static_cast<std::size_t>(points)> point;
+};
+template <class Memory, int points>
+requires std::is_empty_v<Memory>
+struct PointMemories<Memory, points> {
+};
+
+/// The law for a step of so many seconds; infinite where time plays no part. What it takes to know the step
+/// is computed here, once for all elements.
+template <class Law>
+constexpr auto at_step(const Law& law, double seconds) {
+  if constexpr (law_remembers<Law>) {
+    return law.at_step(seconds);
+  } else {
+    return law;
+  }
+}
+
+/// A law at a step with the memories of an element of several points.
+template <class LawAtStep, class Memories>
+class RecallingLaw : public LawAtStep::Elastic {
+ public:
+  RecallingLaw(const LawAtStep& law, Memories& memories)
+      : LawAtStep::Elastic(law.elastic()), law_(law), memories_(memories) {}
+
+  /// The law at integration point q.
+  auto at_point(std::size_t q) const { return law_.recalling(memories_.point[q]); }
+
+ private:
+  const LawAtStep& law_;
+  Memories& memories_;
+};
+
+/// The law that an element with these memories runs. A single point is the law's only one; where there are
+/// several, `at_point` tells them apart.
+template <class LawAtStep, class Memories>
+constexpr decltype(auto) recalling(const LawAtStep& law, Memories& memories) {
+  if constexpr (std::is_empty_v<Memories>) {
+    return (law);
+  } else if constexpr (sizeof(memories) == sizeof(memories.point[0])) {
+    return law.recalling(memories.point[0]);
+  } else {
+    return RecallingLaw<LawAtStep, Memories>(law, memories);
+  }
+}
+
+/// The law at integration point q of an element.
+template <class Law>
+constexpr decltype(auto) at_point(const Law& law, std::size_t q) {
+  if constexpr (requires { law.at_point(q); }) {
+    return law.at_point(q);
+  } else {
+    return (law);
+  }
+}
+
+}  // namespace sandglass

@@ -1,0 +1,295 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+#include "base/joined_text.hpp"
+#include "base/parameter.hpp"
+#include "material/memory.hpp"
+#include "material/tangent_bound.hpp"
+#include "math/strain.hpp"
+#include "math/symmetric.hpp"
+
+namespace sandglass {
+
+inline constexpr std::string_view viscoelastic_prefix = "viscoelastic-";
+inline constexpr std::string_view viscoelastic_suffix = "; shear stress relaxes with two times";
+
+/// How one relaxing part goes on in a step: Q <- Q + decay (share S_old - Q) + follow (S_new - S_old).
+struct RelaxationStep {
+  double share;          ///< g, of the isochoric stress that this part takes away in the end
+  double inverse_share;  ///< 1/g; 0 where g is
+  double decay;          ///< 1 - exp(-dt/tau)
+  double follow;         ///< g (1 - (1 - exp(-dt/tau)) / (dt/tau))
+
+  /// The factors of a step of `seconds`, 0 to infinite, for the relaxation time `time` (s). Both go to 0 with
+  /// the step without cancellation, and to 1 and g when it is infinite.
+  static RelaxationStep of(double share, double time, double seconds) {
+    if (!(share > 0.0)) return {0.0, 0.0, 0.0, 0.0};
+    const double x = seconds / time;
+    const double decay = -std::expm1(-x);
+    return {share, 1.0 / share, decay, share * lag(x, decay)};
+  }
+
+ private:
+  /// 1 - (1 - e^-x) / x = x/2! - x^2/3! + x^3/4! - ...; the series where the difference would cancel.
+  static double lag(double x, double decay) {
+    if (x > 0.5) return 1.0 - decay / x;
+    double term = 0.5 * x;
+    double sum = 0.0;
+    for (int k = 3; k < 18; ++k) {  // x^16 / 17! is below the roundoff of x/2
+      sum += term;
+      term *= -x / k;
+    }
+    return sum;
+  }
+};
+
+/// What a viscoelastic law keeps at a point, in the frame of the reference configuration, Pa.
+template <class T>
+struct RelaxationMemory {
+  Symmetric<T> S;                       ///< isochoric second Piola-Kirchhoff stress of the elastic law
+  std::array<Symmetric<T>, 2> relaxed;  ///< Q_i, what has relaxed of it by now
+};
+
+/// A viscoelastic law at one point: it answers like an elastic law, and what it is told goes into the memory.
+/// `Memory` is const where energies and bounds are asked for.
+template <class Law, class Memory>
+class ViscoelasticPoint : public Law {
+ public:
+  ViscoelasticPoint(const Law& elastic, const std::array<RelaxationStep, 2>& terms, Memory& memory)
+      : Law(elastic), terms_(terms), memory_(memory) {}
+
+  /// V P as of an elastic law, and one step in time: P = F (S_iso - sum_i Q_i) + p cof F.
+  template <class T>
+  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
+    const Tensor<T> cof_F = cofactor_of_gradient(H);
+    const Tensor<T> P = elastic().weighted_piola(T(1), H, change, T(0));
+    const Tensor<T> Q = relax(P, cof_F, change);
+    const Tensor<T> HQ = H * Q;
+    const T Vp = V * p;
+    Tensor<T> VP;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) VP(i, j) = V * (P(i, j) - (Q(i, j) + HQ(i, j))) + Vp * cof_F(i, j);
+    }
+    return VP;
+  }
+
+  /// V tau as of an elastic law, and one step in time: tau - sum_i F Q_i F^T.
+  template <class T>
+  Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+                               const T& p) const {
+    const Tensor<T> P = elastic().weighted_piola(T(1), H, change, T(0));
+    const Tensor<T> Q = relax(P, cofactor_of_gradient(H), change);
+    return elastic().weighted_kirchhoff(V, H, change, p) - V * to_space(Q, H);
+  }
+
+  template <class T>
+  Tensor<T> piola(const Tensor<T>& H) const {
+    const VolumeChange<T> change = volume_change(H);
+    return weighted_piola(T(1), H, change, elastic().pressure(change.J_minus_one));
+  }
+
+  template <class T>
+  Tensor<T> isochoric_piola(const Tensor<T>& H) const {
+    return weighted_piola(T(1), H, volume_change(H), T(0));
+  }
+
+  /// Stored isochoric energy (J/m^3) at the strain that the memory is of: that of the spring that stays, and
+  /// of the springs of the relaxing parts, whose stresses are h_i = g_i S - Q_i:
+  ///   W = g_inf W_iso + sum_i h_i : h_i / (4 g_i mu) * W_iso / (S : S / (4 mu)).
+  /// The last factor, 1 near rest, is the elastic law's own compliance at this strain. So the energy is the
+  /// elastic one as long as nothing has relaxed, g_inf times it when all has, never negative, and exact for
+  /// small strains; in between, at large strains, the model has no potential in closed form.
+  template <class T>
+  T isochoric_energy(const Tensor<T>& H) const {
+    const T W = elastic().isochoric_energy(H);
+    const T tiny(1e-30 * elastic().shear_modulus());  // so that rest is 1, not 0/0
+    const T quarter(0.25 / elastic().shear_modulus());
+    const T compliance = quarter * (W + tiny) / (quarter * norm_square(memory_.S) + tiny);
+    T energy = T(remaining_share()) * W;
+    for (std::size_t i = 0; i < 2; ++i) {
+      energy = energy + T(terms_[i].inverse_share) * compliance * norm_square(spring_stress<T>(i));
+    }
+    return energy;
+  }
+
+  template <class T>
+  T energy(const Tensor<T>& H) const {
+    return isochoric_energy(H) + elastic().volumetric_energy(jacobian_minus_one(H));
+  }
+
+  /// The elastic law's bound and that of the stress that stays behind when the strain changes. A further step
+  /// answers with (1 - sum_i f_i) S + R, R = sum_i (f_i S - Q_i), where f_i is between 0 and g_i. The first
+  /// part is softer than the elastic law, the second adds (F R F^T) : (L^T L) to the second variation, and
+  /// the largest of it is at an end of each f_i, where f_i S - Q_i is -Q_i or h_i.
+  template <class T>
+  TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
+    return elastic().isochoric_tangent_bound(H) + memory_bound(H);
+  }
+
+  /// The same for a law that knows a bound of the whole.
+  template <class T>
+  TangentBound<T> tangent_bound(const Tensor<T>& H) const requires requires(const Law& law) {
+    law.tangent_bound(H);
+  }
+  { return elastic().tangent_bound(H) + memory_bound(H); }
+
+ private:
+  const Law& elastic() const { return *this; }
+
+  template <class T>
+  TangentBound<T> memory_bound(const Tensor<T>& H) const {
+    TangentBound<T> bound{T(0), T(0)};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Tensor<T> a = to_space(full(memory_.relaxed[i]), H), b = to_space(full(spring_stress<T>(i)), H);
+      bound.gradient = bound.gradient + sqrt(max(double_dot(a, a), double_dot(b, b)));
+    }
+    return bound;
+  }
+
+  double remaining_share() const { return 1.0 - (terms_[0].share + terms_[1].share); }
+
+  /// h_i, the stress of relaxing part i that is still there.
+  template <class T>
+  Symmetric<T> spring_stress(std::size_t i) const {
+    return T(terms_[i].share) * memory_.S - memory_.relaxed[i];
+  }
+
+  /// cof F = (1 + tr H) I - H^T + cof H.
+  template <class T>
+  static Tensor<T> cofactor_of_gradient(const Tensor<T>& H) {
+    Tensor<T> c = cofactor(H) - transpose(H);
+    const T diagonal = T(1) + trace(H);
+    for (int i = 0; i < 3; ++i) c(i, i) = c(i, i) + diagonal;
+    return c;
+  }
+
+  /// F Q F^T for symmetric Q.
+  template <class T>
+  static Tensor<T> to_space(const Tensor<T>& Q, const Tensor<T>& H) {
+    const Tensor<T> FQ = Q + H * Q;
+    return FQ + FQ * transpose(H);
+  }
+
+  /// Takes the memory one step on to the isochoric stress P = F S of the elastic law; returns sum_i Q_i.
+  template <class T>
+  Tensor<T> relax(const Tensor<T>& P, const Tensor<T>& cof_F, const VolumeChange<T>& change) const {
+    const T r = change.inverse_root;
+    const Symmetric<T> S = (r * r * r) * symmetric_product(transpose(cof_F), P);  // F^-1 P
+    const Symmetric<T> advance = S - memory_.S;
+    Symmetric<T> sum;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto g = T(terms_[i].share), decay = T(terms_[i].decay), follow = T(terms_[i].follow);
+      for (int n = 0; n < 6; ++n) {
+        T& Q = memory_.relaxed[i](n, 0);
+        Q = Q + (decay * (g * memory_.S(n, 0) - Q) + follow * advance(n, 0));
+        sum(n, 0) = i == 0 ? Q : sum(n, 0) + Q;
+      }
+    }
+    memory_.S = S;
+    return full(sum);
+  }
+
+  const std::array<RelaxationStep, 2>& terms_;
+  Memory& memory_;
+};
+
+/// A viscoelastic law for one step of time, the same for all elements.
+template <class Law>
+class ViscoelasticStep {
+ public:
+  using Elastic = Law;
+
+  ViscoelasticStep(const Law& elastic, const std::array<RelaxationStep, 2>& terms)
+      : elastic_(elastic), terms_(terms) {}
+
+  /// The instantaneous response.
+  const Law& elastic() const { return elastic_; }
+
+  /// The law at a point with this memory, const or not.
+  template <class Memory>
+  auto recalling(Memory& memory) const {
+    return ViscoelasticPoint<Law, Memory>(elastic_, terms_, memory);
+  }
+
+ private:
+  Law elastic_;
+  std::array<RelaxationStep, 2> terms_;
+};
+
+/// Viscoelasticity of any law by a Prony series of two terms: the isochoric second Piola-Kirchhoff stress
+/// relaxes, the volumetric one does not,
+///   S(t) = S_vol + g_inf S_iso + sum_i h_i,  h_i(t) = g_i int_0^t exp(-(t - s)/tau_i) dS_iso/ds ds,
+/// with g_inf = 1 - sum_i g_i. In the reference frame nothing has to be turned: it is objective. The integral
+/// is exact for a stress that is linear in time over each step (Taylor, Pister and Goudreau 1970, IJNME 2:45;
+/// Simo 1987, CMAME 60:153; for TLED: Taylor, Comas, Cheng, Passenger, Hawkes, Atkinson and Ourselin 2009,
+/// Med. Image Anal. 13:234, who take a step of first order).
+///
+/// The memory holds what has relaxed, Q_i = g_i S_iso - h_i, instead of h_i: S = S_elastic - sum_i Q_i. It is
+/// the same in exact arithmetic, and in floating point it begins with zero: a body that has had no time to
+/// relax is the elastic one, and the small changes of a slow term are added to a small number. Each step
+/// rounds Q by u |Q|, u half a unit in the last place, and forgets earlier errors with exp(-dt/tau): the
+/// error stays below a few u |Q| min(n, tau/dt) after n steps, in single precision as in double.
+///
+/// The parameters of the law, its moduli and its bounds of the tangent are those of the INSTANTANEOUS
+/// response; so is the stiffness of hourglass controls, which does not relax. A control for the relaxed body
+/// would be too weak by 1/g_inf when loading is fast.
+template <class Law>
+struct Viscoelastic : Law {
+  static constexpr std::string_view name = joined_text<viscoelastic_prefix, Law::name>;
+  static constexpr std::string_view summary = joined_text<Law::summary, viscoelastic_suffix>;
+
+  double relaxation_1 = 0.0;
+  double time_1 = 0.0;
+  double relaxation_2 = 0.0;
+  double time_2 = 0.0;
+
+  template <class T>
+  using Memory = RelaxationMemory<T>;
+
+  static constexpr auto parameters() {
+    using Self = Viscoelastic;
+    constexpr Range share{.low = 0.0, .high = 1.0, .low_open = false};
+    return std::tuple_cat(
+        inherited_parameters<Self>(Law::parameters()),
+        std::tuple{
+            Parameter{&Self::relaxation_1, "relaxation_1", "-", share,
+                      "share of the instantaneous shear stress that relaxes in time_1"},
+            Parameter{&Self::time_1, "time_1", "s", Range::positive(), "first relaxation time"},
+            Parameter{&Self::relaxation_2, "relaxation_2", "-", share, "share that relaxes in time_2", false},
+            Parameter{&Self::time_2, "time_2", "s", Range::at_least(0.0),
+                      "second relaxation time, positive if relaxation_2 is", false}});
+  }
+
+  /// Something has to stay, and what relaxes takes time.
+  std::optional<BrokenRule> broken_rule() const {
+    if constexpr (requires(const Law& law) { law.broken_rule(); }) {
+      if (const auto broken = Law::broken_rule()) return broken;
+    }
+    if (!(remaining_share() > 0.0)) {
+      return BrokenRule{"relaxation_2", fmt::format("= {} must be below 1 - relaxation_1 = {}", relaxation_2,
+                                                    1.0 - relaxation_1)};
+    }
+    if (relaxation_2 > 0.0 && !(time_2 > 0.0)) {
+      return BrokenRule{"time_2",
+                        fmt::format("= {} must be positive, for relaxation_2 = {} is", time_2, relaxation_2)};
+    }
+    return std::nullopt;
+  }
+
+  /// The share of the isochoric stress that stays.
+  constexpr double remaining_share() const { return 1.0 - (relaxation_1 + relaxation_2); }
+
+  /// The law for a step of so many seconds.
+  ViscoelasticStep<Law> at_step(double seconds) const {
+    return {*this,
+            {RelaxationStep::of(relaxation_1, time_1, seconds),
+             RelaxationStep::of(relaxation_2, time_2, seconds)}};
+  }
+};
+
+}  // namespace sandglass

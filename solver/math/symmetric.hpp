@@ -1,0 +1,45 @@
+#pragma once
+
+#include "math/matrix.hpp"
+
+namespace sandglass {
+
+/// A symmetric tensor as its six entries 00, 11, 22, 01, 12, 02.
+template <class T>
+using Symmetric = Matrix<T, 6, 1>;
+
+/// Where entry (i, j) stands among the six.
+constexpr int symmetric_entry(int i, int j) {
+  return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
+}
+
+/// The product a b, of which it is known that it is symmetric.
+template <class T>
+constexpr Symmetric<T> symmetric_product(const Tensor<T>& a, const Tensor<T>& b) {
+  Symmetric<T> c;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      c(symmetric_entry(i, j), 0) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j);
+    }
+  }
+  return c;
+}
+
+/// All nine entries.
+template <class T>
+constexpr Tensor<T> full(const Symmetric<T>& s) {
+  Tensor<T> a;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) a(i, j) = s(symmetric_entry(i, j), 0);
+  }
+  return a;
+}
+
+/// s : s of the nine entries.
+template <class T>
+constexpr T norm_square(const Symmetric<T>& s) {
+  const T diagonal = s(0, 0) * s(0, 0) + s(1, 0) * s(1, 0) + s(2, 0) * s(2, 0);
+  return diagonal + T(2) * (s(3, 0) * s(3, 0) + s(4, 0) * s(4, 0) + s(5, 0) * s(5, 0));
+}
+
+}  // namespace sandglass
