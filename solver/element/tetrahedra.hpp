@@ -25,6 +25,7 @@ struct Tetrahedra {
   template <class T>
   using Element = TetrahedronConstants<T>;
 
+  static constexpr int points = static_cast<int>(tetrahedron_count);
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
   static constexpr bool averages_over_nodes = Pressure::averages_over_nodes;
@@ -81,7 +82,7 @@ struct Tetrahedra {
     TetrahedronTensors<T> flux;  // w P J^-T, the stress that the parent gradient carries
     for (std::size_t e = 0; e < tetrahedron_count; ++e) {
       const VolumeChange<T> change{now.J_minus_one[e], now.inverse_root[e]};
-      flux[e] = law.weighted_piola(element.weight[e], now.H[e], change, p[e]) *
+      flux[e] = at_point(law, e).weighted_piola(element.weight[e], now.H[e], change, p[e]) *
                 transpose(element.inverse_jacobian[e]);
     }
     return parent_divergence(flux);
@@ -103,7 +104,7 @@ struct Tetrahedra {
     const TetrahedronTensors<T> H = gradients(motion, element);
     T W = Pressure::volumetric_energy(dilatations(H), Pressure::around(motion), element, law);
     for (std::size_t e = 0; e < tetrahedron_count; ++e)
-      W = W + element.weight[e] * law.isochoric_energy(H[e]);
+      W = W + element.weight[e] * at_point(law, e).isochoric_energy(H[e]);
     return {W, T(0)};
   }
 
@@ -145,11 +146,10 @@ struct Tetrahedra {
     for (std::size_t e = 0; e < tetrahedron_count; ++e) {
       const Tensor<T> to_space = T(8) * (element.inverse_jacobian[e] * inverse(identity<T>() + H[e]));
       g[e] = from_double<T>(detail::tetrahedron_gradient(e)) * to_space;
-      const T J = T(1) + dilatation[e];
-      const auto iso = law.isochoric_tangent_bound(H[e]);
-      const auto vol = volumetric_tangent_bound(J, p[e], Pressure::own_bulk_tangent(dilatation[e], law));
-      volumetric[e] = element.weight[e] * max(iso.volumetric + vol.volumetric, T(0));
-      gradient[e] = element.weight[e] * (iso.gradient + vol.gradient);
+      const auto point = tangent_bound(at_point(law, e), H[e], dilatation[e], p[e],
+                                       Pressure::own_bulk_tangent(dilatation[e], law));
+      volumetric[e] = element.weight[e] * max(point.volumetric, T(0));
+      gradient[e] = element.weight[e] * point.gradient;
     }
     return gradients_bound(gradient, g) + gram_bound(volumetric, g) +
            Pressure::shared_bulk_bound(dilatation, around, element, g, law);
