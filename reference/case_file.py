@@ -6,7 +6,7 @@ import tomllib
 from dataclasses import dataclass
 
 from errors import InputError
-from laws import LAWS
+from laws import LAWS, parameters
 
 
 @dataclass(frozen=True)
@@ -45,23 +45,34 @@ def read_case(path):
     law = _get(path, tables, "material", "law", str)
     if law not in LAWS:
         raise InputError(f"{path}: material.law = {law!r}: unknown law; {_allowed(law, LAWS)}")
-    known = ("law", "young_modulus", "poisson_ratio", "density")
-    _check_keys(path, "material", tables["material"], known)
-    young = _get(path, tables, "material", "young_modulus", float)
-    if not (young > 0 and math.isfinite(young)):
-        raise InputError(f"{path}: material.young_modulus = {young}: must be positive (Pa)")
-    poisson = _get(path, tables, "material", "poisson_ratio", float)
-    if not -1 < poisson < 0.5:
-        raise InputError(f"{path}: material.poisson_ratio = {poisson}: must lie in (-1, 0.5)")
+    _check_keys(path, "material", tables["material"], ("law", "density", *parameters(law)))
+    material = {key: _material_number(path, tables, key) for key in parameters(law)}
     entries = tables.get("displacement")
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{path}: no [[displacement]]: at least one table is required")
     return Case(
         name=name,
         law=law,
-        material={"young_modulus": young, "poisson_ratio": poisson},
+        material=material,
         displacements=tuple(_displacement(path, i, entry) for i, entry in enumerate(entries)),
     )
+
+
+def _material_number(path, tables, key):
+    """material.key: a finite number or a tuple of three; other rules are the solver's."""
+    value = tables["material"].get(key)
+    if isinstance(value, list):
+        if len(value) == 3 and all(_is_number(v) and math.isfinite(v) for v in value):
+            return tuple(float(v) for v in value)
+        raise InputError(f"{path}: material.{key} = {value!r}: must be three finite numbers")
+    value = _get(path, tables, "material", key, float)
+    if key == "poisson_ratio" and not -1 < value < 0.5:
+        raise InputError(f"{path}: material.{key} = {value}: must lie in (-1, 0.5)")
+    if key in ("young_modulus", "bulk_modulus") and not value > 0:
+        raise InputError(f"{path}: material.{key} = {value}: must be positive (Pa)")
+    if not math.isfinite(value):
+        raise InputError(f"{path}: material.{key} = {value}: must be finite")
+    return value
 
 
 def _displacement(path, index, entry):

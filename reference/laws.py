@@ -1,28 +1,84 @@
 """The one list of material laws: a name and its mixed energy density, in UFL.
 
 A law is a function of the deformation gradient F (3x3, dimensionless), the pressure-like
-multiplier p (Pa, positive in tension) and the numbers of the case's `[material]` table. It returns
-the energy per undeformed volume (J/m^3) whose stationary point in (u, p) is the equilibrium.
+multiplier p (Pa, positive in tension) and, by keyword, the numbers that the case's `[material]`
+table holds beside `law` and `density`, under the same names (SI). It returns the energy per
+undeformed volume (J/m^3) whose stationary point in (u, p) is the equilibrium.
 It must be concave in p (the term -p^2/(2K)), because p is eliminated element by element.
 
 To add a law, write its function and add one entry to LAWS.
 """
 
+import inspect
+
 import ufl
 
 
-def neo_hookean(F, p, material):
+def neo_hookean(F, p, *, young_modulus, poisson_ratio):
     """Nearly incompressible neo-Hookean solid, the one of ABAQUS and of the TLED paper.
 
     W = mu/2 (J^(-2/3) tr(F^T F) - 3) + p (J - 1) - p^2 / (2 K); eliminating p pointwise
     (p = K (J - 1)) gives back mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2.
     """
-    E, nu = material["young_modulus"], material["poisson_ratio"]
-    mu, K = E / 2 / (1 + nu), E / 3 / (1 - 2 * nu)
+    mu, K = _moduli(young_modulus, poisson_ratio)
     J = ufl.det(F)
-    return mu / 2 * (J ** (-2 / 3) * ufl.inner(F, F) - 3) + p * (J - 1) - p**2 / (2 * K)
+    return mu / 2 * (J ** (-2 / 3) * ufl.inner(F, F) - 3) + _volumetric(J, p, K)
+
+
+def st_venant_kirchhoff(F, p, *, young_modulus, poisson_ratio):
+    """Hooke's law of the Green strain E, lambda/2 tr^2 E + mu E : E.
+
+    It is no sum of an isochoric and a volumetric part: the pressure takes the place of
+    K/2 (J - 1)^2, which is subtracted from the energy first.
+    """
+    mu, K = _moduli(young_modulus, poisson_ratio)
+    E, J = (F.T * F - ufl.Identity(3)) / 2, ufl.det(F)
+    energy = (K - 2 * mu / 3) / 2 * ufl.tr(E) ** 2 + mu * ufl.inner(E, E)
+    return energy - K / 2 * (J - 1) ** 2 + _volumetric(J, p, K)
+
+
+def mooney_rivlin(F, p, *, c10, c01, bulk_modulus):
+    """Linear in the isochoric invariants, c10 (I1bar - 3) + c01 (I2bar - 3)."""
+    C, J = F.T * F, ufl.det(F)
+    I1, I2 = ufl.tr(C), (ufl.tr(C) ** 2 - ufl.tr(C * C)) / 2
+    energy = c10 * (J ** (-2 / 3) * I1 - 3) + c01 * (J ** (-4 / 3) * I2 - 3)
+    return energy + _volumetric(J, p, bulk_modulus)
+
+
+def yeoh(F, p, *, c1, c2, c3, bulk_modulus):
+    """Cubic in the first isochoric invariant, c1 x + c2 x^2 + c3 x^3 with x = I1bar - 3."""
+    J = ufl.det(F)
+    x = J ** (-2 / 3) * ufl.inner(F, F) - 3
+    return c1 * x + c2 * x**2 + c3 * x**3 + _volumetric(J, p, bulk_modulus)
+
+
+def fibre_neo_hookean(F, p, *, young_modulus, poisson_ratio, fibre_modulus, fibre_direction):
+    """Neo-Hookean with one family of fibres, k/2 ((I4bar - 1)/2)^2; a direction of any length."""
+    a, J = fibre_direction, ufl.det(F)
+    strain = (J ** (-2 / 3) * ufl.inner(F * a, F * a) / ufl.inner(a, a) - 1) / 2
+    matrix = neo_hookean(F, p, young_modulus=young_modulus, poisson_ratio=poisson_ratio)
+    return matrix + fibre_modulus / 2 * strain**2
+
+
+def _moduli(E, nu):
+    """Shear and bulk modulus, Pa."""
+    return E / 2 / (1 + nu), E / 3 / (1 - 2 * nu)
+
+
+def _volumetric(J, p, K):
+    """K/2 (J - 1)^2 with its slope p as an unknown of its own."""
+    return p * (J - 1) - p**2 / (2 * K)
 
 
 LAWS = {
     "neo-hookean": neo_hookean,
+    "st-venant-kirchhoff": st_venant_kirchhoff,
+    "mooney-rivlin": mooney_rivlin,
+    "yeoh": yeoh,
+    "fibre-neo-hookean": fibre_neo_hookean,
 }
+
+
+def parameters(law):
+    """The names of a law's numbers, as a case file's `[material]` has them."""
+    return tuple(inspect.getfullargspec(LAWS[law]).kwonlyargs)

@@ -44,7 +44,8 @@ TRUTH = ElementPair("Q2-P1", 2, "DPC", 1, 4)
 class MixedProblem:
     """Equilibrium of a HexMesh: residual and tangent in the displacement's unknowns.
 
-    mesh: HexMesh. pair: ElementPair. law: name out of LAWS. material: dict of its numbers (SI).
+    mesh: HexMesh. pair: ElementPair. law: name out of LAWS. material: dict of its numbers (SI),
+    directions as tuples.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
     dofs), values (their full values, m), free (the other dofs).
     """
@@ -157,7 +158,7 @@ def _compile_forms(u, p, pair, law, material):
     assert len(points) == pair.gauss_points**3, "FEniCSx chose another Gauss rule"
     measure = ufl.dx(metadata={"quadrature_rule": "default", "quadrature_degree": degree})
     F = ufl.Identity(3) + ufl.grad(u)
-    energy = LAWS[law](F, p, material) * measure
+    energy = LAWS[law](F, p, **material) * measure
     v, du = ufl.TestFunction(u.function_space), ufl.TrialFunction(u.function_space)
     q, dp = ufl.TestFunction(p.function_space), ufl.TrialFunction(p.function_space)
     by_u, by_p = ufl.derivative(energy, u, v), ufl.derivative(energy, p, q)

@@ -116,6 +116,11 @@ TEST(CaseFile, hash_follows_what_decides_the_answer_and_nothing_else) {
   EXPECT_EQ(hash(with("below = 0.01", "below = 0.02")), once);
   EXPECT_NE(hash(with("poisson_ratio = 0.49", "poisson_ratio = 0.48")), once);
   EXPECT_NE(hash(with("elements = [1, 2, 3]", "elements = [1, 2, 4]")), once);
+  const auto with_fibres = [&](const std::string& direction) {
+    return hash(with("law = \"neo-hookean\"",
+                     "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibre_direction = " + direction));
+  };
+  EXPECT_NE(with_fibres("[0, 0, 1]"), with_fibres("[0, 1, 1]"));
   EXPECT_NE(hash(with("value = [0.5, 0.0, 0.3]", "value = [0.5, 0.0, 0.31]")), once);
   EXPECT_NE(hash(with("components = \"xz\"", "components = \"xyz\"")), once);
   EXPECT_NE(hash(with("top = { z = [3.0, 3.0] }", "top = { z = [2.0, 3.0] }")), once);
@@ -172,6 +177,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"poisson_ratio_half",
                 with("poisson_ratio = 0.49", "poisson_ratio = 0.5"),
                 {"material.poisson_ratio = 0.5 must be in (-1, 0.5)"}},
+        BadCase{"fibres_without_a_direction",
+                with("law = \"neo-hookean\"",
+                     "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibre_direction = [0, 0.0, 0]"),
+                {"bad.toml:14: material.fibre_direction = [0, 0, 0]", "direction is needed"}},
+        BadCase{"rule_between_parameters",
+                with("law = \"neo-hookean\"\nyoung_modulus = 3000.0\npoisson_ratio = 0.49",
+                     "law = \"yeoh\"\nc1 = 100.0\nc2 = -30.0\nc3 = 2.0\nbulk_modulus = 1e4"),
+                {"bad.toml:14: material.c2 = -30 must be at least 0", "3 c1 c3 = 600"}},
         BadCase{"poisson_ratio_above",
                 with("poisson_ratio = 0.49", "poisson_ratio = 0.6"),
                 {"= 0.6 must be in (-1, 0.5)"}},

@@ -15,34 +15,54 @@ namespace {
 
 /// One line of the table.
 struct Row {
-  std::string method;
-  std::string form;  ///< "kernel": what runs; "paper": as the paper writes it
-  std::string part;
+  std::string_view method;
+  std::string_view law;
+  std::string_view form;  ///< "kernel": what runs; "paper": as the paper writes it
+  std::string_view part;
   Operations operations;
   long bytes = 0;  ///< 0 where the part reads nothing of its own
 };
 
-std::vector<Row> count_all() {
+/// Every method with one law.
+std::vector<Row> count_methods() {
+  using Law = NeoHookean;
   std::vector<Row> rows;
   for_each_type(Methods{}, [&]<class Method>() {
-    const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.49};
     const OperationCount count =
-        count_operations<typename Method::Kinematics, typename Method::Hourglass>(law);
-    const std::string name(Method::name);
-    rows.push_back({name, "kernel", "gradient", count.gradient});
-    rows.push_back({name, "kernel", "law", count.law});
-    rows.push_back({name, "kernel", "force", count.force});
-    if (Method::Hourglass::active) rows.push_back({name, "kernel", "hourglass", count.hourglass});
-    rows.push_back({name, "kernel", "element", count.total, count.bytes});
+        count_operations<typename Method::Kinematics, typename Method::Hourglass>(Law{});
+    const auto add = [&](std::string_view part, const Operations& operations, long bytes = 0) {
+      rows.push_back({Method::name, Law::name, "kernel", part, operations, bytes});
+    };
+    add("gradient", count.gradient);
+    add("law", count.law);
+    add("force", count.force);
+    if (Method::Hourglass::active) add("hourglass", count.hourglass);
+    add("element", count.total, count.bytes);
   });
-  rows.push_back({std::string(TlPerturbation::name), "paper", "hourglass", count_paper_hourglass_force()});
+  rows.push_back({TlPerturbation::name, Law::name, "paper", "hourglass", count_paper_hourglass_force()});
   return rows;
+}
+
+/// Every law at the one point of an element; counts do not depend on the values of its parameters.
+std::vector<Row> count_laws() {
+  std::vector<Row> rows;
+  for_each_type(Laws{}, [&]<class Law>() {
+    const Operations operations = count_operations<TlNone::Kinematics, TlNone::Hourglass>(Law{}).law;
+    rows.push_back({TlNone::name, Law::name, "kernel", "law", operations});
+  });
+  return rows;
+}
+
+/// "add mul div special total", right-aligned.
+std::string columns(const Operations& n) {
+  return fmt::format("{:>6}{:>6}{:>6}{:>9}{:>7}", n.add, n.mul, n.div, n.special, n.total());
 }
 
 void write_json(const std::vector<Row>& rows, const std::string& path) {
   nlohmann::ordered_json records = nlohmann::ordered_json::array();
   for (const auto& row : rows) {
     records.push_back({{"method", row.method},
+                       {"law", row.law},
                        {"form", row.form},
                        {"part", row.part},
                        {"add", row.operations.add},
@@ -63,17 +83,21 @@ void add_flops_command(CLI::App& app) {
       app.add_subcommand("flops", "operations per element and step, counted in the kernels that run");
   command->add_option("--json", *json, "write every count to this file");
   command->callback([json] {
-    const auto rows = count_all();
+    auto rows = count_methods();
     fmt::print(
         "operations per element and step with the law {}; bytes: constants in double, places of nodes, "
         "history\n"
         "{:<25}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n",
         NeoHookean::name, "method", "form", "part", "add", "mul", "div", "special", "total", "bytes");
     for (const auto& row : rows) {
-      const auto& n = row.operations;
-      fmt::print("{:<25}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n", row.method, row.form, row.part, n.add,
-                 n.mul, n.div, n.special, n.total(), row.bytes > 0 ? fmt::to_string(row.bytes) : "");
+      fmt::print("{:<25}{:<8}{:<10}{}{:>7}\n", row.method, row.form, row.part, columns(row.operations),
+                 row.bytes > 0 ? fmt::to_string(row.bytes) : "");
     }
+    const auto laws = count_laws();
+    fmt::print("\noperations of the laws per point and step\n{:<43}{:>6}{:>6}{:>6}{:>9}{:>7}\n", "law", "add",
+               "mul", "div", "special", "total");
+    for (const auto& row : laws) fmt::print("{:<43}{}\n", row.law, columns(row.operations));
+    rows.insert(rows.end(), laws.begin(), laws.end());
     if (!json->empty()) write_json(rows, *json);
   });
 }

@@ -19,7 +19,8 @@ namespace sandglass {
 /// incompressible tissue,
 ///   W = mu/2 (I1bar - 3) + k/2 Ef^2 + K/2 (J - 1)^2,  Ef = (I4bar - 1)/2,  I4bar = J^(-2/3) a.C a.
 /// Ef is the Green strain of a fibre without the body's change of size. It is smooth: fibres resist being
-/// shortened as they resist being stretched.
+/// shortened as they resist being stretched, but shortened below a stretch of 1/sqrt(3) they give way, and
+/// with k >> mu the solid kinks.
 struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
   static constexpr std::string_view name = "fibre-neo-hookean";
   static constexpr std::string_view summary =
