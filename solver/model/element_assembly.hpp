@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "element/element_motion.hpp"
+#include "material/memory.hpp"
 #include "math/lanes.hpp"
 #include "model/face_gather.hpp"
 #include "model/internal_force.hpp"

@@ -21,6 +21,10 @@ Law sample_law(double poisson_ratio, double young_modulus = sample_young_modulus
     if (name == "young_modulus") return young_modulus;
     if (name == "poisson_ratio") return poisson_ratio;
     if (name == "shear_modulus") return young_modulus / 2.0 / (1.0 + poisson_ratio);
+    if (name == "relaxation_1") return 0.450;  // brain tissue, Miller and Chinzei 2002, J. Biomech. 35:483
+    if (name == "time_1") return 0.50;
+    if (name == "relaxation_2") return 0.365;
+    if (name == "time_2") return 50.0;
     if (name == "bulk_modulus") return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio);
     if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
     return std::isfinite(range.low) ? range.low + 1.0 : 1.0;
