@@ -23,6 +23,22 @@ def neo_hookean(F, p, material):
     return mu / 2 * (J ** (-2 / 3) * ufl.inner(F, F) - 3) + p * (J - 1) - p**2 / (2 * K)
 
 
-LAWS = {
+def viscoelastic(law):
+    """The same law when all that relaxes has relaxed: its quasi-static answer.
+
+    The isochoric stress, whose energy is what is left at p = 0, keeps the share
+    1 - relaxation_1 - relaxation_2 (Simo 1987); the volumetric one does not relax.
+    """
+
+    def relaxed(F, p, material):
+        share = material["relaxation_1"] + material.get("relaxation_2", 0.0)
+        return law(F, p, material) - share * law(F, 0, material)
+
+    return relaxed
+
+
+ELASTIC_LAWS = {
     "neo-hookean": neo_hookean,
 }
+
+LAWS = ELASTIC_LAWS | {"viscoelastic-" + name: viscoelastic(f) for name, f in ELASTIC_LAWS.items()}

@@ -127,8 +127,8 @@ class PackedKernel : public testing::Test {
       auto& s = samples[static_cast<std::size_t>(lane)];
       const auto plain =
           Kernel::force(Kernel::deformation(s.motion, s.constants), s.constants, s.history, law);
-      const double size =
-          Kernel::stiffness_bound(s.motion, s.constants, s.history, law) * std::sqrt(double_dot(s.motion.u, s.motion.u));
+      const double size = Kernel::stiffness_bound(s.motion, s.constants, s.history, law) *
+                          std::sqrt(double_dot(s.motion.u, s.motion.u));
       for (std::size_t k = 0; k < 21; ++k) {
         const double difference = std::abs(packed.entries[k].lanes[lane] - plain.entries[k]);
         EXPECT_LE(difference, strict ? 0.0 : 64 * eps * size) << "lane " << lane;

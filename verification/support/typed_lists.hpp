@@ -60,10 +60,10 @@ template <class List>
 struct Elastic;
 template <class... Methods, class... PairedLaws>
 struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
-  using type = Concatenated<
-      TypeList<>,
-      std::conditional_t<stands_alone<FormulationOf<Methods, PairedLaws>>,
-                         TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>;
+  using type =
+      Concatenated<TypeList<>,
+                   std::conditional_t<stands_alone<FormulationOf<Methods, PairedLaws>>,
+                                      TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>;
 };
 
 /// The methods whose answer does not depend on the path.
@@ -71,9 +71,8 @@ template <class List>
 struct PathIndependent;
 template <class... EveryMethod>
 struct PathIndependent<TypeList<EveryMethod...>> {
-  using type =
-      Concatenated<TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers,
-                                                  TypeList<>, TypeList<EveryMethod>>...>;
+  using type = Concatenated<TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers,
+                                                           TypeList<>, TypeList<EveryMethod>>...>;
 };
 
 }  // namespace detail
