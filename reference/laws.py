@@ -37,8 +37,8 @@ def viscoelastic(law):
     return relaxed
 
 
-ELASTIC_LAWS = {
+LAWS = {
     "neo-hookean": neo_hookean,
 }
 
-LAWS = ELASTIC_LAWS | {"viscoelastic-" + name: viscoelastic(f) for name, f in ELASTIC_LAWS.items()}
+LAWS |= {"viscoelastic-" + name: viscoelastic(law) for name, law in LAWS.items()}

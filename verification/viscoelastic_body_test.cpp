@@ -380,5 +380,26 @@ TEST(ViscoelasticCase, wrong_parameters_are_refused_with_their_line) {
   EXPECT_TRUE(contains(time, "material.time_2 = 0 must be positive, for relaxation_2 = 0.3 is"));
 }
 
+/// A block of brain tissue, held from t = 0.2 s on after a ramp about 0.1 s. Being nearly incompressible it
+/// keeps its strains while it relaxes, and so springs lose energy as the squares of the exponentials. That
+/// the strains stay the same is true to the ratio of the moduli, K / mu = 50, with which the volumetric part
+/// follows.
+TEST(ViscoelasticCase, held_brain_tissue_loses_the_energy_of_its_relaxation_times) {
+  const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "brain-hold.toml");
+  const Law law = std::get<Law>(scene.description.law);
+  Recorder recorder;
+  integrate(Model(scene, {"tl-perturbation"}), recorder);
+  const auto springs = [&](double t) {
+    return law.remaining_share() + law.relaxation_1 * std::exp(-2.0 * (t - 0.1) / law.time_1) +
+           law.relaxation_2 * std::exp(-2.0 * (t - 0.1) / law.time_2);
+  };
+  const auto& last = recorder.rows.back();
+  for (const auto& row : recorder.rows) {
+    if (row.time < 0.4) continue;  // waves of the ramp run
+    EXPECT_NEAR(row.strain / last.strain, springs(row.time) / springs(last.time), 0.02) << row.time;
+  }
+  EXPECT_GT(springs(0.4) / springs(2.0), 1.2);
+}
+
 }  // namespace
 }  // namespace sandglass::verification
