@@ -46,7 +46,11 @@ def read_case(path):
     if law not in LAWS:
         raise InputError(f"{path}: material.law = {law!r}: unknown law; {_allowed(law, LAWS)}")
     _check_keys(path, "material", tables["material"], ("law", "density", *parameters(law)))
-    material = {key: _material_number(path, tables, key) for key in parameters(law)}
+    material = {
+        key: _material_number(path, tables, key)
+        for key, required in parameters(law).items()
+        if required or key in tables["material"]
+    }
     entries = tables.get("displacement")
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{path}: no [[displacement]]: at least one table is required")

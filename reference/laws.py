@@ -70,6 +70,20 @@ def _volumetric(J, p, K):
     return p * (J - 1) - p**2 / (2 * K)
 
 
+def viscoelastic(law):
+    """The same law when all that relaxes has relaxed: its quasi-static answer.
+
+    The isochoric stress, whose energy is what is left at p = 0, keeps the share
+    1 - relaxation_1 - relaxation_2 (Simo 1987); the volumetric one does not relax.
+    """
+
+    def relaxed(F, p, *, relaxation_1, time_1, relaxation_2=0.0, time_2=0.0, **material):
+        share = relaxation_1 + relaxation_2
+        return law(F, p, **material) - share * law(F, 0, **material)
+
+    return relaxed
+
+
 LAWS = {
     "neo-hookean": neo_hookean,
     "st-venant-kirchhoff": st_venant_kirchhoff,
@@ -78,7 +92,13 @@ LAWS = {
     "fibre-neo-hookean": fibre_neo_hookean,
 }
 
+VISCOELASTIC = "viscoelastic-"
+LAWS |= {VISCOELASTIC + name: viscoelastic(law) for name, law in LAWS.items()}
+
 
 def parameters(law):
-    """The names of a law's numbers, as a case file's `[material]` has them."""
-    return tuple(inspect.getfullargspec(LAWS[law]).kwonlyargs)
+    """The names of a law's numbers, as a case file's `[material]` has them, and whether each must
+    be there."""
+    arguments = inspect.getfullargspec(LAWS[law])
+    own = {name: name not in (arguments.kwonlydefaults or {}) for name in arguments.kwonlyargs}
+    return (parameters(law.removeprefix(VISCOELASTIC)) if arguments.varkw else {}) | own

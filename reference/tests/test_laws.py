@@ -15,7 +15,7 @@ from dolfinx import fem
 import newton
 from case_file import read_case
 from errors import InputError
-from laws import LAWS, parameters
+from laws import LAWS, VISCOELASTIC, parameters
 from mesh_file import load_case_mesh
 from problem import GOLDEN, MixedProblem
 from solver_binary import REPOSITORY, make_mesh
@@ -29,6 +29,8 @@ MATERIALS = {
     "fibre-neo-hookean": "young_modulus = 3000.0\npoisson_ratio = 0.45\nfibre_modulus = 5000.0\n"
     "fibre_direction = [1.0, -0.5, 2.0]",
 }
+RELAXATION = "relaxation_1 = 0.45\ntime_1 = 0.5\nrelaxation_2 = 0.3\ntime_2 = 50.0"
+MATERIALS |= {f"{VISCOELASTIC}{law}": f"{text}\n{RELAXATION}" for law, text in MATERIALS.items()}
 
 # Stretched by a third, sheared by as much, with free sides: every part of a law takes part.
 CASE = """

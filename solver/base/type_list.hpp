@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -30,6 +31,20 @@ bool with_named_type(TypeList<Types...> /*list*/, std::string_view name, Visitor
 template <class... Types>
 std::vector<std::string> names_of(TypeList<Types...> /*list*/) {
   return {std::string(Types::name)...};
+}
+
+/// How many types a list has.
+template <class... Types>
+constexpr std::size_t size_of(TypeList<Types...> /*list*/) {
+  return sizeof...(Types);
+}
+
+/// Where a type stands in a list, from 0.
+template <class Type, class... Types>
+constexpr std::size_t index_in(TypeList<Types...> /*list*/) {
+  std::size_t index = 0;
+  static_cast<void>(((std::is_same_v<Type, Types> || (++index, false)) || ...));
+  return index;
 }
 
 namespace detail {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/type_list.hpp"
+#include "material/any_elastic_law.hpp"
 #include "material/fibre_neo_hookean.hpp"
 #include "material/mooney_rivlin.hpp"
 #include "material/neo_hookean.hpp"
@@ -22,6 +23,19 @@ using ElasticLaws = TypeList<NeoHookean, StVenantKirchhoff, MooneyRivlin, Yeoh, 
 
 /// All laws that a case may name.
 using Laws = Concatenated<ElasticLaws, Wrapped<Viscoelastic, ElasticLaws>>;
+
+/// The law that the kernels run: an elastic law itself; of viscoelastic laws one for all, so that the kernels
+/// are not compiled anew for each.
+template <class Law>
+const Law& kernel_law(const Law& law) {
+  return law;
+}
+template <class Law>
+auto kernel_law(const Viscoelastic<Law>& law) {
+  using Elastic = AnyElasticLaw<ElasticLaws>;
+  return Viscoelastic<Elastic>{Elastic(static_cast<const Law&>(law)), law.relaxation_1, law.time_1,
+                               law.relaxation_2, law.time_2};
+}
 
 /// A law chosen at run time.
 using AnyLaw = VariantOf<Laws>;

@@ -12,6 +12,8 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "element/element_motion.hpp"
+#include "material/memory.hpp"
 #include "math/lanes.hpp"
 #include "model/face_gather.hpp"
 #include "model/internal_force.hpp"

@@ -30,9 +30,9 @@ void require_sensible(const MethodChoice& choice) {
 
 AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice) {
   require_sensible(choice);
-  if (choice.kernel == KernelWidth::scalar) return make_scalar_double(mesh, law, choice);
-  if (choice.precision == Precision::double_precision) return make_packed_double(mesh, law, choice);
-  return make_packed_float(mesh, law, choice);
+  if (choice.kernel == KernelWidth::scalar) return assemble<double>(mesh, law, choice);
+  if (choice.precision == Precision::double_precision) return assemble<Pack<double>>(mesh, law, choice);
+  return assemble<Pack<float>>(mesh, law, choice);
 }
 
 bool takes_kappa(std::string_view method) {

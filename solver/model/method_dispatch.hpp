@@ -5,9 +5,11 @@
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "element/methods.hpp"
-#include "model/element_assembly.hpp"
+#include "math/lanes.hpp"
+#include "model/internal_force.hpp"
 
-/// From a method's name to its kernels. One source file per number type compiles them, side by side.
+/// From a method's name to its kernels. Every pair of method and law is a kernel, for each number type: too
+/// many for one source file. They are dealt out, so that they compile side by side.
 namespace sandglass {
 
 /// Calls visit.operator()<Method>() for the method of that name, or throws.
@@ -19,23 +21,36 @@ void with_method(std::string_view name, Visitor&& visit) {
   }
 }
 
-/// The elements of a mesh, as many at a time as `Number` holds.
-template <class Number>
-auto assemble(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice) {
-  std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>> force;
-  with_method(choice.method, [&]<class Method>() {
-    std::visit(
-        [&]<class Law>(const Law& law) {
-          force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Number>>(
-              mesh, law, HourglassSettings{choice.kappa, choice.kappa_modulus}, choice.threads);
-        },
-        any_law);
-  });
-  return force;
+/// Source files per number type. CMakeLists.txt makes them and knows this number; too few do not link.
+inline constexpr std::size_t assembly_parts = 4;
+
+/// The part that has a method, with all laws.
+template <class Method>
+constexpr std::size_t part_of() {
+  return index_in<Method>(Methods{}) % assembly_parts;
 }
 
-std::unique_ptr<InternalForce<double>> make_packed_double(const Mesh&, const AnyLaw&, const MethodChoice&);
-std::unique_ptr<InternalForce<float>> make_packed_float(const Mesh&, const AnyLaw&, const MethodChoice&);
-std::unique_ptr<InternalForce<double>> make_scalar_double(const Mesh&, const AnyLaw&, const MethodChoice&);
+/// Elements that compute as many at a time as `Number` holds.
+template <class Number>
+using ForceOf = std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>>;
+
+/// The elements of a mesh if the chosen method belongs to this part; else none.
+template <class Number, std::size_t part>
+ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice);
+
+/// The elements of a mesh, from the part that has them.
+template <class Number>
+ForceOf<Number> assemble(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice) {
+  ForceOf<Number> force;
+  const auto look_in = [&]<std::size_t part>() {
+    force = assemble_part<Number, part>(mesh, law, choice);
+    return force != nullptr;
+  };
+  [&]<std::size_t... part>(std::index_sequence<part...>) {
+    static_cast<void>((look_in.template operator()<part>() || ...));
+  }
+  (std::make_index_sequence<assembly_parts>{});
+  return force;
+}
 
 }  // namespace sandglass

@@ -10,7 +10,8 @@ Operations operations_of(std::string_view method, const AnyLaw& any_law) {
   with_method(method, [&]<class Method>() {
     operations = std::visit(
         [](const auto& law) {
-          return count_operations<typename Method::Kinematics, typename Method::Hourglass>(law).total;
+          return count_operations<typename Method::Kinematics, typename Method::Hourglass>(kernel_law(law))
+              .total;
         },
         any_law);
   });

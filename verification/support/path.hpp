@@ -11,8 +11,9 @@ class Path {
   Path(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice)
       : elements_(std::get<0>(make_internal_force(mesh, law, choice))), state_(elements_->rest()) {}
 
-  /// Goes on to displacements u (m) and returns the forces there (N).
-  NodalField to(const NodalField& u) {
+  /// Goes on to displacements u (m) in so many seconds and returns the forces there (N).
+  NodalField to(const NodalField& u, double seconds = std::numeric_limits<double>::infinity()) {
+    state_.step = seconds;
     const Rows<double> rows = to_rows<double>(u, elements_->layout());
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) state_.increment[r][i] = rows[r][i] - state_.u[r][i];

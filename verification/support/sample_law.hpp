@@ -35,6 +35,11 @@ inline double sample_value(std::string_view name, std::string_view unit, const R
   if (name == "mu2") return 0.3 * mu;
   if (name == "alpha1") return -4.7;
   if (name == "alpha2") return 3.0;
+  // Brain tissue: Miller and Chinzei 2002, J. Biomech. 35:483.
+  if (name == "relaxation_1") return 0.450;
+  if (name == "time_1") return 0.50;
+  if (name == "relaxation_2") return 0.365;
+  if (name == "time_2") return 50.0;
   if (unit == "Pa") return E;
   if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
   return std::isfinite(range.low) ? range.low + 1.0 : 1.0;

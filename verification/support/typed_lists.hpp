@@ -37,17 +37,6 @@ struct AsTestTypes<TypeList<Entries...>> {
   using type = ::testing::Types<Entries...>;
 };
 
-template <class... Lists>
-struct Concatenated;
-template <class... Entries>
-struct Concatenated<TypeList<Entries...>> {
-  using type = TypeList<Entries...>;
-};
-template <class... First, class... Second, class... Rest>
-struct Concatenated<TypeList<First...>, TypeList<Second...>, Rest...> {
-  using type = typename Concatenated<TypeList<First..., Second...>, Rest...>::type;
-};
-
 template <class Method, class LawList>
 struct WithEveryLaw;
 template <class Method, class... EveryLaw>
@@ -59,7 +48,7 @@ template <class MethodList, class LawList>
 struct Product;
 template <class... EveryMethod, class LawList>
 struct Product<TypeList<EveryMethod...>, LawList> {
-  using type = typename Concatenated<typename WithEveryLaw<EveryMethod, LawList>::type...>::type;
+  using type = Concatenated<typename WithEveryLaw<EveryMethod, LawList>::type...>;
 };
 
 /// Whether an element with its constants is all that a method needs beside the displacements.
@@ -72,10 +61,10 @@ template <class List>
 struct Elastic;
 template <class... Methods, class... PairedLaws>
 struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
-  using type = typename Concatenated<
-      TypeList<>,
-      std::conditional_t<stands_alone<FormulationOf<Methods, PairedLaws>>,
-                         TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>::type;
+  using type =
+      Concatenated<TypeList<>,
+                   std::conditional_t<stands_alone<FormulationOf<Methods, PairedLaws>>,
+                                      TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>;
 };
 
 /// The methods whose answer does not depend on the path.
@@ -83,24 +72,25 @@ template <class List>
 struct PathIndependent;
 template <class... EveryMethod>
 struct PathIndependent<TypeList<EveryMethod...>> {
-  using type =
-      typename Concatenated<TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers,
-                                                           TypeList<>, TypeList<EveryMethod>>...>::type;
+  using type = Concatenated<TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers,
+                                                           TypeList<>, TypeList<EveryMethod>>...>;
 };
 
 }  // namespace detail
 
-using LawTypes = detail::AsTestTypes<Laws>::type;
+/// The laws whose stress follows from the deformation. Each also comes viscoelastic: what that adds is tested
+/// in viscoelastic_test.cpp.
+using LawTypes = detail::AsTestTypes<ElasticLaws>::type;
 using MethodTypes = detail::AsTestTypes<Methods>::type;
 using GeneratorTypes = detail::AsTestTypes<Generators>::type;
 using MethodWithLawTypes = detail::AsTestTypes<detail::Product<Methods, Laws>::type>::type;
 
-/// What integrates its resistances in time comes to rest where the path leads it; who expects one answer
-/// takes these.
+/// What integrates its resistances in time comes to rest where the path leads it, and what relaxes takes its
+/// time; who expects one answer takes these.
 using PathIndependentMethods = detail::PathIndependent<Methods>::type;
 using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
 using PathIndependentPairTypes =
-    detail::AsTestTypes<detail::Product<PathIndependentMethods, Laws>::type>::type;
+    detail::AsTestTypes<detail::Product<PathIndependentMethods, ElasticLaws>::type>::type;
 
 using ElasticMethodWithLawTypes =
     detail::AsTestTypes<detail::Elastic<detail::Product<Methods, Laws>::type>::type>::type;

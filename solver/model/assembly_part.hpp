@@ -1,0 +1,30 @@
+#pragma once
+
+#include "model/element_assembly.hpp"
+#include "model/method_dispatch.hpp"
+
+/// The definition of `assemble_part`, for the source files that instantiate it; see CMakeLists.txt.
+namespace sandglass {
+
+template <class Number, std::size_t part>
+ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice) {
+  static_assert(part < assembly_parts, "CMakeLists.txt makes more parts than there are");
+  ForceOf<Number> force;
+  const HourglassSettings settings{choice.kappa, choice.kappa_modulus};
+  for_each_type(Methods{}, [&]<class Method>() {
+    if constexpr (part_of<Method>() == part) {
+      if (Method::name != choice.method) return;
+      std::visit(
+          [&](const auto& chosen) {
+            const auto law = kernel_law(chosen);
+            using Law = std::remove_const_t<decltype(law)>;
+            force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Number>>(
+                mesh, law, settings, choice.threads);
+          },
+          any_law);
+    }
+  });
+  return force;
+}
+
+}  // namespace sandglass

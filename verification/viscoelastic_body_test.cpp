@@ -1,0 +1,405 @@
+/// Bodies that relax: every method with a viscoelastic law, from one element to a case file.
+
+#include <gtest/gtest.h>
+
+#include <complex>
+
+#include "io/case_file.hpp"
+#include "mesh/lattice.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/relaxation.hpp"
+#include "stepping/stable_step.hpp"
+#include "support/path.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/sample_law.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+using Law = Viscoelastic<NeoHookean>;
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double density = 1000.0;
+
+template <class Method>
+class RelaxingBodyTest : public ::testing::Test {
+ protected:
+  static std::string method() { return std::string(Method::name); }
+  static Model model(const Scene& scene, Precision precision = Precision::double_precision) {
+    return Model(scene, {method(), {}, precision});
+  }
+};
+
+TYPED_TEST_SUITE(RelaxingBodyTest, MethodTypes, EntryName);
+
+/// A distorted element under a uniform strain, held: every method answers with f = V h P^T of the relaxing
+/// stress. An element whose points share a memory, or that takes it one step too far, fails here.
+TYPED_TEST(RelaxingBodyTest, uniform_strain_relaxes_as_the_law) {
+  RandomGeometry random(41);
+  for (int n = 0; n < 10; ++n) {
+    const Law law = sample_law<Law>(0.45);
+    const NodalVectors<double> X = random.hexahedron();
+    const Tensor<double> H = random.deformation(0.7, 1.5) - identity<double>();
+    Mesh mesh;
+    mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+    NodalField u;
+    for (int I = 0; I < 8; ++I) {
+      mesh.points.push_back({X(I, 0), X(I, 1), X(I, 2)});
+      u.push_back(linear(H, mesh.points.back()));
+    }
+    const Scene scene = make_scene(plain_case(law), mesh);
+    const auto bounds = std::get<0>(make_internal_force(mesh, law, {this->method()}));
+    std::array<double, 1> bound{};
+    bounds->stiffness_bounds(state_at(*bounds, u), bound);
+    Path path(mesh, law, {this->method()});
+    const double first = 0.2;
+    path.to(u, first);
+    double held = 0.0;
+    for (const double dt : {0.01, 0.5, 3.0, 0.1, 70.0}) {
+      held += dt;
+      double share = law.remaining_share();
+      for (const auto& [g, tau] :
+           {std::pair{law.relaxation_1, law.time_1}, std::pair{law.relaxation_2, law.time_2}}) {
+        share += g * -std::expm1(-first / tau) * tau / first * std::exp(-held / tau);
+      }
+      const NeoHookean& elastic = law;
+      const double p = elastic.pressure(jacobian_minus_one(H));
+      const auto P = share * elastic.isochoric_piola(H) + p * cofactor(identity<double>() + H);
+      const auto mean = mean_gradient(X);
+      const auto exact = mean.h * (mean.volume * transpose(P));
+      const NodalField force = path.to(u, dt);
+      // As in the tests of single elements: displacements known to eps of the coordinates met, times
+      // stiffness.
+      const double tolerance = 512 * eps * bound[0] * 3.0 * largest_entry(X);
+      for (std::size_t I = 0; I < 8; ++I) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          EXPECT_NEAR(force[I][i], exact(static_cast<int>(I), static_cast<int>(i)), tolerance);
+        }
+      }
+    }
+  }
+}
+
+/// Without time a law has relaxed, whatever was before: a trial that gave no numbers leaves nothing behind.
+TYPED_TEST(RelaxingBodyTest, trials_without_numbers_are_forgotten_where_time_plays_no_part) {
+  if constexpr (FormulationOf<TypeParam, NeoHookean>::remembers) return;  // its control does remember
+  const Mesh mesh = box({1, 1, 1}, {2, 1, 1});
+  const AnyLaw law = sample_law<Law>(0.45);
+  NodalField u;
+  for (const auto& X : mesh.points) u.push_back({0.1 * X[0] * X[1], 0.02 * X[2], 0.05 * X[0]});
+  Path fresh(mesh, law, {this->method()}), spoilt(mesh, law, {this->method()});
+  spoilt.to(NodalField(mesh.points.size(), Vector{NAN, NAN, NAN}));
+  EXPECT_EQ(spoilt.to(u), fresh.to(u));
+}
+
+/// A cube between rigid planes, thrown along z: uniaxial strain, one degree of freedom with the mass rho
+/// h^3/2 and the complex modulus M(s) = K + 4/3 mu (g_inf + sum_i g_i s tau_i / (1 + s tau_i)). With N = (1 +
+/// s tau_1)(1 + s tau_2) its motion is u = v0 sum_j m N(s_j) / D'(s_j) exp(s_j t) over the four roots of the
+/// polynomial D = (m s^2 + h M) N.
+class DampedCube {
+ public:
+  DampedCube(const Law& law, double h) : law_(law), h_(h) {
+    const double m = 0.5 * density * h * h * h, K = law.bulk_modulus(), mu = law.shear_modulus();
+    const double t1 = law.time_1, t2 = law.time_2;
+    const double M = K + 4.0 / 3.0 * mu * law.remaining_share();
+    const double a = 4.0 / 3.0 * mu * law.relaxation_1, b = 4.0 / 3.0 * mu * law.relaxation_2;
+    // Powers of s from 0: h M N + h a s t1 (1 + s t2) + h b s t2 (1 + s t1) + m s^2 N.
+    D_ = {h * M, h * (M * (t1 + t2) + a * t1 + b * t2), h * (M + a + b) * t1 * t2 + m, m * (t1 + t2),
+          m * t1 * t2};
+    m_ = m;
+    find_roots();
+  }
+
+  double displacement(double v0, double t) const {
+    Complex u = 0.0;
+    for (const Complex s : roots_) {
+      const Complex N = (1.0 + s * law_.time_1) * (1.0 + s * law_.time_2);
+      const Complex slope = D_[1] + s * (2.0 * D_[2] + s * (3.0 * D_[3] + s * 4.0 * D_[4]));
+      u += v0 * m_ * N / slope * std::exp(s * t);
+    }
+    return u.real();
+  }
+
+ private:
+  using Complex = std::complex<double>;
+
+  /// All at once, by the method of Durand and Kerner.
+  void find_roots() {
+    const double size = std::pow(D_[0] / D_[4], 0.25);
+    for (std::size_t j = 0; j < 4; ++j)
+      roots_[j] = size * std::pow(Complex(0.4, 0.9), static_cast<double>(j));
+    for (int n = 0; n < 200; ++n) {
+      for (Complex& s : roots_) {
+        Complex value = (D_[0] + s * (D_[1] + s * (D_[2] + s * (D_[3] + s * D_[4])))) / D_[4];
+        for (const Complex& other : roots_) {
+          if (&other != &s) value /= s - other;
+        }
+        s -= value;
+      }
+    }
+  }
+
+  Law law_;
+  double h_;
+  double m_ = 0.0;
+  std::array<double, 5> D_{};
+  std::array<Complex, 4> roots_{};
+};
+
+/// Nodes move along z only; those at z = 0 are held.
+Scene sliding_bar(const Law& law, const Mesh& mesh, double speed) {
+  Case description = plain_case(law, density);
+  description.quasi_static = false;
+  description.initial_velocity = {0.0, 0.0, speed};
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"rest", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.0; })}};
+  description.displacements = {{"foot", {}}, {"rest", {}, {true, true, false}}};
+  description.dynamics.check_interval = 1;
+  return make_scene(description, mesh, sets);
+}
+
+TYPED_TEST(RelaxingBodyTest, oscillation_is_damped_as_in_closed_form) {
+  const double h = 0.02;
+  Law law = sample_law<Law>(0.25);
+  const double omega = std::sqrt(2.0 * p_wave_modulus(law) / (density * h * h));
+  law.time_1 = 0.3 / omega;
+  law.time_2 = 3.0 / omega;
+  const double speed = 1e-6 * h * omega;  // small: the nonlinearity stays below 1e-5 of the answer
+  const double duration = 8.0 / omega;
+  const double exact = DampedCube(law, h).displacement(speed, duration);
+  std::array<double, 3> error{};
+  for (std::size_t level = 0; level < error.size(); ++level) {
+    Scene scene = sliding_bar(law, box({h, h, h}, {1, 1, 1}), speed);
+    const int steps = 32 << level;
+    scene.description.dynamics.duration = duration;
+    scene.description.dynamics.time_step = duration / steps;
+    Observer silent;
+    const Motion motion = integrate(this->model(scene), silent);
+    ASSERT_EQ(motion.steps, steps);
+    error[level] = std::abs(motion.u.back()[2] - exact) / (speed / omega);
+  }
+  EXPECT_LT(error[2], 2e-3);
+  for (std::size_t level = 0; level < 2; ++level) EXPECT_NEAR(error[level] / error[level + 1], 4.0, 0.6);
+}
+
+Law quick_law() {
+  Law law = sample_law<Law>(0.45);
+  law.time_1 = 0.005;
+  law.time_2 = 0.05;
+  return law;
+}
+
+/// A bar of four elements whose strains are uniform in each: there is nothing for the methods to differ in.
+Scene plane_waves() {
+  Scene scene = sliding_bar(quick_law(), box({0.05, 0.05, 0.2}, {1, 1, 4}), 0.5);
+  const Model probe(scene, {"tl-full"});
+  scene.description.dynamics.time_step = 0.1 * stable_step(probe, NodalField(scene.mesh.points.size())).step;
+  scene.description.dynamics.duration = 2000 * scene.description.dynamics.time_step;
+  return scene;
+}
+
+TYPED_TEST(RelaxingBodyTest, plane_waves_are_those_of_every_method) {
+  const Scene scene = plane_waves();
+  Observer silent;
+  const Motion motion = integrate(this->model(scene), silent);
+  const Motion golden = integrate(Model(scene, {"tl-mean-dilatation"}), silent);
+  const double size = largest_distance(golden.u, NodalField(golden.u.size()));
+  EXPECT_GT(size, 1e-4);
+  // Roundings of 2000 steps, each with eps of the displacement, swung through a few hundred radians.
+  EXPECT_LT(largest_distance(motion.u, golden.u), 1e-10 * size);
+}
+
+/// A body left to itself loses energy, and what it stores is never negative. Central differences let the sum
+/// swing by about (omega dt)^2 / 4 of it, 1 % at a tenth of the stable step.
+TYPED_TEST(RelaxingBodyTest, free_oscillation_loses_energy) {
+  const Scene scene = plane_waves();
+  Recorder recorder;
+  integrate(this->model(scene), recorder);
+  const double start = total_energy(recorder.rows.front());
+  double least = start;
+  for (const auto& row : recorder.rows) {
+    EXPECT_GE(row.strain, 0.0);
+    EXPECT_LT(total_energy(row), least + 0.01 * start);
+    least = std::min(least, total_energy(row));
+  }
+  EXPECT_LT(total_energy(recorder.rows.back()), 0.5 * start);
+}
+
+/// Single precision: as for elastic bodies eps per step and radian, and the memories' u |Q| per step, which
+/// is below the stress.
+TYPED_TEST(RelaxingBodyTest, single_precision_stays_within_its_budget) {
+  const Scene scene = plane_waves();
+  Observer silent;
+  const Motion exact = integrate(this->model(scene), silent);
+  const Motion rounded = integrate(this->model(scene, Precision::single_precision), silent);
+  ASSERT_EQ(exact.steps, rounded.steps);
+  const double u = 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
+  const double budget = 4.0 * u * static_cast<double>(exact.steps) * 0.05;  // m, that the bar swings
+  EXPECT_LT(largest_distance(exact.u, rounded.u), budget);
+  EXPECT_GT(largest_distance(exact.u, rounded.u), 0.0);
+}
+
+/// The neo-Hookean law that the viscoelastic one is when all has relaxed.
+NeoHookean relaxed_law(const Law& law) {
+  const double mu = law.remaining_share() * law.shear_modulus(), K = law.bulk_modulus();
+  return {.young_modulus = 9 * K * mu / (3 * K + mu), .poisson_ratio = (3 * K - 2 * mu) / (2 * (3 * K + mu))};
+}
+
+/// A control keeps its instantaneous stiffness; these kappas give it the same with both laws. None where a
+/// method takes none.
+struct SameStiffness {
+  std::optional<double> viscoelastic;
+  std::optional<double> relaxed;
+};
+template <class Method>
+SameStiffness same_stiffness(const Law& law) {
+  SameStiffness kappa;
+  if constexpr (Method::Hourglass::takes_kappa) {
+    const NeoHookean relaxed = relaxed_law(law);
+    kappa.relaxed = Method::Hourglass::auto_kappa(relaxed);
+    kappa.viscoelastic = *kappa.relaxed * p_wave_modulus(relaxed) / p_wave_modulus(law);
+  }
+  return kappa;
+}
+
+/// Whether two laws can be compared at strains that are not uniform: not where a control follows the
+/// instantaneous moduli and nothing can be done about it.
+template <class Method>
+inline constexpr bool comparable = !Method::Hourglass::active || Method::Hourglass::takes_kappa;
+
+Scene bent_block(const AnyLaw& law) {
+  Case description = plain_case(law);
+  const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.03, 0.0, 0.02}}};
+  description.relaxation.tolerance = 1e-11;
+  return make_scene(description, mesh, sets);
+}
+
+/// Where time plays no part forces and energies are those of the elastic body with the relaxed shear modulus.
+TYPED_TEST(RelaxingBodyTest, without_time_it_is_the_elastic_body_with_the_relaxed_shear_modulus) {
+  if constexpr (comparable<TypeParam>) {
+    const Law law = sample_law<Law>(0.45);
+    const auto kappa = same_stiffness<TypeParam>(law);
+    const Scene viscoelastic = bent_block(law), elastic = bent_block(relaxed_law(law));
+    NodalField u;
+    for (const auto& X : elastic.mesh.points) {
+      u.push_back({0.2 * X[2] * std::sin(30 * X[1]), 0.1 * X[0], 0.3 * X[2] * std::cos(20 * X[0])});
+    }
+    const Model relaxed(viscoelastic, {this->method(), kappa.viscoelastic});
+    const Model plain(elastic, {this->method(), kappa.relaxed});
+    // Stresses of up to the bulk modulus on faces of 0.05 m x 0.05 m.
+    EXPECT_LT(largest_distance(internal_forces(relaxed, u), internal_forces(plain, u)),
+              512 * eps * law.bulk_modulus() * 0.0025);
+    const StrainEnergies a = strain_energies(relaxed, u), b = strain_energies(plain, u);
+    EXPECT_NEAR(a.strain, b.strain, 512 * eps * b.strain);
+    EXPECT_NEAR(a.hourglass, b.hourglass, 512 * eps * b.hourglass);
+  }
+}
+
+template <class Method>
+class RelaxedBodyTest : public ::testing::Test {};
+TYPED_TEST_SUITE(RelaxedBodyTest, PathIndependentMethodTypes, EntryName);
+
+/// So are quasi-static answers, where there is but one: modes without energy may come to rest anywhere.
+TYPED_TEST(RelaxedBodyTest, comes_to_rest_where_the_elastic_body_does) {
+  if constexpr (comparable<TypeParam> && zero_energy_modes<TypeParam>() == 6) {
+    const Law law = sample_law<Law>(0.45);
+    const auto kappa = same_stiffness<TypeParam>(law);
+    const Scene viscoelastic = bent_block(law), elastic = bent_block(relaxed_law(law));
+    Observer silent;
+    const Relaxation relaxed =
+        relax(Model(viscoelastic, {std::string(TypeParam::name), kappa.viscoelastic}), silent);
+    const Relaxation plain = relax(Model(elastic, {std::string(TypeParam::name), kappa.relaxed}), silent);
+    ASSERT_TRUE(relaxed.converged);
+    ASSERT_TRUE(plain.converged);
+    // Unbalanced forces of 1e-11 over the softest stiffness, thousandths of the typical one.
+    EXPECT_LT(largest_distance(relaxed.u, plain.u), 1e-7 * 0.03);
+    EXPECT_NEAR(relaxed.energies.strain / plain.energies.strain, 1.0, 1e-7);
+  }
+}
+
+constexpr std::string_view case_text = R"(
+[case]
+name = "hold"
+requirement = "a held block relaxes"
+answer = "dynamic"
+[mesh]
+generator = "box"
+size = [0.1, 0.1, 0.1]
+elements = [1, 1, 1]
+[material]
+law = "viscoelastic-neo-hookean"
+young_modulus = 2500.0
+poisson_ratio = 0.49
+density = 1000.0
+[dynamics]
+duration = 1.0
+[sets]
+foot = { z = [0.0, 0.0] }
+[[displacement]]
+set = "foot"
+value = [0.0, 0.0, 0.0]
+)";
+
+std::string with_parameters(const std::string& lines) {
+  std::string text(case_text);
+  return text.insert(text.find("density"), lines + "\n");
+}
+
+TEST(ViscoelasticCase, is_read_with_one_term_or_two) {
+  const TemporaryFolder folder;
+  const auto law_of = [&](const std::string& lines) {
+    return std::get<Law>(read_case_file(folder.write("hold.toml", with_parameters(lines))).law);
+  };
+  const Law one = law_of("relaxation_1 = 0.45\ntime_1 = 0.5");
+  EXPECT_EQ(one.young_modulus, 2500.0);
+  EXPECT_EQ(one.relaxation_1, 0.45);
+  EXPECT_EQ(one.time_1, 0.5);
+  EXPECT_EQ(one.relaxation_2, 0.0);
+  const Law two = law_of("relaxation_1 = 0.45\ntime_1 = 0.5\nrelaxation_2 = 0.365\ntime_2 = 50.0");
+  EXPECT_EQ(two.relaxation_2, 0.365);
+  EXPECT_EQ(two.time_2, 50.0);
+}
+
+TEST(ViscoelasticCase, wrong_parameters_are_refused_with_their_line) {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& lines) {
+    const auto file = folder.write("hold.toml", with_parameters(lines));
+    return input_error([&] { read_case_file(file); });
+  };
+  EXPECT_TRUE(contains(error_of("relaxation_1 = 0.45"), "material.time_1 is missing"));
+  EXPECT_TRUE(contains(error_of("relaxation_1 = 1.0\ntime_1 = 0.5"), "= 1 must be in [0, 1)"));
+  const std::string sum = error_of("relaxation_1 = 0.6\ntime_1 = 0.5\nrelaxation_2 = 0.4\ntime_2 = 50.0");
+  EXPECT_TRUE(
+      contains(sum, "hold.toml:16: material.relaxation_2 = 0.4 must be below 1 - relaxation_1 = 0.4"));
+  const std::string time = error_of("relaxation_1 = 0.6\ntime_1 = 0.5\nrelaxation_2 = 0.3");
+  EXPECT_TRUE(contains(time, "material.time_2 = 0 must be positive, for relaxation_2 = 0.3 is"));
+}
+
+/// A block of brain tissue, held from t = 0.2 s on after a ramp about 0.1 s. Being nearly incompressible it
+/// keeps its strains while it relaxes, and so springs lose energy as the squares of the exponentials. That
+/// the strains stay the same is true to the ratio of the moduli, K / mu = 50, with which the volumetric part
+/// follows.
+TEST(ViscoelasticCase, held_brain_tissue_loses_the_energy_of_its_relaxation_times) {
+  const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "brain-hold.toml");
+  const Law law = std::get<Law>(scene.description.law);
+  Recorder recorder;
+  integrate(Model(scene, {"tl-perturbation"}), recorder);
+  const auto springs = [&](double t) {
+    return law.remaining_share() + law.relaxation_1 * std::exp(-2.0 * (t - 0.1) / law.time_1) +
+           law.relaxation_2 * std::exp(-2.0 * (t - 0.1) / law.time_2);
+  };
+  const auto& last = recorder.rows.back();
+  for (const auto& row : recorder.rows) {
+    if (row.time < 0.4) continue;  // waves of the ramp run
+    EXPECT_NEAR(row.strain / last.strain, springs(row.time) / springs(last.time), 0.02) << row.time;
+  }
+  EXPECT_GT(springs(0.4) / springs(2.0), 1.2);
+}
+
+}  // namespace
+}  // namespace sandglass::verification
