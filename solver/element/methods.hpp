@@ -6,11 +6,14 @@
 #include "element/compact_one_point.hpp"
 #include "element/eight_point.hpp"
 #include "element/formulation.hpp"
+#include "element/hourglass_assumed_strain.hpp"
 #include "element/hourglass_energy_sampling.hpp"
+#include "element/hourglass_enhanced.hpp"
 #include "element/hourglass_matrix.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
 #include "element/hourglass_rate_perturbation.hpp"
+#include "element/hourglass_viscous.hpp"
 #include "element/one_point.hpp"
 #include "element/stabilization_matrix.hpp"
 #include "element/updated_one_point.hpp"
@@ -62,6 +65,24 @@ struct TlStabilizationMatrix {
   using Hourglass = HourglassMatrixControl<StabilizationMatrix>;
 };
 
+struct TlAssumedStrain {
+  static constexpr std::string_view name = "tl-assumed-strain";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI) as a constant matrix";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = HourglassMatrixControl<MatrixAtRest<AssumedStrain>>;
+};
+
+struct TlEnhanced {
+  static constexpr std::string_view name = "tl-enhanced";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, enhanced assumed strain after Puso as a constant matrix";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = HourglassMatrixControl<MatrixAtRest<EnhancedStrain>>;
+};
+
 struct UlPerturbation {
   static constexpr std::string_view name = "ul-perturbation";
   static constexpr std::string_view summary =
@@ -69,6 +90,34 @@ struct UlPerturbation {
   static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RatePerturbationControl;
+};
+
+struct UlViscous {
+  static constexpr std::string_view name = "ul-viscous";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, viscous control: LS-DYNA's and OpenRadioss's default; no use at rest";
+  static constexpr int integration_points = 1;
+  static constexpr int zero_energy_modes = 18;  // it resists velocities only
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = ViscousHourglassControl;
+};
+
+struct UlAssumedStrain {
+  static constexpr std::string_view name = "ul-assumed-strain";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, assumed strain (ASQBI) of the current shape: LS-DYNA's type 6";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RateHourglassControl<AssumedStrain>;
+};
+
+struct UlEnhanced {
+  static constexpr std::string_view name = "ul-enhanced";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, enhanced assumed strain after Puso: ABAQUS's costlier control";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RateHourglassControl<EnhancedStrain>;
 };
 
 struct TlFull {
@@ -91,7 +140,8 @@ struct TlMeanDilatation {
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
 using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
-                         TlStabilizationMatrix, UlPerturbation, TlFull, TlMeanDilatation>;
+                         TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
+                         UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

@@ -3,8 +3,8 @@
 namespace sandglass {
 
 std::unique_ptr<InternalForce<float>> make_packed_float(const Mesh& mesh, const AnyLaw& law,
-                                                        const MethodChoice& choice) {
-  return assemble<Pack<float>>(mesh, law, choice);
+                                                        const MethodChoice& choice, double density) {
+  return assemble<Pack<float>>(mesh, law, choice, density);
 }
 
 }  // namespace sandglass

@@ -3,8 +3,8 @@
 namespace sandglass {
 
 std::unique_ptr<InternalForce<double>> make_scalar_double(const Mesh& mesh, const AnyLaw& law,
-                                                          const MethodChoice& choice) {
-  return assemble<double>(mesh, law, choice);
+                                                          const MethodChoice& choice, double density) {
+  return assemble<double>(mesh, law, choice, density);
 }
 
 }  // namespace sandglass

@@ -28,11 +28,12 @@ void require_sensible(const MethodChoice& choice) {
 
 }  // namespace
 
-AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice) {
+AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+                                     double density) {
   require_sensible(choice);
-  if (choice.kernel == KernelWidth::scalar) return make_scalar_double(mesh, law, choice);
-  if (choice.precision == Precision::double_precision) return make_packed_double(mesh, law, choice);
-  return make_packed_float(mesh, law, choice);
+  if (choice.kernel == KernelWidth::scalar) return make_scalar_double(mesh, law, choice, density);
+  if (choice.precision == Precision::double_precision) return make_packed_double(mesh, law, choice, density);
+  return make_packed_float(mesh, law, choice, density);
 }
 
 bool takes_kappa(std::string_view method) {

@@ -21,21 +21,24 @@ void with_method(std::string_view name, Visitor&& visit) {
 
 /// The elements of a mesh, as many at a time as `Number` holds.
 template <class Number>
-auto assemble(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice) {
+auto assemble(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice, double density) {
   std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>> force;
   with_method(choice.method, [&]<class Method>() {
     std::visit(
         [&]<class Law>(const Law& law) {
           force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Number>>(
-              mesh, law, HourglassSettings{choice.kappa}, choice.threads);
+              mesh, law, HourglassSettings{choice.kappa, density}, choice.threads);
         },
         any_law);
   });
   return force;
 }
 
-std::unique_ptr<InternalForce<double>> make_packed_double(const Mesh&, const AnyLaw&, const MethodChoice&);
-std::unique_ptr<InternalForce<float>> make_packed_float(const Mesh&, const AnyLaw&, const MethodChoice&);
-std::unique_ptr<InternalForce<double>> make_scalar_double(const Mesh&, const AnyLaw&, const MethodChoice&);
+std::unique_ptr<InternalForce<double>> make_packed_double(const Mesh&, const AnyLaw&, const MethodChoice&,
+                                                          double);
+std::unique_ptr<InternalForce<float>> make_packed_float(const Mesh&, const AnyLaw&, const MethodChoice&,
+                                                        double);
+std::unique_ptr<InternalForce<double>> make_scalar_double(const Mesh&, const AnyLaw&, const MethodChoice&,
+                                                          double);
 
 }  // namespace sandglass
