@@ -17,6 +17,7 @@ namespace sandglass {
 struct ViscousHourglassControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = true;
+  static constexpr bool damps_only = true;
 
   template <class T>
   struct Element {
@@ -39,7 +40,7 @@ struct ViscousHourglassControl {
     return {0.25 * kappa * std::sqrt(settings.density * M), kappa * kappa * M};
   }
 
-  /// c gamma^T v; rho v is constant, so that rho v^(2/3) = rho_0 V_0 v^(-1/3).
+  /// c gamma^T v, with rho v^(2/3) = rho_0 V_0 v^(-1/3).
   template <class T>
   static HourglassModes<T> resistance(const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
                                       NoHistory<T>& /*history*/) {

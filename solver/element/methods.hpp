@@ -83,6 +83,9 @@ struct TlEnhanced {
   using Hourglass = HourglassMatrixControl<MatrixAtRest<EnhancedStrain>>;
 };
 
+// What an Updated Lagrangian method tends to as strains vanish and time plays no part, it names
+// `AtSmallStrain`.
+
 struct UlPerturbation {
   static constexpr std::string_view name = "ul-perturbation";
   static constexpr std::string_view summary =
@@ -90,6 +93,7 @@ struct UlPerturbation {
   static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RatePerturbationControl;
+  using AtSmallStrain = TlPerturbation;
 };
 
 struct UlViscous {
@@ -100,6 +104,7 @@ struct UlViscous {
   static constexpr int zero_energy_modes = 18;  // it resists velocities only
   using Kinematics = UpdatedOnePoint;
   using Hourglass = ViscousHourglassControl;
+  using AtSmallStrain = TlNone;
 };
 
 struct UlAssumedStrain {
@@ -109,6 +114,7 @@ struct UlAssumedStrain {
   static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RateHourglassControl<AssumedStrain>;
+  using AtSmallStrain = TlAssumedStrain;
 };
 
 struct UlEnhanced {
@@ -118,6 +124,7 @@ struct UlEnhanced {
   static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RateHourglassControl<EnhancedStrain>;
+  using AtSmallStrain = TlEnhanced;
 };
 
 struct TlFull {
@@ -142,6 +149,13 @@ struct TlMeanDilatation {
 using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
                          TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
                          UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation>;
+
+/// Whether the strength of a method's hourglass control matters to a body at rest. A control that resists
+/// velocities alone says so with `damps_only`.
+template <class Method>
+inline constexpr bool kappa_matters_at_rest = Method::Hourglass::takes_kappa && !requires {
+  requires Method::Hourglass::damps_only;
+};
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

@@ -87,6 +87,16 @@ struct PathIndependent<TypeList<EveryMethod...>> {
                                                            TypeList<>, TypeList<EveryMethod>>...>::type;
 };
 
+/// The methods of the Updated Lagrangian element.
+template <class List>
+struct Updated;
+template <class... EveryMethod>
+struct Updated<TypeList<EveryMethod...>> {
+  using type = typename Concatenated<
+      TypeList<>, std::conditional_t<std::is_same_v<typename EveryMethod::Kinematics, UpdatedOnePoint>,
+                                     TypeList<EveryMethod>, TypeList<>>...>::type;
+};
+
 }  // namespace detail
 
 using LawTypes = detail::AsTestTypes<Laws>::type;
@@ -100,6 +110,8 @@ using PathIndependentMethods = detail::PathIndependent<Methods>::type;
 using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
 using PathIndependentPairTypes =
     detail::AsTestTypes<detail::Product<PathIndependentMethods, Laws>::type>::type;
+
+using UpdatedLagrangianTypes = detail::AsTestTypes<detail::Updated<Methods>::type>::type;
 
 using ElasticMethodWithLawTypes =
     detail::AsTestTypes<detail::Elastic<detail::Product<Methods, Laws>::type>::type>::type;
