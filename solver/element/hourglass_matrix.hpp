@@ -1,9 +1,7 @@
 #pragma once
 
 #include "element/element_motion.hpp"
-#include "element/hourglass_response.hpp"
 #include "element/hourglass_settings.hpp"
-#include "math/strain.hpp"
 #include "math/symmetric_matrix.hpp"
 
 namespace sandglass {
@@ -12,11 +10,8 @@ namespace sandglass {
 template <class T>
 using HourglassMatrix = SymmetricMatrix<T, 12>;
 
-/// Hourglass control by a constant matrix K (N/m) that `Source::matrix(X, law)` makes at set-up. At small
-/// displacements it is q K q / 2. In the large K acts on r_a = F^T q_a: the fluctuation's part of Green's
-/// strain that is linear in q is the symmetric part of F^T grad w = sum_a r_a (x) grad w_a, so that the
-/// matrix of a quadratic energy of strains keeps its meaning at any deformation and rotation, without a polar
-/// decomposition. The energy E = r K r / 2 gives both Q_a = F (K r)_a and the stress sum_a q_a (x) (K r)_a.
+/// Hourglass control by a constant matrix K (N/m) that `Source::matrix(X, law)` makes at set-up. It follows
+/// the mean deformation: the energy is r K r / 2 with r_a = F^-1 q_a.
 template <class Source>
 struct HourglassMatrixControl {
   static constexpr bool active = true;
@@ -36,53 +31,33 @@ struct HourglassMatrixControl {
     return {Source::matrix(X, law)};
   }
 
+  /// K r, in N.
   template <class T>
-  static HourglassResponse<T> response(const HourglassModes<T>& q, const Tensor<T>& H,
-                                       const Element<T>& element) {
-    const HourglassModes<T> s = conjugate(pulled_back(q, H), element);
-    return {s + s * transpose(H), transpose(s) * q};
+  static HourglassModes<T> resistance(const HourglassModes<T>& r, const Element<T>& element) {
+    return {(element.K * Matrix<T, 12, 1>{r.entries}).entries};
   }
 
   /// r K r / 2, in J.
   template <class T>
-  static T energy(const HourglassModes<T>& q, const Tensor<T>& H, const Element<T>& element) {
-    const HourglassModes<T> r = pulled_back(q, H);
-    return T(0.5) * double_dot(r, conjugate(r, element));
+  static T energy(const HourglassModes<T>& r, const Element<T>& element) {
+    return T(0.5) * double_dot(r, resistance(r, element));
   }
 
-  /// A displacement v of the nodes changes r by A v and its second variation is
-  ///   v A^T K A v + 2 sum_a s_a . (h^T v)(v^T gamma_a),  s = K r.
-  /// K A A^T bounds the first term and, in every component of v alike, the Frobenius norm of
-  /// h s^T gamma^T + its transpose the second.
+  /// With G = gamma (x) I, G K G^T has the eigenvalues of K G^T G, N/m.
   template <class T>
-  static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const NodalVectors<T>& h, const HourglassModes<T>& q,
-                           const Tensor<T>& H, const Element<T>& element) {
-    const Tensor<T> F = identity<T>() + H;
-    Matrix<T, 12, 24> A;
-    for (int a = 0; a < 4; ++a) {
-      for (int j = 0; j < 3; ++j) {
-        for (int I = 0; I < 8; ++I) {
-          for (int i = 0; i < 3; ++i) A(3 * a + j, 3 * I + i) = gamma(I, a) * F(i, j) + h(I, j) * q(a, i);
+  static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
+    const Matrix<T, 4, 4> product = transpose(gamma) * gamma;
+    Matrix<T, 12, 12> KGG;
+    for (int row = 0; row < 12; ++row) {
+      for (int b = 0; b < 4; ++b) {
+        for (int i = 0; i < 3; ++i) {
+          T sum = element.K(row, i) * product(0, b);
+          for (int a = 1; a < 4; ++a) sum = sum + element.K(row, 3 * a + i) * product(a, b);
+          KGG(row, 3 * b + i) = sum;
         }
       }
     }
-    const HourglassModes<T> s = conjugate(pulled_back(q, H), element);
-    const Matrix<T, 8, 8> hs = h * transpose(gamma * s);
-    const Matrix<T, 8, 8> geometric = hs + transpose(hs);
-    return row_sum_bound(element.K * (A * transpose(A))) + sqrt(double_dot(geometric, geometric));
-  }
-
- private:
-  /// r_a = F^T q_a.
-  template <class T>
-  static HourglassModes<T> pulled_back(const HourglassModes<T>& q, const Tensor<T>& H) {
-    return q + q * H;
-  }
-
-  /// K r.
-  template <class T>
-  static HourglassModes<T> conjugate(const HourglassModes<T>& r, const Element<T>& element) {
-    return {(element.K * Matrix<T, 12, 1>{r.entries}).entries};
+    return row_sum_bound(KGG);
   }
 };
 

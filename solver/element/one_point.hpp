@@ -4,7 +4,6 @@
 
 #include "element/element_motion.hpp"
 #include "element/hexahedron.hpp"
-#include "element/hourglass_response.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 
@@ -25,6 +24,16 @@ T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
   const Tensor<T> G = transpose(g) * g;
   return max(bound.volumetric, T(0)) * trace(G) + bound.gradient * largest_eigenvalue_bound(G);
 }
+
+/// A control that follows the mean deformation says so with `follows_deformation = true`. It is then given
+/// the hourglass displacements in base vectors that move with the body, r = F^-1 q in place of q, and its
+/// resistances are turned back. The fluctuation's share of a volume change is tr(F^-1 grad w) =
+/// sum_a r_a . grad w_a, so that in these components a nearly incompressible element stays what it was at
+/// rest, however far it is deformed and turned.
+template <class Hourglass>
+concept FollowsDeformation = requires {
+  requires Hourglass::follows_deformation;
+};
 
 /// The uniform strain hexahedron in the Total Lagrangian formulation: one stress from the mean displacement
 /// gradient, and an hourglass control on what that gradient does not see. Written in modes: additions take
@@ -108,7 +117,8 @@ struct OnePoint {
   struct Deformation {
     Tensor<T> H;
     VolumeChange<T> change;
-    HourglassModes<T> q;  ///< hourglass displacements, m; unset without a control
+    HourglassModes<T> q;  ///< hourglass displacements as the control sees them, m; unset without a control
+    Tensor<T> inverse_F;  ///< for a control that follows the mean deformation; else unset
   };
 
   template <class Hourglass, class T>
@@ -117,11 +127,17 @@ struct OnePoint {
     now.H = mean_gradient(motion.u, element);
     now.change = volume_change(now.H);
     if constexpr (Hourglass::active) now.q = hourglass_displacements(motion.u, now.H, element);
+    if constexpr (FollowsDeformation<Hourglass>) {
+      const T r = now.change.inverse_root;
+      now.inverse_F = (r * r * r) * transpose(cofactor(identity<T>() + now.H));
+      now.q = now.q * transpose(now.inverse_F);
+    }
     return now;
   }
 
-  /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14). A control
-  /// that follows the mean deformation adds its own stress to V P^T.
+  /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14). The energy
+  /// E(r), r = F^-1 q, of a control that follows has the derivatives Q_a = dE/dq_a = F^-T dE/dr_a and
+  /// dE/dF = -sum_a Q_a (x) r_a: the same force with c + r in place of c.
   template <class Hourglass, class T, class Law>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
                         const typename Hourglass::template Element<T>& control, NoHistory<T>& /*history*/,
@@ -129,10 +145,10 @@ struct OnePoint {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> VP = transpose(law.weighted_piola(element.V, now.H, now.change, p));
     if constexpr (FollowsDeformation<Hourglass>) {
-      const HourglassResponse<T> control_force = Hourglass::response(now.q, now.H, control);
-      return modal_forces(VP + control_force.S, control_force.Q, element);
+      const HourglassModes<T> Q = Hourglass::resistance(now.q, control) * now.inverse_F;
+      return modal_forces(VP, Q, element.c + now.q, element);
     } else if constexpr (Hourglass::active) {
-      return modal_forces(VP, Hourglass::resistance(now.q, control), element);
+      return modal_forces(VP, Hourglass::resistance(now.q, control), element.c, element);
     } else {
       return body_forces(VP, element);
     }
@@ -144,10 +160,10 @@ struct OnePoint {
                                  const NoHistory<T>& /*history*/, const Law& law) {
     const Tensor<T> H = mean_gradient(motion.u, element);
     ElementEnergy<T> energy{element.V * law.energy(H), T(0)};
-    if constexpr (FollowsDeformation<Hourglass>) {
-      energy.hourglass = Hourglass::energy(hourglass_displacements(motion.u, H, element), H, control);
-    } else if constexpr (Hourglass::active) {
-      energy.hourglass = Hourglass::energy(hourglass_displacements(motion.u, H, element), control);
+    if constexpr (Hourglass::active) {
+      HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
+      if constexpr (FollowsDeformation<Hourglass>) q = q * transpose(inverse(identity<T>() + H));
+      energy.hourglass = Hourglass::energy(q, control);
     }
     return energy;
   }
@@ -179,20 +195,24 @@ struct OnePoint {
                            const typename Hourglass::template Element<T>& control, const Law& law) {
     const Tensor<T> H = mean_gradient(motion.u, element);
     const NodalVectors<T> h = nodal_gradients(element);
-    const T body = element.V * gradient_bound(tangent_bound(law, H), h * inverse(identity<T>() + H));
+    const Tensor<T> inverse_F = inverse(identity<T>() + H);
+    const NodalVectors<T> g = h * inverse_F;
+    const T body = element.V * gradient_bound(tangent_bound(law, H), g);
     if constexpr (FollowsDeformation<Hourglass>) {
-      const HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
-      return body + Hourglass::stiffness_bound(gamma(h, element), h, q, H, control);
+      const HourglassModes<T> r = hourglass_displacements(motion.u, H, element) * transpose(inverse_F);
+      return body +
+             following_bound<Hourglass>(gamma(h, element) - h * transpose(r), g, r, inverse_F, control);
     } else if constexpr (Hourglass::active) {
       return body + Hourglass::stiffness_bound(gamma(h, element), control);
     }
     return body;
   }
 
-  /// h S + gamma Q in modes, for a stress S = V P^T and hourglass resistances Q (N).
+  /// h S + gamma Q in modes, for a stress S = V P^T, hourglass resistances Q (N) and gamma = Gamma - h c^T.
   template <class T>
-  static Modes<T> modal_forces(const Tensor<T>& S, const HourglassModes<T>& Q, const Element<T>& element) {
-    Modes<T> f = body_forces(S - transpose(element.c) * Q, element);
+  static Modes<T> modal_forces(const Tensor<T>& S, const HourglassModes<T>& Q, const Matrix<T, 4, 3>& c,
+                               const Element<T>& element) {
+    Modes<T> f = body_forces(S - transpose(c) * Q, element);
     for (int a = 0; a < 4; ++a) {
       for (int i = 0; i < 3; ++i) f(3 + a, i) = f(3 + a, i) + Q(a, i);
     }
@@ -226,6 +246,24 @@ struct OnePoint {
       for (int a = 0; a < 4; ++a) gamma(I, a) = T(Gamma(I, a)) - gamma(I, a);
     }
     return gamma;
+  }
+
+ private:
+  /// The bound of a control E(r) that follows, r = F^-1 q. A displacement v of the nodes changes r by
+  /// dr_a = F^-1 v^T gamma_a, gamma the shape vectors of the current configuration, and E'' is
+  ///   dr K dr - 2 tr((v^T g) (v^T gamma Q)),
+  /// g = h F^-1. The first term is at most lambda_max(F^-1 F^-T) times the control's own bound, the second
+  /// twice the largest singular values of g and gamma Q.
+  template <class Hourglass, class T>
+  static T following_bound(const Matrix<T, 8, 4>& gamma, const NodalVectors<T>& g, const HourglassModes<T>& r,
+                           const Tensor<T>& inverse_F,
+                           const typename Hourglass::template Element<T>& control) {
+    const NodalVectors<T> gamma_Q = gamma * (Hourglass::resistance(r, control) * inverse_F);
+    const T material = largest_eigenvalue_bound(transpose(inverse_F) * inverse_F) *
+                       Hourglass::stiffness_bound(gamma, control);
+    const T geometric = T(2) * sqrt(largest_eigenvalue_bound(transpose(g) * g) *
+                                    largest_eigenvalue_bound(transpose(gamma_Q) * gamma_Q));
+    return material + geometric;
   }
 };
 

@@ -58,7 +58,8 @@ struct UpdatedOnePoint {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> S = law.weighted_kirchhoff(reference_volume(now), now.H, now.change, p);
     if constexpr (Hourglass::active) {
-      return OnePoint::modal_forces(S, Hourglass::resistance(now, control, history), now.current);
+      return OnePoint::modal_forces(S, Hourglass::resistance(now, control, history), now.current.c,
+                                    now.current);
     } else {
       return OnePoint::body_forces(S, now.current);
     }
