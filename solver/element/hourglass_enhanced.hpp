@@ -1,6 +1,7 @@
 #pragma once
 
 #include "element/hourglass_form.hpp"
+#include "math/symmetric_matrix.hpp"
 
 namespace sandglass {
 
@@ -35,80 +36,52 @@ struct EnhancedStrain {
     return {law.shear_modulus(), plane_ratio(law)};
   }
 
-  /// The plate between two edges.
+  /// Stresses s from strains e, (aa, bb, ab) of the plate between the edges a and b, twice the strain for ab.
   template <class T>
-  struct Plate {
-    T aa, bb, ab;  ///< its metric, m^2
-    T minor;       ///< determinant of the metric, m^4
-  };
+  using Plate = SymmetricMatrix<T, 3>;
 
   template <class T>
   struct Stiffness {
     Tensor<T> g;                    ///< edges, m
-    std::array<Plate<T>, 3> plate;  ///< by the number of the edge across: (2,3), (3,1), (1,2)
-    T V;                            ///< m^3
-    T shear;                        ///< mu, Pa
-    T ratio;                        ///< nu/(1-nu)
+    std::array<Plate<T>, 3> plate;  ///< N/m^3, by the number of the edge across: (2,3), (3,1), (1,2)
+    std::array<T, 3> fourth;        ///< N/m^3, of the normal strain along each edge
 
     HourglassModes<T> resistance(const HourglassModes<T>& q) const {
       const Matrix<T, 3, 4> D = transpose(g) * transpose(q);
       Matrix<T, 3, 4> R;  // contravariant: Q_a = g_k R_ka
-      const T bending = (shear * V) * T(2.0 * integral_of_square);
       std::array<T, 3> twist;
       for (int n = 0; n < 3; ++n) {
+        const auto across = static_cast<std::size_t>(n);
         const auto [a, b] = plane(n);
-        const Plate<T>& p = plate[static_cast<std::size_t>(n)];
-        // Both indices are raised with the adjoint (bb, -ab, aa) of the metric; the two determinants wait.
-        const T E12 = T(0.5) * (D(a, a) + D(b, b));
-        const T M11 = p.bb * D(a, b) - p.ab * E12, M12 = p.bb * E12 - p.ab * D(b, a);
-        const T M21 = p.aa * E12 - p.ab * D(a, b), M22 = p.aa * D(b, a) - p.ab * E12;
-        const T spherical = ratio * (M11 + M22);
-        const T N11 = M11 + spherical, N22 = M22 + spherical;
-        const T scale = bending / (p.minor * p.minor);
-        R(a, b) = scale * (N11 * p.bb - M12 * p.ab);
-        R(b, a) = scale * (N22 * p.aa - M21 * p.ab);
-        twist[static_cast<std::size_t>(n)] = scale * (M12 * p.aa - N11 * p.ab);
+        const Triple<T> stress = plate[across] * Triple<T>{{D(a, b), D(b, a), D(a, a) + D(b, b)}};
+        R(a, b) = stress(0, 0);
+        R(b, a) = stress(1, 0);
+        twist[across] = stress(2, 0);
+        R(n, 3) = fourth[across] * D(n, 3);
       }
-      const T fourth = fourth_stiffness();
       for (int k = 0; k < 3; ++k) {
-        const T minor = plate[static_cast<std::size_t>(k)].minor;
-        R(k, k) = twist[static_cast<std::size_t>((k + 1) % 3)] + twist[static_cast<std::size_t>((k + 2) % 3)];
-        R(k, 3) = (fourth * (minor * minor)) * D(k, 3);
+        const auto [a, b] = plane(k);
+        R(k, k) = twist[static_cast<std::size_t>(a)] + twist[static_cast<std::size_t>(b)];
       }
       return transpose(g * R);
     }
 
-    /// Each plate's stresses come from R, and their strains from Hooke's law in reverse,
-    /// 2 mu E = sigma - nu/(1+nu) tr sigma.
+    /// From the inverses of the plates' stiffnesses; each edge is in two planes, so that three twists make
+    /// three R_kk.
     T energy(const HourglassModes<T>& Q) const {
       const Matrix<T, 3, 4> R = inverse(g) * transpose(Q);
-      const T compliance = T(1) / ((shear * V) * T(2.0 * integral_of_square));
-      const T lateral = ratio / (T(1) + T(2) * ratio);  // nu/(1+nu)
-      const T fourth = fourth_stiffness();
       T energy = T(0);
       for (int n = 0; n < 3; ++n) {
+        const auto across = static_cast<std::size_t>(n);
         const auto [a, b] = plane(n);
-        const Plate<T>& p = plate[static_cast<std::size_t>(n)];
-        const T s11 = R(a, b), s22 = R(b, a), s12 = T(0.5) * (R(a, a) + R(b, b) - R(n, n));
-        const T m11 = p.aa * s11 + p.ab * s12, m12 = p.aa * s12 + p.ab * s22;  // one index lowered
-        const T m21 = p.ab * s11 + p.bb * s12, m22 = p.ab * s12 + p.bb * s22;
-        const T tr = m11 + m22;
-        energy =
-            energy + T(0.5) * compliance * (m11 * m11 + m22 * m22 + T(2) * m12 * m21 - lateral * tr * tr);
-        energy = energy + T(0.5) * R(n, 3) * R(n, 3) / (fourth * p.minor * p.minor);
+        const Triple<T> stress{{R(a, b), R(b, a), T(0.5) * (R(a, a) + R(b, b) - R(n, n))}};
+        energy = energy + double_dot(stress, inverse(dense(plate[across])) * stress);
+        energy = energy + R(n, 3) * R(n, 3) / fourth[across];
       }
-      return energy;
+      return T(0.5) * energy;
     }
 
     T bound() const { return row_sum_bound(matrix_of<T>(*this)); }
-
-   private:
-    /// 4/3 mu times the integral of (xi eta)^2 and, with g^kk = minor / det(g)^2, the rest of (g^kk)^2.
-    T fourth_stiffness() const {
-      const T eight_over_V = T(8) / V;
-      const T inverse_determinant = eight_over_V * eight_over_V;
-      return (shear * V) * T(4.0 / 9.0 * integral_of_square) * (inverse_determinant * inverse_determinant);
-    }
   };
 
   template <class T>
@@ -117,26 +90,45 @@ struct EnhancedStrain {
     Stiffness<T> result;
     result.g = centre_edges(x);
     const std::array<T, 3> square = edge_squares(result.g);
+    // Integrals of xi^2 and (xi eta)^2 over the element are V/3 and V/9, and hourglass amplitudes are q/8.
+    const T bending = (element.shear * current.V) * T(2.0 / 3.0 / 64.0);
+    const T eight_over_V = T(8) / current.V;
+    const T inverse_determinant = eight_over_V * eight_over_V;  // of the metric: g^kk = minor / determinant
+    const T fourth = (bending * T(2.0 / 9.0)) * (inverse_determinant * inverse_determinant);
     for (int n = 0; n < 3; ++n) {
+      const auto across = static_cast<std::size_t>(n);
       const auto [a, b] = plane(n);
-      Plate<T>& p = result.plate[static_cast<std::size_t>(n)];
-      p.aa = square[static_cast<std::size_t>(a)];
-      p.bb = square[static_cast<std::size_t>(b)];
-      p.ab = edge_product(result.g, a, b);
-      p.minor = p.aa * p.bb - p.ab * p.ab;
+      const T aa = square[static_cast<std::size_t>(a)], bb = square[static_cast<std::size_t>(b)];
+      const T ab = edge_product(result.g, a, b);
+      const T aabb = aa * bb, abab = ab * ab;
+      const T minor = aabb - abab;
+      const T minor_square = minor * minor;
+      result.plate[across] = plane_stress(aa, bb, ab, aabb, abab, bending / minor_square, element.ratio);
+      result.fourth[across] = fourth * minor_square;
     }
-    result.V = current.V;
-    result.shear = element.shear;
-    result.ratio = element.ratio;
     return result;
   }
 
  private:
-  /// Integral of xi^2 over the element is V/3, and hourglass amplitudes are q/8.
-  static constexpr double integral_of_square = 1.0 / 3.0 / 64.0;
-
   /// The two edges beside edge n.
   static constexpr std::array<int, 2> plane(int n) { return {(n + 1) % 3, (n + 2) % 3}; }
+
+  /// sigma = 2 mu (E + nu/(1-nu) tr E) with both indices raised by the inverse metric, which is (bb, aa, -ab)
+  /// over its determinant; `scale` holds 2 mu and the determinant's square.
+  template <class T>
+  static Plate<T> plane_stress(const T& aa, const T& bb, const T& ab, const T& aabb, const T& abab,
+                               const T& scale, const T& ratio) {
+    const T normal = scale + scale * ratio;
+    const T mixed = -(normal * ab);
+    Plate<T> C;
+    C(0, 0) = normal * (bb * bb);
+    C(1, 1) = normal * (aa * aa);
+    C(0, 1) = scale * (abab + ratio * aabb);
+    C(0, 2) = mixed * bb;
+    C(1, 2) = mixed * aa;
+    C(2, 2) = scale * (T(0.5) * (aabb + abab) + ratio * abab);
+    return C;
+  }
 };
 
 }  // namespace sandglass

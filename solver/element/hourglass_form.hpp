@@ -54,14 +54,43 @@ Matrix<T, 12, 12> matrix_of(const Stiffness& stiffness) {
   return K;
 }
 
-/// A form's stiffness at rest, as the constant matrix of a Total Lagrangian control.
+/// A form as the control of a Total Lagrangian element: its stiffness at rest is computed once and kept in
+/// the form's own shape, which is less to load and to multiply than twelve rows of twelve. It follows the
+/// mean deformation: the energy is r K r / 2 with r_a = F^-1 q_a.
 template <class Form>
-struct MatrixAtRest {
+struct RestHourglassControl {
+  static constexpr bool active = true;
+  static constexpr bool takes_kappa = false;
+  static constexpr bool follows_deformation = true;
+
+  template <class T>
+  using Element = typename Form::template Stiffness<T>;
+  template <class T>
+  using History = NoHistory<T>;
+
   template <class Law>
-  static HourglassMatrix<double> matrix(const NodalVectors<double>& X, const Law& law) {
+  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
+                                    const HourglassSettings& settings) {
     const Modes<double> x = to_modes(X);
-    const auto element = Form::precompute(X, law, HourglassSettings{});
-    return symmetric_part(matrix_of<double>(Form::stiffness(x, OnePoint::geometry(x), element)));
+    return Form::stiffness(x, OnePoint::geometry(x), Form::precompute(X, law, settings));
+  }
+
+  /// K r, in N.
+  template <class T>
+  static HourglassModes<T> resistance(const HourglassModes<T>& r, const Element<T>& element) {
+    return element.resistance(r);
+  }
+
+  /// r K r / 2, in J.
+  template <class T>
+  static T energy(const HourglassModes<T>& r, const Element<T>& element) {
+    return T(0.5) * double_dot(r, element.resistance(r));
+  }
+
+  /// As for any matrix, N/m.
+  template <class T>
+  static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
+    return HourglassMatrixControl<Form>::stiffness_bound(gamma, {symmetric_part(matrix_of<T>(element))});
   }
 };
 

@@ -68,19 +68,19 @@ struct TlStabilizationMatrix {
 struct TlAssumedStrain {
   static constexpr std::string_view name = "tl-assumed-strain";
   static constexpr std::string_view summary =
-      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI) as a constant matrix";
+      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), computed at rest";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
-  using Hourglass = HourglassMatrixControl<MatrixAtRest<AssumedStrain>>;
+  using Hourglass = RestHourglassControl<AssumedStrain>;
 };
 
 struct TlEnhanced {
   static constexpr std::string_view name = "tl-enhanced";
   static constexpr std::string_view summary =
-      "one point, Total Lagrangian, enhanced assumed strain after Puso as a constant matrix";
+      "one point, Total Lagrangian, enhanced assumed strain after Puso, computed at rest";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
-  using Hourglass = HourglassMatrixControl<MatrixAtRest<EnhancedStrain>>;
+  using Hourglass = RestHourglassControl<EnhancedStrain>;
 };
 
 // What an Updated Lagrangian method tends to as strains vanish and time plays no part, it names
