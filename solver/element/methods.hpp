@@ -150,12 +150,17 @@ using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergy
                          TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
                          UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation>;
 
-/// Whether the strength of a method's hourglass control matters to a body at rest. A control that resists
-/// velocities alone says so with `damps_only`.
-template <class Method>
-inline constexpr bool kappa_matters_at_rest = Method::Hourglass::takes_kappa && !requires {
-  requires Method::Hourglass::damps_only;
+/// An hourglass control that resists velocities alone says so with `damps_only`: it loses energy, and does
+/// nothing where time plays no part.
+template <class Hourglass>
+concept DampsOnly = requires {
+  requires Hourglass::damps_only;
 };
+
+/// Whether the strength of a method's hourglass control matters to a body at rest.
+template <class Method>
+inline constexpr bool kappa_matters_at_rest =
+    Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

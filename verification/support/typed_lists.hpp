@@ -77,14 +77,19 @@ struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
                          TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>::type;
 };
 
+/// Whether a method's forces follow from the displacements, not from the path to them or from its speed.
+template <class Method>
+inline constexpr bool path_independent =
+    !FormulationOf<Method, NeoHookean>::remembers && !DampsOnly<typename Method::Hourglass>;
+
 /// The methods whose answer does not depend on the path.
 template <class List>
 struct PathIndependent;
 template <class... EveryMethod>
 struct PathIndependent<TypeList<EveryMethod...>> {
   using type =
-      typename Concatenated<TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers,
-                                                           TypeList<>, TypeList<EveryMethod>>...>::type;
+      typename Concatenated<TypeList<>, std::conditional_t<path_independent<EveryMethod>,
+                                                           TypeList<EveryMethod>, TypeList<>>...>::type;
 };
 
 /// The methods of the Updated Lagrangian element.
@@ -104,8 +109,8 @@ using MethodTypes = detail::AsTestTypes<Methods>::type;
 using GeneratorTypes = detail::AsTestTypes<Generators>::type;
 using MethodWithLawTypes = detail::AsTestTypes<detail::Product<Methods, Laws>::type>::type;
 
-/// What integrates its resistances in time comes to rest where the path leads it; who expects one answer
-/// takes these.
+/// What integrates its resistances in time comes to rest where the path leads it, and what damps loses
+/// energy; who expects one answer takes these.
 using PathIndependentMethods = detail::PathIndependent<Methods>::type;
 using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
 using PathIndependentPairTypes =
