@@ -119,6 +119,27 @@ TYPED_TEST(HourglassFormTest, bar_twists_exactly) {
   }
 }
 
+/// The mode xi eta zeta along an axis has the normal strain xi_j xi_k / l_i: against E, uniaxial stress, when
+/// strains are assumed, and against 4/3 mu, no pressure, when they are enhanced.
+TYPED_TEST(HourglassFormTest, fourth_mode_has_its_modulus) {
+  const std::array<double, 3> half{0.02, 0.05, 0.03};
+  const auto X = this->box(half);
+  const double V = 8 * half[0] * half[1] * half[2];
+  for (const double nu : poisson_ratios) {
+    const auto law = this->law(nu);
+    const double modulus =
+        std::is_same_v<TypeParam, EnhancedStrain> ? 4.0 / 3.0 * law.shear_modulus() : sample_young_modulus;
+    for (int i = 0; i < 3; ++i) {
+      const auto u = nodal([&](int I, NodalVectors<double>& v) {
+        v(I, i) = corner_signs(I, 0) * corner_signs(I, 1) * corner_signs(I, 2);
+      });
+      const double l = half[static_cast<std::size_t>(i)];
+      const double exact = 0.5 * modulus * V / 9 / (l * l);
+      EXPECT_NEAR(this->energy(X, u, law) / exact, 1.0, 1e-12);
+    }
+  }
+}
+
 /// No mode locks: the stiffest hourglass mode grows with mu by no more than from (1 + nu) / (1 - nu), the
 /// ratio of plane stress to uniaxial stress, not with the bulk modulus, on any shape. And none is lost.
 TYPED_TEST(HourglassFormTest, no_mode_locks_on_any_shape) {

@@ -13,8 +13,8 @@ namespace sandglass {
 ///   H_ij = integral of h_j,i h_i,j: V / (3 l_i l_j) for a box with half edges l, and H_ii = V / (3 l_i^2).
 /// A box bends exactly, at any Poisson's ratio; an element that is no box is taken for one. The paper's
 /// corotational axes follow the first edge; these are the orthogonal ones nearest to all three, so that the
-/// numbering of nodes does not matter. The gradients inside gamma are mean ones: with the paper's centre
-/// gradients the patch test fails on distorted meshes.
+/// numbering of nodes does not matter. The gradients are mean ones: with centre gradients
+/// one point fails the patch test on distorted meshes, whatever the control.
 struct AssumedStrain {
   static constexpr bool takes_kappa = false;
 

@@ -15,12 +15,12 @@ namespace sandglass {
 /// - What varies as one parent coordinate, say zeta, is the bending of a plate with the edges g_1 and g_2 and
 ///   the thickness g_3: E_11 = D_12, E_22 = D_21, 2 E_12 = D_11 + D_22. The strains E_33, E_13 and E_23 are
 ///   enhanced, which leaves plane stress: sigma = 2 mu (E + nu/(1-nu) tr E) in the plane's own metric. No
-///   shear locking, no volumetric locking, and exact bending of any parallelepiped.
+///   shear locking, no volumetric locking, and a parallelepiped bends exactly out of the plane of two edges.
 /// - What varies as a product is a normal strain along one edge, D_k4; a volumetric strain is added that
 ///   takes its pressure away, 4/3 mu (g^kk)^2 remains. The parasitic shears of this mode are left out.
 /// Puso maps strains with the lengths of the edges alone; here the whole metric is used, so that skew
-/// elements bend as exactly as boxes. The gradients inside gamma are mean ones: with centre gradients the
-/// patch test fails on distorted meshes.
+/// elements bend as exactly as boxes. The gradients are mean ones: with centre gradients one point fails the
+/// patch test on distorted meshes, whatever the control.
 struct EnhancedStrain {
   static constexpr bool takes_kappa = false;
 

@@ -12,8 +12,14 @@ namespace sandglass {
 /// its energy is zero, work done on it is lost. Where time plays no part it gives no force at all, so that a
 /// quasi-static answer hourglasses as it does without control.
 ///
-/// kappa is the dimensionless coefficient that those programs call QM, IHQ's coefficient or h; `auto` is the
-/// default of both, 0.1.
+/// There is no Total Lagrangian twin. With reference shape vectors c would be constant and every affine
+/// motion free of force, but not a bent element that turns as a whole: its velocity Omega x is linear in x,
+/// not in X, gamma^T v = Omega q is not zero, and spinning bodies would be braked. The rate that turning
+/// leaves alone, d(F^-1 q)/dt, needs the gradients of the increment, F^-1, and the reaction on the mean
+/// stress.
+///
+/// kappa is the dimensionless coefficient, QM in LS-DYNA and h in OpenRadioss; `auto` is the default of both,
+/// 0.1.
 struct ViscousHourglassControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = true;
