@@ -203,9 +203,10 @@ TEST(PerturbationHourglassControl, auto_gives_the_same_stiffness_on_either_modul
     const auto stiffness = [&](const HourglassSettings& settings) {
       return PerturbationHourglassControl::precompute(X, law, settings).k;
     };
-    EXPECT_NEAR(stiffness({{}, KappaModulus::shear}) / stiffness({}), 1.0, 8 * eps);
+    EXPECT_NEAR(stiffness({.kappa_modulus = KappaModulus::shear}) / stiffness({}), 1.0, 8 * eps);
     const double ratio = p_wave_modulus(law) / law.shear_modulus();
-    EXPECT_NEAR(stiffness({0.02 * ratio, KappaModulus::shear}) / stiffness({0.02}), 1.0, 8 * eps);
+    EXPECT_NEAR(stiffness({.kappa = 0.02 * ratio, .kappa_modulus = KappaModulus::shear}) / stiffness({0.02}),
+                1.0, 8 * eps);
   }
 }
 

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "base/error.hpp"
 #include "model/internal_force.hpp"
 #include "support/fitting_elements.hpp"
+#include "support/orderings.hpp"
 #include "support/sample_law.hpp"
 #include "support/tangent.hpp"
 #include "support/typed_lists.hpp"
@@ -154,36 +153,6 @@ TYPED_TEST(FormulationTest, uniform_strain_gives_the_stress_of_the_law) {
     EXPECT_NEAR(Formulation::mean_jacobian(u, s.element), J, 1e-12 * J);
     EXPECT_NEAR(Formulation::smallest_jacobian(u, s.element), J, 1e-12 * J);
   }
-}
-
-/// The 24 rotations of the cube as node permutations: closure of two quarter turns.
-std::set<std::array<int, 8>> proper_orderings() {
-  using Ordering = std::array<int, 8>;
-  constexpr Ordering about_z{1, 2, 3, 0, 5, 6, 7, 4};
-  constexpr Ordering about_x{3, 2, 6, 7, 0, 1, 5, 4};
-  const auto after = [](const Ordering& first, const Ordering& second) {
-    Ordering result{};
-    for (std::size_t I = 0; I < 8; ++I) result[I] = first[static_cast<std::size_t>(second[I])];
-    return result;
-  };
-  std::set<Ordering> all{{0, 1, 2, 3, 4, 5, 6, 7}};
-  for (std::size_t before = 0; before != all.size();) {
-    before = all.size();
-    const auto known = all;
-    for (const auto& ordering : known) {
-      all.insert(after(ordering, about_z));
-      all.insert(after(ordering, about_x));
-    }
-  }
-  return all;
-}
-
-NodalVectors<double> reordered(const NodalVectors<double>& rows, const std::array<int, 8>& ordering) {
-  NodalVectors<double> result{};
-  for (int I = 0; I < 8; ++I) {
-    for (int i = 0; i < 3; ++i) result(I, i) = rows(ordering[static_cast<std::size_t>(I)], i);
-  }
-  return result;
 }
 
 TYPED_TEST(FormulationTest, node_ordering_does_not_matter) {

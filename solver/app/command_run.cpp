@@ -164,7 +164,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("CASE", options->name, "name or file of the case");
   command->add_option("-m,--method", options->method, "method, see `sandglass methods`")
       ->capture_default_str();
-  command->add_option("-k,--kappa", options->kappa, "hourglass stiffness, a number or 'auto'")
+  command->add_option("-k,--kappa", options->kappa, "strength of the hourglass control, a number or 'auto'")
       ->capture_default_str();
   command
       ->add_option("--kappa-modulus", options->kappa_modulus,

@@ -54,13 +54,14 @@ std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
   return subjects;
 }
 
-/// Every method of the list on every scene; those with a kappa at `auto` and along the case's curve.
+/// Every method of the list on every scene; those with a kappa that matters at `auto` and along the case's
+/// curve.
 std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision) {
   std::vector<Task> tasks;
   for (const auto& subject : subjects) {
     for_each_type(Methods{}, [&]<class Method>() {
       tasks.push_back({&subject, {std::string(Method::name), {}, precision}});
-      if (!Method::Hourglass::takes_kappa) return;
+      if (!kappa_matters_at_rest<Method>) return;
       for (const double kappa : subject.scene.description.kappas) {
         tasks.push_back({&subject, {std::string(Method::name), kappa, precision}});
       }

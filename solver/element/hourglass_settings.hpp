@@ -8,9 +8,10 @@ namespace sandglass {
 /// number serves nearly incompressible materials too, because mu stays finite as nu -> 1/2.
 enum class KappaModulus { p_wave, shear };
 
-/// What a user may choose of an hourglass control.
+/// What an hourglass control is told beside shape and law.
 struct HourglassSettings {
-  std::optional<double> kappa;  ///< stiffness parameter, -; none means `auto`, the control's own choice
+  std::optional<double> kappa;  ///< strength, -; none means `auto`, the control's own choice
+  double density = 0.0;         ///< kg/m^3 at rest, for controls that damp; without inertia they do nothing
   KappaModulus kappa_modulus = KappaModulus::p_wave;  ///< what kappa multiplies
 };
 

@@ -6,11 +6,14 @@
 #include "element/compact_one_point.hpp"
 #include "element/eight_point.hpp"
 #include "element/formulation.hpp"
+#include "element/hourglass_assumed_strain.hpp"
 #include "element/hourglass_energy_sampling.hpp"
+#include "element/hourglass_enhanced.hpp"
 #include "element/hourglass_matrix.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
 #include "element/hourglass_rate_perturbation.hpp"
+#include "element/hourglass_viscous.hpp"
 #include "element/one_point.hpp"
 #include "element/stabilization_matrix.hpp"
 #include "element/tetrahedra.hpp"
@@ -63,6 +66,27 @@ struct TlStabilizationMatrix {
   using Hourglass = HourglassMatrixControl<StabilizationMatrix>;
 };
 
+struct TlAssumedStrain {
+  static constexpr std::string_view name = "tl-assumed-strain";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), computed at rest";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = RestHourglassControl<AssumedStrain>;
+};
+
+struct TlEnhanced {
+  static constexpr std::string_view name = "tl-enhanced";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, enhanced assumed strain after Puso, computed at rest";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = RestHourglassControl<EnhancedStrain>;
+};
+
+// What an Updated Lagrangian method tends to as strains vanish and time plays no part, it names
+// `AtSmallStrain`.
+
 struct UlPerturbation {
   static constexpr std::string_view name = "ul-perturbation";
   static constexpr std::string_view summary =
@@ -70,6 +94,38 @@ struct UlPerturbation {
   static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RatePerturbationControl;
+  using AtSmallStrain = TlPerturbation;
+};
+
+struct UlViscous {
+  static constexpr std::string_view name = "ul-viscous";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, viscous control: LS-DYNA's and OpenRadioss's default; no use at rest";
+  static constexpr int integration_points = 1;
+  static constexpr int zero_energy_modes = 18;  // it resists velocities only
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = ViscousHourglassControl;
+  using AtSmallStrain = TlNone;
+};
+
+struct UlAssumedStrain {
+  static constexpr std::string_view name = "ul-assumed-strain";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, assumed strain (ASQBI) of the current shape: LS-DYNA's type 6";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RateHourglassControl<AssumedStrain>;
+  using AtSmallStrain = TlAssumedStrain;
+};
+
+struct UlEnhanced {
+  static constexpr std::string_view name = "ul-enhanced";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, enhanced assumed strain after Puso: ABAQUS's costlier control";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RateHourglassControl<EnhancedStrain>;
+  using AtSmallStrain = TlEnhanced;
 };
 
 struct TlFull {
@@ -110,6 +166,20 @@ struct T4Anp {
 /// tables, benchmarks and charts iterate the list.
 using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
                          TlStabilizationMatrix, UlPerturbation, TlFull, TlMeanDilatation, T4, T4Anp>;
+TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous, UlAssumedStrain, UlEnhanced,
+    TlFull, TlMeanDilatation > ;
+
+/// An hourglass control that resists velocities alone says so with `damps_only`: it loses energy, and does
+/// nothing where time plays no part.
+template <class Hourglass>
+concept DampsOnly = requires {
+  requires Hourglass::damps_only;
+};
+
+/// Whether the strength of a method's hourglass control matters to a body at rest.
+template <class Method>
+inline constexpr bool kappa_matters_at_rest =
+    Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

@@ -4,6 +4,11 @@
 
 namespace sandglass {
 
+/// An hourglass control of the Updated Lagrangian element sees all of UpdatedOnePoint::Deformation and gives
+///   resistance(now, control, history)          hourglass resistances Q, N; what it remembers goes on,
+///   energy(now, control, history)              what is stored and could be given back, J,
+///   stiffness_bound(body, gamma, now, control) a bound of the element's tangent, N/m, from that of its body.
+
 /// The uniform strain hexahedron in the Updated Lagrangian formulation: nothing is precomputed. Each step
 /// rebuilds mean gradients, volume and hourglass shape vectors from the current coordinates, takes F from
 /// F^-1 = I - du/dx, and turns the Cauchy stress into forces. What it rebuilds is the geometry of OnePoint,
@@ -21,22 +26,26 @@ struct UpdatedOnePoint {
   /// What the force needs of the motion.
   template <class T>
   struct Deformation {
+    Modes<T> x;                    ///< current coordinates, m
     OnePoint::Element<T> current;  ///< h (1/m), c (m) and V (m^3) of the current configuration
     Tensor<T> H;
     VolumeChange<T> change;
     Tensor<T> L;             ///< velocity gradient times the step
     HourglassModes<T> rate;  ///< hourglass velocities times the step, m
+    T inverse_step;          ///< 1/s; 0 where time plays no part
   };
 
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
     Deformation<T> now;
-    now.current = OnePoint::geometry(motion.X + motion.u);
+    now.x = motion.X + motion.u;
+    now.current = OnePoint::geometry(now.x);
     now.H = displacement_gradient(motion.u, now.current);
     now.change = volume_change(now.H);
     if constexpr (Hourglass::active) {
       now.L = OnePoint::mean_gradient(motion.increment, now.current);
       now.rate = OnePoint::hourglass_displacements(motion.increment, now.L, now.current);
+      now.inverse_step = motion.inverse_step;
     }
     return now;
   }
@@ -49,8 +58,8 @@ struct UpdatedOnePoint {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> S = law.weighted_kirchhoff(reference_volume(now), now.H, now.change, p);
     if constexpr (Hourglass::active) {
-      return OnePoint::modal_forces(S, Hourglass::resistance(now.rate, now.L, now.current, control, history),
-                                    now.current.c, now.current);
+      return OnePoint::modal_forces(S, Hourglass::resistance(now, control, history), now.current.c,
+                                    now.current);
     } else {
       return OnePoint::body_forces(S, now.current);
     }
@@ -62,7 +71,7 @@ struct UpdatedOnePoint {
                                  const typename Hourglass::template History<T>& history, const Law& law) {
     const auto now = deformation<Hourglass>(motion, element);
     ElementEnergy<T> energy{reference_volume(now) * law.energy(now.H), T(0)};
-    if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now.current, control, history);
+    if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now, control, history);
     return energy;
   }
 
@@ -94,9 +103,16 @@ struct UpdatedOnePoint {
     const NodalVectors<T> h = OnePoint::nodal_gradients(now.current);
     const T body = reference_volume(now) * gradient_bound(tangent_bound(law, now.H), h);
     if constexpr (Hourglass::active) {
-      return body + Hourglass::stiffness_bound(OnePoint::gamma(h, now.current), now.current, control);
+      return Hourglass::stiffness_bound(body, OnePoint::gamma(h, now.current), now, control);
     }
     return body;
+  }
+
+  /// The reference volume (m^3) from the current one: v / J, with J^-1 from the root that is known.
+  template <class T>
+  static T reference_volume(const Deformation<T>& now) {
+    const T r = now.change.inverse_root;
+    return now.current.V * (r * r * r);
   }
 
  private:
@@ -105,13 +121,6 @@ struct UpdatedOnePoint {
   static Tensor<T> displacement_gradient(const Modes<T>& u, const OnePoint::Element<T>& current) {
     const Tensor<T> D = OnePoint::mean_gradient(u, current);
     return D * inverse(identity<T>() - D);
-  }
-
-  /// v / J, with J^-1 from the root that is known.
-  template <class T>
-  static T reference_volume(const Deformation<T>& now) {
-    const T r = now.change.inverse_root;
-    return now.current.V * (r * r * r);
   }
 };
 

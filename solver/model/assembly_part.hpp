@@ -7,10 +7,10 @@
 namespace sandglass {
 
 template <class Number, std::size_t part>
-ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice) {
+ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice,
+                              const HourglassSettings& settings) {
   static_assert(part < assembly_parts, "CMakeLists.txt makes more parts than there are");
   ForceOf<Number> force;
-  const HourglassSettings settings{choice.kappa, choice.kappa_modulus};
   for_each_type(Methods{}, [&]<class Method>() {
     if constexpr (part_of<Method>() == part) {
       if (Method::name != choice.method) return;

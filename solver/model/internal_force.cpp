@@ -28,11 +28,15 @@ void require_sensible(const MethodChoice& choice) {
 
 }  // namespace
 
-AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice) {
+AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+                                     double density) {
   require_sensible(choice);
-  if (choice.kernel == KernelWidth::scalar) return assemble<double>(mesh, law, choice);
-  if (choice.precision == Precision::double_precision) return assemble<Pack<double>>(mesh, law, choice);
-  return assemble<Pack<float>>(mesh, law, choice);
+  const HourglassSettings settings{choice.kappa, density, choice.kappa_modulus};
+  if (choice.kernel == KernelWidth::scalar) return assemble<double>(mesh, law, choice, settings);
+  if (choice.precision == Precision::double_precision) {
+    return assemble<Pack<double>>(mesh, law, choice, settings);
+  }
+  return assemble<Pack<float>>(mesh, law, choice, settings);
 }
 
 bool takes_kappa(std::string_view method) {

@@ -99,12 +99,14 @@ struct MethodChoice {
 using AnyInternalForce =
     std::variant<std::unique_ptr<InternalForce<double>>, std::unique_ptr<InternalForce<float>>>;
 
-/// THE place of dispatch: the elements of `mesh` with the chosen method.
-/// Throws InputError for an unknown method (naming the known ones), for a kappa given to a method that takes
-/// none, and for scalar kernels in single precision, which nothing needs.
-AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice);
+/// THE place of dispatch: the elements of `mesh` with the chosen method. Hourglass controls that damp need
+/// the density (kg/m^3); with none they do nothing. Throws InputError for an unknown method (naming the known
+/// ones), for a kappa given to a method that takes none, and for scalar kernels in single precision, which
+/// nothing needs.
+AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+                                     double density = 0.0);
 
-/// Whether the method of that name takes the hourglass stiffness parameter kappa. Throws InputError when
+/// Whether the method of that name takes the hourglass parameter kappa. Throws InputError when
 /// unknown.
 bool takes_kappa(std::string_view method);
 

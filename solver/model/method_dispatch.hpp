@@ -36,14 +36,16 @@ using ForceOf = std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>>;
 
 /// The elements of a mesh if the chosen method belongs to this part; else none.
 template <class Number, std::size_t part>
-ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice);
+ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+                              const HourglassSettings& settings);
 
 /// The elements of a mesh, from the part that has them.
 template <class Number>
-ForceOf<Number> assemble(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice) {
+ForceOf<Number> assemble(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+                         const HourglassSettings& settings) {
   ForceOf<Number> force;
   const auto look_in = [&]<std::size_t part>() {
-    force = assemble_part<Number, part>(mesh, law, choice);
+    force = assemble_part<Number, part>(mesh, law, choice, settings);
     return force != nullptr;
   };
   [&]<std::size_t... part>(std::index_sequence<part...>) {

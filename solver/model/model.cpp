@@ -109,7 +109,8 @@ double largest_imposed(const Scene& scene) {
 Model::Model(const Scene& scene, MethodChoice choice)
     : scene_(scene),
       choice_(std::move(choice)),
-      internal_force_(make_internal_force(scene.mesh, scene.description.law, choice_)),
+      internal_force_(
+          make_internal_force(scene.mesh, scene.description.law, choice_, scene.description.density)),
       masses_(scene.mesh.points.size(), 0.0) {
   element_masses_.reserve(scene.mesh.cells.size());
   for (const auto& cell : scene.mesh.cells) {

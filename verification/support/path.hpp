@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "model/internal_force.hpp"
 
 namespace sandglass::verification {
@@ -8,12 +10,13 @@ namespace sandglass::verification {
 /// that remember where they have been.
 class Path {
  public:
-  Path(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice)
-      : elements_(std::get<0>(make_internal_force(mesh, law, choice))), state_(elements_->rest()) {}
+  Path(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice, double density = 1000.0)
+      : elements_(std::get<0>(make_internal_force(mesh, law, choice, density))), state_(elements_->rest()) {}
 
-  /// Goes on to displacements u (m) in so many seconds and returns the forces there (N).
-  NodalField to(const NodalField& u, double seconds = std::numeric_limits<double>::infinity()) {
-    state_.step = seconds;
+  /// Goes on to displacements u (m) in some time (s), by default one so long that it plays no part, and
+  /// returns the forces there (N).
+  NodalField to(const NodalField& u, double step = std::numeric_limits<double>::infinity()) {
+    state_.step = step;
     const Rows<double> rows = to_rows<double>(u, elements_->layout());
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) state_.increment[r][i] = rows[r][i] - state_.u[r][i];

@@ -67,13 +67,30 @@ struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
                                       TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>;
 };
 
+/// Whether a method's forces follow from the displacements, not from the path to them or from its speed.
+template <class Method>
+inline constexpr bool path_independent =
+    !FormulationOf<Method, NeoHookean>::remembers && !DampsOnly<typename Method::Hourglass>;
+
 /// The methods whose answer does not depend on the path.
 template <class List>
 struct PathIndependent;
 template <class... EveryMethod>
 struct PathIndependent<TypeList<EveryMethod...>> {
-  using type = Concatenated<TypeList<>, std::conditional_t<FormulationOf<EveryMethod, NeoHookean>::remembers,
-                                                           TypeList<>, TypeList<EveryMethod>>...>;
+  using type =
+      Concatenated<TypeList<>,
+                   std::conditional_t<path_independent<EveryMethod>, TypeList<EveryMethod>, TypeList<>>...>;
+};
+
+/// The methods of the Updated Lagrangian element.
+template <class List>
+struct Updated;
+template <class... EveryMethod>
+struct Updated<TypeList<EveryMethod...>> {
+  using type =
+      Concatenated<TypeList<>,
+                   std::conditional_t<std::is_same_v<typename EveryMethod::Kinematics, UpdatedOnePoint>,
+                                      TypeList<EveryMethod>, TypeList<>>...>;
 };
 
 }  // namespace detail
@@ -85,12 +102,14 @@ using MethodTypes = detail::AsTestTypes<Methods>::type;
 using GeneratorTypes = detail::AsTestTypes<Generators>::type;
 using MethodWithLawTypes = detail::AsTestTypes<detail::Product<Methods, Laws>::type>::type;
 
-/// What integrates its resistances in time comes to rest where the path leads it, and what relaxes takes its
-/// time; who expects one answer takes these.
+/// What integrates its resistances in time comes to rest where the path leads it, what relaxes takes its
+/// time, and what damps loses energy; who expects one answer takes these.
 using PathIndependentMethods = detail::PathIndependent<Methods>::type;
 using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
 using PathIndependentPairTypes =
     detail::AsTestTypes<detail::Product<PathIndependentMethods, ElasticLaws>::type>::type;
+
+using UpdatedLagrangianTypes = detail::AsTestTypes<detail::Updated<Methods>::type>::type;
 
 using ElasticMethodWithLawTypes =
     detail::AsTestTypes<detail::Elastic<detail::Product<Methods, Laws>::type>::type>::type;

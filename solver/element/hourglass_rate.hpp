@@ -1,0 +1,70 @@
+#pragma once
+
+#include "element/hourglass_perturbation.hpp"
+#include "element/updated_one_point.hpp"
+
+namespace sandglass {
+
+/// R v for the rotation of a spin: Cayley's form of the rotation vector 2 b, exact in length (Hughes and
+/// Winget 1980).
+template <class T>
+Triple<T> rotated(const Triple<T>& v, const Triple<T>& b, const T& scale) {
+  const Triple<T> turn = cross(b, v);
+  return v + scale * (turn + cross(b, turn));
+}
+
+/// Hourglass control as Updated Lagrangian codes run it: hourglass resistances are integrated from hourglass
+/// velocities, turn with the element's spin, and their stiffness follows the current geometry. A `Form` says
+/// what stiffness: Element<T> and precompute(X, law, settings) for its moduli, and stiffness(x, current,
+/// moduli), an object of the current configuration with
+///   resistance(q)  what resists hourglass displacements q (m), in N: linear, symmetric, positive,
+///   energy(Q)      what resistances Q (N) store, in J: the complementary energy,
+///   bound()        of the largest eigenvalue of q -> Q, in N/m.
+template <class Form>
+struct RateHourglassControl : Form {
+  static constexpr bool active = true;
+
+  template <class T>
+  using Element = typename Form::template Element<T>;
+
+  /// Hourglass resistances, N.
+  template <class T>
+  struct History {
+    HourglassModes<T> Q;
+  };
+
+  /// Q <- R Q + K gamma^T v dt: what was there turns with the spin of L, the rate is added.
+  template <class T>
+  static HourglassModes<T> resistance(const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
+                                      History<T>& history) {
+    const Tensor<T>& L = now.L;
+    const T quarter(0.25);  // half of the spin vector, itself half of these differences
+    const Triple<T> b{
+        {quarter * (L(2, 1) - L(1, 2)), quarter * (L(0, 2) - L(2, 0)), quarter * (L(1, 0) - L(0, 1))}};
+    const T scale = T(2) / (T(1) + double_dot(b, b));
+    const HourglassModes<T> added = Form::stiffness(now.x, now.current, element).resistance(now.rate);
+    for (int a = 0; a < 4; ++a) {
+      const Triple<T> turned =
+          rotated(Triple<T>{{history.Q(a, 0), history.Q(a, 1), history.Q(a, 2)}}, b, scale);
+      for (int i = 0; i < 3; ++i) history.Q(a, i) = turned(i, 0) + added(a, i);
+    }
+    return history.Q;
+  }
+
+  /// What the resistances would give back at the current stiffness, J.
+  template <class T>
+  static T energy(const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
+                  const History<T>& history) {
+    return Form::stiffness(now.x, now.current, element).energy(history.Q);
+  }
+
+  /// The body's bound and lambda_max(K) lambda_max(gamma^T gamma), which is safe whatever the angle between
+  /// their modes.
+  template <class T>
+  static T stiffness_bound(const T& body, const Matrix<T, 8, 4>& gamma,
+                           const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element) {
+    return body + Form::stiffness(now.x, now.current, element).bound() * shape_vector_bound(gamma);
+  }
+};
+
+}  // namespace sandglass
