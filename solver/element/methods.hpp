@@ -165,9 +165,8 @@ struct T4Anp {
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
 using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
-                         TlStabilizationMatrix, UlPerturbation, TlFull, TlMeanDilatation, T4, T4Anp>;
-TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous, UlAssumedStrain, UlEnhanced,
-    TlFull, TlMeanDilatation > ;
+                         TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
+                         UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation, T4, T4Anp>;
 
 /// An hourglass control that resists velocities alone says so with `damps_only`: it loses energy, and does
 /// nothing where time plays no part.
