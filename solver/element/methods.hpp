@@ -9,6 +9,7 @@
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
 #include "element/hourglass_rate_perturbation.hpp"
+#include "element/linear_one_point.hpp"
 #include "element/one_point.hpp"
 #include "element/updated_one_point.hpp"
 
@@ -67,10 +68,20 @@ struct TlMeanDilatation {
   using Hourglass = NoHourglassControl;
 };
 
+struct LinearPerturbation {
+  static constexpr std::string_view name = "linear";
+  static constexpr std::string_view summary =
+      "one point, small strain, perturbation hourglass control: right only while nothing turns or strains "
+      "much";
+  static constexpr int integration_points = 1;
+  using Kinematics = LinearOnePoint;
+  using Hourglass = PerturbationHourglassControl;
+};
+
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
-using Methods =
-    TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull, TlMeanDilatation>;
+using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull,
+                         TlMeanDilatation, LinearPerturbation>;
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>
