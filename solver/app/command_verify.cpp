@@ -58,7 +58,8 @@ std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision prec
   for (const auto& subject : subjects) {
     for_each_type(Methods{}, [&]<class Method>() {
       tasks.push_back({&subject, {std::string(Method::name), {}, precision}});
-      if (!Method::Hourglass::takes_kappa) return;
+      // A condensed method's curve is that of the method it condenses.
+      if (!Method::Hourglass::takes_kappa || is_condensed<Method>) return;
       for (const double kappa : subject.scene.description.kappas) {
         tasks.push_back({&subject, {std::string(Method::name), kappa, precision}});
       }

@@ -78,10 +78,32 @@ struct LinearPerturbation {
   using Hourglass = PerturbationHourglassControl;
 };
 
+struct LinearCondensed {
+  static constexpr std::string_view name = "linear-condensed";
+  static constexpr std::string_view summary =
+      "linear, solved once for all loads: answers are superposed from the response to unit displacements";
+  static constexpr int integration_points = 1;
+  static constexpr bool condensed = true;
+  using Kinematics = LinearOnePoint;
+  using Hourglass = PerturbationHourglassControl;
+};
+
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
 using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, UlPerturbation, TlFull,
-                         TlMeanDilatation, LinearPerturbation>;
+                         TlMeanDilatation, LinearPerturbation, LinearCondensed>;
+
+/// Whether a method's forces are linear in the displacements, f = K u.
+template <class Method>
+inline constexpr bool is_linear = requires {
+  requires Method::Kinematics::small_strain;
+};
+
+/// Whether a method takes no steps: its answers are superposed from responses that are computed once.
+template <class Method>
+inline constexpr bool is_condensed = requires {
+  requires Method::condensed;
+};
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

@@ -87,6 +87,15 @@ struct PathIndependent<TypeList<EveryMethod...>> {
                                                            TypeList<>, TypeList<EveryMethod>>...>::type;
 };
 
+/// The methods that find their answers step by step.
+template <class List>
+struct Stepped;
+template <class... EveryMethod>
+struct Stepped<TypeList<EveryMethod...>> {
+  using type = typename Concatenated<
+      TypeList<>, std::conditional_t<is_condensed<EveryMethod>, TypeList<>, TypeList<EveryMethod>>...>::type;
+};
+
 }  // namespace detail
 
 using LawTypes = detail::AsTestTypes<Laws>::type;
@@ -100,6 +109,12 @@ using PathIndependentMethods = detail::PathIndependent<Methods>::type;
 using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
 using PathIndependentPairTypes =
     detail::AsTestTypes<detail::Product<PathIndependentMethods, Laws>::type>::type;
+
+/// Those of them that take steps, at rest or in motion: a condensed method answers at once, and refuses to
+/// move.
+using SteppedMethods = detail::Stepped<PathIndependentMethods>::type;
+using SteppedMethodTypes = detail::AsTestTypes<SteppedMethods>::type;
+using SteppedPairTypes = detail::AsTestTypes<detail::Product<SteppedMethods, Laws>::type>::type;
 
 using ElasticMethodWithLawTypes =
     detail::AsTestTypes<detail::Elastic<detail::Product<Methods, Laws>::type>::type>::type;
