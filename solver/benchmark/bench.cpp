@@ -70,8 +70,8 @@ Group make_group(const Scene& scene, const std::vector<MethodChoice>& variants, 
   return group;
 }
 
-/// Nodes of a scene up to which condensed methods are set up: about ten seconds at the square of their
-/// number.
+/// Nodes of a scene up to which condensed methods are set up, for each variant anew: some seconds for a cube
+/// of so many; the work grows with their number to the power of 7/3.
 constexpr std::size_t most_condensed_nodes = 10000;
 
 /// Takes the variants that would take too long to set up out of the list, and makes their records.
@@ -81,7 +81,7 @@ std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>
   if (nodes <= most_condensed_nodes) return records;
   std::erase_if(variants, [&](const MethodChoice& choice) {
     if (!answers_by_condensation(choice.method)) return false;
-    const std::string why = fmt::format("left out: to factorise for {} nodes takes minutes; at most {} here",
+    const std::string why = fmt::format("left out: to factorise for {} nodes takes too long; at most {} here",
                                         nodes, most_condensed_nodes);
     records.push_back({scene.description.name, elements, nodes, choice, why, 0.0, 0.0, {}, {}, {}, {}});
     return true;

@@ -63,7 +63,7 @@ std::vector<MethodChoice> variants_of(const BenchPlan& plan);
 
 /// Measures all variants on a scene in turn. When they do not all fit into memory, those that do are measured
 /// together and the others after them. Condensed methods are left out where their factorisation would take
-/// minutes.
+/// too long.
 std::vector<BenchRecord> bench(const Scene& scene, const BenchPlan& plan, MachineSpeed& machine,
                                const Proceed& proceed);
 

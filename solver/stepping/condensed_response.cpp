@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
@@ -22,13 +22,13 @@ std::size_t index(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// The nodes that are connected by an element with each node, if both can move.
-std::vector<std::vector<int>> neighbours_of(const Mesh& mesh, const std::vector<bool>& moves) {
+/// The nodes that are connected by an element with each node, if both have components that can move.
+std::vector<std::vector<int>> neighbours_of(const Mesh& mesh, const std::vector<int>& components) {
   std::vector<std::set<int>> sets(mesh.points.size());
   for (const auto& cell : mesh.cells) {
     for (const int a : cell) {
       for (const int b : cell) {
-        if (a != b && moves[index(a)] && moves[index(b)]) sets[index(a)].insert(b);
+        if (a != b && components[index(a)] > 0 && components[index(b)] > 0) sets[index(a)].insert(b);
       }
     }
   }
@@ -75,43 +75,37 @@ class FreeStiffness {
   /// Numbers the free components, -1 for the others, layer by layer of their nodes; the layers start beside
   /// one of the driven sets, whichever gives the least work. Returns the sizes of the layers.
   std::vector<int> number_rows(const Scene& scene) {
-    for (const auto& c : scene.constraints) row_[3 * index(c.node) + index(c.component)] = -1;
-    const auto free_components = [&](int node) {
-      return static_cast<int>(std::count(row_.begin() + 3 * node, row_.begin() + 3 * node + 3, 0));
-    };
-    std::vector<bool> moves(scene.mesh.points.size());
-    for (std::size_t n = 0; n < moves.size(); ++n) moves[n] = free_components(static_cast<int>(n)) > 0;
-    const auto neighbours = neighbours_of(scene.mesh, moves);
+    std::vector<int> components(scene.mesh.points.size(), 3);  // that are free, of each node
+    for (const auto& c : scene.constraints) {
+      row_[3 * index(c.node) + index(c.component)] = -1;
+      --components[index(c.node)];
+    }
+    const auto neighbours = neighbours_of(scene.mesh, components);
     std::vector<std::vector<int>> layers;
     std::vector<int> sizes;
     double least = INFINITY;
     for (const auto& displacement : scene.description.displacements) {
-      const std::vector<bool> held = members(scene, displacement.set);
-      std::set<int> beside;
-      for (const auto& cell : scene.mesh.cells) {
-        if (std::none_of(cell.begin(), cell.end(), [&](int node) { return held[index(node)]; })) continue;
-        std::copy_if(cell.begin(), cell.end(), std::inserter(beside, beside.end()),
-                     [&](int node) { return moves[index(node)]; });
-      }
-      auto found = layers_from({beside.begin(), beside.end()}, neighbours);
+      auto found = layers_from(nodes_beside(scene, displacement.set, components), neighbours);
       std::vector<int> found_sizes;
       double work = 0.0;
       for (const auto& layer : found) {
-        found_sizes.push_back(
-            std::transform_reduce(layer.begin(), layer.end(), 0, std::plus{}, free_components));
-        work += std::pow(found_sizes.back(), 3);
+        int size = 0;
+        for (const int node : layer) size += components[index(node)];
+        found_sizes.push_back(size);
+        work += std::pow(size, 3);
       }
       if (work >= least) continue;
       least = work;
       layers = std::move(found);
       sizes = std::move(found_sizes);
     }
+    require_room(sizes);
     int next = 0;
     for (const auto& layer : layers) {
       for (const int node : layer) {
         for (std::size_t i = 0; i < 3; ++i) {
           int& row = row_[3 * index(node) + i];
-          if (row == 0) row = next++;
+          if (row >= 0) row = next++;
         }
       }
     }
@@ -119,10 +113,32 @@ class FreeStiffness {
     return sizes;
   }
 
-  static std::vector<bool> members(const Scene& scene, const std::string& set) {
-    std::vector<bool> held(scene.mesh.points.size(), false);
-    for (const int node : scene.sets.at(set)) held[index(node)] = true;
-    return held;
+  static void require_room(const std::vector<int>& sizes) {
+    constexpr double most = 8e9;
+    double bytes = 0.0, before = 0.0;
+    for (const double size : sizes) {
+      bytes += sizeof(double) * size * (size + before);
+      before = size;
+    }
+    if (bytes <= most) return;
+    throw ComputationError(fmt::format(
+        "to factorise the stiffness takes {:.3g} GB, more than the {:.3g} GB that are allowed; remedy: a "
+        "coarser mesh, or a method that takes steps",
+        1e-9 * bytes, 1e-9 * most));
+  }
+
+  /// The nodes that can move and share an element with a set.
+  static std::vector<int> nodes_beside(const Scene& scene, const std::string& set,
+                                       const std::vector<int>& components) {
+    std::vector<bool> member(scene.mesh.points.size(), false);
+    for (const int node : scene.sets.at(set)) member[index(node)] = true;
+    std::set<int> beside;
+    for (const auto& cell : scene.mesh.cells) {
+      if (std::none_of(cell.begin(), cell.end(), [&](int node) { return member[index(node)]; })) continue;
+      std::copy_if(cell.begin(), cell.end(), std::inserter(beside, beside.end()),
+                   [&](int node) { return components[index(node)] > 0; });
+    }
+    return {beside.begin(), beside.end()};
   }
 
   std::vector<int> row_;  // of each component, -1 where it is constrained
@@ -130,13 +146,12 @@ class FreeStiffness {
   LayeredCholesky factor_;
 };
 
-/// Calls visit(component) for each constraint of a handle's component `column`.
-void for_each_constraint(const Scene& scene, const Handles& handles, std::size_t column,
-                         const std::function<void(const Constraint&)>& visit) {
+/// Calls visit(constraint, column) for each constraint of a handle, with the column that moves it.
+template <class Visit>
+void for_each_held(const Scene& scene, const Handles& handles, const Visit& visit) {
   for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
-    const Constraint& constraint = scene.constraints[k];
-    if (handles.of_constraint[k] != static_cast<int>(column / 3)) continue;
-    if (constraint.component == static_cast<int>(column % 3)) visit(constraint);
+    const Constraint& c = scene.constraints[k];
+    if (handles.of_constraint[k] >= 0) visit(c, 3 * index(handles.of_constraint[k]) + index(c.component));
   }
 }
 
@@ -191,15 +206,14 @@ CondensedResponse<Real>::CondensedResponse(const Model& model, const Handles& ha
   FreeStiffness K_ff(exact);
   for (std::size_t column = 0; column < columns(); ++column) {
     NodalField u(scene.mesh.points.size());
-    for_each_constraint(scene, handles, column,
-                        [&](const Constraint& c) { u[index(c.node)][index(c.component)] = 1.0; });
+    for_each_held(scene, handles, [&](const Constraint& c, std::size_t row) {
+      if (row == column) u[index(c.node)][index(c.component)] = 1.0;
+    });
     K_ff.balance(internal_forces(exact, u), u);
     const NodalField f = internal_forces(exact, u);
-    for (std::size_t row = 0; row < columns(); ++row) {
-      for_each_constraint(scene, handles, row, [&](const Constraint& c) {
-        stiffness_[row * columns() + column] += f[index(c.node)][index(c.component)];
-      });
-    }
+    for_each_held(scene, handles, [&](const Constraint& c, std::size_t row) {
+      stiffness_[row * columns() + column] += f[index(c.node)][index(c.component)];
+    });
     Real* response = response_.data() + column * 3 * outputs_.size();
     for (const int node : outputs_) {
       for (const double component : u[index(node)]) *response++ = static_cast<Real>(component);
@@ -212,10 +226,11 @@ void CondensedResponse<Real>::displacements(std::span<const Vector> d, std::span
                                             int threads) const {
   const std::size_t numbers = 3 * outputs_.size();
   Real* const sum = u.data()->data();
+  const double* const amounts = d.data()->data();
   for_each_block(numbers, threads, [=, this](std::size_t first, std::size_t last) {
     std::fill(sum + first, sum + last, Real(0));
     for (std::size_t column = 0; column < columns(); ++column) {
-      const auto amount = static_cast<Real>(d[column / 3][column % 3]);
+      const auto amount = static_cast<Real>(amounts[column]);
       const Real* const response = response_.data() + column * numbers;
 #pragma omp simd
       for (std::size_t k = first; k < last; ++k) sum[k] += amount * response[k];
@@ -225,10 +240,12 @@ void CondensedResponse<Real>::displacements(std::span<const Vector> d, std::span
 
 template <class Real>
 void CondensedResponse<Real>::forces(std::span<const Vector> d, std::span<Vector> f) const {
-  const double* S = stiffness_.data();
+  const double* const amounts = d.data()->data();
   for (std::size_t row = 0; row < columns(); ++row) {
+    const double* const S = stiffness_.data() + row * columns();
     double sum = 0.0;
-    for (std::size_t column = 0; column < columns(); ++column) sum += *S++ * d[column / 3][column % 3];
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t column = 0; column < columns(); ++column) sum += S[column] * amounts[column];
     f[row / 3][row % 3] = sum;
   }
 }
