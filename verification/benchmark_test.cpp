@@ -178,7 +178,7 @@ TEST(Bench, ratios_compare_like_with_like) {
   const auto record = [](std::string method, Precision precision, KernelWidth kernel, double ns) {
     BenchRecord r{"box", 8,   27,     {.method = std::move(method), .precision = precision, .kernel = kernel},
                   "ok",  0.0, 0.0,    {},
-                  0.0,   {},  Speed{}};
+                  {},    {},  Speed{}};
     r.speed->ns.median = ns;
     return r;
   };

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
 #include "stepping/central_difference.hpp"
 #include "stepping/relaxation.hpp"
+#include "support/exact_stress.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/typed_lists.hpp"
@@ -27,6 +29,12 @@ class PatchTest : public ::testing::Test {
   static Scene patch(const Tensor<double>& H) {
     return patch_scene(law(), H, fitting_patch<typename Pair::Kernel>());
   }
+
+  /// First Piola-Kirchhoff stress of the method at H.
+  static Tensor<double> stress(const Tensor<double>& H) {
+    return exact_stress<typename Pair::Method>(law(), H);
+  }
+
   static MethodChoice method() { return {std::string(Pair::Method::name), {}}; }
 
   /// How far the displacements are from H X, over the largest of them.
@@ -45,7 +53,7 @@ class PatchTest : public ::testing::Test {
     std::vector<Tensor<double>> result;
     for (const auto& cell : scene.mesh.cells) {
       const auto h = mean_gradient(gather(scene.mesh.points, cell)).h;
-      result.push_back(law().piola(transpose(gather(u, cell)) * h));
+      result.push_back(stress(transpose(gather(u, cell)) * h));
     }
     return result;
   }
@@ -72,9 +80,9 @@ class PatchTest : public ::testing::Test {
     // Unbalanced forces of 1e-12 of the reactions move nodes by about 1e-12 of the boundary's displacement
     // over the ratio of the softest stiffness to the typical one: thousandths without hourglass control.
     EXPECT_LT(affine_error(scene, answer.u, H), 1e-8);
-    const auto P = law().piola(H);
+    const auto P = stress(H);
     const double tolerance = 1e-8 * largest_entry(P);
-    for (const auto& stress : stresses(scene, answer.u)) EXPECT_LT(largest_entry(stress - P), tolerance);
+    for (const auto& found : stresses(scene, answer.u)) EXPECT_LT(largest_entry(found - P), tolerance);
     const Vector pull = traction(model, answer.u);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(pull[index(i)], P(i, 0), tolerance);
   }
@@ -129,9 +137,13 @@ TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
     scene.description.dynamics.damping = 2.2;
     const Model model(scene, this->method());
     Observer silent;
+    if (is_condensed<typename TypeParam::Method>) {
+      EXPECT_THROW(integrate(model, silent), InputError);
+      continue;
+    }
     const Motion motion = integrate(model, silent);
     EXPECT_LT(this->affine_error(scene, motion.u, H), 1e-8);
-    const auto P = this->law().piola(H);
+    const auto P = this->stress(H);
     for (const auto& stress : this->stresses(scene, motion.u)) {
       EXPECT_LT(largest_entry(stress - P), 1e-8 * largest_entry(P));
     }

@@ -54,7 +54,7 @@ class StepperTest : public ::testing::Test {
   static MethodChoice method() { return {std::string(Method::name), {}}; }
 };
 
-TYPED_TEST_SUITE(StepperTest, PathIndependentMethodTypes, EntryName);
+TYPED_TEST_SUITE(StepperTest, SteppedMethodTypes, EntryName);
 
 TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) {
   const Vector d{0.04, 0.0, 0.03};
@@ -199,7 +199,8 @@ TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
   EXPECT_NO_THROW(integrate(Model(scene, this->method()), silent));
 }
 
-/// Compression stiffens: a step that was stable at the start is refused on the way, with step and element.
+/// Compression stiffens: a step that was stable at the start is refused on the way, with step and element. A
+/// linear method does not know that, and keeps its step.
 TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
   Scene scene = driven_block({0.0, 0.0, -0.1}, 0.3);
   scene.description.quasi_static = false;
@@ -207,6 +208,10 @@ TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
   const StableStep stable = stable_step(Model(scene, this->method()), NodalField(scene.mesh.points.size()));
   scene.description.dynamics.time_step = 0.999 * stable.step;
   Observer silent;
+  if (is_linear<TypeParam>) {
+    EXPECT_EQ(integrate(Model(scene, this->method()), silent).v.size(), scene.mesh.points.size());
+    return;
+  }
   try {
     integrate(Model(scene, this->method()), silent);
     FAIL() << "a step that had become unstable was used";

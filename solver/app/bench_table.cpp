@@ -34,7 +34,7 @@ const std::vector<Column>& columns() {
       {"best", "ns", [](R, S s) { return fmt::format("{:.2f}", s.ns.best); }},
       {"time over", "tl-pert.", [](R, S s) { return ratio(s.to_tl_perturbation); }},
       {"speed-up", "on scalar", [](R, S s) { return ratio(s.speedup); }},
-      {"simulated", "s/s", [](R, S s) { return fmt::format("{:.3g}", s.real_time); }},
+      {"simulated", "s/s", [](R, S s) { return s.real_time ? fmt::format("{:.3g}", *s.real_time) : "-"; }},
       {"p50", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.p50_us); }},
       {"p99", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.p99_us); }},
       {"max", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.max_us); }},

@@ -105,7 +105,7 @@ int run_bench(const BenchOptions& options) {
   if (!options.json.empty()) {
     write_text_file(options.json, to_json(build_provenance(), plan, machine, records));
   }
-  return std::all_of(records.begin(), records.end(), [](const auto& r) { return r.status == "ok"; }) ? 0 : 1;
+  return std::none_of(records.begin(), records.end(), is_wrong) ? 0 : 1;
 }
 
 /// The variants that --rest times: packs only, and by default one thread and the two methods to compare, with

@@ -28,16 +28,22 @@ std::vector<Row> count_methods() {
   using Law = NeoHookean;
   std::vector<Row> rows;
   for_each_type(Methods{}, [&]<class Method>() {
-    const OperationCount count =
-        count_operations<typename Method::Kinematics, typename Method::Hourglass>(Law{});
-    const auto add = [&](std::string_view part, const Operations& operations, long bytes = 0) {
-      rows.push_back({Method::name, Law::name, "kernel", part, operations, bytes});
+    const auto add = [&](std::string_view form, std::string_view part, const Operations& operations,
+                         long bytes = 0) {
+      rows.push_back({Method::name, Law::name, form, part, operations, bytes});
     };
-    add("gradient", count.gradient);
-    add("law", count.law);
-    add("force", count.force);
-    if (Method::Hourglass::active) add("hourglass", count.hourglass);
-    add("element", count.total, count.bytes);
+    if constexpr (is_condensed<Method>) {
+      // Three columns for each handle, a product and a sum with each for every component of a node.
+      add("update", "node", {.add = 9, .mul = 9}, 9 * sizeof(double));
+    } else {
+      const OperationCount count =
+          count_operations<typename Method::Kinematics, typename Method::Hourglass>(Law{});
+      add("kernel", "gradient", count.gradient);
+      add("kernel", "law", count.law);
+      add("kernel", "force", count.force);
+      if (Method::Hourglass::active) add("kernel", "hourglass", count.hourglass);
+      add("kernel", "element", count.total, count.bytes);
+    }
   });
   rows.push_back({TlPerturbation::name, Law::name, "paper", "hourglass", count_paper_hourglass_force()});
   return rows;
@@ -86,7 +92,8 @@ void add_flops_command(CLI::App& app) {
     auto rows = count_methods();
     fmt::print(
         "operations per element and step with the law {}; bytes: constants in double, places of nodes, "
-        "history\n"
+        "history;\n"
+        "of a condensed method, what an update takes per node and driven set\n"
         "{:<25}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n",
         NeoHookean::name, "method", "form", "part", "add", "mul", "div", "special", "total", "bytes");
     for (const auto& row : rows) {

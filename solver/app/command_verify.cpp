@@ -61,7 +61,8 @@ std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision prec
   for (const auto& subject : subjects) {
     for_each_type(Methods{}, [&]<class Method>() {
       tasks.push_back({&subject, {std::string(Method::name), {}, precision}});
-      if (!kappa_matters_at_rest<Method>) return;
+      // A condensed method's curve is that of the method it condenses.
+      if (!kappa_matters_at_rest<Method> || is_condensed<Method>) return;
       for (const double kappa : subject.scene.description.kappas) {
         tasks.push_back({&subject, {std::string(Method::name), kappa, precision}});
       }

@@ -37,7 +37,7 @@ Json to_record(const BenchRecord& record) {
           {"ns_upper_quartile", figure([](const Speed& s) { return s.ns.upper_quartile; })},
           {"ratio_to_tl_perturbation", figure([](const Speed& s) { return s.to_tl_perturbation; })},
           {"speedup_over_scalar_double", figure([](const Speed& s) { return s.speedup; })},
-          {"stable_step_seconds", record.stable_step},
+          {"stable_step_seconds", or_null(record.stable_step)},
           {"simulated_seconds_per_second", figure([](const Speed& s) { return s.real_time; })},
           {"step_p50_us", figure([](const Speed& s) { return s.p50_us; })},
           {"step_p99_us", figure([](const Speed& s) { return s.p99_us; })},

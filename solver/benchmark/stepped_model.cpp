@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "benchmark/condensed_model.hpp"
+#include "benchmark/work.hpp"
 #include "stepping/explicit_step.hpp"
 #include "stepping/stable_step.hpp"
 
@@ -41,23 +43,7 @@ class SteppedModelOf final : public SteppedModel {
     gain_ = step_size_ * step_size_ / (1.0 + damping);
   }
 
-  NodalField forces() override {
-    State<Real> state = elements_.rest();
-    Rows<Real> force(state.u.size());
-    for (const double share : {0.3, 0.7, 1.0}) {
-      NodalField part = field_;
-      for (auto& u : part) {
-        for (double& component : u) component *= share;
-      }
-      Rows<Real> u = to_rows<Real>(part, elements_.layout());
-      for (std::size_t r = 0; r < u.size(); ++r) {
-        for (std::size_t i = 0; i < 3; ++i) state.increment[r][i] = u[r][i] - state.u[r][i];
-      }
-      state.u = std::move(u);
-      elements_.evaluate(state, force);
-    }
-    return to_field(force, elements_.layout());
-  }
+  NodalField forces() override { return forces_on_the_way(elements_, field_); }
 
   void restart() override {
     step_.body().state() = start_;
@@ -76,9 +62,12 @@ class SteppedModelOf final : public SteppedModel {
     }
   }
 
-  double stable_step() const override { return stable_step_; }
+  std::optional<double> stable_step() const override { return stable_step_; }
 
-  const Layout& layout() const override { return elements_.layout(); }
+  Work work() const override {
+    return work_of(model_.choice(), model_.scene().description.law, elements_.layout(),
+                   model_.scene().mesh.cells.size());
+  }
 
  private:
   NodalField field_;
@@ -94,6 +83,28 @@ class SteppedModelOf final : public SteppedModel {
 };
 
 }  // namespace
+
+template <class Real>
+NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field) {
+  State<Real> state = elements.rest();
+  Rows<Real> force(state.u.size());
+  for (const double share : {0.3, 0.7, 1.0}) {
+    NodalField part = field;
+    for (auto& u : part) {
+      for (double& component : u) component *= share;
+    }
+    Rows<Real> u = to_rows<Real>(part, elements.layout());
+    for (std::size_t r = 0; r < u.size(); ++r) {
+      for (std::size_t i = 0; i < 3; ++i) state.increment[r][i] = u[r][i] - state.u[r][i];
+    }
+    state.u = std::move(u);
+    elements.evaluate(state, force);
+  }
+  return to_field(force, elements.layout());
+}
+
+template NodalField forces_on_the_way(const InternalForce<double>&, const NodalField&);
+template NodalField forces_on_the_way(const InternalForce<float>&, const NodalField&);
 
 Scene box_scene(int elements) {
   const int edge = std::max(1, static_cast<int>(std::lround(std::cbrt(elements))));
@@ -148,6 +159,7 @@ NodalField wavy_field(const Scene& scene) {
 }
 
 std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice) {
+  if (answers_by_condensation(choice.method)) return make_condensed_model(scene, choice);
   if (choice.precision == Precision::double_precision) {
     return std::make_unique<SteppedModelOf<double>>(scene, choice);
   }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "benchmark/measure.hpp"
+#include "benchmark/roofline.hpp"
 #include "model/model.hpp"
 
 namespace sandglass {
@@ -19,14 +21,20 @@ double element_size(const Scene& scene);
 NodalField wavy_field(const Scene& scene);
 
 /// A model that takes the steps of a dynamic run, from the wavy field on. Steps are 0.9 of the stable one and
-/// damped, so that the motion stays bounded for good. The scene must outlive it.
+/// damped, so that the motion stays bounded for good. What a condensed method repeats is its update instead:
+/// displacements of all nodes and forces on the driven sets. The scene must outlive it.
 class SteppedModel : public Candidate {
  public:
-  /// s, at the stiffness of the wavy field.
-  virtual double stable_step() const = 0;
+  /// s, at the stiffness of the wavy field; none where there are no dynamics.
+  virtual std::optional<double> stable_step() const = 0;
 
-  virtual const Layout& layout() const = 0;
+  /// Operations and bytes of a step, per element.
+  virtual Work work() const = 0;
 };
+
+/// Forces (N) on the way to a field of displacements (m), in three steps that are the same for all.
+template <class Real>
+NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field);
 
 std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice);
 

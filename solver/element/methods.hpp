@@ -14,6 +14,7 @@
 #include "element/hourglass_perturbation.hpp"
 #include "element/hourglass_rate_perturbation.hpp"
 #include "element/hourglass_viscous.hpp"
+#include "element/linear_one_point.hpp"
 #include "element/one_point.hpp"
 #include "element/stabilization_matrix.hpp"
 #include "element/tetrahedra.hpp"
@@ -162,11 +163,32 @@ struct T4Anp {
   using Hourglass = NoHourglassControl;
 };
 
+struct LinearPerturbation {
+  static constexpr std::string_view name = "linear";
+  static constexpr std::string_view summary =
+      "one point, small strain, perturbation hourglass control: right only while nothing turns or strains "
+      "much";
+  static constexpr int integration_points = 1;
+  using Kinematics = LinearOnePoint;
+  using Hourglass = PerturbationHourglassControl;
+};
+
+struct LinearCondensed {
+  static constexpr std::string_view name = "linear-condensed";
+  static constexpr std::string_view summary =
+      "linear, solved once for all loads: answers are superposed from the response to unit displacements";
+  static constexpr int integration_points = 1;
+  static constexpr bool condensed = true;
+  using Kinematics = LinearOnePoint;
+  using Hourglass = PerturbationHourglassControl;
+};
+
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
-using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
-                         TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
-                         UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation, T4, T4Anp>;
+using Methods =
+    TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling, TlStabilizationMatrix,
+             TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous, UlAssumedStrain, UlEnhanced, TlFull,
+             TlMeanDilatation, T4, T4Anp, LinearPerturbation, LinearCondensed>;
 
 /// An hourglass control that resists velocities alone says so with `damps_only`: it loses energy, and does
 /// nothing where time plays no part.
@@ -179,6 +201,18 @@ concept DampsOnly = requires {
 template <class Method>
 inline constexpr bool kappa_matters_at_rest =
     Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
+
+/// Whether a method's forces are linear in the displacements, f = K u.
+template <class Method>
+inline constexpr bool is_linear = requires {
+  requires Method::Kinematics::small_strain;
+};
+
+/// Whether a method takes no steps: its answers are superposed from responses that are computed once.
+template <class Method>
+inline constexpr bool is_condensed = requires {
+  requires Method::condensed;
+};
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

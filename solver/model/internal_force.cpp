@@ -45,6 +45,12 @@ bool takes_kappa(std::string_view method) {
   return takes;
 }
 
+bool answers_by_condensation(std::string_view method) {
+  bool condensed = false;
+  with_method(method, [&]<class Method>() { condensed = is_condensed<Method>; });
+  return condensed;
+}
+
 std::optional<double> auto_kappa(std::string_view method, const AnyLaw& any_law, KappaModulus modulus) {
   std::optional<double> kappa;
   with_method(method, [&]<class Method>() {

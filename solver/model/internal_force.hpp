@@ -110,6 +110,9 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const 
 /// unknown.
 bool takes_kappa(std::string_view method);
 
+/// Whether the method of that name answers by condensation instead of steps. Throws InputError when unknown.
+bool answers_by_condensation(std::string_view method);
+
 /// The number that `auto` stands for, or none when the method takes no kappa.
 std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law,
                                  KappaModulus modulus = KappaModulus::p_wave);

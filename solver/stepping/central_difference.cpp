@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "element/methods.hpp"
 #include "model/loading.hpp"
 #include "stepping/explicit_step.hpp"
 #include "stepping/field.hpp"
@@ -193,6 +194,12 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
 }  // namespace
 
 Motion integrate(const Model& model, Observer& observer) {
+  if (answers_by_condensation(model.choice().method)) {
+    throw InputError(fmt::format(
+        "{}: method '{}' has no dynamics: it superposes static answers; use it on quasi-static cases, or "
+        "method '{}'",
+        model.scene().description.file.string(), model.choice().method, LinearPerturbation::name));
+  }
   return std::visit([&](const auto& elements) { return integrate_body(model, *elements, observer); },
                     model.internal_force());
 }

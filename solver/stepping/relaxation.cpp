@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "stepping/condensed_answer.hpp"
 #include "stepping/equilibrium.hpp"
 #include "stepping/load_levels.hpp"
 
@@ -172,11 +173,13 @@ std::string outcome(const Relaxation& relaxation, Precision precision) {
 
 Relaxation relax(const Model& model, Observer& observer) {
   const auto start = std::chrono::steady_clock::now();
-  Relaxation result = std::visit(
-      [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
-        return Search<Real>(model, *elements, observer).run();
-      },
-      model.internal_force());
+  Relaxation result = answers_by_condensation(model.choice().method)
+                          ? condensed_answer(model, observer)
+                          : std::visit(
+                                [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+                                  return Search<Real>(model, *elements, observer).run();
+                                },
+                                model.internal_force());
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -20,7 +20,8 @@ struct Relaxation {
 /// Finds the displacements at which the internal forces balance. The imposed displacements grow in load
 /// levels; each starts from the line through the two answers before it, and is relaxed with preconditioned
 /// conjugate gradients: coarsely on the way, to the tolerance at the end. A level that fails is tried again
-/// at half the distance. Settings are the case's. Throws ComputationError when an element stays inverted or
+/// at half the distance. A condensed method answers at once, by superposition, with one step. Settings are
+/// the case's. Throws ComputationError when an element stays inverted or
 /// no level is short enough.
 Relaxation relax(const Model& model, Observer& observer);
 

@@ -93,6 +93,15 @@ struct Updated<TypeList<EveryMethod...>> {
                                       TypeList<EveryMethod>, TypeList<>>...>;
 };
 
+/// The methods that find their answers step by step.
+template <class List>
+struct Stepped;
+template <class... EveryMethod>
+struct Stepped<TypeList<EveryMethod...>> {
+  using type = typename Concatenated<
+      TypeList<>, std::conditional_t<is_condensed<EveryMethod>, TypeList<>, TypeList<EveryMethod>>...>::type;
+};
+
 }  // namespace detail
 
 /// The laws whose stress follows from the deformation. Each also comes viscoelastic: what that adds is tested
@@ -110,6 +119,12 @@ using PathIndependentPairTypes =
     detail::AsTestTypes<detail::Product<PathIndependentMethods, ElasticLaws>::type>::type;
 
 using UpdatedLagrangianTypes = detail::AsTestTypes<detail::Updated<Methods>::type>::type;
+
+/// Those of them that take steps, at rest or in motion: a condensed method answers at once, and refuses to
+/// move.
+using SteppedMethods = detail::Stepped<PathIndependentMethods>::type;
+using SteppedMethodTypes = detail::AsTestTypes<SteppedMethods>::type;
+using SteppedPairTypes = detail::AsTestTypes<detail::Product<SteppedMethods, Laws>::type>::type;
 
 using ElasticMethodWithLawTypes =
     detail::AsTestTypes<detail::Elastic<detail::Product<Methods, Laws>::type>::type>::type;

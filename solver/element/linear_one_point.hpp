@@ -1,0 +1,123 @@
+#pragma once
+
+#include "element/one_point.hpp"
+#include "material/small_strain.hpp"
+
+namespace sandglass {
+
+/// factor * sym(H): the small strain of a displacement gradient, times a factor.
+template <class T>
+Tensor<T> weighted_strain(const T& factor, const Tensor<T>& H) {
+  const T half = T(0.5) * factor;
+  Tensor<T> e;
+  for (int i = 0; i < 3; ++i) {
+    e(i, i) = factor * H(i, i);
+    for (int j = i + 1; j < 3; ++j) {
+      e(i, j) = half * (H(i, j) + H(j, i));
+      e(j, i) = e(i, j);
+    }
+  }
+  return e;
+}
+
+/// A law as small-strain theory sees it, in the place of a law: what it answers is linear in H and takes no
+/// notice of rotation.
+template <class Law>
+class SmallStrainLaw {
+ public:
+  explicit SmallStrainLaw(const Law& law) : law_(law) {}
+
+  /// No part of its own: the stress below is the whole one.
+  template <class T>
+  T pressure(const T& /*J_minus_one*/) const {
+    return T(0);
+  }
+
+  /// V sigma, with V on the strain: six products instead of nine.
+  template <class T>
+  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& /*change*/,
+                           const T& /*p*/) const {
+    return small_strain_stress(law_, weighted_strain(V, H));
+  }
+
+  /// sigma : e / 2, in J/m^3.
+  template <class T>
+  T energy(const Tensor<T>& H) const {
+    const Tensor<T> e = weighted_strain(T(1), H);
+    return T(0.5) * double_dot(small_strain_stress(law_, e), e);
+  }
+
+ private:
+  const Law& law_;
+};
+
+/// The uniform strain hexahedron of small-strain elasticity: f = K u with a constant, symmetric K. It is
+/// OnePoint with the law's tangent at rest in the place of the law. True to first order in displacement
+/// gradients; a finite rotation strains it by 1 - cos(angle), whatever the body feels. That is the model of
+/// surgery simulators that superpose or condense responses (Bro-Nielsen and Cotin 1996).
+struct LinearOnePoint {
+  static constexpr bool small_strain = true;  ///< stresses from sym(H): no rotation, no large strain
+  static constexpr bool needs_increment = false;
+  static constexpr bool needs_coordinates = false;
+
+  template <class T>
+  using Element = OnePoint::Element<T>;
+  template <class T>
+  using Deformation = OnePoint::Deformation<T>;
+
+  static Element<double> precompute(const NodalVectors<double>& X) { return OnePoint::precompute(X); }
+
+  /// As OnePoint, without the change of volume, which small strains do not need.
+  template <class Hourglass, class T>
+  static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
+    Deformation<T> now;
+    now.H = OnePoint::mean_gradient(motion.u, element);
+    now.change = {T(0), T(1)};
+    if constexpr (Hourglass::active) {
+      now.q = OnePoint::hourglass_displacements(motion.u, now.H, element);
+    }
+    return now;
+  }
+
+  template <class Hourglass, class T, class Law>
+  static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
+                        const typename Hourglass::template Element<T>& control, NoHistory<T>& history,
+                        const Law& law) {
+    return OnePoint::force<Hourglass>(now, element, control, history, SmallStrainLaw<Law>(law));
+  }
+
+  template <class Hourglass, class T, class Law>
+  static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
+                                 const typename Hourglass::template Element<T>& control,
+                                 const NoHistory<T>& history, const Law& law) {
+    return OnePoint::energy<Hourglass>(motion, element, control, history, SmallStrainLaw<Law>(law));
+  }
+
+  template <class T>
+  static T volume(const ElementMotion<T>& motion, const Element<T>& element) {
+    return OnePoint::volume(motion, element);
+  }
+
+  /// det(I + H) of the displacements that it finds. Small-strain theory itself never fails, and would return
+  /// elements turned inside out in silence; as displacements of a body they are as impossible as anybody's.
+  template <class T>
+  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return OnePoint::smallest_jacobian(motion, element);
+  }
+
+  template <class T>
+  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return OnePoint::mean_jacobian(motion, element);
+  }
+
+  /// That of OnePoint at rest, whatever the displacements: the stiffness is constant.
+  template <class Hourglass, class T, class Law>
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
+                           const typename Hourglass::template Element<T>& control, const Law& law) {
+    ElementMotion<T> rest = motion;
+    rest.u = {};
+    return OnePoint::stiffness_bound<Hourglass>(rest, element, control, law);
+  }
+};
+
+}  // namespace sandglass

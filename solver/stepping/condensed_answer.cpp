@@ -1,0 +1,69 @@
+#include "stepping/condensed_answer.hpp"
+
+#include "stepping/body.hpp"
+#include "stepping/condensed_response.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Displacements (m) of all nodes at the full load.
+template <class Real>
+Rows<Real> superposed(const Model& model, const Layout& layout) {
+  const Scene& scene = model.scene();
+  const CondensedResponse<Real> response(model, handles_of_sets(scene), all_nodes(scene));
+  std::vector<Vector> d;
+  for (const auto& displacement : scene.description.displacements) d.push_back(displacement.value);
+  std::vector<typename CondensedResponse<Real>::Displacement> u(layout.nodes);
+  response.displacements(d, u, model.choice().threads);
+  Rows<Real> rows(layout.rows());
+  for (std::size_t r = 0; r < layout.nodes; ++r) {
+    const auto& value = u[static_cast<std::size_t>(layout.node_of_row[r])];
+    for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value[i];
+  }
+  return rows;
+}
+
+/// Work (J) of the imposed displacements on the way from rest along a straight line.
+double work_of(const Scene& scene, const std::vector<double>& reactions) {
+  double work = 0.0;
+  for (std::size_t k = 0; k < reactions.size(); ++k) work += 0.5 * reactions[k] * scene.constraints[k].value;
+  return work;
+}
+
+template <class Real>
+Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Observer& observer) {
+  const Scene& scene = model.scene();
+  const RelaxationSettings& settings = scene.description.relaxation;
+  const NodalField no_velocity(scene.mesh.points.size());
+  Body<Real> body(model, elements);
+  observer.frame(body.frame(0.0, no_velocity));
+  observer.history({});
+  Relaxation result;
+  if (settings.max_steps > 0) body.move_to(superposed<Real>(model, elements.layout()));
+  body.impose(1.0);
+  body.evaluate_forces();
+  body.require_healthy(1);
+  result.u = body.field(body.state().u);
+  result.energies = body.energies();
+  result.residual = body.residual();
+  if (settings.max_steps > 0) {
+    result.steps = 1;
+    result.converged = result.residual < settings.tolerance;
+    result.stagnated = !result.converged;
+    result.interrupted = !observer.proceed(1, 1.0, result.residual);
+  }
+  observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,
+                    work_of(scene, body.reactions()), result.residual, 1.0});
+  observer.frame(body.frame(1.0, no_velocity));
+  return result;
+}
+
+}  // namespace
+
+Relaxation condensed_answer(const Model& model, Observer& observer) {
+  return std::visit([&](const auto& elements) { return answer_of(model, *elements, observer); },
+                    model.internal_force());
+}
+
+}  // namespace sandglass

@@ -1,0 +1,268 @@
+/// Condensation to the driven nodes: the linear method's answers, superposed, without a further error.
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/layered_cholesky.hpp"
+#include "support/allocations.hpp"
+#include "support/distorted_bar.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+const MethodChoice linear_method{"linear"};
+const MethodChoice condensed_method{"linear-condensed"};
+
+/// A residual of 1e-12 leaves errors of 1e-12 times the condition of the bar, some hundred.
+constexpr double relaxed_tolerance = 1e-9;
+
+TEST(CondensedTest, answer_is_that_of_the_linear_method) {
+  const Vector d{0.03, -0.01, 0.02};
+  for (const std::optional<double> kappa : {std::optional<double>{}, std::optional<double>{0.02}}) {
+    MethodChoice linear = linear_method, condensed = condensed_method;
+    linear.kappa = condensed.kappa = kappa;
+    const Scene scene = distorted_bar(d);
+    EXPECT_LT(largest_distance(relaxed(scene, condensed), relaxed(scene, linear)),
+              relaxed_tolerance * largest_imposed(scene));
+  }
+}
+
+/// Only a part of a node's components may be imposed; the others find their place.
+TEST(CondensedTest, free_components_of_driven_nodes_are_free) {
+  const Scene scene = distorted_bar({0.0, 0.0, 0.02}, {false, false, true});
+  const NodalField u = relaxed(scene, condensed_method);
+  EXPECT_LT(largest_distance(u, relaxed(scene, linear_method)), relaxed_tolerance * largest_imposed(scene));
+  EXPECT_GT(std::abs(u[index(scene.sets.at("head").front())][0]), 1e-4);  // it contracts
+}
+
+TEST(CondensedTest, takes_one_step_and_tells_its_residual_and_its_work) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  Recorder recorder;
+  const Relaxation answer = relax(Model(scene, condensed_method), recorder);
+  EXPECT_TRUE(answer.converged);
+  EXPECT_EQ(answer.steps, 1);
+  EXPECT_LT(answer.residual, 1e-12);
+  EXPECT_GT(answer.residual, 0.0);
+  ASSERT_EQ(recorder.frames.size(), 2U);
+  EXPECT_EQ(recorder.frames.back().u, answer.u);
+  // The force grows in proportion: the work of the imposed displacements is all the energy there is.
+  const HistoryRow& row = recorder.rows.back();
+  EXPECT_NEAR(row.external_work, row.strain + row.hourglass, 1e-11 * row.strain);
+}
+
+TEST(CondensedTest, single_precision_is_as_near_as_its_digits) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  MethodChoice choice = condensed_method;
+  choice.precision = Precision::single_precision;
+  Observer silent;
+  const Relaxation answer = relax(Model(scene, choice), silent);
+  EXPECT_TRUE(at_rest(answer, choice.precision));
+  // Columns, products and sums of six are rounded once each.
+  EXPECT_LT(largest_distance(answer.u, relaxed(scene, condensed_method)), 8 * 6e-8 * largest_imposed(scene));
+}
+
+TEST(CondensedTest, answers_superpose) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  const auto response = response_of_sets(scene);
+  const std::array<Vector, 2> d{Vector{0.1, -0.2, 0.3}, Vector{0.0, 0.4, -0.1}};
+  const std::array<Vector, 2> e{Vector{-0.3, 0.0, 0.1}, Vector{0.2, 0.1, 0.5}};
+  std::array<Vector, 2> both{};
+  for (std::size_t h = 0; h < 2; ++h) {
+    for (std::size_t i = 0; i < 3; ++i) both[h][i] = 2.0 * d[h][i] - 3.0 * e[h][i];
+  }
+  NodalField u_d(scene.mesh.points.size()), u_e(u_d), u_both(u_d);
+  response.displacements(d, u_d);
+  response.displacements(e, u_e);
+  response.displacements(both, u_both);
+  for (std::size_t n = 0; n < u_d.size(); ++n) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(u_both[n][i], 2.0 * u_d[n][i] - 3.0 * u_e[n][i], 64 * eps);
+    }
+  }
+}
+
+/// S is symmetric, for energy is; moving all handles alike moves the body, which takes no force and moves
+/// every node by as much.
+TEST(CondensedTest, stiffness_is_symmetric_and_blind_to_translation) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  for (const Handles& handles : {handles_of_sets(scene), handles_of_nodes(scene)}) {
+    const CondensedResponse<double> response(Model(scene, condensed_method), handles, all_nodes(scene));
+    const std::size_t columns = 3 * response.handles();
+    const auto& S = response.stiffness();
+    ASSERT_EQ(S.size(), columns * columns);
+    const double largest = *std::max_element(S.begin(), S.end());
+    for (std::size_t row = 0; row < columns; ++row) {
+      for (std::size_t column = 0; column < row; ++column) {
+        EXPECT_NEAR(S[row * columns + column], S[column * columns + row], 1e-12 * largest);
+      }
+    }
+    const std::vector<Vector> d(response.handles(), {0.1, 0.2, -0.3});
+    std::vector<Vector> f(d.size());
+    NodalField u(scene.mesh.points.size());
+    response.displacements(d, u);
+    response.forces(d, f);
+    EXPECT_LT(largest_distance(u, NodalField(u.size(), d[0])), 1e-11);
+    EXPECT_LT(largest_distance(f, std::vector<Vector>(f.size())), 1e-11 * largest);
+  }
+}
+
+/// Forces on handles are the reactions of the linear method, node by node and summed over a set.
+TEST(CondensedTest, forces_are_the_reactions_of_the_linear_method) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  const NodalField u = relaxed(scene, linear_method);
+  const NodalField reaction = internal_forces(Model(scene, linear_method), u);
+  Vector on_head{};
+  for (const int n : scene.sets.at("head")) {
+    for (std::size_t i = 0; i < 3; ++i) on_head[i] += reaction[index(n)][i];
+  }
+  const double size = std::hypot(on_head[0], on_head[1], on_head[2]);
+  std::vector<Vector> f(2);
+  response_of_sets(scene).forces(std::vector<Vector>{{}, {0.03, -0.01, 0.02}}, f);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(f[1][i], on_head[i], relaxed_tolerance * size);
+    EXPECT_NEAR(f[0][i], -on_head[i], relaxed_tolerance * size);
+  }
+  const CondensedResponse<double> nodes(Model(scene, condensed_method), handles_of_nodes(scene), {});
+  std::vector<Vector> d, exact;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    const auto driven = [&](const char* set) {
+      const auto& members = scene.sets.at(set);
+      return std::binary_search(members.begin(), members.end(), static_cast<int>(n));
+    };
+    if (!driven("foot") && !driven("head")) continue;
+    d.push_back(u[n]);
+    exact.push_back(reaction[n]);
+  }
+  ASSERT_EQ(d.size(), nodes.handles());
+  f.resize(d.size());
+  nodes.forces(d, f);
+  EXPECT_LT(largest_distance(f, exact), relaxed_tolerance * size);
+}
+
+/// A few nodes may be asked for; they are those of the whole answer, in the order of the asking.
+TEST(CondensedTest, outputs_are_the_nodes_asked_for) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  const std::vector<Vector> d{{}, {0.03, -0.01, 0.02}};
+  NodalField all(scene.mesh.points.size()), few(3);
+  response_of_sets(scene).displacements(d, all);
+  const std::vector<int> wanted{70, 20, 45};
+  const CondensedResponse<double> response(Model(scene, condensed_method), handles_of_sets(scene), wanted);
+  response.displacements(d, few);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(few[k], all[index(wanted[k])]);
+  // Nine numbers for each of two handles and three nodes, and 6 x 6 for the forces.
+  EXPECT_EQ(response.operations(), 2.0 * (9 * 2 * 3 + 36));
+  EXPECT_EQ(response.bytes(), 8.0 * (9 * 2 * 3 + 9 + 36 + 12));
+}
+
+TEST(CondensedTest, update_allocates_nothing_and_threads_do_not_change_a_bit) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  const auto response = response_of_sets(scene);
+  const std::vector<Vector> d{{0.01, 0.0, 0.0}, {0.03, -0.01, 0.02}};
+  std::vector<Vector> f(2);
+  NodalField u(scene.mesh.points.size()), shared(u);
+  const long before = allocations();
+  response.displacements(d, u);
+  response.forces(d, f);
+  EXPECT_EQ(allocations(), before);
+  for (const int threads : {2, 3}) {
+    response.displacements(d, shared, threads);
+    EXPECT_EQ(shared, u);
+  }
+  EXPECT_GT(allocations(), 0);  // they are counted
+}
+
+TEST(CondensedTest, scenes_that_it_cannot_answer_are_refused) {
+  Case description = plain_case(sample_law<NeoHookean>(0.49));
+  const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});
+  const Scene nothing = make_scene(description, mesh);
+  Observer silent;
+  const std::string text = input_error([&] { relax(Model(nothing, condensed_method), silent); });
+  EXPECT_TRUE(contains(text, "made-in-a-test.toml"));
+  EXPECT_TRUE(contains(text, "linear-condensed"));
+  EXPECT_TRUE(contains(text, "displacement"));
+
+  Scene moving = distorted_bar({0.0, 0.0, 0.01});
+  moving.description.quasi_static = false;
+  moving.description.dynamics.duration = 0.1;
+  const std::string still = input_error([&] { integrate(Model(moving, condensed_method), silent); });
+  EXPECT_TRUE(contains(still, "no dynamics"));
+  EXPECT_TRUE(contains(still, "'linear'"));
+
+  EXPECT_TRUE(
+      contains(input_error([&] { response_of_sets(moving, {"tl-perturbation"}); }), "no constant stiffness"));
+
+  // Held on one edge, a body turns freely about it.
+  NodeSets sets;
+  impose_field(
+      nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0 && X[1] == 0.0; }), mesh.points,
+      [](const Vector&) { return Vector{}; }, description, sets);
+  const Scene hinged = make_scene(description, mesh, sets);
+  try {
+    relax(Model(hinged, condensed_method), silent);
+    FAIL() << "a body that may turn freely was given an answer";
+  } catch (const ComputationError& error) {
+    EXPECT_TRUE(contains(error.what(), "positive definite"));
+    EXPECT_TRUE(contains(error.what(), "remedy: "));
+  }
+}
+
+/// Layers reach everything, and what is joined is at most one layer apart.
+TEST(LayersTest, neighbours_are_at_most_a_layer_apart) {
+  // A ring of nine, a pair beside it, and one alone.
+  std::vector<std::vector<int>> neighbours(12);
+  for (int n = 0; n < 9; ++n) neighbours[index(n)] = {(n + 1) % 9, (n + 8) % 9};
+  neighbours[9] = {10};
+  neighbours[10] = {9};
+  const auto layers = layers_from({4, 5}, neighbours);
+  ASSERT_EQ(layers.size(), 8U);
+  EXPECT_EQ(layers[0], (std::vector<int>{4, 5}));
+  EXPECT_EQ(layers[1], (std::vector<int>{3, 6}));
+  EXPECT_EQ(layers[4], (std::vector<int>{0}));
+  EXPECT_EQ(layers[5], (std::vector<int>{9}));
+  EXPECT_EQ(layers[6], (std::vector<int>{10}));
+  EXPECT_EQ(layers[7], (std::vector<int>{11}));
+}
+
+/// Solves A x = b for a matrix with layers of different sizes, one of them empty, whose product with x is
+/// formed entry by entry.
+TEST(LayeredCholeskyTest, solves_what_was_added) {
+  const std::vector<int> sizes{3, 5, 1, 0, 4, 7};
+  RandomGeometry random(41);
+  std::vector<int> layer;
+  for (std::size_t k = 0; k < sizes.size(); ++k)
+    layer.insert(layer.end(), index(sizes[k]), static_cast<int>(k));
+  const int n = static_cast<int>(layer.size());
+  LayeredCholesky factor(sizes);
+  std::vector<double> x(index(n)), b(index(n), 0.0);
+  for (auto& entry : x) entry = random.uniform(-1, 1);
+  for (int row = 0; row < n; ++row) {
+    for (int column = 0; column <= row; ++column) {
+      if (layer[index(row)] - layer[index(column)] > 1) continue;
+      // Diagonally dominant: at most 16 others of at most 1 in a row.
+      const double value = row == column ? 20.0 + random.uniform(0, 1) : random.uniform(-1, 1);
+      factor.add(row, column, 0.25 * value);
+      factor.add(row, column, 0.75 * value);
+      factor.add(column, row, row == column ? 0.0 : value);  // the upper half is left out
+      b[index(row)] += value * x[index(column)];
+      if (row != column) b[index(column)] += value * x[index(row)];
+    }
+  }
+  factor.factorise();
+  factor.solve(b);
+  for (int row = 0; row < n; ++row) EXPECT_NEAR(b[index(row)], x[index(row)], 64 * eps);
+}
+
+TEST(LayeredCholeskyTest, refuses_what_is_not_positive_definite) {
+  LayeredCholesky factor({1, 1});
+  factor.add(0, 0, 1.0);
+  factor.add(1, 0, 1.0);
+  factor.add(1, 1, 1.0 + 1e-16);  // singular but for roundoff
+  EXPECT_THROW(factor.factorise(), ComputationError);
+}
+
+}  // namespace
+}  // namespace sandglass::verification

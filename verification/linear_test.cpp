@@ -1,0 +1,95 @@
+/// Small-strain elasticity: right when nothing turns or strains much, wrong by known amounts when something
+/// does.
+
+#include <gtest/gtest.h>
+
+#include "stepping/body.hpp"
+#include "support/derivatives.hpp"
+#include "support/distorted_bar.hpp"
+#include "support/exact_stress.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+template <class Law>
+class SmallStrainLawTest : public ::testing::Test {};
+TYPED_TEST_SUITE(SmallStrainLawTest, LawTypes, EntryName);
+
+/// The stress of a small strain is the derivative of the law's stress at rest, and rotation adds none: for
+/// any H the slope of P along H is the stress of sym(H).
+TYPED_TEST(SmallStrainLawTest, stress_is_the_tangent_at_rest) {
+  RandomGeometry random(31);
+  for (const double nu : poisson_ratios) {
+    const auto any = sample_law<TypeParam>(nu);
+    for (int n = 0; n < 20; ++n) {
+      const Tensor<double> H = random.tensor(1.0);
+      const Tensor<double> tangent = slope(any.piola(along(Tensor<double>{}, H)));
+      const Tensor<double> stress = small_strain_stress(any, symmetric_part(H));
+      // K - 2/3 mu and the like cancel a few digits of a sum of moduli times entries of H.
+      EXPECT_LT(largest_entry(stress - tangent), 64 * eps * (any.bulk_modulus() + any.shear_modulus()));
+    }
+  }
+}
+
+const MethodChoice linear_method{"linear"};
+const MethodChoice condensed_method{"linear-condensed"};
+
+/// Where strains and rotations are small, small-strain theory is the first term of the others: its relative
+/// error is of first order in the displacements, a tenth for a tenth of the load.
+TEST(LinearTest, agrees_with_total_lagrangian_to_first_order_in_strain) {
+  const auto relative_difference = [](double share) {
+    const Vector d{share * 0.1, share * -0.05, share * 0.08};  // the bar is 0.3 m long
+    const Scene scene = distorted_bar(d);
+    return largest_distance(relaxed(scene, condensed_method), relaxed(scene, {"tl-perturbation"})) /
+           largest_imposed(scene);
+  };
+  const double large = relative_difference(1e-2), small = relative_difference(1e-3);
+  EXPECT_LT(large, 0.01);
+  EXPECT_NEAR(large / small, 10.0, 0.5);
+  // At full load, strains of tens of percent, it is wrong for everybody to see.
+  EXPECT_GT(relative_difference(1.0), 0.05);
+}
+
+/// A block is tilted by 60 degrees about an edge of its foot: heights of the foot are imposed as the rotation
+/// wants them, z = y sin 60, and all else may follow. A body follows by turning, and strains nothing. To
+/// small-strain theory u = s (-z, y) with s = sin 60 is the rotation: the block grows by sqrt(1 + s^2), a
+/// third in length and three quarters in volume, and no force tells.
+TEST(LinearTest, a_block_that_turns_by_60_degrees_grows) {
+  const double s = std::sin(std::acos(0.5));
+  Case description = plain_case(sample_law<NeoHookean>(0.49));
+  const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
+  NodeSets sets;
+  for (const int n : nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })) {
+    const double y = mesh.points[index(n)][1];
+    const std::string name = "node " + std::to_string(n);
+    sets[name] = {n};
+    description.displacements.push_back({name, {0.0, 0.0, s * y}, {true, y == 0.0, true}});
+  }
+  const Scene scene = make_scene(description, mesh, sets);
+  const CondensedResponse<double> response = response_of_sets(scene);
+  std::vector<Vector> d, f(response.handles());
+  for (const auto& displacement : description.displacements) d.push_back(displacement.value);
+  NodalField u(mesh.points.size()), turned, grown;
+  response.displacements(d, u);
+  response.forces(d, f);
+  for (const auto& X : mesh.points) {
+    turned.push_back({0.0, -0.5 * X[1] - s * X[2], s * X[1] - 0.5 * X[2]});
+    grown.push_back({0.0, -s * X[2], s * X[1]});
+  }
+  const double stiffness = *std::max_element(response.stiffness().begin(), response.stiffness().end());
+  EXPECT_LT(largest_distance(u, grown), 1e-12);
+  EXPECT_LT(largest_distance(f, std::vector<Vector>(f.size())), 1e-12 * stiffness);
+  const Model linear(scene, linear_method), total(scene, {"tl-perturbation"});
+  for (const double J : static_frame(linear, 1.0, u).jacobians) EXPECT_NEAR(J, 1.0 + s * s, 1e-10);
+  // The same scene has the true rotation for an answer: it strains a body by nothing.
+  for (const double J : static_frame(total, 1.0, turned).jacobians) EXPECT_NEAR(J, 1.0, 1e-12);
+  const NodalField none(mesh.points.size());
+  EXPECT_LT(largest_distance(internal_forces(total, turned), none), 1e-12 * stiffness);
+  EXPECT_GT(largest_distance(internal_forces(linear, turned), none), 1e-3 * stiffness * 0.1);
+}
+
+}  // namespace
+}  // namespace sandglass::verification

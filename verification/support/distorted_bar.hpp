@@ -1,0 +1,40 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "stepping/condensed_response.hpp"
+#include "stepping/relaxation.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+
+/// A small scene without symmetry that linear methods are compared on.
+namespace sandglass::verification {
+
+/// A bar of distorted elements between a foot and a head that moves by d.
+inline Scene distorted_bar(const Vector& d, std::array<bool, 3> components = {true, true, true}) {
+  Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
+  Mesh mesh = box({0.1, 0.1, 0.3}, {3, 3, 8});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.299; })}};
+  RandomGeometry random(37);
+  for (auto& X : mesh.points) {
+    for (auto& x : X) x += random.uniform(-0.006, 0.006);
+  }
+  description.displacements = {{"foot", {}}, {"head", d, components}};
+  description.relaxation.tolerance = 1e-12;
+  return make_scene(description, mesh, sets);
+}
+
+inline NodalField relaxed(const Scene& scene, const MethodChoice& choice) {
+  Observer silent;
+  const Relaxation answer = relax(Model(scene, choice), silent);
+  EXPECT_TRUE(answer.converged);
+  return answer.u;
+}
+
+inline CondensedResponse<double> response_of_sets(const Scene& scene,
+                                                  const MethodChoice& choice = {"linear-condensed"}) {
+  return {Model(scene, choice), handles_of_sets(scene), all_nodes(scene)};
+}
+
+}  // namespace sandglass::verification
