@@ -56,9 +56,9 @@ struct OwnPressure {
 /// volume at rest the energy is
 ///   sum_e V_e W_iso(F_e) + sum_I V_I U(J_I),
 /// whence the pressure of a tetrahedron is the mean of its nodes' p_I = U'(J_I), and its stress
-/// P_iso(F) + p cof F: Bonet and Burton's. Joldes et al. give the law F scaled to the mean volume ratio
-/// instead; the two agree to first order in the difference of volume ratios, but theirs is no derivative of
-/// an energy.
+/// P_iso(F) + p cof F: Bonet and Burton's. Joldes et al. give the law (Jbar/J)^(1/3) F instead, with Jbar the
+/// mean of the nodes' J_I: the same pressure, but other powers of Jbar/J in both parts of the stress, which
+/// is then no derivative of an energy. The two agree where Jbar = J.
 struct NodalPressure {
   static constexpr bool averages_over_nodes = true;
 
