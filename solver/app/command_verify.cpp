@@ -12,6 +12,7 @@
 #include "app/progress.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
+#include "comparison/published_table.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
 #include "element/methods.hpp"
@@ -125,12 +126,15 @@ std::string percents(const std::optional<Accuracy>& accuracy) {
 }
 
 void print_verdicts(const std::vector<Verdict>& verdicts) {
+  const auto in_tables = [](const Verdict& v) { return !v.published.empty(); };
+  if (std::all_of(verdicts.begin(), verdicts.end(), in_tables)) return;
   fmt::print(
       "errors in % of the imposed displacement: max over all nodes, max over the profile, rms\n"
       "{:<22}{:<24}{:>10} |{:^27}|{:^27}|{:>8}{:>10}{:>10}{:>9}{:>8}  {}\n",
       "case", "method", "kappa", "against the golden", "against the truth", "hg/int%", "steps", "residual",
       "wall s", "ns/el", "status");
   for (const auto& v : verdicts) {
+    if (in_tables(v)) continue;
     const std::string kappa =
         v.kappa ? fmt::format("{}{:.4g}", v.kappa_is_auto ? "auto " : "", *v.kappa) : "";
     fmt::print("{:<22}{:<24}{:>10} |{}|{}|{:>8}{:>10}{:>10.1e}{:>9.2f}{:>8.0f}  {}\n", v.case_name, v.method,
@@ -165,6 +169,7 @@ int verify(const VerifyOptions& options) {
     limits.insert(limits.end(), checks.begin(), checks.end());
   }
   print_verdicts(verdicts);
+  fmt::print("{}", published_tables(verdicts));
   print_limits(limits);
   if (precision != Precision::double_precision) {
     fmt::print("\nlimits of the cases are for double: none was checked in {}\n", options.precision);

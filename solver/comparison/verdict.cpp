@@ -18,6 +18,7 @@ std::optional<NodalField> read_if_present(const std::filesystem::path& path, con
 }
 
 std::optional<double> figure_of(const Verdict& verdict, const Expectation& expected) {
+  if (expected.reference == "published") return largest_relative_error(verdict.published);
   const auto& accuracy = expected.reference == "golden" ? verdict.golden : verdict.truth;
   if (!accuracy) return std::nullopt;
   if (expected.figure == "max_relative_error") return accuracy->max_relative_error;
@@ -42,7 +43,7 @@ std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
                                     const std::optional<NodalField>& reference) {
   if (!reference) return std::nullopt;
   const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
-  return accuracy(u, *reference, profile, largest_imposed(scene));
+  return accuracy(u, *reference, profile, displacement_unit(scene, *reference));
 }
 
 Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
@@ -50,7 +51,10 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
                   .method = choice.method,
                   .kappa = choice.kappa ? choice.kappa : auto_kappa(choice.method, scene.description.law),
                   .kappa_is_auto = takes_kappa(choice.method) && !choice.kappa,
-                  .precision = std::string(name_of(choice.precision))};
+                  .precision = std::string(name_of(choice.precision)),
+                  .family = scene.description.family,
+                  .variants = scene.description.variants,
+                  .published = published_results(scene, references.truth)};
   try {
     const Model model(scene, choice);
     Observer silent;
@@ -74,6 +78,7 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
   }
   verdict.golden = accuracy_of(scene, u, references.golden);
   verdict.truth = accuracy_of(scene, u, references.truth);
+  fill_computed(scene, u, verdict.published);
   return verdict;
 }
 
