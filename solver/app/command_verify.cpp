@@ -14,6 +14,7 @@
 #include "app/progress.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
+#include "comparison/published_table.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
 #include "element/methods.hpp"
@@ -165,6 +166,8 @@ void print_verdict(const Verdict& v) {
 }
 
 void print_verdicts(const std::vector<Verdict>& verdicts) {
+  const auto in_tables = [](const Verdict& v) { return !v.published.empty(); };
+  if (std::all_of(verdicts.begin(), verdicts.end(), in_tables)) return;
   fmt::print(
       "errors in % of the imposed displacement: max over all nodes, max over the profile, rms; stable step "
       "at "
@@ -173,6 +176,7 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
       "%, or the golden's own distance from the truth\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
+    if (in_tables(*v)) continue;
     if (case_name == nullptr || *case_name != v->case_name) {
       case_name = &v->case_name;
       fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>10}{:>7}{:>8}{:>8}{:>9}  {}\n", *case_name, "kappa",
@@ -209,6 +213,7 @@ int verify(const VerifyOptions& options) {
     limits.insert(limits.end(), checks.begin(), checks.end());
   }
   print_verdicts(verdicts);
+  fmt::print("{}", published_tables(verdicts));
   print_limits(limits);
   if (precision != Precision::double_precision) {
     fmt::print("\nlimits of the cases are for double: none was checked in {}\n", options.precision);

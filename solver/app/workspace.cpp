@@ -21,40 +21,76 @@ fs::path case_folder() {
   return fs::is_directory("cases", ignored) ? fs::path("cases") : fs::path(SANDGLASS_CASES);
 }
 
-std::vector<fs::path> canonical_cases() {
+namespace {
+
+std::vector<fs::path> case_files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(case_folder(), error)) {
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
-  if (error)
-    throw InputError(fmt::format("{}: cannot list the cases: {}", case_folder().string(), error.message()));
+  if (error) throw InputError(fmt::format("{}: cannot list the cases: {}", folder.string(), error.message()));
   std::sort(files.begin(), files.end());
   return files;
 }
 
-fs::path find_case(const std::string& name_or_path) {
+/// The names of a file's variants, for people.
+std::string listed(const std::vector<Case>& cases) {
+  std::string text;
+  for (const auto& scene : cases) text += (text.empty() ? "" : ", ") + scene.name;
+  return text;
+}
+
+}  // namespace
+
+std::vector<fs::path> canonical_files() {
+  return case_files_in(case_folder());
+}
+
+std::vector<Case> find_cases(const std::string& name_or_path) {
   std::error_code ignored;
-  if (fs::is_regular_file(name_or_path, ignored)) return name_or_path;
-  fs::path named = case_folder() / (name_or_path + ".toml");
-  if (fs::is_regular_file(named, ignored)) return named;
+  if (fs::is_regular_file(name_or_path, ignored)) return read_cases(name_or_path);
+  const fs::path path(name_or_path);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : case_folder();
+  const std::string name = path.filename().string();
+  if (fs::is_regular_file(folder / (name + ".toml"), ignored)) return read_cases(folder / (name + ".toml"));
   std::vector<std::string> known;
-  for (const auto& file : canonical_cases()) known.push_back(file.stem().string());
+  for (const auto& file : case_files_in(folder)) {
+    known.push_back(file.stem().string());
+    if (!name.starts_with(known.back())) continue;  // a variant begins with its file's name
+    for (auto& scene : read_cases(file)) {
+      if (scene.name == name) return {std::move(scene)};
+      known.push_back(scene.name);
+    }
+  }
   throw InputError(fmt::format("case: '{}' is neither a file nor a known case; {}", name_or_path,
-                               suggestion(name_or_path, known)));
+                               suggestion(name, known)));
+}
+
+Case find_case(const std::string& name_or_path) {
+  auto cases = find_cases(name_or_path);
+  if (cases.size() > 1) {
+    throw InputError(fmt::format("case: '{}' has {} variants, and one must be named; known: {}", name_or_path,
+                                 cases.size(), listed(cases)));
+  }
+  return std::move(cases.front());
 }
 
 std::deque<Scene> read_static_scenes(const std::vector<std::string>& names, const std::string& has_not) {
-  std::vector<fs::path> files;
-  for (const auto& name : names) files.push_back(find_case(name));
-  if (names.empty()) files = canonical_cases();
+  std::vector<Case> cases;
+  const auto add = [&](std::vector<Case> found) {
+    for (auto& scene : found) cases.push_back(std::move(scene));
+  };
+  for (const auto& name : names) add(find_cases(name));
+  if (names.empty()) {
+    for (const auto& file : canonical_files()) add(read_cases(file));
+  }
   std::deque<Scene> scenes;
-  for (const auto& file : files) {
-    Scene scene = read_scene(file);
-    if (scene.description.quasi_static) {
-      scenes.push_back(std::move(scene));
+  for (auto& scene : cases) {
+    if (scene.quasi_static) {
+      scenes.push_back(read_scene(std::move(scene)));
     } else if (!names.empty()) {
-      throw InputError(fmt::format("{}: a dynamic case has no {}", file.string(), has_not));
+      throw InputError(fmt::format("{}: a dynamic case has no {}", scene.file.string(), has_not));
     }
   }
   return scenes;

@@ -14,10 +14,15 @@ namespace sandglass {
 std::filesystem::path case_folder();
 
 /// All case files of that folder, in alphabetical order.
-std::vector<std::filesystem::path> canonical_cases();
+std::vector<std::filesystem::path> canonical_files();
 
-/// The file of a case given by path or by name. Throws InputError that lists the known names.
-std::filesystem::path find_case(const std::string& name_or_path);
+/// The cases that a file stands for, given by path or by name, or the one variant of that name, with or
+/// without a folder before it. Throws InputError that lists the known names.
+std::vector<Case> find_cases(const std::string& name_or_path);
+
+/// The same for a name that stands for one case. Throws InputError that lists the variants when it stands for
+/// more.
+Case find_case(const std::string& name_or_path);
 
 /// The scenes of the quasi-static cases named, by path or by name, or of all canonical ones when there are no
 /// names. Throws InputError that tells what a dynamic case has not, when one is named.

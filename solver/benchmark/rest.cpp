@@ -35,9 +35,9 @@ class Subject final : private Observer {
   /// The share of the work done, to be told from now on.
   void show(double share) { share_ = share; }
 
-  /// Distance from displacements `rest` after `evaluations`, over the largest imposed displacement.
+  /// Distance from displacements `rest` after `evaluations`, over the unit of displacements.
   double error(long evaluations, const NodalField& rest) {
-    return accuracy(run(evaluations).u, rest, nullptr, largest_imposed(scene_)).max_relative_error;
+    return accuracy(run(evaluations).u, rest, nullptr, displacement_unit(scene_, rest)).max_relative_error;
   }
 
  private:

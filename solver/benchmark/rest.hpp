@@ -23,7 +23,7 @@ struct RestRecord {
   MethodChoice choice;
   std::string status;              ///< "ok", or "failed: why"
   long steps = 0;                  ///< evaluations of the internal forces
-  double residual = 0.0;           ///< |force on free components| / |reactions|
+  double residual = 0.0;           ///< |force on free components| / |reactions and loads|
   std::optional<RestTimes> times;  ///< none when it did not come to rest
 };
 

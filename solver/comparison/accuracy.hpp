@@ -7,7 +7,7 @@
 
 namespace sandglass {
 
-/// How far displacements are from a reference, as fractions of the largest imposed displacement.
+/// How far displacements are from a reference, as fractions of the unit of displacements.
 struct Accuracy {
   double max_relative_error = 0.0;               ///< max over all nodes of |u - u_ref|
   std::optional<double> profile_relative_error;  ///< the same over the nodes of the profile line

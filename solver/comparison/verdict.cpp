@@ -20,6 +20,7 @@ std::optional<NodalField> read_if_present(const std::filesystem::path& path, con
 }
 
 std::optional<double> figure_of(const Verdict& verdict, const Expectation& expected) {
+  if (expected.reference == "published") return largest_relative_error(verdict.published);
   const auto& accuracy = expected.reference == "golden" ? verdict.golden : verdict.truth;
   if (!accuracy) return std::nullopt;
   if (expected.figure == "max_relative_error") return accuracy->max_relative_error;
@@ -44,7 +45,7 @@ std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
                                     const std::optional<NodalField>& reference) {
   if (!reference) return std::nullopt;
   const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
-  return accuracy(u, *reference, profile, largest_imposed(scene));
+  return accuracy(u, *reference, profile, displacement_unit(scene, *reference));
 }
 
 namespace {
@@ -68,7 +69,10 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
                   .kappa = choice.kappa ? choice.kappa : auto_kappa(choice.method, scene.description.law),
                   .kappa_is_auto = takes_kappa(choice.method) && !choice.kappa,
                   .precision = std::string(name_of(choice.precision)),
-                  .operations = operations_of(choice.method, scene.description.law).total()};
+                  .operations = operations_of(choice.method, scene.description.law).total(),
+                  .family = scene.description.family,
+                  .variants = scene.description.variants,
+                  .published = published_results(scene, references.truth)};
   double energy = 0.0;
   try {
     const Model model(scene, choice);
@@ -97,12 +101,13 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
   verdict.golden = accuracy_of(scene, u, references.golden);
   verdict.truth = accuracy_of(scene, u, references.truth);
   if (references.golden) {
-    const double unit = largest_imposed(scene);
+    const double unit = displacement_unit(scene, *references.golden);
     verdict.symptoms = symptoms(scene, u, energy, *references.golden, unit);
     verdict.finding = verdict.ok()
                           ? diagnose(*verdict.symptoms, good_limit(golden_to_truth(scene, references)))
                           : Finding::not_at_rest;
   }
+  fill_computed(scene, u, verdict.published);
   return verdict;
 }
 

@@ -6,6 +6,7 @@
 
 #include "comparison/accuracy.hpp"
 #include "comparison/finding.hpp"
+#include "comparison/published.hpp"
 #include "model/model.hpp"
 #include "stepping/relaxation.hpp"
 
@@ -44,6 +45,9 @@ struct Verdict {
   double hourglass_energy_ratio = 0.0;  ///< hourglass over strain energy
   double ns_per_element_step = 0.0;
   double wall_seconds = 0.0;
+  std::string family = {};                      ///< what the case shares with its variants
+  std::vector<std::string> variants = {};       ///< of the case
+  std::vector<PublishedResult> published = {};  ///< one for each published value of the case
 
   bool ok() const { return status == "ok"; }
 };

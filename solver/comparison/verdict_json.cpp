@@ -47,6 +47,18 @@ Json to_record(const Verdict& verdict) {
           {"wall_seconds", verdict.wall_seconds}};
 }
 
+Json to_record(const PublishedResult& result) {
+  const auto& published = result.published;
+  return {{"set", published.set},
+          {"component", published.component},
+          {"source", published.source},
+          {"published", published.value},
+          {"computed", or_null(result.computed)},
+          {"ratio", or_null(result.ratio())},
+          {"truth", or_null(result.truth)},
+          {"ratio_to_truth", or_null(result.ratio_to_truth())}};
+}
+
 Json to_record(const LimitCheck& check) {
   return {{"case", check.case_name},
           {"method", check.expectation.method},
@@ -68,13 +80,28 @@ Json to_records(const std::vector<Entry>& entries) {
   return records;
 }
 
+Json to_published_record(const Verdict& verdict) {
+  Json record = to_record(verdict);
+  record["family"] = verdict.family;
+  record["variants"] = verdict.variants;
+  record["values"] = to_records(verdict.published);
+  return record;
+}
+
 }  // namespace
 
 std::string to_json(const Provenance& provenance, const std::vector<Verdict>& verdicts,
                     const std::vector<LimitCheck>& limits) {
   Json document;
   for (const auto& [name, value] : provenance) document[name] = value;
-  document["records"] = to_records(verdicts);
+  document["records"] = document["published"] = Json::array();
+  for (const auto& verdict : verdicts) {
+    if (verdict.published.empty()) {
+      document["records"].push_back(to_record(verdict));
+    } else {
+      document["published"].push_back(to_published_record(verdict));
+    }
+  }
   document["limits"] = to_records(limits);
   return document.dump(1) + "\n";
 }

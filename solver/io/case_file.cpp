@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "element/methods.hpp"
+#include "io/case_variants.hpp"
 #include "io/mesh_file.hpp"
 #include "io/table_reader.hpp"
 
@@ -87,10 +88,39 @@ ImposedDisplacement read_displacement(TableReader table) {
   return imposed;
 }
 
+/// Along an axis, or around it.
+std::vector<std::string> directions() {
+  return {"x", "y", "z", "around-x", "around-y", "around-z"};
+}
+
+ImposedForce read_force(TableReader table) {
+  ImposedForce force;
+  force.set = table.required<std::string>("set");
+  const auto total = table.optional<Vector>("total"), moment = table.optional<Vector>("moment");
+  if (!total && !moment) table.fail("total", "or moment must be given, or both");
+  force.total = total.value_or(Vector{});
+  force.moment = moment.value_or(Vector{});
+  for (const double f : force.total) table.require_in_range("total", f, Range::any());
+  for (const double m : force.moment) table.require_in_range("moment", m, Range::any());
+  table.finish();
+  return force;
+}
+
+PublishedValue read_published(TableReader table) {
+  PublishedValue published;
+  published.set = table.required<std::string>("set");
+  published.component = table.required_choice("component", directions());
+  published.value = table.required<double>("value");
+  table.require_in_range("value", published.value, Range::any());
+  if (published.value == 0.0) table.fail("value", "= 0 must not be zero: results are told as shares of it");
+  published.source = table.required<std::string>("source");
+  table.finish();
+  return published;
+}
+
 Profile read_profile(TableReader table) {
-  Profile profile{
-      .set = table.required<std::string>("set"),
-      .order = table.required_choice("order", {"x", "y", "z", "around-x", "around-y", "around-z"})};
+  Profile profile{.set = table.required<std::string>("set"),
+                  .order = table.required_choice("order", directions())};
   table.finish();
   return profile;
 }
@@ -109,9 +139,12 @@ Expectation read_expectation(TableReader table) {
   Expectation expected;
   expected.method = table.required_choice("method", names_of(Methods{}));
   expected.kappa = read_kappa(table);
-  expected.reference = table.required_choice("reference", {"golden", "truth"});
-  expected.figure =
-      table.required_choice("figure", {"max_relative_error", "profile_relative_error", "rms_relative_error"});
+  expected.reference = table.required_choice("reference", {"golden", "truth", "published"});
+  expected.figure = table.required_choice(
+      "figure",
+      expected.reference == "published"
+          ? std::vector<std::string>{"relative_error"}
+          : std::vector<std::string>{"max_relative_error", "profile_relative_error", "rms_relative_error"});
   expected.below = table.optional<double>("below");
   expected.above = table.optional<double>("above");
   expected.reason = table.required<std::string>("reason");
@@ -132,7 +165,9 @@ void read_comparison(TableReader table, Case& scene) {
 }
 
 void read_header(TableReader table, Case& scene) {
-  scene.name = table.required<std::string>("name");
+  scene.family = table.required<std::string>("name");
+  scene.name = scene.family;
+  for (const auto& variant : scene.variants) scene.name += "-" + variant;
   scene.requirement = table.required<std::string>("requirement");
   scene.quasi_static = table.required_choice("answer", {"quasi-static", "dynamic"}) == "quasi-static";
   table.finish();
@@ -143,19 +178,6 @@ MeshWithSets read_mesh_of(const Case& scene, const MeshFile& file) {
     return read_mesh_file(file.path);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: mesh.file: {}", scene.file.string(), error.what()));
-  }
-}
-
-toml::table parse(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    throw InputError(fmt::format("{}: no such case file", path.string()));
-  }
-  try {
-    return toml::parse_file(path.string());
-  } catch (const toml::parse_error& error) {
-    throw InputError(
-        fmt::format("{}:{}: is not TOML: {}", path.string(), error.source().begin.line, error.description()));
   }
 }
 
@@ -191,13 +213,11 @@ std::string described_list(TypeList<Types...> /*list*/, const std::string& table
   return text;
 }
 
-}  // namespace
-
-Case read_case_file(const std::filesystem::path& path) {
-  const toml::table root = parse(path);
+Case read_case(const CaseTables& tables, const std::filesystem::path& path) {
   Case scene;
   scene.file = path;
-  TableReader reader(root, path, "");
+  scene.variants = tables.variants;
+  TableReader reader(tables.root, path, "");
   read_header(reader.required_table("case"), scene);
   scene.golden = path.parent_path() / ".." / "reference" / "golden" / (scene.name + ".h5");
   scene.truth = path.parent_path() / ".." / "reference" / "truth" / (scene.name + ".h5");
@@ -208,6 +228,7 @@ Case read_case_file(const std::filesystem::path& path) {
   }
   for (const auto& table : reader.tables("displacement"))
     scene.displacements.push_back(read_displacement(table));
+  for (const auto& table : reader.tables("force")) scene.forces.push_back(read_force(table));
   if (auto initial = reader.table("initial")) {
     scene.initial_velocity = initial->required<Vector>("velocity");
     initial->finish();
@@ -223,6 +244,7 @@ Case read_case_file(const std::filesystem::path& path) {
     dynamics.finish();
   }
   if (auto comparison = reader.table("comparison")) read_comparison(*comparison, scene);
+  for (const auto& table : reader.tables("published")) scene.published.push_back(read_published(table));
   for (const auto& table : reader.tables("expect")) scene.expectations.push_back(read_expectation(table));
   reader.finish();
   if (scene.quasi_static && scene.displacements.empty()) {
@@ -231,14 +253,34 @@ Case read_case_file(const std::filesystem::path& path) {
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& path) {
-  Case scene = read_case_file(path);
+}  // namespace
+
+std::vector<Case> read_cases(const std::filesystem::path& path) {
+  std::vector<Case> cases;
+  for (const auto& tables : read_case_tables(path)) cases.push_back(read_case(tables, path));
+  return cases;
+}
+
+Case read_case_file(const std::filesystem::path& path) {
+  auto cases = read_cases(path);
+  if (cases.size() > 1) {
+    throw InputError(fmt::format("{}: has {} variants, '{}' and others; one of them must be named",
+                                 path.string(), cases.size(), cases.front().name));
+  }
+  return std::move(cases.front());
+}
+
+Scene read_scene(Case scene) {
   if (const auto* file = std::get_if<MeshFile>(&scene.mesh)) {
     MeshWithSets read = read_mesh_of(scene, *file);
     return make_scene(std::move(scene), std::move(read.mesh), std::move(read.sets));
   }
   Mesh mesh = generate_mesh(std::get<AnyGenerator>(scene.mesh));
   return make_scene(std::move(scene), std::move(mesh));
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+  return read_scene(read_case_file(path));
 }
 
 std::string describe_case_keys() {
@@ -257,12 +299,19 @@ std::string describe_case_keys() {
       "center = [x, y], "
       "semi_axes = [a, b] } }\n  all conditions must hold; lengths in m; inf and -inf are allowed\n"
       "\n[[displacement]] set = NAME, value = [x, y, z] in m, components = \"xyz\" (default: all)\n"
+      "[[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the "
+      "faces:\n"
+      "  a dead load on the boundary faces within the set\n"
+      "[[published]] set = NAME, component = \"x\", ... or \"around-x\", ..., value in m or rad: mean "
+      "displacement "
+      "or rotation of the set,\n  source: a text\n"
       "[initial] velocity = [x, y, z] in m/s (dynamic answers)\n"
       "[profile] set = NAME, order = \"x\" | \"y\" | \"z\" | \"around-x\" | \"around-y\" | \"around-z\"\n"
       "[comparison] kappas = [numbers], golden = \"FILE.h5\", truth = \"FILE.h5\"\n"
-      "[[expect]] method, kappa (number, \"auto\" or \"best\"), reference (\"golden\" or \"truth\"), figure, "
-      "below or above, "
-      "reason\n";
+      "[[expect]] method, kappa (number, \"auto\" or \"best\"), reference (\"golden\", \"truth\" or "
+      "\"published\"),\n  figure, below or above, reason\n"
+      "[[variants.AXIS]] name, and any of these keys: every combination of one variant of each axis is a "
+      "case\n";
   text +=
       "\n[relaxation]: how a quasi-static answer is found\n" + described<RelaxationSettings>("relaxation");
   text += "\n[dynamics]: how a dynamic answer is found\n" + described<DynamicsSettings>("dynamics");

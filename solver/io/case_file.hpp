@@ -10,9 +10,16 @@ namespace sandglass {
 /// Reads a case file, strictly: unknown keys, missing keys, wrong types and values out of range are
 /// InputErrors that name file, line, key, value and rule. `law`, `generator` and method names come from their
 /// lists.
+/// All cases of the file: one, or every combination of its variants, named after file and variants.
+std::vector<Case> read_cases(const std::filesystem::path& path);
+
+/// The same of a file that must not have variants.
 Case read_case_file(const std::filesystem::path& path);
 
-/// The scene of a case file: its mesh generated or read, its sets and constraints made.
+/// The scene of a case: its mesh generated or read, its sets, constraints and loads made.
+Scene read_scene(Case description);
+
+/// The scene of a case file without variants.
 Scene read_scene(const std::filesystem::path& path);
 
 /// Every key that a case file may have, with type, unit, range, default and meaning.

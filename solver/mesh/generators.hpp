@@ -1,14 +1,17 @@
 #pragma once
 
 #include "base/type_list.hpp"
+#include "mesh/beam.hpp"
 #include "mesh/box.hpp"
+#include "mesh/curved_beam.hpp"
 #include "mesh/cylinder.hpp"
 #include "mesh/ellipsoid.hpp"
+#include "mesh/tapered_panel.hpp"
 
 namespace sandglass {
 
 /// THE list of mesh generators. A new one is a header, its source and one entry here.
-using Generators = TypeList<BoxMesh, EllipsoidMesh, CylinderMesh>;
+using Generators = TypeList<BoxMesh, EllipsoidMesh, CylinderMesh, BeamMesh, CurvedBeamMesh, TaperedPanelMesh>;
 
 using AnyGenerator = VariantOf<Generators>;
 

@@ -47,6 +47,9 @@ std::string case_hash(const Case& scene) {
   for (const auto& imposed : scene.displacements) {
     text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);
   }
+  for (const auto& force : scene.forces) {
+    text += fmt::format("force({}:{}:{})", force.set, force.total, force.moment);
+  }
   return hash_of(text);
 }
 

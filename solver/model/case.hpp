@@ -26,6 +26,21 @@ struct ImposedDisplacement {
   std::array<bool, 3> components{true, true, true};  ///< which components are imposed
 };
 
+/// A dead load on the boundary faces within a node set; it follows the loading curve.
+struct ImposedForce {
+  std::string set;
+  Vector total{};   ///< final sum, N
+  Vector moment{};  ///< final moment about the centroid of the faces, N m
+};
+
+/// A motion of a node set that somebody published.
+struct PublishedValue {
+  std::string set;
+  std::string component;  ///< "x", "y", "z": mean displacement; "around-x", ...: mean rotation
+  double value = 0.0;     ///< m or rad; not zero
+  std::string source;     ///< who says so
+};
+
 /// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.
 struct Profile {
   std::string set;
@@ -37,8 +52,9 @@ struct Profile {
 struct Expectation {
   std::string method;
   std::string kappa = "auto";   ///< a number, "auto", or "best": the smallest figure over the case's kappas
-  std::string reference;        ///< "golden" or "truth"
-  std::string figure;           ///< "max_relative_error", "profile_relative_error" or "rms_relative_error"
+  std::string reference;        ///< "golden", "truth" or "published"
+  std::string figure;           ///< "max_relative_error", "profile_relative_error" or "rms_relative_error";
+                                ///< "relative_error" of published values
   std::optional<double> below;  ///< the figure must be at most this, fraction
   std::optional<double> above;  ///< the figure must be more than this: the method must fail visibly
   std::string reason;
@@ -47,7 +63,9 @@ struct Expectation {
 /// Everything a case file says, checked key by key; what is inside is plain data.
 struct Case {
   std::filesystem::path file;
-  std::string name;
+  std::string name;                   ///< with the names of its variant, "-" between them
+  std::string family;                 ///< the name that all variants of a file share
+  std::vector<std::string> variants;  ///< its variant on each axis of the file; empty without variants
   std::string requirement;
   bool quasi_static = true;  ///< else dynamic
   std::variant<AnyGenerator, MeshFile> mesh;
@@ -55,18 +73,20 @@ struct Case {
   double density = 0.0;  ///< kg/m^3
   std::vector<NodeSetRule> sets;
   std::vector<ImposedDisplacement> displacements;
+  std::vector<ImposedForce> forces;
   Vector initial_velocity{};  ///< m/s, of every free node
   std::optional<Profile> profile;
   RelaxationSettings relaxation;
   DynamicsSettings dynamics;
   std::vector<double> kappas;  ///< the curve that `sandglass verify` computes beside `auto`
   std::vector<Expectation> expectations;
+  std::vector<PublishedValue> published;
   std::filesystem::path golden;
   std::filesystem::path truth;
 };
 
-/// A hash of what decides the static answer: mesh recipe, law, node sets and imposed displacements. Settings,
-/// limits and words do not enter.
+/// A hash of what decides the static answer: mesh recipe, law, node sets, imposed displacements and
+/// forces. Settings, limits, published values and words do not enter.
 std::string case_hash(const Case& scene);
 
 }  // namespace sandglass

@@ -22,7 +22,7 @@ void with_method(std::string_view name, Visitor&& visit) {
 }
 
 /// Source files per number type. CMakeLists.txt makes them and knows this number; too few do not link.
-inline constexpr std::size_t assembly_parts = 4;
+inline constexpr std::size_t assembly_parts = 6;
 
 /// The part that has a method, with all laws.
 template <class Method>

@@ -59,6 +59,29 @@ std::vector<Constraint> make_constraints(const Case& scene, const NodeSets& sets
   return constraints;
 }
 
+/// The sum of all imposed forces at each node.
+std::vector<NodalLoad> make_loads(const Case& scene, const Mesh& mesh, const NodeSets& sets) {
+  std::map<int, Vector> sums;
+  for (const auto& [name, total, moment] : scene.forces) {
+    const auto& nodes = find_set(scene, sets, "force.set", name);
+    const auto faces = faces_within(mesh, nodes);
+    if (faces.empty()) {
+      throw InputError(
+          fmt::format("{}: force.set = '{}' has no boundary face among its {} nodes; a force acts on faces "
+                      "of the boundary "
+                      "whose four nodes all lie in its set",
+                      scene.file.string(), name, nodes.size()));
+    }
+    for (const auto& [node, force] : consistent_loads(mesh.points, faces, total, moment)) {
+      for (std::size_t i = 0; i < 3; ++i) sums[node][i] += force[i];
+    }
+  }
+  std::vector<NodalLoad> loads;
+  loads.reserve(sums.size());
+  for (const auto& [node, force] : sums) loads.push_back({node, force});
+  return loads;
+}
+
 }  // namespace
 
 Mesh generate_mesh(const AnyGenerator& generator) {
@@ -70,6 +93,7 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file) {
               .mesh = std::move(mesh),
               .sets = std::move(sets_of_file),
               .constraints = {},
+              .loads = {},
               .case_hash = {},
               .mesh_hash = {}};
   const std::string file = scene.description.file.string();
@@ -91,7 +115,11 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file) {
   if (scene.description.profile) {
     find_set(scene.description, scene.sets, "profile.set", scene.description.profile->set);
   }
+  for (const auto& published : scene.description.published) {
+    find_set(scene.description, scene.sets, "published.set", published.set);
+  }
   scene.constraints = make_constraints(scene.description, scene.sets);
+  scene.loads = make_loads(scene.description, scene.mesh, scene.sets);
   scene.case_hash = case_hash(scene.description);
   scene.mesh_hash = mesh_hash(scene.mesh, scene.sets);
   return scene;
@@ -104,6 +132,13 @@ double largest_imposed(const Scene& scene) {
     largest = std::max(largest, std::hypot(d[0], d[1], d[2]));
   }
   return largest;
+}
+
+double displacement_unit(const Scene& scene, const NodalField& reference) {
+  double unit = largest_imposed(scene);
+  if (unit > 0.0) return unit;
+  for (const auto& u : reference) unit = std::max(unit, std::hypot(u[0], u[1], u[2]));
+  return unit;
 }
 
 Model::Model(const Scene& scene, MethodChoice choice)

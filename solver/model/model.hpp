@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/face_load.hpp"
 #include "model/case.hpp"
 #include "model/internal_force.hpp"
 
@@ -22,19 +23,25 @@ struct Scene {
   Mesh mesh;
   NodeSets sets;
   std::vector<Constraint> constraints;  ///< sorted by node, then component
+  std::vector<NodalLoad> loads;         ///< final forces, sorted by node
   std::string case_hash;
   std::string mesh_hash;
 };
 
-/// Node sets by their rules, constraints from the imposed displacements. Throws InputError for an inverted
-/// element, an empty set, and a node to which two different values are imposed.
+/// Node sets by their rules, constraints from the imposed displacements, loads from the imposed forces.
+/// Throws InputError for an inverted element, an empty set, a node to which two different values are imposed,
+/// and a force on a set without boundary faces.
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {});
 
 /// The mesh of a case whose mesh comes from a generator.
 Mesh generate_mesh(const AnyGenerator& generator);
 
-/// Largest imposed displacement, m: the unit of all relative errors.
+/// Largest imposed displacement, m; zero when the case is driven by forces alone.
 double largest_imposed(const Scene& scene);
+
+/// The unit of all relative errors against a reference (m): the largest imposed displacement; where none is
+/// imposed, the reference's own largest.
+double displacement_unit(const Scene& scene, const NodalField& reference);
 
 /// A well-posed problem: scene, elements and masses. All is const; what changes lives in the steppers' state.
 class Model {

@@ -7,7 +7,7 @@
 
 namespace sandglass {
 
-/// How a quasi-static answer is found: levels of the imposed displacements, relaxed by conjugate gradients.
+/// How a quasi-static answer is found: levels of what is imposed, relaxed by conjugate gradients.
 struct RelaxationSettings {
   double tolerance = 1e-8;
   int levels = 0;
@@ -18,7 +18,7 @@ struct RelaxationSettings {
     using S = RelaxationSettings;
     return std::tuple{
         Parameter{&S::tolerance, "tolerance", "-", Range::positive(),
-                  "stop when |residual| / |reaction| falls below this", false},
+                  "stop when |residual| / |reactions and loads| falls below this", false},
         Parameter{
             &S::levels, "levels", "-", Range::at_least(0),
             "load levels; 0 chooses them so that no element's displacement gradient changes by more than 0.3",
@@ -44,8 +44,10 @@ struct DynamicsSettings {
     using S = DynamicsSettings;
     return std::tuple{
         Parameter{&S::duration, "duration", "s", Range::positive(), "simulated time"},
-        Parameter{&S::ramp_time, "ramp_time", "s", Range::at_least(0.0),
-                  "time in which imposed displacements reach their value; 0 means the whole duration", false},
+        Parameter{
+            &S::ramp_time, "ramp_time", "s", Range::at_least(0.0),
+            "time in which imposed displacements and forces reach their value; 0 means the whole duration",
+            false},
         Parameter{&S::time_step, "time_step", "s", Range::at_least(0.0),
                   "fixed step; refused above the stable one; 0 chooses step_fraction of the stable one",
                   false},

@@ -21,11 +21,22 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
     constraints_.push_back(
         {static_cast<std::size_t>(row), static_cast<std::size_t>(component), static_cast<Real>(value)});
   }
+  for (const auto& [node, force] : model.scene().loads) {
+    const int row = elements.layout().row_of_node[static_cast<std::size_t>(node)];
+    loads_.push_back(
+        {static_cast<std::size_t>(row),
+         {static_cast<Real>(force[0]), static_cast<Real>(force[1]), static_cast<Real>(force[2])}});
+    load_square_ += force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
+  }
 }
 
 template <class Real>
 void Body<Real>::evaluate_forces() {
   elements_.evaluate(state_, force_);
+  const auto factor = static_cast<Real>(load_factor_);
+  for (const auto& [row, load] : loads_) {
+    for (std::size_t i = 0; i < 3; ++i) force_[row][i] -= factor * load[i];
+  }
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     Real& component = force_[constraints_[k].row][constraints_[k].component];
     reactions_[k] = static_cast<double>(component);
@@ -45,17 +56,27 @@ double Body<Real>::residual(double free_square) const {
   double carried_square = 0.0;
 #pragma omp simd reduction(+ : carried_square)
   for (std::size_t k = 0; k < reactions_.size(); ++k) carried_square += reactions_[k] * reactions_[k];
-  const double carried = std::sqrt(carried_square);
+  const double carried = std::sqrt(carried_square + load_factor_ * load_factor_ * load_square_);
   return carried > 0.0 ? unbalanced / carried : unbalanced;
 }
 
 template <class Real>
 void Body<Real>::impose(double factor) {
+  load_factor_ = factor;
   for (const auto& [row, component, value] : constraints_) {
     const Real imposed = static_cast<Real>(factor) * value;
     state_.increment[row][component] += imposed - state_.u[row][component];
     state_.u[row][component] = imposed;
   }
+}
+
+template <class Real>
+double Body<Real>::load_path() const {
+  double path = 0.0;
+  for (const auto& [row, load] : loads_) {
+    for (std::size_t i = 0; i < 3; ++i) path += static_cast<double>(load[i] * state_.u[row][i]);
+  }
+  return path;
 }
 
 template <class Real>

@@ -15,18 +15,19 @@ class Body {
   const State<Real>& state() const { return state_; }
   State<Real>& state() { return state_; }
 
-  /// Internal forces (N) of the last evaluation; zero on constrained components.
+  /// Internal forces less the loads (N) of the last evaluation; zero on constrained components.
   const Rows<Real>& free_forces() const { return force_; }
 
-  /// Internal forces (N) on constrained components, in the order of the scene's constraints: the reactions of
-  /// a body at rest.
+  /// Internal forces less the loads (N) on constrained components, in the order of the scene's constraints:
+  /// the reactions of a body at rest.
   const std::vector<double>& reactions() const { return reactions_; }
 
   /// Evaluates the internal forces of the state. The imposed increments have done their work then and are
   /// cleared, so that an update of increments need not know of constraints.
   void evaluate_forces();
 
-  /// |free forces| / |reactions|; without reactions the plain norm of the free forces (N).
+  /// |free forces| over the norm of reactions and loads together; the plain norm of the free forces (N) where
+  /// these are zero.
   double residual() const;
 
   /// The same where the square of the free forces' norm (N^2) is known already.
@@ -35,8 +36,16 @@ class Body {
   /// Goes to displacements `target` (m); `impose` sets the constrained components afterwards.
   void move_to(const Rows<Real>& target);
 
-  /// Sets constrained components to `factor` times their final value, and their increments to the change.
+  /// Sets constrained components to `factor` times their final value, and their increments to the change;
+  /// from now on loads, too, are `factor` times their final value.
   void impose(double factor);
+
+  /// The present factor of the loads.
+  double load_factor() const { return load_factor_; }
+
+  /// Sum over the nodes of final load times displacement, J: for each change of it the loads do the work of
+  /// their factor times that.
+  double load_path() const;
 
   /// One value for each node as rows, zero on constrained components and in spare rows: with inverse masses
   /// a component moves where it may, without a branch.
@@ -66,9 +75,17 @@ class Body {
     Real value;
   };
 
+  struct RowLoad {
+    std::size_t row;
+    std::array<Real, 3> force;  // final, N
+  };
+
   const InternalForce<Real>& elements_;
   int threads_;
   std::vector<RowConstraint> constraints_;
+  std::vector<RowLoad> loads_;
+  double load_square_ = 0.0;  // of the norm of the final loads, N^2
+  double load_factor_ = 0.0;
   State<Real> state_;
   Rows<Real> force_;
   std::vector<double> reactions_;

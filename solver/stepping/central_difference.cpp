@@ -76,15 +76,18 @@ class CentralDifference {
     explicit_step_.take(step_size_, keep, gain, loading(time_));
   }
 
-  /// Work of the imposed displacements over the last step, from the mean of the forces at its ends.
+  /// Work of imposed displacements and forces over the last step, from the mean of the forces at its ends.
   void update_external_work() {
-    const double advance = loading(time_) - loading(time_ - step_size_);
+    const double now = loading(time_), before = loading(time_ - step_size_), advance = now - before;
     const auto& constraints = model_.scene().constraints;
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const double force = body_.reactions()[k] + inertia(constraints[k]);
       work_ += 0.5 * (reactions_[k] + force) * advance * constraints[k].value;
       reactions_[k] = force;
     }
+    const double path = body_.load_path();
+    work_ += 0.5 * (before + now) * (path - load_path_);
+    load_path_ = path;
   }
 
   /// Velocities at the time of the displacements: the mean of the half steps before and after, damping
@@ -141,6 +144,7 @@ class CentralDifference {
   double step_size_ = 0.0;       // s, the step that led here
   double increment_time_ = 1.0;  // s, in which the increments came about
   double next_step_ = 0.0;
+  double load_path_ = 0.0;
   double work_ = 0.0;
 };
 

@@ -9,12 +9,22 @@
 
 namespace sandglass {
 
-/// A load so small that elements hold it wherever it acts: the largest imposed displacement is a hundredth of
-/// the smallest element.
+/// A load so small that elements hold it wherever it acts. The largest imposed displacement is a hundredth of
+/// the smallest element; and a cantilever as long as the mesh and as thick as that element, its modulus the
+/// shear modulus, would turn by about a hundredth under the sum of the imposed forces: F l^2 / (2 E I) with
+/// I = h^4 / 12, moments counting as forces at the end of l.
 inline double first_load(const Model& model) {
+  const Scene& scene = model.scene();
   const auto& masses = model.element_masses();
-  const double volume = *std::min_element(masses.begin(), masses.end()) / model.scene().description.density;
-  return std::min(1.0, 0.01 * std::cbrt(volume) / largest_imposed(model.scene()));
+  const double h = std::cbrt(*std::min_element(masses.begin(), masses.end()) / scene.description.density);
+  const double l = diagonal(scene.mesh.points);
+  const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, scene.description.law);
+  double F = 0.0;
+  for (const auto& [set, total, moment] : scene.description.forces) {
+    F += std::hypot(total[0], total[1], total[2]) + std::hypot(moment[0], moment[1], moment[2]) / l;
+  }
+  const double turn = F * l * l * 6.0 / (mu * h * h * h * h);
+  return std::min({1.0, 0.01 * h / largest_imposed(scene), 0.01 / turn});
 }
 
 /// Largest norm of an element's mean displacement gradient, -.
@@ -28,7 +38,7 @@ inline double largest_gradient(const Mesh& mesh, const NodalField& u) {
   return std::sqrt(square);
 }
 
-/// The levels of the imposed displacements: how far to go, and where to start. Times are relative loads.
+/// The levels of what is imposed: how far to go, and where to start. Times are relative loads.
 template <class Real>
 class LoadLevels {
  public:

@@ -10,8 +10,8 @@ struct HistoryRow {
   double kinetic;        ///< J; zero in quasi-static runs
   double strain;         ///< J
   double hourglass;      ///< J
-  double external_work;  ///< J, done by the imposed displacements
-  double residual;       ///< |force on free components| / |force on constrained components|, -
+  double external_work;  ///< J, done by imposed displacements and forces
+  double residual;       ///< |force on free components| / |reactions and loads|, -
   double step_size;      ///< s; in quasi-static runs the increment of the load
 };
 

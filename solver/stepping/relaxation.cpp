@@ -128,7 +128,7 @@ class Search {
     ended_ = ended_ || result_.interrupted;
   }
 
-  /// Work of the imposed displacements over a level, from the mean of the reactions at its ends.
+  /// Work of imposed displacements and forces over a level, from the mean of the forces at its ends.
   void add_work() {
     const auto& constraints = model_.scene().constraints;
     for (std::size_t k = 0; k < constraints.size(); ++k) {
@@ -136,6 +136,9 @@ class Search {
       work_ += 0.5 * (reactions_[k] + force) * levels_.increment() * constraints[k].value;
       reactions_[k] = force;
     }
+    const double path = body().load_path();
+    work_ += (levels_.load() - 0.5 * levels_.increment()) * (path - load_path_);
+    load_path_ = path;
   }
 
   void report() {
@@ -152,6 +155,7 @@ class Search {
   NodalField no_velocity_;
   Relaxation result_;
   std::vector<double> reactions_;
+  double load_path_ = 0.0;
   double work_ = 0.0;
   long first_evaluation_ = 0;  // of this level
   bool ended_ = false;

@@ -9,7 +9,7 @@ namespace sandglass {
 struct Relaxation {
   NodalField u;              ///< m
   long steps = 0;            ///< evaluations of the internal forces
-  double residual = 0.0;     ///< |force on free components| / |reactions|
+  double residual = 0.0;     ///< |force on free components| / |reactions and loads|
   bool converged = false;    ///< residual below the tolerance
   bool stagnated = false;    ///< the residual stopped falling before it was there
   bool interrupted = false;  ///< the observer asked to end
@@ -17,12 +17,12 @@ struct Relaxation {
   double seconds = 0.0;      ///< wall time from the model to the answer
 };
 
-/// Finds the displacements at which the internal forces balance. The imposed displacements grow in load
-/// levels; each starts from the line through the two answers before it, and is relaxed with preconditioned
-/// conjugate gradients: coarsely on the way, to the tolerance at the end. A level that fails is tried again
-/// at half the distance. A condensed method answers at once, by superposition, with one step. Settings are
-/// the case's. Throws ComputationError when an element stays inverted or
-/// no level is short enough.
+/// Finds the displacements at which the internal forces balance. The imposed displacements and forces grow
+/// in load levels; each starts from the line through the two answers before it, and is relaxed with
+/// preconditioned conjugate gradients: coarsely on the way, to the tolerance at the end. A level that fails
+/// is tried again at half the distance. A condensed method answers at once, by superposition, with one step.
+/// Settings are the case's. Throws ComputationError when an element stays inverted or no level is short
+/// enough.
 Relaxation relax(const Model& model, Observer& observer);
 
 /// Whether the answer is as good as asked for, or as the numbers allow: in single precision the rounding of

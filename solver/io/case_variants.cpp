@@ -1,0 +1,117 @@
+#include "io/case_variants.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "io/table_reader.hpp"
+
+namespace sandglass {
+
+namespace {
+
+struct Axis {
+  std::string key;
+  std::vector<std::string> names;
+  toml::source_position position;
+};
+
+toml::table parse(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw InputError(fmt::format("{}: no such case file", path.string()));
+  }
+  try {
+    return toml::parse_file(path.string());
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}:{}: is not TOML: {}", path.string(), error.source().begin.line, error.description()));
+  }
+}
+
+bool fits_a_file_name(const std::string& name) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+  return !name.empty() && name.find_first_not_of(letters) == std::string::npos;
+}
+
+std::vector<std::string> read_names(TableReader& variants, const std::string& key) {
+  std::vector<std::string> names;
+  for (auto& table : variants.tables(key)) {
+    auto name = table.required<std::string>("name");
+    if (!fits_a_file_name(name)) {
+      table.fail("name", fmt::format("= '{}' must consist of letters, digits, '.', '_' and '-'", name));
+    }
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      table.fail("name", fmt::format("= '{}' is there twice; every variant needs its own", name));
+    }
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<Axis> read_axes(const toml::table& root, const std::filesystem::path& path) {
+  std::vector<Axis> axes;
+  auto variants = TableReader(root, path, "").table("variants");
+  if (!variants) return axes;
+  for (const auto& key : variants->keys()) {
+    auto names = read_names(*variants, key);
+    axes.push_back({key, std::move(names), root["variants"][key][0].node()->source().begin});
+  }
+  std::sort(axes.begin(), axes.end(), [](const Axis& a, const Axis& b) { return a.position < b.position; });
+  return axes;
+}
+
+/// Adds or replaces; moves, because copies forget their lines in the file.
+void merge(toml::table& into, toml::table&& from) {
+  for (auto&& [key, node] : from) {
+    toml::table* const table = into[key.str()].as_table();
+    if (table != nullptr && node.is_table()) {
+      merge(*table, std::move(*node.as_table()));
+    } else {
+      node.visit([&](auto& value) { into.insert_or_assign(key, std::move(value)); });
+    }
+  }
+}
+
+/// The variant that has a name on an axis, taken out of the tables of a file.
+toml::table take_variant(toml::table& variants, const std::string& axis, const std::string& name) {
+  for (auto& entry : *variants[axis].as_array()) {
+    toml::table& variant = *entry.as_table();
+    if (variant["name"].value<std::string>() != name) continue;
+    variant.erase("name");
+    return std::move(variant);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<CaseTables> read_case_tables(const std::filesystem::path& path) {
+  std::vector<CaseTables> cases(1);  // filled by moving: copies of tables forget their lines in the file
+  cases[0].root = parse(path);
+  const auto axes = read_axes(cases[0].root, path);
+  if (axes.empty()) return cases;
+  std::vector<std::vector<std::string>> combinations{{}};
+  for (const auto& axis : axes) {
+    std::vector<std::vector<std::string>> longer;
+    for (const auto& combination : combinations) {
+      for (const auto& name : axis.names) {
+        longer.push_back(combination);
+        longer.back().push_back(name);
+      }
+    }
+    combinations = std::move(longer);
+  }
+  cases.clear();
+  for (auto& names : combinations) {
+    toml::table root = parse(path);
+    toml::table variants = std::move(*root["variants"].as_table());
+    root.erase("variants");
+    for (std::size_t n = 0; n < axes.size(); ++n) {
+      merge(root, take_variant(variants, axes[n].key, names[n]));
+    }
+    cases.push_back({std::move(root), std::move(names)});
+  }
+  return cases;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace sandglass {
+
+/// The tables of one case.
+struct CaseTables {
+  toml::table root;
+  std::vector<std::string> variants;  ///< the name of its variant on each axis; empty without variants
+};
+
+/// The cases of a file. Without [variants] it is one. Else each [[variants.AXIS]] has a name and keys of a
+/// case, and every combination of one variant of each axis is a case: the file, with the variants' keys added
+/// or put in place of its own; tables are merged, lists replaced. Axes stand in the order of the file, the
+/// last changes fastest. Throws InputError when the file is missing or no TOML, and when a name is missing,
+/// twice there or not fit for a file's name.
+std::vector<CaseTables> read_case_tables(const std::filesystem::path& path);
+
+}  // namespace sandglass

@@ -1,0 +1,91 @@
+#include "mesh/face_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sandglass {
+
+namespace {
+
+/// A Gauss point of a face: the functions of its four nodes there, where it is (m), and its share of the area
+/// (m^2).
+struct FacePoint {
+  std::array<double, 4> N;
+  Triple<double> X;
+  double area;
+};
+
+Triple<double> triple(const Vector& v) {
+  return {{v[0], v[1], v[2]}};
+}
+
+/// The 2x2 Gauss points of a bilinear face.
+std::array<FacePoint, 4> gauss_points_of(const NodalField& points, const Quadrilateral& face) {
+  constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  const double a = 1.0 / std::sqrt(3.0);
+  std::array<FacePoint, 4> result;
+  for (std::size_t q = 0; q < 4; ++q) {
+    const double xi = a * signs[q][0], eta = a * signs[q][1];
+    Triple<double> X{}, along_xi{}, along_eta{};
+    for (std::size_t I = 0; I < 4; ++I) {
+      const auto [s, t] = signs[I];
+      const Triple<double> X_I = triple(points[static_cast<std::size_t>(face[I])]);
+      result[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
+      X += result[q].N[I] * X_I;
+      along_xi += (s * (1.0 + t * eta) / 4.0) * X_I;
+      along_eta += (t * (1.0 + s * xi) / 4.0) * X_I;
+    }
+    const Triple<double> normal = cross(along_xi, along_eta);
+    result[q].X = X;
+    result[q].area = std::sqrt(double_dot(normal, normal));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Quadrilateral> faces_within(const Mesh& mesh, const std::vector<int>& nodes) {
+  const auto inside = [&](int node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
+  std::vector<Quadrilateral> faces = boundary_faces(mesh.cells);
+  std::erase_if(faces,
+                [&](const Quadrilateral& face) { return !std::all_of(face.begin(), face.end(), inside); });
+  return faces;
+}
+
+std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vector<Quadrilateral>& faces,
+                                        const Vector& total, const Vector& moment) {
+  double area = 0.0;
+  Triple<double> c{};
+  for (const auto& face : faces) {
+    for (const auto& point : gauss_points_of(points, face)) {
+      area += point.area;
+      c += point.area * point.X;
+    }
+  }
+  c = (1.0 / area) * c;
+  Tensor<double> inertia{};  // of the area: moment = inertia b
+  for (const auto& face : faces) {
+    for (const auto& point : gauss_points_of(points, face)) {
+      const Triple<double> r = point.X - c;
+      inertia += point.area * (double_dot(r, r) * identity<double>() - r * transpose(r));
+    }
+  }
+  const Triple<double> a = (1.0 / area) * triple(total);
+  const Triple<double> b = inverse(inertia) * triple(moment);
+  std::map<int, Vector> forces;
+  for (const auto& face : faces) {
+    for (const auto& point : gauss_points_of(points, face)) {
+      const Triple<double> t = a + cross(b, point.X - c);
+      for (std::size_t I = 0; I < 4; ++I) {
+        Vector& force = forces[face[I]];
+        for (std::size_t i = 0; i < 3; ++i) force[i] += point.N[I] * point.area * t.entries[i];
+      }
+    }
+  }
+  std::vector<NodalLoad> loads;
+  loads.reserve(forces.size());
+  for (const auto& [node, force] : forces) loads.push_back({node, force});
+  return loads;
+}
+
+}  // namespace sandglass
