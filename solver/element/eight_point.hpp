@@ -83,6 +83,7 @@ struct EightPoint {
 
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
+  static constexpr bool averages_pressure = Pressure::shared;
   using NoControl = NoHourglassControl;
 
   static Element<double> precompute(const NodalVectors<double>& X) {
