@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "material/small_strain.hpp"
 #include "stepping/central_difference.hpp"
 #include "stepping/relaxation.hpp"
 #include "support/exact_stress.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/random_hexahedra.hpp"
+#include "support/softening.hpp"
 #include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
@@ -69,6 +71,35 @@ class PatchTest : public ::testing::Test {
     return sum;
   }
 
+  /// Whether the affine state is stable: the smallest eigenvalue of the inner nodes' tangent stiffness, by
+  /// central differences, is positive. A state that is not cannot be found by coming to rest; only pairs that
+  /// are known for it may lose it.
+  static bool is_stable(const Tensor<double>& H) {
+    const Scene scene = patch(H);
+    const Model model(scene, method());
+    NodalField u;
+    for (const auto& X : scene.mesh.points) u.push_back(linear(H, X));
+    constexpr int free = 3 * first_corner;
+    Matrix<double, free, free> K;
+    for (int column = 0; column < free; ++column) {
+      const double step = 1e-5;  // its square, and roundoff over it, are 1e-10 of the stiffness
+      double& moved = u[index(column / 3)][index(column % 3)];
+      const double there = moved;
+      moved = there + step;
+      const NodalField up = internal_forces(model, u);
+      moved = there - step;
+      const NodalField down = internal_forces(model, u);
+      moved = there;
+      for (int row = 0; row < free; ++row) {
+        K(row, column) =
+            (up[index(row / 3)][index(row % 3)] - down[index(row / 3)][index(row % 3)]) / step / 2;
+      }
+    }
+    const bool stable = eigenvalues(0.5 * (K + transpose(K))).front() > 0.0;
+    EXPECT_TRUE(stable || (may_give_way<typename Pair::Method, Law>()));
+    return stable;
+  }
+
   /// Relaxes and expects the exact answer.
   static void expect_exact(const Tensor<double>& H) {
     Scene scene = patch(H);
@@ -95,6 +126,7 @@ TYPED_TEST(PatchTest, small_strain_is_exact) {
 }
 
 TYPED_TEST(PatchTest, finite_strain_is_exact) {
+  if (!this->is_stable(finite_gradient)) GTEST_SKIP() << "an equilibrium, but not a stable one";
   this->expect_exact(finite_gradient);
 }
 
@@ -109,30 +141,34 @@ TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
   const Relaxation answer = relax(model, silent);
   ASSERT_TRUE(answer.converged);
   const auto law = this->law();
-  const double normal = 1e-3 * (3 * lame_lambda(law) + 2 * law.shear_modulus());
-  const double shear = 1e-3 * law.shear_modulus();
+  const Tensor<double> H = macneal_harder_gradient();
+  const Tensor<double> exact = small_strain_stress(law, 0.5 * (H + transpose(H)));
+  const double normal = largest_entry(exact);
   if (std::is_same_v<typename TypeParam::Law, NeoHookean>) {  // whose parameters are E and nu
-    EXPECT_NEAR(normal, 2000.0, 1e-9);
-    EXPECT_NEAR(shear, 400.0, 1e-9);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(exact(i, j), i == j ? 2000.0 : 400.0, 1e-9);
+    }
   }
   for (const auto& stress : this->stresses(scene, answer.u)) {
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) EXPECT_NEAR(stress(i, j) / factor, i == j ? normal : shear, 5e-6 * normal);
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(stress(i, j) / factor, exact(i, j), 5e-6 * normal);
     }
   }
   const Vector pull = this->traction(model, answer.u);
-  EXPECT_NEAR(pull[0] / factor, normal, 5e-6 * normal);
-  EXPECT_NEAR(pull[1] / factor, shear, 5e-6 * normal);
+  EXPECT_NEAR(pull[0] / factor, exact(0, 0), 5e-6 * normal);
+  EXPECT_NEAR(pull[1] / factor, exact(1, 0), 5e-6 * normal);
 }
 
 /// The explicit way: a slow ramp, then damped to rest. Without control the patch keeps one very soft mode
-/// (1.1 to 1.6 rad/s, the others hundreds): damping near its critical one, 2 omega, leaves exp(-25) = 1e-11
-/// after the ramp.
+/// (1.1 to 1.6 rad/s with the neo-Hookean law, somewhat less with others; the rest hundreds): damping near
+/// its critical one, 2 omega, leaves exp(-25) = 1e-11 after twenty-five seconds more than the ramp, and ten
+/// more are for softer modes, which that damping slows.
 TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
   for (const auto& H : {macneal_harder_gradient(), finite_gradient}) {
+    if (!this->is_stable(H)) continue;
     Scene scene = this->patch(H);
     scene.description.quasi_static = false;
-    scene.description.dynamics.duration = 30.0;
+    scene.description.dynamics.duration = 40.0;
     scene.description.dynamics.ramp_time = 5.0;
     scene.description.dynamics.damping = 2.2;
     const Model model(scene, this->method());

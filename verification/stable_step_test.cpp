@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "material/small_strain.hpp"
 #include "stepping/central_difference.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/sample_law.hpp"
 #include "support/scenes.hpp"
+#include "support/softening.hpp"
 #include "support/tangent.hpp"
 #include "support/typed_lists.hpp"
 
@@ -25,10 +27,12 @@ class StableStepTest : public ::testing::Test {
     double mean = 0.0;
   };
 
-  /// The true largest eigenvalue over its bound, over many elements; displacements from `deform`.
+  /// The true largest eigenvalue over its bound, over many elements; displacements from `deform`. Where the
+  /// law gives way the bound must hold, but there is no stiffness to compare it with.
   template <class Deform>
   Sharpness sharpness(int samples, const Deform& deform, const HourglassSettings& settings = {}) {
     Sharpness result;
+    int compared = 0;
     for (int n = 0; n < samples; ++n) {
       const auto X = fitting_hexahedron<typename Pair::Kernel>(random);
       const Law law = sample_law<Law>(poisson_ratios[index(n) % poisson_ratios.size()]);
@@ -37,9 +41,13 @@ class StableStepTest : public ::testing::Test {
       const double bound = Kernel::stiffness_bound(u, element, law);
       const double truth = eigenvalues(tangent_stiffness<Kernel>(u, element, law)).back();
       EXPECT_LE(truth, bound * (1.0 + 1e-12)) << "sample " << n;
+      if (gives_way<Law>(X, u)) continue;
+      ++compared;
       result.worst = std::min(result.worst, truth / bound);
-      result.mean += truth / bound / samples;
+      result.mean += truth / bound;
     }
+    result.mean /= compared;
+    EXPECT_GT(compared, samples / 20);
     this->RecordProperty("mean_true_over_bound", std::to_string(result.mean));
     this->RecordProperty("smallest_true_over_bound", std::to_string(result.worst));
     return result;
@@ -53,6 +61,10 @@ class StableStepTest : public ::testing::Test {
     };
   }
 
+  /// What the mean over deformed samples must reach: .25 costs half of the step. A bound that knows no
+  /// directions cannot see that fibres are stiff in one of them only, which may cost a tenth more, .45^2.
+  static constexpr double sharp_when_deformed = is_isotropic<Law> ? 0.25 : 0.2;
+
   RandomGeometry random{17};
 };
 
@@ -60,7 +72,7 @@ TYPED_TEST_SUITE(StableStepTest, ElasticMethodWithLawTypes, EntryName);
 
 // A bound that is safe because it is huge would pass without the second half of each test. In the mean over
 // the samples it may cost a third of the step at rest, (1/1.5)^2 = .44 in the eigenvalue, and half when
-// deformed, .25.
+// deformed; see sharp_when_deformed.
 TYPED_TEST(StableStepTest, bound_holds_at_rest) {
   const auto sharp = this->sharpness(1000, [](const auto&) { return NodalVectors<double>{}; });
   EXPECT_GT(sharp.mean, 0.44);
@@ -68,12 +80,12 @@ TYPED_TEST(StableStepTest, bound_holds_at_rest) {
 
 TYPED_TEST(StableStepTest, bound_holds_when_deformed) {
   const auto sharp = this->sharpness(1000, this->deformed(0.7, 1.5, 0.15));
-  EXPECT_GT(sharp.mean, 0.25);
+  EXPECT_GT(sharp.mean, this->sharp_when_deformed);
 }
 
 TYPED_TEST(StableStepTest, bound_holds_under_strong_compression) {
   const auto sharp = this->sharpness(500, this->deformed(0.35, 1.0, 0.03));
-  EXPECT_GT(sharp.mean, 0.25);
+  EXPECT_GT(sharp.mean, this->sharp_when_deformed);
 }
 
 /// A user's kappa may be so large that the hourglass modes set the step.

@@ -55,6 +55,7 @@ struct EightPoint {
   static constexpr int points = 8;
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
+  static constexpr bool averages_pressure = Pressure::shared;
   using NoControl = NoHourglassControl;
 
   static Element<double> precompute(const NodalVectors<double>& X) {

@@ -108,22 +108,25 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
            q * deviator(fibre.v * transpose(fibre.v));
   }
 
-  /// Bound of the isochoric tangent; see TangentBound. Fibres add k ((dEf)^2 + Ef d^2 Ef) with
-  ///   dEf = J^(-2/3) dev(v v^T) : L,  v = F a,  |dev(v v^T)|^2 = 2/3 I4^2,
-  /// which sees the deviator of L only, and d^2 Ef = J^(-2/3) I4 [|L n|^2 - 4/3 tr L n.L n + 2/9 (tr L)^2 +
-  /// tr(L L)/3], n = v/|v|. The eigenvalues of the bracket are constants: of n.L n with the trace across it
-  /// (1 +- sqrt(17)/3)/2, of the shears along n (1 +- sqrt(13)/3)/2, and +-1/3 across.
+  /// Bound of the isochoric tangent; see TangentBound. Fibres add k c [c (n.dev L n)^2 + Ef Q(L)] with c =
+  /// I4bar, n = F a/|F a| and Q = |L n|^2 - 4/3 tr L n.L n + 2/9 (tr L)^2 + tr(L L)/3. The square is at most
+  /// 2/3 |dev L|^2 = 2/3 (|L|^2 - (tr L)^2 / 3). Q falls into parts that do not meet: n.L n with the trace of
+  /// L across n, eigenvalues 1/2 +- sqrt(17)/6; shears along n, 1/2 +- sqrt(13)/6; shears and the spin
+  /// across,
+  /// +-1/3. Only the first meets the square, so that shortened fibres (Ef < 0) take the larger of two
+  /// numbers.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
     const VolumeChange<T> change = volume_change(H);
     const FibreState<T> fibre = fibre_state(H, change);
-    const T stretch = change.inverse_root * change.inverse_root * fibre.square_stretch;  // I4bar
-    const T k(fibre_modulus);
-    const T first = T(2.0 / 3.0) * k * (stretch * stretch);
-    const T second =
-        k * stretch * max(T(0.5 + std::sqrt(17.0) / 6.0) * fibre.strain, T(-1.0 / 3.0) * fibre.strain);
+    const T c = change.inverse_root * change.inverse_root * fibre.square_stretch;
+    const T square = T(2.0 / 3.0) * c;
+    const T rest =
+        max(max(T(0.5 + std::sqrt(17.0) / 6.0) * fibre.strain, T(0.5 - std::sqrt(17.0) / 6.0) * fibre.strain),
+            T(-1.0 / 3.0) * fibre.strain - square);
+    const T kc = T(fibre_modulus) * c;
     return first_invariant_tangent_bound(T(shear_modulus()), H) +
-           TangentBound<T>{.volumetric = T(-1.0 / 3.0) * first, .gradient = first + second};
+           TangentBound<T>{.volumetric = T(-1.0 / 3.0) * kc * square, .gradient = kc * (square + rest)};
   }
 
  private:

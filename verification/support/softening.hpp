@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+
+#include "element/hexahedron.hpp"
+#include "material/small_strain.hpp"
+#include "support/eigenvalues.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+
+/// The smallest stretch at which a law's stiffness is worth comparing with a bound: `smallest`, or a
+/// twentieth above the stretch at which the law says that it gives way, where nothing is left to compare
+/// with.
+template <class Law>
+constexpr double smallest_stiff_stretch(double smallest) {
+  if constexpr (requires { Law::softening_stretch; }) {
+    return std::max(smallest, 1.05 * Law::softening_stretch);
+  } else {
+    return smallest;
+  }
+}
+
+/// What a test of large motions multiplies its loads with: a law that gives way is one for small strains, of
+/// a few percent where its pressure is averaged (nu = .45).
+template <class Law>
+constexpr double bearable_load() {
+  return smallest_stiff_stretch<Law>(0.0) > 0.0 ? 0.1 : 1.0;
+}
+
+/// Whether a homogeneous state of large strain need not be stable although method and law are sound by
+/// themselves: where a pressure is averaged that the law does not split off (see StVenantKirchhoff), and
+/// where pressed fibres may buckle into hourglass modes that nothing holds.
+template <class Method, class Law>
+constexpr bool may_give_way() {
+  if constexpr (requires { Method::Kinematics::averages_pressure; }) {
+    if (Method::Kinematics::averages_pressure && !Law::splits_volume) return true;
+  }
+  return zero_energy_modes<Method>() > 6 && !is_isotropic<Law>;
+}
+
+/// Whether a law gives way at some Gauss point of an element with coordinates X (m) displaced by u (m).
+template <class Law>
+bool gives_way(const NodalVectors<double>& X, const NodalVectors<double>& u) {
+  const double limit = smallest_stiff_stretch<Law>(0.0);
+  for (const auto& xi : gauss_points()) {
+    const Tensor<double> F = identity<double>() + transpose(u) * point_gradient(X, xi).gradient;
+    if (eigenvalues(transpose(F) * F).front() < limit * limit) return true;
+  }
+  return false;
+}
+
+}  // namespace sandglass::verification
