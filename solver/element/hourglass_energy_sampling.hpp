@@ -13,6 +13,7 @@ namespace sandglass {
 struct EnergySamplingControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
+  static constexpr bool follows_deformation = true;
 
   template <class T>
   struct Element {
@@ -29,7 +30,7 @@ struct EnergySamplingControl {
     Matrix<double, 4, 4> S{};
     for (std::size_t p = 0; p < 8; ++p) {
       const Matrix<double, 4, 3>& g = fluctuation.gradient[p];
-      S += (law.shear_modulus() * fluctuation.weight[p]) * (g * transpose(g));
+      S += (10.0 / 9.0 * law.shear_modulus() * fluctuation.weight[p]) * (g * transpose(g));
     }
     return {symmetric_part(S)};
   }
