@@ -8,7 +8,7 @@
 namespace sandglass {
 
 /// A control that follows the mean deformation says so with `follows_deformation = true`. Its energy E0 at
-/// small displacements becomes
+/// small displacements, which must be quadratic, becomes
 ///   E(q, F) = phi E0(r),  r_a = F^-1 q_a,  phi = J^(-2/3) tr(F^T F) / 3.
 /// r is q in base vectors that move with the body: the fluctuation's share of a volume change is
 /// tr(F^-1 grad w) = sum_a r_a . grad w_a, so that a nearly incompressible element stays what it was at rest,
