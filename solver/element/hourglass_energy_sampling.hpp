@@ -8,11 +8,13 @@ namespace sandglass {
 
 /// Hourglass control without a number to choose, after the energy sampling of Krysl 2015: one point misses
 /// the fluctuating part of the energy (mu/2) F : F, whose integral is (1/2) q S q with a constant matrix S of
-/// 4 by 4. F : F does not change under rotation, so that nothing needs to be turned; lambda does not enter,
-/// so that nothing locks.
+/// 4 by 4. lambda does not enter, so that nothing locks. A fluctuation of the displacement gradient costs the
+/// isochoric energy mu/2 (g : g + tr(g g) - 2/3 (tr g)^2); its mean over all directions of g is 10/9 of
+/// (mu/2) g : g, which is the factor. The control follows the mean deformation.
 struct EnergySamplingControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
+  static constexpr bool follows_deformation = true;
 
   template <class T>
   struct Element {
@@ -21,7 +23,7 @@ struct EnergySamplingControl {
   template <class T>
   using History = NoHistory<T>;
 
-  /// S_ab = mu integral of grad w_a . grad w_b, w_a the fluctuation that a unit of q_a makes.
+  /// S_ab = 10/9 mu integral of grad w_a . grad w_b, w_a the fluctuation that a unit of q_a makes.
   template <class Law>
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& /*settings*/) {
@@ -29,7 +31,7 @@ struct EnergySamplingControl {
     Matrix<double, 4, 4> S{};
     for (std::size_t p = 0; p < 8; ++p) {
       const Matrix<double, 4, 3>& g = fluctuation.gradient[p];
-      S += (law.shear_modulus() * fluctuation.weight[p]) * (g * transpose(g));
+      S += (10.0 / 9.0 * law.shear_modulus() * fluctuation.weight[p]) * (g * transpose(g));
     }
     return {symmetric_part(S)};
   }

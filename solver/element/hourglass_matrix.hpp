@@ -10,8 +10,8 @@ namespace sandglass {
 template <class T>
 using HourglassMatrix = SymmetricMatrix<T, 12>;
 
-/// Hourglass control by a constant matrix K (N/m) that `Source::matrix(X, law)` makes at set-up. It follows
-/// the mean deformation: the energy is r K r / 2 with r_a = F^-1 q_a.
+/// Hourglass control by a constant matrix K (N/m) that `Source::matrix(X, law)` makes at set-up: q K q / 2 at
+/// small displacements. It follows the mean deformation.
 template <class Source>
 struct HourglassMatrixControl {
   static constexpr bool active = true;

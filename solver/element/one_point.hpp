@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "element/element_motion.hpp"
+#include "element/following.hpp"
 #include "element/hexahedron.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
@@ -14,25 +15,6 @@ template <class T>
 struct ElementEnergy {
   T strain;
   T hourglass;
-};
-
-/// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): the largest eigenvalue per
-/// volume that a tangent bound allows, from (tr L)^2 <= |g|^2 |v|^2 and |L|^2 <= lambda_max |v|^2 for L = v^T
-/// g.
-template <class T>
-T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
-  const Tensor<T> G = transpose(g) * g;
-  return max(bound.volumetric, T(0)) * trace(G) + bound.gradient * largest_eigenvalue_bound(G);
-}
-
-/// A control that follows the mean deformation says so with `follows_deformation = true`. It is then given
-/// the hourglass displacements in base vectors that move with the body, r = F^-1 q in place of q, and its
-/// resistances are turned back. The fluctuation's share of a volume change is tr(F^-1 grad w) =
-/// sum_a r_a . grad w_a, so that in these components a nearly incompressible element stays what it was at
-/// rest, however far it is deformed and turned.
-template <class Hourglass>
-concept FollowsDeformation = requires {
-  requires Hourglass::follows_deformation;
 };
 
 /// The uniform strain hexahedron in the Total Lagrangian formulation: one stress from the mean displacement
@@ -118,7 +100,7 @@ struct OnePoint {
     Tensor<T> H;
     VolumeChange<T> change;
     HourglassModes<T> q;  ///< hourglass displacements as the control sees them, m; unset without a control
-    Tensor<T> inverse_F;  ///< for a control that follows the mean deformation; else unset
+    FollowedDeformation<T> followed;  ///< for a control that follows the mean deformation; else unset
   };
 
   template <class Hourglass, class T>
@@ -128,16 +110,15 @@ struct OnePoint {
     now.change = volume_change(now.H);
     if constexpr (Hourglass::active) now.q = hourglass_displacements(motion.u, now.H, element);
     if constexpr (FollowsDeformation<Hourglass>) {
-      const T r = now.change.inverse_root;
-      now.inverse_F = (r * r * r) * transpose(cofactor(identity<T>() + now.H));
-      now.q = now.q * transpose(now.inverse_F);
+      now.followed = followed_deformation(now.H, now.change);
+      now.q = convected(now.q, now.followed);
     }
     return now;
   }
 
   /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14). The energy
-  /// E(r), r = F^-1 q, of a control that follows has the derivatives Q_a = dE/dq_a = F^-T dE/dr_a and
-  /// dE/dF = -sum_a Q_a (x) r_a: the same force with c + r in place of c.
+  /// phi E0(F^-1 q) of a control that follows also changes with F, by -sum_a Q_a (x) r_a and by phi: the
+  /// first is the same force with c + r in place of c, the second a stress.
   template <class Hourglass, class T, class Law>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
                         const typename Hourglass::template Element<T>& control, NoHistory<T>& /*history*/,
@@ -145,8 +126,9 @@ struct OnePoint {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> VP = transpose(law.weighted_piola(element.V, now.H, now.change, p));
     if constexpr (FollowsDeformation<Hourglass>) {
-      const HourglassModes<T> Q = Hourglass::resistance(now.q, control) * now.inverse_F;
-      return modal_forces(VP, Q, element.c + now.q, element);
+      const HourglassModes<T> s = Hourglass::resistance(now.q, control);
+      return modal_forces(VP + stress_of_phi(now.q, s, now.H, now.followed), turned_back(s, now.followed),
+                          element.c + now.q, element);
     } else if constexpr (Hourglass::active) {
       return modal_forces(VP, Hourglass::resistance(now.q, control), element.c, element);
     } else {
@@ -161,9 +143,13 @@ struct OnePoint {
     const Tensor<T> H = mean_gradient(motion.u, element);
     ElementEnergy<T> energy{element.V * law.energy(H), T(0)};
     if constexpr (Hourglass::active) {
-      HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
-      if constexpr (FollowsDeformation<Hourglass>) q = q * transpose(inverse(identity<T>() + H));
-      energy.hourglass = Hourglass::energy(q, control);
+      const HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
+      if constexpr (FollowsDeformation<Hourglass>) {
+        const FollowedDeformation<T> followed = followed_deformation(H, volume_change(H));
+        energy.hourglass = followed.phi * Hourglass::energy(convected(q, followed), control);
+      } else {
+        energy.hourglass = Hourglass::energy(q, control);
+      }
     }
     return energy;
   }
@@ -199,9 +185,10 @@ struct OnePoint {
     const NodalVectors<T> g = h * inverse_F;
     const T body = element.V * gradient_bound(tangent_bound(law, H), g);
     if constexpr (FollowsDeformation<Hourglass>) {
-      const HourglassModes<T> r = hourglass_displacements(motion.u, H, element) * transpose(inverse_F);
-      return body +
-             following_bound<Hourglass>(gamma(h, element) - h * transpose(r), g, r, inverse_F, control);
+      const FollowedDeformation<T> followed = followed_deformation(H, volume_change(H));
+      const HourglassModes<T> r = convected(hourglass_displacements(motion.u, H, element), followed);
+      const Matrix<T, 8, 4> current_gamma = gamma(h, element) - h * transpose(r);
+      return body + following_bound<Hourglass>(current_gamma, g, r, H, followed, control);
     } else if constexpr (Hourglass::active) {
       return body + Hourglass::stiffness_bound(gamma(h, element), control);
     }
@@ -246,24 +233,6 @@ struct OnePoint {
       for (int a = 0; a < 4; ++a) gamma(I, a) = T(Gamma(I, a)) - gamma(I, a);
     }
     return gamma;
-  }
-
- private:
-  /// The bound of a control E(r) that follows, r = F^-1 q. A displacement v of the nodes changes r by
-  /// dr_a = F^-1 v^T gamma_a, gamma the shape vectors of the current configuration, and E'' is
-  ///   dr K dr - 2 tr((v^T g) (v^T gamma Q)),
-  /// g = h F^-1. The first term is at most lambda_max(F^-1 F^-T) times the control's own bound, the second
-  /// twice the largest singular values of g and gamma Q.
-  template <class Hourglass, class T>
-  static T following_bound(const Matrix<T, 8, 4>& gamma, const NodalVectors<T>& g, const HourglassModes<T>& r,
-                           const Tensor<T>& inverse_F,
-                           const typename Hourglass::template Element<T>& control) {
-    const NodalVectors<T> gamma_Q = gamma * (Hourglass::resistance(r, control) * inverse_F);
-    const T material = largest_eigenvalue_bound(transpose(inverse_F) * inverse_F) *
-                       Hourglass::stiffness_bound(gamma, control);
-    const T geometric = T(2) * sqrt(largest_eigenvalue_bound(transpose(g) * g) *
-                                    largest_eigenvalue_bound(transpose(gamma_Q) * gamma_Q));
-    return material + geometric;
   }
 };
 

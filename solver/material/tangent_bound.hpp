@@ -31,4 +31,13 @@ TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H) {
   return {.volumetric = iso.volumetric + vol.volumetric, .gradient = iso.gradient + vol.gradient};
 }
 
+/// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): the largest eigenvalue per
+/// volume that a tangent bound allows, from (tr L)^2 <= |g|^2 |v|^2 and |L|^2 <= lambda_max |v|^2 for L = v^T
+/// g.
+template <class T>
+T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
+  const Tensor<T> G = transpose(g) * g;
+  return max(bound.volumetric, T(0)) * trace(G) + bound.gradient * largest_eigenvalue_bound(G);
+}
+
 }  // namespace sandglass

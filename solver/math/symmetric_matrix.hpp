@@ -16,8 +16,9 @@ struct SymmetricMatrix {
   constexpr const T& operator()(int i, int j) const { return entries[index(i, j)]; }
 
   static constexpr std::size_t index(int i, int j) {
-    const int row = std::min(i, j);
-    return static_cast<std::size_t>(row * (2 * N - row - 1) / 2 + std::max(i, j));
+    const auto row = static_cast<std::size_t>(std::min(i, j));
+    const auto column = static_cast<std::size_t>(std::max(i, j));
+    return row * (2 * static_cast<std::size_t>(N) - row - 1) / 2 + column;
   }
 };
 
