@@ -56,7 +56,7 @@ Matrix<T, 12, 12> matrix_of(const Stiffness& stiffness) {
 
 /// A form as the control of a Total Lagrangian element: its stiffness at rest is computed once and kept in
 /// the form's own shape, which is less to load and to multiply than twelve rows of twelve. It follows the
-/// mean deformation: the energy is r K r / 2 with r_a = F^-1 q_a.
+/// mean deformation.
 template <class Form>
 struct RestHourglassControl {
   static constexpr bool active = true;
