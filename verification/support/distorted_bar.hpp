@@ -10,15 +10,16 @@
 /// A small scene without symmetry that linear methods are compared on.
 namespace sandglass::verification {
 
-/// A bar of distorted elements between a foot and a head that moves by d.
-inline Scene distorted_bar(const Vector& d, std::array<bool, 3> components = {true, true, true}) {
+/// A bar of distorted elements between a foot and a head that moves by d; `fineness` times 3 x 3 x 8 of them.
+inline Scene distorted_bar(const Vector& d, std::array<bool, 3> components = {true, true, true},
+                           int fineness = 1) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
-  Mesh mesh = box({0.1, 0.1, 0.3}, {3, 3, 8});
+  Mesh mesh = box({0.1, 0.1, 0.3}, {3 * fineness, 3 * fineness, 8 * fineness});
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
                       {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.299; })}};
   RandomGeometry random(37);
   for (auto& X : mesh.points) {
-    for (auto& x : X) x += random.uniform(-0.006, 0.006);
+    for (auto& x : X) x += random.uniform(-0.006, 0.006) / fineness;
   }
   description.displacements = {{"foot", {}}, {"head", d, components}};
   description.relaxation.tolerance = 1e-12;
