@@ -19,20 +19,29 @@ class Displacement:
 
 
 @dataclass(frozen=True)
+class Force:
+    """A dead load on the faces within a node set: total (3,) in N, moment (3,) in N m."""
+
+    set_name: str
+    total: tuple
+    moment: tuple
+
+
+@dataclass(frozen=True)
 class Case:
-    """Name, law, numbers of the law (SI units) and imposed displacements of a case."""
+    """Name, law, numbers of the law (SI units), imposed displacements and forces of a case."""
 
     name: str
     law: str
     material: dict
     displacements: tuple
+    forces: tuple = ()
 
 
-def read_case(path):
-    """Read and check a case file.
+def read_tables(path):
+    """The tables of every case of a file, its variants merged in: name of the case -> dict.
 
-    path: str or Path of a TOML file. Returns a Case.
-    Raises InputError naming file, key, value, rule and what is allowed.
+    path: str or Path of a TOML file. A file without [variants] has one case. Raises InputError.
     """
     try:
         with open(path, "rb") as file:
@@ -41,7 +50,39 @@ def read_case(path):
         raise InputError(f"{path}: cannot read the case file: {error.strerror}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: not a TOML file: {error}") from error
-    name = _get(path, tables, "case", "name", str)
+    family = _get(path, tables, "case", "name", str)
+    cases = {family: tables}
+    for axis in tables.pop("variants", {}).values():
+        longer = {}
+        for name, so_far in cases.items():
+            for variant in axis:
+                merged = _merged(so_far, {k: v for k, v in variant.items() if k != "name"})
+                longer[f"{name}-{variant['name']}"] = merged
+        cases = longer
+    return cases
+
+
+def find_case(folder, name):
+    """The file in a folder of cases that holds the case of this name, or None."""
+    for path in sorted(folder.glob("*.toml")):
+        if name.startswith(path.stem) and name in read_tables(path):
+            return path
+    return None
+
+
+def read_case(path, name=None):
+    """Read and check a case of a case file.
+
+    path: str or Path of a TOML file. name: of the case; needed where the file has variants.
+    Returns a Case. Raises InputError naming file, key, value, rule and what is allowed.
+    """
+    cases = read_tables(path)
+    if name is None and len(cases) > 1:
+        raise InputError(f"{path}: has variants: one of {', '.join(cases)} is required")
+    name = name or next(iter(cases))
+    if name not in cases:
+        raise InputError(f"{path}: no case {name!r}; {_allowed(name, cases)}")
+    tables = cases[name]
     law = _get(path, tables, "material", "law", str)
     if law not in LAWS:
         raise InputError(f"{path}: material.law = {law!r}: unknown law; {_allowed(law, LAWS)}")
@@ -59,6 +100,7 @@ def read_case(path):
         law=law,
         material=material,
         displacements=tuple(_displacement(path, i, entry) for i, entry in enumerate(entries)),
+        forces=tuple(_force(path, i, entry) for i, entry in enumerate(tables.get("force", []))),
     )
 
 
@@ -77,6 +119,31 @@ def _material_number(path, tables, key):
     if not math.isfinite(value):
         raise InputError(f"{path}: material.{key} = {value}: must be finite")
     return value
+
+
+def _merged(tables, changes):
+    """Tables with changes added or put in place; tables within are merged, lists replaced."""
+    merged = dict(tables)
+    for key, value in changes.items():
+        both = isinstance(value, dict) and isinstance(tables.get(key), dict)
+        merged[key] = _merged(tables[key], value) if both else value
+    return merged
+
+
+def _force(path, index, entry):
+    """One checked [[force]] table as a Force."""
+    where = f"force[{index}]"
+    _check_keys(path, where, entry, ("set", "total", "moment"))
+    vectors = []
+    for key in ("total", "moment"):
+        value = entry.get(key, [0.0, 0.0, 0.0])
+        numbers = isinstance(value, list) and all(_is_number(v) for v in value)
+        if not (numbers and len(value) == 3 and all(math.isfinite(v) for v in value)):
+            raise InputError(f"{path}: {where}.{key} = {value!r}: must be three finite numbers")
+        vectors.append(tuple(float(v) for v in value))
+    if not isinstance(entry.get("set"), str):
+        raise InputError(f"{path}: {where}.set = {entry.get('set')!r}: must be a node set's name")
+    return Force(entry["set"], *vectors)
 
 
 def _displacement(path, index, entry):

@@ -1,5 +1,6 @@
 """Meshes of trilinear hexahedra: vertex numbering, conditions, uniform subdivision. Only numpy."""
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,11 @@ import numpy as np
 # Local vertices of a VTK hexahedron in the lexicographic order of FEniCSx (x fastest). The
 # permutation is its own inverse: it only swaps 2 with 3 and 6 with 7.
 VTK_TO_LEXICOGRAPHIC = np.array([0, 1, 3, 2, 4, 5, 7, 6])
+
+# The faces of a VTK hexahedron, vertices in a circle.
+FACES = np.array(
+    [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+)
 
 
 @dataclass(frozen=True)
@@ -23,16 +29,31 @@ class Condition:
 
 
 @dataclass(frozen=True)
+class Traction:
+    """A dead traction mean + turn x (X - centre) on the boundary faces within a set of nodes.
+
+    nodes: (n,) bool, True for the nodes of the set; a face needs all its vertices there.
+    mean: (3,) Pa. turn: (3,) Pa/m. centre: (3,) m.
+    """
+
+    nodes: np.ndarray
+    mean: np.ndarray
+    turn: np.ndarray
+    centre: np.ndarray
+
+
+@dataclass(frozen=True)
 class HexMesh:
-    """Trilinear hexahedra and the displacements imposed on their nodes.
+    """Trilinear hexahedra, the displacements imposed on their nodes, the tractions on faces.
 
     points: (n, 3) undeformed coordinates, m. cells: (m, 8) node numbers in VTK order.
-    conditions: tuple of Condition.
+    conditions: tuple of Condition. tractions: tuple of Traction.
     """
 
     points: np.ndarray
     cells: np.ndarray
     conditions: tuple
+    tractions: tuple = ()
 
     def imposed(self):
         """All conditions together: (prescribed (n, 3) bool, values (n, 3) m, zero elsewhere)."""
@@ -47,6 +68,47 @@ class HexMesh:
     def largest_imposed(self):
         """Largest imposed displacement: max over the nodes of |d|, m."""
         return np.linalg.norm(self.imposed()[1], axis=1).max()
+
+
+def faces_of(cells):
+    """The faces (m, 6, 4) of VTK cells (m, 8), vertices in a circle."""
+    return cells[:, FACES]
+
+
+def faces_within(cells, nodes):
+    """The boundary faces (k, 4) of VTK cells (m, 8) whose vertices are all in nodes (n,) bool."""
+    faces = faces_of(cells).reshape(-1, 4)
+    _, first, count = np.unique(
+        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
+    )
+    boundary = faces[first[count == 1]]
+    return boundary[nodes[boundary].all(axis=1)]
+
+
+def traction(points, cells, nodes, total, moment):
+    """The Traction whose sum is `total` (N) and whose moment about its centre is `moment` (N m).
+
+    points: (n, 3) m. cells: (m, 8) VTK. nodes: (n,) bool. total, moment: (3,). Its centre is the
+    centroid of the faces. Integrals by 2x2 Gauss points per face, as in solver/mesh/face_load.cpp.
+    Returns None when no boundary face has all its vertices in nodes.
+    """
+    corners = points[faces_within(cells, nodes)]  # (k, 4, 3)
+    if not len(corners):
+        return None
+    signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    places, areas = [], []
+    for xi, eta in signs / np.sqrt(3):
+        values = (1 + signs[:, 0] * xi) * (1 + signs[:, 1] * eta) / 4
+        by_xi = signs[:, 0] * (1 + signs[:, 1] * eta) / 4
+        by_eta = signs[:, 1] * (1 + signs[:, 0] * xi) / 4
+        sides = [np.einsum("i,kij->kj", weights, corners) for weights in (by_xi, by_eta)]
+        places.append(np.einsum("i,kij->kj", values, corners))
+        areas.append(np.linalg.norm(np.cross(*sides), axis=1))
+    place, area = np.concatenate(places), np.concatenate(areas)
+    centre = area @ place / area.sum()
+    arm = place - centre
+    inertia = (area * (arm**2).sum(axis=1)).sum() * np.eye(3) - (arm.T * area) @ arm
+    return Traction(nodes, np.asarray(total) / area.sum(), np.linalg.solve(inertia, moment), centre)
 
 
 def refine(mesh):
@@ -94,5 +156,6 @@ def refine(mesh):
         Condition(extend(c.nodes, np.all), c.components, extend(c.values, np.mean))
         for c in mesh.conditions
     )
+    tractions = tuple(dataclasses.replace(t, nodes=extend(t.nodes, np.all)) for t in mesh.tractions)
     cells = np.stack(children, axis=1).reshape(-1, 8)
-    return HexMesh(extend(mesh.points, np.mean), cells, conditions)
+    return HexMesh(extend(mesh.points, np.mean), cells, conditions, tractions)

@@ -1,12 +1,13 @@
 """Reading the mesh file that `sandglass mesh CASE -o FILE` writes."""
 
+import dataclasses
 from dataclasses import dataclass
 
 import h5py
 import numpy as np
 
 from errors import InputError
-from hexahedra import Condition, HexMesh
+from hexahedra import Condition, HexMesh, traction
 
 
 @dataclass(frozen=True)
@@ -56,11 +57,11 @@ def read_mesh(path):
 
 
 def load_case_mesh(case, mesh_path):
-    """The mesh of a case, with the displacements of the case imposed on its nodes.
+    """The mesh of a case, with the displacements and tractions of the case.
 
     case: Case. mesh_path: str or Path. Returns (HexMesh, MeshFile).
     Raises InputError when the mesh belongs to another case, a set is missing or empty, two
-    displacements contradict each other, or nothing is moved.
+    displacements contradict each other, a force has no face, or nothing is moved or loaded.
     """
     file = read_mesh(mesh_path)
     if file.case != case.name:
@@ -70,12 +71,7 @@ def load_case_mesh(case, mesh_path):
         )
     mesh = HexMesh(file.points, file.cells, ())
     for entry in case.displacements:
-        members = file.sets.get(entry.set_name, np.empty(0, dtype=np.int64))
-        if not members.size:
-            raise InputError(
-                f"{mesh_path}: displacement.set = {entry.set_name!r}: no such node set, or empty; "
-                f"allowed: {', '.join(sorted(n for n, s in file.sets.items() if s.size))}"
-            )
+        members = _members(mesh_path, file, "displacement", entry.set_name)
         prescribed, values = mesh.imposed()
         for axis in entry.components:
             already = members[prescribed[members, axis]]
@@ -84,13 +80,39 @@ def load_case_mesh(case, mesh_path):
                     f"{mesh_path}: displacement.set = {entry.set_name!r}: component "
                     f"{'xyz'[axis]} of node {already[0]} is already prescribed with another value"
                 )
-        nodes = np.zeros(len(file.points), dtype=bool)
-        nodes[members] = True
+        nodes = _mask(file, members)
         condition = Condition(nodes, entry.components, np.tile(entry.value, (len(nodes), 1)))
         mesh = HexMesh(mesh.points, mesh.cells, mesh.conditions + (condition,))
-    if not mesh.largest_imposed():
+    tractions = []
+    for entry in case.forces:
+        nodes = _mask(file, _members(mesh_path, file, "force", entry.set_name))
+        tractions.append(traction(file.points, file.cells, nodes, entry.total, entry.moment))
+        if tractions[-1] is None:
+            raise InputError(
+                f"{mesh_path}: force.set = {entry.set_name!r}: no boundary face has all its "
+                "vertices in this set; a force needs one"
+            )
+    if not (mesh.largest_imposed() or tractions):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
-    return mesh, file
+    return dataclasses.replace(mesh, tractions=tuple(tractions)), file
+
+
+def _members(mesh_path, file, table, set_name):
+    """The nodes of a set of a MeshFile. Raises InputError when there are none."""
+    members = file.sets.get(set_name, np.empty(0, dtype=np.int64))
+    if not members.size:
+        raise InputError(
+            f"{mesh_path}: {table}.set = {set_name!r}: no such node set, or empty; "
+            f"allowed: {', '.join(sorted(n for n, s in file.sets.items() if s.size))}"
+        )
+    return members
+
+
+def _mask(file, members):
+    """(n,) bool, True for the members among the nodes of a MeshFile."""
+    nodes = np.zeros(len(file.points), dtype=bool)
+    nodes[members] = True
+    return nodes
 
 
 def _dataset(path, file, name, dtype, width):

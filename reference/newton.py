@@ -24,7 +24,7 @@ class Outcome:
 
     residual: norm of the unbalanced nodal forces over the norm of the reactions.
     last_increment: largest component of the last Newton correction over the largest imposed
-    component.
+    component; where nothing is moved, over the largest of the displacement.
     """
 
     load_steps: int
@@ -34,13 +34,14 @@ class Outcome:
 
 
 def solve(problem, load_steps, tolerance, guessed=False):
-    """Bring a MixedProblem to its prescribed displacement, in place.
+    """Bring a MixedProblem to its prescribed displacement and load, in place.
 
     problem: MixedProblem at rest or, if guessed, near the answer: when Newton's method fails there
     it starts again at rest. load_steps: number of equal load steps from rest; a step that fails is
     halved. tolerance: the last step ends when a Newton correction is below tolerance times the
-    largest imposed component. Newton's method converges quadratically, so the solution is then
-    exact to round-off. Returns an Outcome. Raises DivergenceError when halving does not help.
+    largest imposed component, or the largest of the displacement where nothing is moved. Newton's
+    method converges quadratically, so the solution is then exact to round-off. Returns an
+    Outcome. Raises DivergenceError when halving does not help.
     """
     scale = np.abs(problem.values).max()
     state = (problem.displacement.x.array, problem.pressure.x.array)
@@ -75,6 +76,7 @@ def _equilibrate(problem, load, scale, tolerance):
     """Newton's method at one load: (converged, iterations, residual, increment), both relative."""
     u = problem.displacement.x.array
     fixed = load * problem.values
+    problem.load = load
     increment = np.inf
     for count in range(1, MAX_ITERATIONS + 1):
         tangent, residual, recover = problem.linearize()
@@ -89,8 +91,8 @@ def _equilibrate(problem, load, scale, tolerance):
         del tangent  # the factors need the memory
         du[problem.free] = _direct_solve(free_tangent, right)
         dp = recover(du)
-        increment = np.abs(du).max() / scale
         fraction = _advance(problem, du, dp, fixed)
+        increment = np.abs(du).max() / (scale or np.abs(u).max())
         if not fraction or increment > LARGEST_CORRECTION:
             return False, count, np.nan, increment
         if increment < tolerance and fraction == 1:

@@ -47,7 +47,8 @@ class MixedProblem:
     mesh: HexMesh. pair: ElementPair. law: name out of LAWS. material: dict of its numbers (SI),
     directions as tuples.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
-    dofs), values (their full values, m), free (the other dofs).
+    dofs), values (their full values, m), free (the other dofs), load (the present factor of the
+    tractions, 0 to 1).
     """
 
     def __init__(self, mesh, pair, law, material):
@@ -78,6 +79,12 @@ class MixedProblem:
         self._vertex_block[cell_nodes] = cell_dofs[:, vertex_dofs]
         self.fixed, self.values = prescribed_dofs(space, cell_nodes, mesh.conditions)
         self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
+        self.load = 1.0
+        self._external = np.zeros(self.displacement.x.array.size)
+        for traction in mesh.tractions:
+            self._external += _traction_forces(
+                traction, space, cell_nodes, 2 * pair.gauss_points - 1
+            )
 
     def start_from(self, coarse):
         """Take over displacement and pressure of a problem on the mesh before refine().
@@ -133,8 +140,11 @@ class MixedProblem:
         return tangent, residual, recover
 
     def mixed_residual(self):
-        """Both rows of the mixed system: forces (N,) in N, and (M,) in m^3, one per pressure."""
-        return self._assemble_vector("u"), self._assemble_vector("p")
+        """Both rows of the mixed system: forces (N,) in N, and (M,) in m^3, one per pressure.
+
+        Forces are internal ones less the tractions at their present load.
+        """
+        return self._assemble_vector("u") - self.load * self._external, self._assemble_vector("p")
 
     def _pressures_per_cell(self):
         return self.pressure.function_space.dofmap.dof_layout.num_dofs
@@ -176,6 +186,34 @@ def _compile_forms(u, p, pair, law, material):
         kind: {name: fem.form(form, jit_params=options) for name, form in group.items()}
         for kind, group in forms.items()
     }
+
+
+def _traction_forces(traction, space, cell_nodes, degree):
+    """Nodal forces (N,) in N, over all displacement dofs, of a Traction at full load.
+
+    space: the displacement's. cell_nodes: (m, 8) node numbers in the space's order of cells and
+    vertices. degree: of the quadrature.
+    """
+    domain = space.mesh
+    domain.topology.create_connectivity(2, 3)
+    domain.topology.create_connectivity(3, 2)
+    facets = []
+    for facet in dolfinx.mesh.exterior_facet_indices(domain.topology):
+        (cell,) = domain.topology.connectivity(2, 3).links(facet)
+        local = list(domain.topology.connectivity(3, 2).links(cell)).index(facet)
+        vertices = basix.topology(basix.CellType.hexahedron)[2][local]
+        if traction.nodes[cell_nodes[cell, vertices]].all():
+            facets.append(facet)
+    facets = np.sort(np.array(facets, dtype=np.int32))
+    tags = dolfinx.mesh.meshtags(domain, 2, facets, np.ones_like(facets))
+    data = {"quadrature_rule": "default", "quadrature_degree": degree}
+    measure = ufl.Measure("ds", domain=domain, subdomain_data=tags, metadata=data)
+    mean, turn, centre = (
+        fem.Constant(domain, vector) for vector in (traction.mean, traction.turn, traction.centre)
+    )
+    t = mean + ufl.cross(turn, ufl.SpatialCoordinate(domain) - centre)
+    form = fem.form(ufl.inner(t, ufl.TestFunction(space)) * measure(1))
+    return fem.assemble_vector(form).array.copy()
 
 
 def _invert_blocks(matrix, size):

@@ -21,7 +21,7 @@ ATTRIBUTES = {
     "law": str,
     "mirror_planes": str,
     "boundary_rule": str,
-    "largest_imposed": float,
+    "largest_imposed": float,  # where nothing is moved: the largest displacement
     "load_steps": int,
     "newton_iterations": int,
     "residual": float,

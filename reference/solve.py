@@ -11,6 +11,7 @@ import sys
 import time
 
 import dolfinx
+import numpy as np
 
 import newton
 from accuracy import relative_errors
@@ -58,16 +59,16 @@ def run(arguments):
     """Read, solve, store. Raises InputError or DivergenceError."""
     started = time.perf_counter()
     kind, refinements = arguments.kind, arguments.refine
-    case = read_case(arguments.case)
+    case = read_case(arguments.case, arguments.variant)
     mesh, file = load_case_mesh(case, arguments.mesh)
     require_writable(arguments.output)
     displacements, outcome, mirrors = solve_case(
         kind, case, mesh, refinements, arguments.load_steps or LOAD_STEPS[kind]
     )
-    largest = mesh.largest_imposed()
+    unit = mesh.largest_imposed() or np.linalg.norm(displacements[-1], axis=1).max()
     errors, note = (math.nan, math.nan), "not estimated"
     if refinements:
-        errors = relative_errors(displacements[-2], displacements[-1], largest)
+        errors = relative_errors(displacements[-2], displacements[-1], unit)
         note = f"difference to the same element on the mesh split {refinements - 1} times"
     pair = PAIRS[kind]
     write_result(
@@ -85,7 +86,7 @@ def run(arguments):
             "law": case.law,
             "mirror_planes": mirrors,
             "boundary_rule": BOUNDARY_RULE,
-            "largest_imposed": largest,
+            "largest_imposed": unit,
             "load_steps": outcome.load_steps,
             "newton_iterations": outcome.newton_iterations,
             "residual": outcome.residual,
@@ -108,6 +109,7 @@ def main(arguments=None):
     )
     parser.add_argument("kind", choices=PAIRS, help="golden: Q1-P0; truth: Q2-P1")
     parser.add_argument("case", metavar="CASE.toml", help="the case file")
+    parser.add_argument("--variant", metavar="NAME", help="case of the file, where it has variants")
     parser.add_argument("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
     parser.add_argument("-o", "--output", required=True, help="HDF5 file to write")
     parser.add_argument(

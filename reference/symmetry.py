@@ -4,12 +4,12 @@ What a truth costs grows with the power 4/3 (memory) to 2 (time) of its unknowns
 make the cylinder's fourteen times cheaper. The answer is the one with that symmetry.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from hexahedra import Condition, HexMesh
+from hexahedra import Condition, HexMesh, faces_of
 
 # Coordinates and values that differ by less than this part of the mesh's size are equal.
 TOLERANCE = 1e-9
@@ -73,6 +73,8 @@ def _half(mesh, axis):
             difference = value[image] - (-value if component == axis else value)
             if np.abs(difference).max() > TOLERANCE * size:
                 return None
+    if not all(_has_mirror(t, mesh, axis, side, image) for t in mesh.tractions):
+        return None
     kept = np.flatnonzero(side >= 0)
     number = np.full(len(side), -1)
     number[kept] = np.arange(len(kept))
@@ -81,8 +83,24 @@ def _half(mesh, axis):
     conditions.append(Condition(side[kept] == 0, (axis,), np.zeros((len(kept), 3))))
     mirrored = side < 0
     source = number[np.where(mirrored, image, np.arange(len(side)))]
-    half = HexMesh(mesh.points[kept], number[cells], tuple(conditions))
+    tractions = tuple(replace(t, nodes=t.nodes[kept]) for t in mesh.tractions)
+    half = HexMesh(mesh.points[kept], number[cells], tuple(conditions), tractions)
     return Half(axis, half, source, mirrored)
+
+
+def _has_mirror(traction, mesh, axis, side, image):
+    """Whether a Traction is its own mirror image, and none of its faces would be a cut one."""
+    if not np.array_equal(traction.nodes[image], traction.nodes):
+        return False
+    # The mirror turns the normal part of a vector round, and of a turn the other parts.
+    for part, whole in (
+        (traction.mean[axis], traction.mean),
+        (np.delete(traction.turn, axis), traction.turn),
+    ):
+        if np.abs(part).max() > TOLERANCE * np.abs(whole).max():
+            return False
+    faces = faces_of(mesh.cells)
+    return not (traction.nodes[faces] & (side[faces] == 0)).all(axis=2).any()
 
 
 def _as_sets(cells):

@@ -124,6 +124,12 @@ TEST(CaseFile, hash_follows_what_decides_the_answer_and_nothing_else) {
   EXPECT_NE(hash(with("value = [0.5, 0.0, 0.3]", "value = [0.5, 0.0, 0.31]")), once);
   EXPECT_NE(hash(with("components = \"xz\"", "components = \"xyz\"")), once);
   EXPECT_NE(hash(with("top = { z = [3.0, 3.0] }", "top = { z = [2.0, 3.0] }")), once);
+  const std::string forced = hash(good + "[[force]]\nset = \"top\"\ntotal = [0.0, 0.0, 1.0]\n");
+  EXPECT_NE(forced, once);
+  EXPECT_NE(hash(good + "[[force]]\nset = \"top\"\ntotal = [0.0, 0.0, 2.0]\n"), forced);
+  EXPECT_NE(hash(good + "[[force]]\nset = \"top\"\nmoment = [0.0, 0.0, 1.0]\n"), forced);
+  EXPECT_EQ(hash(good + "[[published]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n"),
+            once);
 }
 
 struct BadCase {
@@ -245,6 +251,27 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"wrong_component",
                 with("components = \"xz\"", "components = \"xw\""),
                 {"displacement.components = 'xw'"}},
+        BadCase{"force_on_nothing",
+                good + "[[force]]\nset = \"tip\"\ntotal = [0.0, 0.0, 1.0]\n",
+                {"force.set = 'tip' is not a node set", "did you mean 'top'?"}},
+        BadCase{"force_without_total_and_moment",
+                good + "[[force]]\nset = \"top\"\n",
+                {"force.total or moment must be given"}},
+        BadCase{"infinite_force",
+                good + "[[force]]\nset = \"top\"\ntotal = [0.0, inf, 1.0]\n",
+                {"force.total = inf must be in (-inf, inf)"}},
+        BadCase{"published_value_of_nothing",
+                good + "[[published]]\nset = \"tip\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n",
+                {"published.set = 'tip' is not a node set"}},
+        BadCase{"published_zero",
+                good + "[[published]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 0.0\nsource = \"a\"\n",
+                {"published.value = 0 must not be zero"}},
+        BadCase{"published_component",
+                good + "[[published]]\nset = \"top\"\ncomponent = \"w\"\nvalue = 1.0\nsource = \"a\"\n",
+                {"published.component = 'w' is not known", "x, y, z, around-x"}},
+        BadCase{"figure_of_another_reference",
+                with("reference = \"golden\"", "reference = \"published\""),
+                {"expect.figure = 'rms_relative_error' is not known", "relative_error"}},
         BadCase{"infinite_displacement",
                 with("value = [0.5, 0.0, 0.3]", "value = [0.5, 0.0, inf]"),
                 {"displacement.value = inf"}},

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "element/hexahedron.hpp"
 #include "io/case_file.hpp"
+#include "mesh/generators.hpp"
 #include "mesh/hash.hpp"
 #include "mesh/node_set.hpp"
 #include "mesh/quality.hpp"
@@ -145,6 +146,62 @@ TEST(CanonicalMesh, column_has_its_volume_and_sets) {
   EXPECT_EQ(scene.sets.at("top").size(), 16U);
   EXPECT_EQ(scene.sets.at("edge").size(), 31U);
   EXPECT_EQ(smallest_scaled_jacobian(scene.mesh), 1.0);
+}
+
+TEST(Beams, leaning_elements_keep_ends_and_volume) {
+  const Mesh upright = BeamMesh{{6.0, 0.2, 0.1}, {6, 1, 1}}.build();
+  for (const auto& [slant, alternating] : {std::pair{1.0, 0.0}, std::pair{0.0, 1.0}}) {
+    const Mesh mesh = BeamMesh{{6.0, 0.2, 0.1}, {6, 1, 1}, slant, alternating}.build();
+    expect_sound(mesh);
+    EXPECT_NEAR(volume(mesh), 6.0 * 0.2 * 0.1, 1e-15);
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+      const Vector& X = upright.points[n];
+      const bool end = X[0] == 0.0 || X[0] == 6.0;
+      const double sign = alternating > 0.0 && std::lround(X[0]) % 2 == 0 ? -1.0 : 1.0;
+      const double lean = end ? 0.0 : sign * X[1];  // 45 degrees
+      EXPECT_NEAR(mesh.points[n][0], X[0] + lean, 1e-15);
+      EXPECT_EQ(mesh.points[n][1], X[1]);
+      EXPECT_EQ(mesh.points[n][2], X[2]);
+    }
+  }
+}
+
+/// The width of a section lies along y at the root and along z at the tip, a quarter of a turn later; in
+/// between it turns evenly.
+TEST(Beams, twisted_one_turns_its_section_about_x) {
+  const Mesh mesh = BeamMesh{{12.0, 1.1, 0.32}, {12, 2, 1}, 0.0, 0.0, 90.0}.build();
+  expect_sound(mesh);
+  const Mesh straight = BeamMesh{{12.0, 1.1, 0.32}, {12, 2, 1}}.build();
+  for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+    const auto& [x, y, z] = straight.points[n];
+    const double turn = x / 12.0 * std::numbers::pi / 2;
+    EXPECT_NEAR(mesh.points[n][0], x, 1e-15);
+    EXPECT_NEAR(mesh.points[n][1], std::cos(turn) * y - std::sin(turn) * z, 1e-15);
+    EXPECT_NEAR(mesh.points[n][2], std::sin(turn) * y + std::cos(turn) * z, 1e-15);
+  }
+}
+
+/// Six chords of 15 degrees: the volume of their trapezoids, between radii 4.12 and 4.32.
+TEST(Beams, curved_one_follows_its_arc) {
+  const Mesh mesh = CurvedBeamMesh{4.12, 0.2, 0.1, 90.0, {6, 1, 1}}.build();
+  expect_sound(mesh);
+  const double exact = 6 * 0.5 * std::sin(std::numbers::pi / 12) * (4.32 * 4.32 - 4.12 * 4.12) * 0.1;
+  EXPECT_NEAR(volume(mesh) / exact, 1.0, 1e-13);
+  for (const auto& [x, y, z] : mesh.points) {
+    const double r = std::hypot(x, y);
+    EXPECT_LT(std::min(std::abs(r - 4.12), std::abs(r - 4.32)), 1e-14);
+  }
+  EXPECT_EQ(mesh.points.front(), (Vector{0.0, 4.12, 0.0}));  // it begins on x = 0
+  EXPECT_NEAR(mesh.points.back()[0], 4.32, 1e-15);           // and ends on y = 0
+  EXPECT_NEAR(mesh.points.back()[1], 0.0, 1e-15);
+}
+
+TEST(TaperedPanel, has_the_area_of_cooks_membrane) {
+  const Mesh mesh = TaperedPanelMesh{48.0, {0.0, 44.0}, {44.0, 60.0}, 1.0, {4, 4, 1}}.build();
+  expect_sound(mesh);
+  EXPECT_NEAR(volume(mesh), 48.0 * (44.0 + 16.0) / 2, 1e-10);
+  const NodeSetRule middle{"middle", false, {{Interval{48.0, 48.0}, Interval{52.0, 52.0}, {}}}, {}};
+  EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), middle).size(), 2U);
 }
 
 /// A generator of the list with plain parameters, set through its own declarations: lengths differ so that

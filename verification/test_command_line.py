@@ -68,6 +68,7 @@ def test_cases_lists_every_case_with_its_requirement():
     assert outcome.returncode == 0
     lines = outcome.stdout.splitlines()
     assert sorted(line.split()[0] for line in lines) == CASES
+    assert any(line.startswith("bending ") and "12 variants" in line for line in lines)
     assert all(line.endswith(".") for line in lines)
 
 
@@ -156,6 +157,27 @@ def test_unwritable_json(block):
     outcome = sandglass("verify", block, "--json", block.parent / "none" / "verdicts.json")
     assert outcome.returncode == 2
     assert "verdicts.json: cannot be written" in outcome.stderr
+
+
+def test_name_of_many_variants_is_refused_where_one_is_needed():
+    outcome = sandglass("run", "bending")
+    assert outcome.returncode == 2
+    assert "'bending' has 12 variants, and one must be named" in outcome.stderr
+    assert "bending-2-nu0.49" in outcome.stderr
+
+
+def test_unknown_variant_suggests_the_nearest():
+    outcome = sandglass("run", "bending-2-nu0.48")
+    assert outcome.returncode == 2
+    assert "did you mean 'bending-2-nu0.4" in outcome.stderr
+
+
+def test_variant_is_found_by_name_and_beside_its_file(tmp_path):
+    shutil.copy(ROOT / "cases" / "bending.toml", tmp_path / "bending.toml")
+    for name in ("bending-2-nu0.25", tmp_path / "bending-2-nu0.25"):
+        outcome = sandglass("mesh", name, "-o", tmp_path / "mesh.h5")
+        assert outcome.returncode == 0, outcome.stderr
+        assert "99 nodes, 40 elements" in outcome.stdout
 
 
 # Runs.

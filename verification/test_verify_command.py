@@ -91,6 +91,73 @@ def test_golden_of_another_case_or_mesh_ends_with_2(block, attribute):
     assert "reference/regenerate block" in outcome.stderr
 
 
+PUBLISHED = """
+[[force]]
+set = "head"
+total = [0.0, 0.0, {force}]
+
+[[published]]
+set = "head"
+component = "z"
+value = {value}
+source = "a calculation by hand"
+
+[[expect]]
+method = "tl-full"
+reference = "published"
+figure = "relative_error"
+{limit}
+reason = "a test"
+
+[[variants.nu]]
+name = "soft"
+material.young_modulus = 1500.0
+
+[[variants.nu]]
+name = "hard"
+material.young_modulus = 3000.0
+"""
+
+
+def test_published_values_in_tables_and_json(block):
+    """A bar under a stress of 1e-6 of its modulus grows by that share of its length.
+
+    At nu = 0 the foot holds nothing back. What is not linear is 1e-6 of that.
+    """
+    text = BLOCK.replace("poisson_ratio = 0.49", "poisson_ratio = 0.0")
+    text = text[: text.rindex("[[displacement]]")]
+    force = 1e-6 * 3000.0 * 0.01
+    published = PUBLISHED.format(force=force, value=1e-6 * 0.2, limit="below = 1.001")
+    block.write_text(text + published)
+    verdicts = block.parent / "verdicts.json"
+    outcome = sandglass("verify", block, "--json", verdicts)
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    document = json.loads(verdicts.read_text())
+    assert document["records"] == []
+    records = document["published"]
+    assert [r["case"] for r in records] == ["block-soft"] * len(methods()) + ["block-hard"] * len(
+        methods()
+    )
+    for record in records:
+        (value,) = record["values"]
+        assert record["status"] == "ok" and record["family"] == "block"
+        assert value["ratio"] == pytest.approx(
+            {"soft": 2.0, "hard": 1.0}[record["variants"][0]], rel=1e-5
+        )
+        assert value["published"] == 2e-7 and value["truth"] is None
+    assert "block: computed over published (a calculation by hand)" in outcome.stdout
+    rows = [line.split() for line in outcome.stdout.splitlines()]
+    for method in methods():
+        assert [method, "2.0000", "1.0000"] in rows
+    block.write_text(text + published.replace("below = 1.001", "below = 0.5"))
+    outcome = sandglass("verify", block)
+    assert outcome.returncode == 1
+    assert "BROKEN block-soft tl-full" in outcome.stdout
+    assert "holds  block-hard tl-full" in outcome.stdout
+    outcome = sandglass("verify", block.parent / "block-hard")
+    assert outcome.returncode == 0
+
+
 def test_truncated_golden_ends_with_2(block):
     write_golden(block)
     golden = block.parent / "golden.h5"

@@ -109,7 +109,7 @@ def read_verdicts(path):
     if not runs:
         raise ReportError(f"{path}: records is empty: nothing ran, there is nothing to report")
     limits = tuple(_limit(path, i, r) for i, r in enumerate(_list(path, document, "limits")))
-    provenance = {name: str(v) for name, v in document.items() if name not in ("records", "limits")}
+    provenance = {name: str(v) for name, v in document.items() if not isinstance(v, list)}
     return Verdicts(provenance, runs, limits)
 
 
@@ -179,8 +179,8 @@ def _run(path, index, record):
 def _limit(path, index, record):
     where = f"{path}: limits[{index}]"
     reference = _field(where, record, "reference", str)
-    if reference not in REFERENCES:
-        raise ReportError(f"{where}.reference = {reference!r}: must be golden or truth")
+    if reference not in (*REFERENCES, "published"):
+        raise ReportError(f"{where}.reference = {reference!r}: must be golden, truth or published")
     return Limit(
         case=_field(where, record, "case", str),
         method=_field(where, record, "method", str),

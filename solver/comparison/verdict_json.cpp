@@ -94,7 +94,8 @@ std::string to_json(const Provenance& provenance, const std::vector<Verdict>& ve
                     const std::vector<LimitCheck>& limits) {
   Json document;
   for (const auto& [name, value] : provenance) document[name] = value;
-  document["records"] = document["published"] = Json::array();
+  document["records"] = Json::array();
+  document["published"] = Json::array();
   for (const auto& verdict : verdicts) {
     if (verdict.published.empty()) {
       document["records"].push_back(to_record(verdict));

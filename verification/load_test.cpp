@@ -1,0 +1,274 @@
+/// Imposed forces: consistent nodal loads, exact answers under them, work and momentum.
+
+#include <gtest/gtest.h>
+
+#include "math/strain.hpp"
+#include "mesh/face_load.hpp"
+#include "stepping/body.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/relaxation.hpp"
+#include "stepping/stable_step.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+Vector cross_product(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Sum of nodal loads.
+Vector sum_of(const std::vector<NodalLoad>& loads) {
+  Vector sum{};
+  for (const auto& load : loads) {
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += load.force[i];
+  }
+  return sum;
+}
+
+/// Moment of nodal loads about a point.
+Vector moment_of(const std::vector<NodalLoad>& loads, const NodalField& points, const Vector& c) {
+  Vector sum{};
+  for (const auto& load : loads) {
+    const Vector& X = points[index(load.node)];
+    const Vector m = cross_product({X[0] - c[0], X[1] - c[1], X[2] - c[2]}, load.force);
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += m[i];
+  }
+  return sum;
+}
+
+void expect_near(const Vector& a, const Vector& b, double tolerance) {
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance);
+}
+
+/// Uniform traction on a trapezoid with parallel edges a and b at distance h: a node of edge a carries
+/// h (2 a + b) / 12 of it, the integral of its bilinear function. One Gauss point or equal shares would give
+/// h (a + b) / 8 to each.
+TEST(FaceLoad, trapezoid_is_shared_out_exactly) {
+  const double a = 3.0, b = 1.0, h = 2.0;
+  const NodalField points{{0, 0, 0}, {a, 0, 0}, {0.5 + b, h, 0}, {0.5, h, 0}};
+  const double area = h * (a + b) / 2;
+  const auto loads = consistent_loads(points, {{0, 1, 2, 3}}, {0.0, area, -2.0 * area}, {});
+  ASSERT_EQ(loads.size(), 4U);
+  for (const auto& [node, force] : loads) {
+    const double share = node < 2 ? h * (2 * a + b) / 12 : h * (a + 2 * b) / 12;
+    expect_near(force, {0.0, share, -2.0 * share}, 1e-15 * area);
+  }
+}
+
+/// A moment about the normal of a square turns it; one about its middle line bends it: with edges of 2 c the
+/// traction is b z, and a corner carries the integral of (1 + z/c)/4 b z, which is b c^3 / 3 = M / (4 c).
+TEST(FaceLoad, moments_act_like_twisting_and_bending_stresses) {
+  const double c = 0.5, M = 1.7;
+  const NodalField points{{3, -c, -c}, {3, c, -c}, {3, c, c}, {3, -c, c}};
+  for (const auto& [node, force] : consistent_loads(points, {{0, 1, 2, 3}}, {}, {0.0, M, 0.0})) {
+    expect_near(force, {points[index(node)][2] / c * M / (4 * c), 0.0, 0.0}, 1e-14);
+  }
+  for (const auto& [node, force] : consistent_loads(points, {{0, 1, 2, 3}}, {}, {M, 0.0, 0.0})) {
+    const auto& X = points[index(node)];
+    // By symmetry (0, -z, y) s; 4 corners at distance c sqrt(2): M = 8 c^2 s.
+    const double s = M / (8 * c * c);
+    expect_near(force, {0.0, -s * X[2], s * X[1]}, 1e-14);
+  }
+}
+
+/// Sum and moment of the nodal loads are exact on warped faces, too, and about any point.
+TEST(FaceLoad, sum_and_moment_are_exact_on_warped_faces) {
+  RandomGeometry random(41);
+  Mesh mesh = box({1.0, 2.0, 3.0}, {2, 3, 4});
+  for (auto& X : mesh.points) {
+    for (double& x : X) x += random.uniform(-0.1, 0.1);
+  }
+  const auto faces = faces_within(mesh, nodes_where(mesh.points, [](const Vector& X) { return X[2] > 2.6; }));
+  ASSERT_EQ(faces.size(), 6U);
+  const Vector F{0.3, -0.7, 0.2}, M{-0.4, 0.6, 0.9};
+  const auto pulled = consistent_loads(mesh.points, faces, F, {});
+  expect_near(sum_of(pulled), F, 1e-15);
+  const auto turned = consistent_loads(mesh.points, faces, {}, M);
+  expect_near(sum_of(turned), {}, 1e-14);
+  expect_near(moment_of(turned, mesh.points, {}), M, 1e-13);
+  expect_near(moment_of(turned, mesh.points, {5.0, -3.0, 1.0}), M, 1e-13);
+  // The sum acts in the centroid: it has no moment about the point that a force of its own leaves alone.
+  const auto both = consistent_loads(mesh.points, faces, F, M);
+  const Vector alone = moment_of(pulled, mesh.points, {});
+  expect_near(moment_of(both, mesh.points, {}), {alone[0] + M[0], alone[1] + M[1], alone[2] + M[2]}, 1e-13);
+}
+
+TEST(FaceLoad, only_boundary_faces_with_all_nodes_in_the_set_are_loaded) {
+  const Mesh mesh = box({1.0, 1.0, 1.0}, {3, 3, 3});
+  const auto all = nodes_where(mesh.points, [](const Vector&) { return true; });
+  EXPECT_EQ(faces_within(mesh, all).size(), 6U * 9);  // those inside have all their nodes in the set, too
+  const auto strip = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 1.0 && X[0] < 0.4; });
+  EXPECT_EQ(faces_within(mesh, strip).size(), 3U);
+  const auto edge = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 1.0 && X[0] == 0.0; });
+  EXPECT_TRUE(faces_within(mesh, edge).empty());
+}
+
+/// A bar on three planes of symmetry, pulled along z by a force on its end.
+Scene pulled_bar(const AnyLaw& law, double force) {
+  Case description = plain_case(law);
+  Mesh mesh = box({0.1, 0.2, 0.4}, {2, 2, 4});
+  NodeSets sets{{"end", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.4; })}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string name = std::string("plane ") + "xyz"[i];
+    sets[name] = nodes_where(mesh.points, [i](const Vector& X) { return X[i] == 0.0; });
+    ImposedDisplacement held{name, {}, {}};
+    held.components[i] = true;
+    description.displacements.push_back(held);
+  }
+  description.forces = {{"end", {0.0, 0.0, force}, {}}};
+  return make_scene(description, mesh, sets);
+}
+
+template <class Pair>
+class LoadTest : public ::testing::Test {
+ protected:
+  static MethodChoice method() { return {std::string(Pair::Method::name), {}}; }
+  static auto law(double nu = 0.45) { return sample_law<typename Pair::Law>(nu); }
+};
+
+TYPED_TEST_SUITE(LoadTest, PathIndependentPairTypes, EntryName);
+
+/// A bar under a dead load on its end stretches uniformly, and its first Piola stress along z is load over
+/// undeformed area, the others vanish: small, and with a stress of a third of Young's modulus. The residual
+/// of 1e-8 leaves stresses of that share of the largest.
+TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
+  if (zero_energy_modes<typename TypeParam::Method>() > 6) return;  // such modes keep what the path gave
+  const auto law = this->law();
+  for (const double stress : {1e-6, 1.0 / 3.0}) {
+    const double force = stress * young_modulus_of(law) * 0.1 * 0.2;
+    const Scene scene = pulled_bar(law, force);
+    Observer silent;
+    const Relaxation answer = relax(Model(scene, this->method()), silent);
+    ASSERT_TRUE(answer.converged);
+    const Vector& u = answer.u.back();
+    const Tensor<double> H{{u[0] / 0.1, 0, 0, 0, u[1] / 0.2, 0, 0, 0, u[2] / 0.4}};
+    const Tensor<double> P = law.piola(H);
+    EXPECT_NEAR(P(2, 2) * 0.1 * 0.2 / force, 1.0, 1e-6);
+    EXPECT_NEAR(P(0, 0) * 0.1 * 0.2 / force, 0.0, 1e-6);
+    EXPECT_NEAR(P(1, 1) * 0.1 * 0.2 / force, 0.0, 1e-6);
+    for (std::size_t n = 0; n < answer.u.size(); ++n) {
+      const Vector exact = linear(H, scene.mesh.points[n]);
+      expect_near(answer.u[n], exact, 1e-6 * std::abs(u[2]));
+    }
+  }
+}
+
+/// In the linear range the work of the loads is half of load times displacement, and all of it is stored.
+TYPED_TEST(LoadTest, work_is_stored_in_the_small) {
+  const auto law = this->law();
+  const double force = 1e-7 * young_modulus_of(law) * 0.1 * 0.2;
+  const Scene scene = pulled_bar(law, force);
+  Recorder recorder;
+  const Relaxation answer = relax(Model(scene, this->method()), recorder);
+  double path = 0.0;
+  for (const auto& load : scene.loads) path += load.force[2] * answer.u[index(load.node)][2];
+  EXPECT_NEAR(recorder.rows.back().external_work / (0.5 * path), 1.0, 1e-12);
+  // Half a force of 1e-7 E is off by that share; the residual of 1e-8 by its own.
+  EXPECT_NEAR(total_energy(recorder.rows.back()) / (0.5 * path), 1.0, 1e-6);
+}
+
+/// What the loads put in is found in the body: work = kinetic + strain + hourglass, to second order.
+TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
+  const auto law = this->law();
+  const auto imbalance = [&](double fraction) {
+    Scene scene = pulled_bar(law, 0.1 * young_modulus_of(law) * 0.1 * 0.2);
+    scene.description.quasi_static = false;
+    const Model probe(scene, this->method());
+    DynamicsSettings& settings = scene.description.dynamics;
+    settings.time_step = fraction * stable_step(probe, NodalField(scene.mesh.points.size())).step;
+    settings.duration = 0.3;
+    settings.ramp_time = 0.2;
+    settings.check_interval = 1;
+    Recorder recorder;
+    integrate(Model(scene, this->method()), recorder);
+    double largest = 0.0;
+    for (const auto& row : recorder.rows) {
+      largest = std::max(largest, std::abs(row.external_work - total_energy(row)));
+    }
+    EXPECT_GT(recorder.rows.back().external_work, 0.0);
+    return largest / recorder.rows.back().external_work;
+  };
+  const double coarse = imbalance(0.4);
+  EXPECT_LT(coarse, 0.02);
+  EXPECT_NEAR(coarse / imbalance(0.2), 4.0, 1.2);
+}
+
+/// A free body under a force that follows the loading curve has the momentum F T / 2 at the end of the ramp,
+/// for the curve's mean is 1/2. Its first and third derivatives are the same at both ends, so that a sum over
+/// n equal steps gives that to n^-6 (Euler and Maclaurin), here 1e-9. A wrong time or factor shows at once.
+TEST(Load, force_gives_a_free_body_its_momentum) {
+  Case description = plain_case(sample_law<NeoHookean>(0.3));
+  description.quasi_static = false;
+  description.dynamics.duration = 0.2;
+  description.dynamics.time_step = 0.2 / 32;
+  const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});
+  const NodeSets sets{{"top", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.1; })}};
+  const Vector F{0.2, -0.1, 0.4};
+  description.forces = {{"top", F, {}}};
+  const Scene scene = make_scene(description, mesh, sets);
+  const Model model(scene, {"tl-full", {}});
+  Observer silent;
+  const Motion motion = integrate(model, silent);
+  Vector momentum{};
+  for (std::size_t n = 0; n < motion.v.size(); ++n) {
+    for (std::size_t i = 0; i < 3; ++i) momentum[i] += model.masses()[n] * motion.v[n][i];
+  }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(momentum[i] / (0.5 * 0.2 * F[i]), 1.0, 1e-9);
+}
+
+/// A load on held nodes goes straight into their reactions: these balance all loads, and nothing moves.
+TEST(Load, reactions_carry_all_loads) {
+  Case description = plain_case(sample_law<NeoHookean>(0.3));
+  const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 2});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.2; })}};
+  description.displacements = {{"foot", {}}};
+  description.forces = {{"foot", {0.0, 3.0, 0.0}, {}}, {"head", {0.0, 0.01, 0.02}, {}}};
+  const Scene scene = make_scene(description, mesh, sets);
+  expect_near(sum_of(scene.loads), {0.0, 3.01, 0.02}, 1e-15);
+  const Model model(scene, {"tl-perturbation", {}});
+  Observer silent;
+  const Relaxation answer = relax(model, silent);
+  ASSERT_TRUE(answer.converged);
+  const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
+  Body<double> body(model, elements);
+  body.state() = state_at(elements, answer.u);
+  body.impose(1.0);
+  body.evaluate_forces();
+  Vector sum{};
+  for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
+    sum[index(scene.constraints[k].component)] += body.reactions()[k];
+  }
+  expect_near(sum, {0.0, -3.01, -0.02}, 3e-8);  // the residual, 1e-8 of loads and reactions
+}
+
+/// Relative errors are in units of the largest imposed displacement; under forces alone, of the reference's
+/// own largest one.
+TEST(Load, unit_of_errors_without_imposed_displacement_is_the_references_own) {
+  Scene scene = pulled_bar(sample_law<NeoHookean>(0.3), 1.0);
+  const NodalField reference{{0, 0, 0}, {0.3, 0.0, -0.4}, {0.1, 0.1, 0.1}};
+  EXPECT_EQ(largest_imposed(scene), 0.0);
+  EXPECT_EQ(displacement_unit(scene, reference), 0.5);
+  scene.description.displacements.push_back({"end", {0.0, 0.0, 0.02}});
+  EXPECT_EQ(displacement_unit(scene, reference), 0.02);
+}
+
+TEST(Load, set_without_faces_is_refused) {
+  Case description = plain_case(sample_law<NeoHookean>(0.3));
+  const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});
+  description.forces = {{"edge", {1.0, 0.0, 0.0}, {}}};
+  const NodeSets sets{
+      {"edge", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.1 && X[0] == 0.0; })}};
+  const std::string text = input_error([&] { make_scene(description, mesh, sets); });
+  EXPECT_TRUE(
+      contains(text, "made-in-a-test.toml: force.set = 'edge' has no boundary face among its 3 nodes"));
+  description.forces = {{"egde", {1.0, 0.0, 0.0}, {}}};
+  EXPECT_TRUE(contains(input_error([&] { make_scene(description, mesh, sets); }), "did you mean 'edge'?"));
+}
+
+}  // namespace
+}  // namespace sandglass::verification

@@ -1,0 +1,139 @@
+/// Published values: what is compared with them, limits on it, tables and JSON.
+
+#include <gtest/gtest.h>
+
+#include "comparison/published_table.hpp"
+#include "comparison/verdict_json.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// A block whose upper face is a set.
+Scene block_with(const std::vector<PublishedValue>& published) {
+  Case description = plain_case(sample_law<NeoHookean>(0.3));
+  const Mesh mesh = box({1.0, 2.0, 3.0}, {2, 3, 1});
+  const NodeSets sets{{"top", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 3.0; })}};
+  description.published = published;
+  return make_scene(description, mesh, sets);
+}
+
+PublishedValue value_of(const std::string& component, double value = 1.0) {
+  return {"top", component, value, "a book"};
+}
+
+/// u = a + b x X has the rotation b about any axis, whatever a is, and the mean a + b x (middle of the face).
+TEST(Published, mean_and_rotation_of_a_rigid_motion) {
+  const Scene scene = block_with({});
+  const Vector a{0.3, -0.1, 0.2}, b{1e-3, -2e-3, 3e-3};
+  NodalField u;
+  for (const auto& X : scene.mesh.points) {
+    u.push_back({a[0] + b[1] * X[2] - b[2] * X[1], a[1] + b[2] * X[0] - b[0] * X[2],
+                 a[2] + b[0] * X[1] - b[1] * X[0]});
+  }
+  const Vector mean{a[0] + b[1] * 3.0 - b[2] * 1.0, a[1] + b[2] * 0.5 - b[0] * 3.0,
+                    a[2] + b[0] * 1.0 - b[1] * 0.5};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string axis(1, "xyz"[i]);
+    EXPECT_NEAR(motion_of(scene, u, value_of(axis)), mean[i], 1e-15);
+    EXPECT_NEAR(motion_of(scene, u, value_of("around-" + axis)), b[i], 1e-15);
+  }
+}
+
+/// Stretch and shear without rotation turn nothing: on a face of equal sides the shear's two halves cancel.
+TEST(Published, pure_strain_is_no_rotation) {
+  Case description = plain_case(sample_law<NeoHookean>(0.3));
+  const Mesh mesh = box({1.0, 1.0, 1.0}, {2, 2, 2});
+  const NodeSets sets{{"top", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 1.0; })}};
+  const Scene scene = make_scene(description, mesh, sets);
+  const Tensor<double> strain{{0.01, 0.02, 0, 0.02, -0.03, 0, 0, 0, 0.04}};
+  NodalField u;
+  for (const auto& X : mesh.points) u.push_back(linear(strain, X));
+  EXPECT_NEAR(motion_of(scene, u, value_of("around-z")), 0.0, 1e-16);
+}
+
+/// Results of a scene with two published values whose nodes all move by `move`.
+std::vector<PublishedResult> results(const Vector& move) {
+  const Scene scene = block_with({value_of("x", 0.5), value_of("z", -0.2)});
+  const NodalField u(scene.mesh.points.size(), move), truth(u.size(), Vector{0.4, 0.0, -0.125});
+  auto found = published_results(scene, truth);
+  EXPECT_FALSE(largest_relative_error(found).has_value());
+  fill_computed(scene, u, found);
+  return found;
+}
+
+TEST(Published, ratios_and_the_largest_error) {
+  const auto found = results({0.45, 7.0, -0.25});
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_DOUBLE_EQ(*found[0].ratio(), 0.9);
+  EXPECT_DOUBLE_EQ(*found[1].ratio(), 1.25);
+  EXPECT_DOUBLE_EQ(*found[0].ratio_to_truth(), 1.125);
+  EXPECT_DOUBLE_EQ(*found[1].ratio_to_truth(), 2.0);
+  EXPECT_DOUBLE_EQ(*largest_relative_error(found), 0.25);
+}
+
+/// A verdict of a variant, with the results above.
+Verdict verdict(const std::string& method, const std::string& variant, const Vector& move,
+                const std::string& status = "ok") {
+  Verdict v{.case_name = "bar-" + variant, .method = method, .status = status};
+  v.family = "bar";
+  v.variants = {variant};
+  v.published = results(move);
+  return v;
+}
+
+TEST(Published, limits_hold_or_break) {
+  Scene scene = block_with({value_of("x")});
+  scene.description.name = "bar-1";
+  const auto check = [&](std::optional<double> below, std::optional<double> above, const Verdict& v) {
+    scene.description.expectations = {
+        {"tl-full", "auto", "published", "relative_error", below, above, "a test"}};
+    return check_limits(scene, {v}).at(0).holds;
+  };
+  const Verdict near = verdict("tl-full", "1", {0.45, 0.0, -0.22});  // off by a tenth in both
+  EXPECT_TRUE(check(0.11, {}, near));
+  EXPECT_FALSE(check(0.09, {}, near));
+  EXPECT_TRUE(check({}, 0.09, near));
+  EXPECT_FALSE(check({}, 0.11, near));
+  Verdict failed = verdict("tl-full", "1", {0.45, 0.0, -0.22}, "failed: not at rest");
+  EXPECT_FALSE(check(0.11, {}, failed));
+}
+
+/// Rows are methods, columns the variants with each of their values; a failed run shows no number, a verdict
+/// without published values no row.
+TEST(Published, tables_have_a_row_for_each_method_and_a_column_for_each_value) {
+  const std::string text = published_tables({verdict("tl-none", "1", {0.45, 0, -0.25}),
+                                             verdict("tl-full", "1", {0.5, 0, 25.0}),
+                                             verdict("tl-none", "2", {0.1, 0, -0.1}, "failed: why"),
+                                             verdict("tl-full", "2", {0.1, 0, -0.1}),
+                                             {.case_name = "other", .method = "ul-full", .status = "ok"}});
+  EXPECT_TRUE(contains(text, "bar: computed over published (a book)"));
+  EXPECT_TRUE(contains(text, "bar: computed over truth"));
+  const auto row = [&](const std::string& name, const std::string& after) {
+    std::istringstream stream(text.substr(text.find(name, text.find(after))));
+    std::string line;
+    std::getline(stream, line);
+    std::istringstream words(line);
+    return std::vector<std::string>(std::istream_iterator<std::string>(words), {});
+  };
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(row("tl-none", "published"), (Words{"tl-none", "0.9000", "1.2500", "failed", "failed"}));
+  EXPECT_EQ(row("tl-full", "published"), (Words{"tl-full", "1.0000", "-1.2e+02", "0.2000", "0.5000"}));
+  EXPECT_EQ(row("tl-none", "over truth"), (Words{"tl-none", "1.1250", "2.0000", "failed", "failed"}));
+  EXPECT_EQ(text.find("ul-full"), std::string::npos);
+}
+
+TEST(Published, json_keeps_such_runs_apart_with_every_value) {
+  const std::string text = to_json({}, {verdict("tl-full", "1", {0.45, 0, -0.25})}, {});
+  for (const char* part :
+       {"\"records\": []", "\"case\": \"bar-1\"", "\"family\": \"bar\"", "\"source\": \"a book\"",
+        "\"component\": \"z\"", "\"published\": -0.2", "\"computed\": -0.25", "\"ratio\": 1.25",
+        "\"truth\": -0.125", "\"ratio_to_truth\": 2.0"}) {
+    EXPECT_TRUE(contains(text, part));
+  }
+}
+
+}  // namespace
+}  // namespace sandglass::verification
