@@ -34,7 +34,7 @@ struct ViscousHourglassControl {
   using History = NoHistory<T>;
 
   template <class Law>
-  static double auto_kappa(const Law& /*law*/) {
+  static double auto_kappa(const Law& /*law*/, KappaModulus /*modulus*/ = KappaModulus::p_wave) {
     return 0.1;
   }
 

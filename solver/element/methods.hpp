@@ -214,6 +214,11 @@ inline constexpr bool is_condensed = requires {
   requires Method::condensed;
 };
 
+/// Whether a method knows what to do with a law: small-strain theory takes a law's moduli at rest, and would
+/// forget that it relaxes.
+template <class Method, class Law>
+inline constexpr bool knows_law = !(is_linear<Method> && law_remembers<Law>);
+
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>
 using FormulationOf = Formulation<typename Method::Kinematics, typename Method::Hourglass, Law>;

@@ -40,6 +40,11 @@ auto kernel_law(const Viscoelastic<Law>& law) {
 /// A law chosen at run time.
 using AnyLaw = VariantOf<Laws>;
 
+/// The name of a law chosen at run time.
+inline std::string_view name_of(const AnyLaw& any_law) {
+  return std::visit([]<class Law>(const Law&) { return Law::name; }, any_law);
+}
+
 /// Lame's first parameter at rest, lambda = K - 2/3 mu, in Pa.
 template <class Law>
 constexpr double lame_lambda(const Law& law) {

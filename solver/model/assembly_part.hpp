@@ -18,8 +18,15 @@ ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& any_law, const Met
           [&](const auto& chosen) {
             const auto law = kernel_law(chosen);
             using Law = std::remove_const_t<decltype(law)>;
-            force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Number>>(
-                mesh, law, settings, choice.threads);
+            if constexpr (knows_law<Method, Law>) {
+              force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Number>>(
+                  mesh, law, settings, choice.threads);
+            } else {
+              throw InputError(
+                  fmt::format("law: '{}' relaxes, which method '{}' takes no notice of; allowed: an elastic "
+                              "law, or another method",
+                              name_of(any_law), Method::name));
+            }
           },
           any_law);
     }

@@ -28,10 +28,13 @@ void for_each_stiffness(const Model& model,
     if constexpr (is_linear<Method>) {
       std::visit(
           [&]<class Law>(const Law& law) {
-            using Kernel = NodalForm<FormulationOf<Method, Law>>;
-            for (const auto& cell : mesh.cells) {
-              const auto element = Kernel::precompute(gather(mesh.points, cell), law, {choice.kappa});
-              visit(cell, stiffness_of<Kernel>(element, law));
+            if constexpr (knows_law<Method, Law>) {  // others were refused when the model was made
+              using Kernel = NodalForm<FormulationOf<Method, Law>>;
+              const HourglassSettings settings{.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
+              for (const auto& cell : mesh.cells) {
+                const auto element = Kernel::precompute(gather(mesh.points, cell), law, settings);
+                visit(cell, stiffness_of<Kernel>(element, law));
+              }
             }
           },
           model.scene().description.law);
