@@ -25,9 +25,10 @@ Law sample_law(double poisson_ratio, double young_modulus = sample_young_modulus
     // Ogden's terms share the shear modulus: brain tissue's exponent beside one that stiffens in stretch.
     // With more of the former, uniform stretch of elements without hourglass control is no stable
     // equilibrium.
-    if (name == "mu1" || name == "mu2") return 0.5 * young_modulus / 2.0 / (1.0 + poisson_ratio);
+    if (name == "mu1") return 0.4 * young_modulus / 2.0 / (1.0 + poisson_ratio);
+    if (name == "mu2") return 0.6 * young_modulus / 2.0 / (1.0 + poisson_ratio);
     if (name == "alpha1") return -4.7;
-    if (name == "alpha2") return 6.0;
+    if (name == "alpha2") return 5.0;
     if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
     return std::isfinite(range.low) ? range.low + 1.0 : 1.0;
   };
