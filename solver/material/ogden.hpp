@@ -50,8 +50,9 @@ struct Ogden : QuadraticVolume<Ogden> {
   T isochoric_energy(const Tensor<T>& H) const {
     const auto x = logarithmic_stretches(spectrum(relative_deviator(H)).values);
     T W = T(0);
-    for (const T& x_a : x)
+    for (const T& x_a : x) {
       W = W + x_a * x_a * sum_of_terms(x_a, [](const T& y) { return relative_exponential_remainder(y); });
+    }
     return W;
   }
 
@@ -91,7 +92,8 @@ struct Ogden : QuadraticVolume<Ogden> {
   /// Stretch along the axes, l_a = L_aa: sum_a (k_a (dev l)_a^2 - t_a l_a^2) with k_a = sum_p 2 mu_p
   /// lbar_a^alpha_p. With l = s u + w, u = (1, 1, 1)/sqrt 3, w normal to it, that is at most
   /// top |w|^2 + 2 |t|/sqrt 3 |s| |w|, since the t_a sum to zero; top = mean(k - t) + |dev(k - t)|/sqrt 6 is
-  /// the larger eigenvalue of diag(k - t) between such w. The mixed term is halved between s^2 and |w|^2.
+  /// the larger eigenvalue of diag(k - t) between such w. The mixed term is halved between s^2 = (tr L)^2 / 3
+  /// and |w|^2.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
     const std::array<T, 3> S = spectrum(relative_deviator(H)).values;

@@ -35,7 +35,8 @@ namespace detail {
 
 /// One Jacobi rotation by the angle that clears S_pq: t = tan of it is the smaller root of
 /// t^2 + (S_qq - S_pp)/S_pq t - 1 = 0 (Golub & Van Loan, Matrix Computations, section 8.5.2). |t| <= 1 also
-/// where squares underflow, and t = 0 where S_pq is 0.
+/// where squares underflow, and t = 0 where S_pq is 0. Entries change by what the rotation adds to them (h is
+/// the tangent of half the angle): small rotations leave small roundings.
 template <int p, int q, class T>
 void rotate(Tensor<T>& S, Tensor<T>& axes) {
   constexpr int r = third_axis(p, q);
@@ -47,14 +48,15 @@ void rotate(Tensor<T>& S, Tensor<T>& axes) {
   const T t = twice / select(difference < T(0), -sum, sum);
   const T c = T(1) / sqrt(T(1) + t * t);
   const T s = t * c;
+  const T h = s / (T(1) + c);
   const T moved = t * S(p, q);
   S(p, p) = S(p, p) - moved;
   S(q, q) = S(q, q) + moved;
   S(p, q) = T(0);
   const auto turn = [&](T& at_p, T& at_q) {
     const T old = at_p;
-    at_p = c * old - s * at_q;
-    at_q = s * old + c * at_q;
+    at_p = old - s * (at_q + h * old);
+    at_q = at_q + s * (old - h * at_q);
   };
   turn(r < p ? S(r, p) : S(p, r), r < q ? S(r, q) : S(q, r));
   for (int i = 0; i < 3; ++i) turn(axes(i, p), axes(i, q));

@@ -30,11 +30,12 @@ inline double sample_value(std::string_view name, std::string_view unit, const R
   if (name == "c1") return mu / 2.0;
   if (name == "c2") return -mu / 20.0;
   if (name == "c3") return mu / 100.0;
-  // Ogden: mu = mu1 + mu2, brain tissue's exponent and a stiffening one.
-  if (name == "mu1") return 0.7 * mu;
-  if (name == "mu2") return 0.3 * mu;
+  // Ogden: mu = mu1 + mu2, brain tissue's exponent beside one that stiffens in stretch. With more of the
+  // former, uniform stretch of elements without hourglass control is no stable equilibrium.
+  if (name == "mu1") return 0.4 * mu;
+  if (name == "mu2") return 0.6 * mu;
   if (name == "alpha1") return -4.7;
-  if (name == "alpha2") return 3.0;
+  if (name == "alpha2") return 5.0;
   // Brain tissue: Miller and Chinzei 2002, J. Biomech. 35:483.
   if (name == "relaxation_1") return 0.450;
   if (name == "time_1") return 0.50;
