@@ -122,9 +122,9 @@ class ViscoelasticPoint : public Law {
   }
 
   /// The elastic law's bound and that of the stress that stays behind when the strain changes. A further step
-  /// answers with (1 - sum_i f_i) S + R, R = sum_i (f_i S - Q_i), where f_i is between 0 and g_i. The first
-  /// part is softer than the elastic law, the second adds (F R F^T) : (L^T L) to the second variation, and
-  /// the largest of it is at an end of each f_i, where f_i S - Q_i is -Q_i or h_i.
+  /// answers with (1 - sum_i follow_i) S + R, R = -sum_i (b Q_i + (b - a) h_i), a = exp(-x), b = (1 - a) / x,
+  /// x = dt/tau_i. The first part is softer than the elastic law; the second adds (F R F^T) : (L^T L) to the
+  /// second variation, where max(|Q_i|, |h_i|) bounds each part for any step because b + (b - a) <= 1.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
     return elastic().isochoric_tangent_bound(H) + memory_bound(H);
