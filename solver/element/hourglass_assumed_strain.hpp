@@ -77,7 +77,7 @@ struct AssumedStrain {
       return T(0.5) * energy;
     }
 
-    T bound() const { return row_sum_bound(matrix_of<T>(*this)); }
+    T bound() const { return block_row_sum_bound(matrix_of<T>(*this)); }
   };
 
   template <class T>
