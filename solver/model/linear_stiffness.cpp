@@ -28,10 +28,17 @@ void for_each_stiffness(const Model& model,
     if constexpr (is_linear<Method>) {
       std::visit(
           [&]<class Law>(const Law& law) {
-            using Kernel = NodalForm<FormulationOf<Method, Law>>;
-            for (const auto& cell : mesh.cells) {
-              const auto element = Kernel::precompute(gather(mesh.points, cell), law, {choice.kappa});
-              visit(cell, stiffness_of<Kernel>(element, law));
+            using Element = FormulationOf<Method, Law>;
+            if constexpr (Element::remembers) {
+              throw InputError(
+                  fmt::format("law '{}' remembers, so that method '{}' has no constant stiffness", Law::name,
+                              Method::name));
+            } else {
+              using Kernel = NodalForm<Element>;
+              for (const auto& cell : mesh.cells) {
+                const auto element = Kernel::precompute(gather(mesh.points, cell), law, {choice.kappa});
+                visit(cell, stiffness_of<Kernel>(element, law));
+              }
             }
           },
           model.scene().description.law);
