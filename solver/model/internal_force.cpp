@@ -26,10 +26,27 @@ void require_sensible(const MethodChoice& choice) {
   }
 }
 
+/// Small-strain methods take a law's tangent at rest, where a memory has no place.
+void require_no_memory(const AnyLaw& any_law, const MethodChoice& choice) {
+  with_method(choice.method, [&]<class Method>() {
+    std::visit(
+        [&]<class Law>(const Law& /*law*/) {
+          if constexpr (is_linear<Method> && FormulationOf<Method, Law>::remembers) {
+            throw InputError(
+                fmt::format("method '{}' knows small strains only, not what law '{}' remembers of them; "
+                            "allowed: a law without memory, or another method",
+                            Method::name, Law::name));
+          }
+        },
+        any_law);
+  });
+}
+
 }  // namespace
 
 AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice) {
   require_sensible(choice);
+  require_no_memory(law, choice);
   if (choice.kernel == KernelWidth::scalar) return make_scalar_double(mesh, law, choice);
   if (choice.precision == Precision::double_precision) return make_packed_double(mesh, law, choice);
   return make_packed_float(mesh, law, choice);
