@@ -210,6 +210,49 @@ TEST(CondensedTest, driven_nodes_may_move_each_by_itself) {
             relaxed_tolerance * largest_imposed(twisted));
 }
 
+/// Imposed forces superpose on imposed displacements: at free nodes the internal forces of the linear method
+/// are the load, and what the handles carry balances all of it. Reciprocity (Maxwell and Betti) ties the
+/// forces on held handles under a load to the displacements at the load when handles move: R = -response^T f.
+TEST(CondensedTest, loads_superpose) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  NodalField load(scene.mesh.points.size());
+  load[70] = {0.01, -0.02, 0.03};
+  load[55] = {-0.04, 0.0, 0.01};
+  const CondensedResponse<double> response(Model(scene, condensed_method), handles_of_sets(scene),
+                                           all_nodes(scene), {load});
+  const std::vector<Vector> d{{}, {0.03, -0.01, 0.02}}, held(2);
+  const std::array<double, 1> factor{2.5}, one{1.0};
+  std::vector<Vector> f(2), R(2);
+  NodalField u(load.size()), moved(load.size());
+  response.displacements(d, u, 1, factor);
+  response.forces(d, f, factor);
+  const NodalField internal = internal_forces(Model(scene, linear_method), u);
+  std::vector<bool> driven(load.size(), false);
+  for (const auto& constraint : scene.constraints) driven[index(constraint.node)] = true;
+  double largest = 0.0;
+  for (const auto& force : internal) largest = std::max(largest, std::abs(force[0]));
+  Vector sum{};
+  for (std::size_t n = 0; n < load.size(); ++n) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum[i] += factor[0] * load[n][i];
+      if (driven[n]) continue;
+      EXPECT_NEAR(internal[n][i], factor[0] * load[n][i], 1e-11 * largest);
+    }
+  }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(f[0][i] + f[1][i], -sum[i], 1e-10 * largest);
+  response.forces(held, R, one);
+  for (std::size_t column = 0; column < 6; ++column) {
+    std::vector<Vector> unit(2);
+    unit[column / 3][column % 3] = 1.0;
+    response.displacements(unit, moved);
+    double work = 0.0;
+    for (std::size_t n = 0; n < load.size(); ++n) {
+      for (std::size_t i = 0; i < 3; ++i) work += load[n][i] * moved[n][i];
+    }
+    EXPECT_NEAR(R[column / 3][column % 3], -work, 1e-11 * 0.05);  // forces of a few hundredths
+  }
+}
+
 TEST(CondensedTest, scenes_that_it_cannot_answer_are_refused) {
   Case description = plain_case(sample_law<NeoHookean>(0.49));
   const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});

@@ -1,5 +1,7 @@
 #include "stepping/condensed_answer.hpp"
 
+#include <limits>
+
 #include "stepping/body.hpp"
 #include "stepping/condensed_response.hpp"
 
@@ -39,6 +41,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   Body<Real> body(model, elements);
   observer.frame(body.frame(0.0, no_velocity));
   observer.history({});
+  constexpr auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   Relaxation result;
   if (settings.max_steps > 0) body.move_to(superposed<Real>(model, elements.layout()));
   body.impose(1.0);
@@ -50,7 +53,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   if (settings.max_steps > 0) {
     result.steps = 1;
     result.converged = result.residual < settings.tolerance;
-    result.stagnated = !result.converged;
+    result.stagnated = !result.converged && result.residual < 1e4 * epsilon;  // as Stagnation has it
     result.interrupted = !observer.proceed(1, 1.0, result.residual);
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,

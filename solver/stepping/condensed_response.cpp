@@ -155,6 +155,13 @@ void for_each_held(const Scene& scene, const Handles& handles, const Visit& visi
   }
 }
 
+NodalField difference(NodalField a, const NodalField& b) {
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    for (std::size_t i = 0; i < 3; ++i) a[n][i] -= b[n][i];
+  }
+  return a;
+}
+
 }  // namespace
 
 Handles handles_of_sets(const Scene& scene) {
@@ -191,11 +198,12 @@ std::vector<int> all_nodes(const Scene& scene) {
 
 template <class Real>
 CondensedResponse<Real>::CondensedResponse(const Model& model, const Handles& handles,
-                                           std::vector<int> outputs)
+                                           std::vector<int> outputs, const std::vector<NodalField>& loads)
     : handles_(handles.count),
+      loads_(loads.size()),
       outputs_(std::move(outputs)),
-      response_(3 * columns() * outputs_.size()),
-      stiffness_(columns() * columns()) {
+      stiffness_(columns() * columns()),
+      load_share_(columns() * loads_) {
   const Scene& scene = model.scene();
   if (scene.constraints.empty()) {
     throw InputError(fmt::format(
@@ -204,61 +212,75 @@ CondensedResponse<Real>::CondensedResponse(const Model& model, const Handles& ha
   }
   const Model exact(scene, {.method = model.choice().method, .kappa = model.choice().kappa});
   FreeStiffness K_ff(exact);
+  response_.reserve(3 * (columns() + loads_) * outputs_.size());
+  // Balances u against a load, keeps it as a column, and calls take(row, force) for what handles carry.
+  const auto add_column = [&](NodalField u, const NodalField& load, const auto& take) {
+    K_ff.balance(difference(internal_forces(exact, u), load), u);
+    const NodalField f = difference(internal_forces(exact, u), load);
+    for_each_held(scene, handles, [&](const Constraint& c, std::size_t row) {
+      take(row, f[index(c.node)][index(c.component)]);
+    });
+    for (const int node : outputs_) {
+      for (const double component : u[index(node)]) response_.push_back(static_cast<Real>(component));
+    }
+  };
+  const NodalField nothing(scene.mesh.points.size());
   for (std::size_t column = 0; column < columns(); ++column) {
-    NodalField u(scene.mesh.points.size());
+    NodalField u = nothing;
     for_each_held(scene, handles, [&](const Constraint& c, std::size_t row) {
       if (row == column) u[index(c.node)][index(c.component)] = 1.0;
     });
-    K_ff.balance(internal_forces(exact, u), u);
-    const NodalField f = internal_forces(exact, u);
-    for_each_held(scene, handles, [&](const Constraint& c, std::size_t row) {
-      stiffness_[row * columns() + column] += f[index(c.node)][index(c.component)];
-    });
-    Real* response = response_.data() + column * 3 * outputs_.size();
-    for (const int node : outputs_) {
-      for (const double component : u[index(node)]) *response++ = static_cast<Real>(component);
-    }
+    add_column(std::move(u), nothing,
+               [&](std::size_t row, double force) { stiffness_[row * columns() + column] += force; });
+  }
+  for (std::size_t n = 0; n < loads_; ++n) {
+    add_column(nothing, loads[n],
+               [&](std::size_t row, double force) { load_share_[n * columns() + row] += force; });
   }
 }
 
 template <class Real>
-void CondensedResponse<Real>::displacements(std::span<const Vector> d, std::span<Displacement> u,
-                                            int threads) const {
+void CondensedResponse<Real>::displacements(std::span<const Vector> d, std::span<Displacement> u, int threads,
+                                            std::span<const double> factors) const {
   const std::size_t numbers = 3 * outputs_.size();
   Real* const sum = u.data()->data();
   const double* const amounts = d.data()->data();
   for_each_block(numbers, threads, [=, this](std::size_t first, std::size_t last) {
-    std::fill(sum + first, sum + last, Real(0));
-    for (std::size_t column = 0; column < columns(); ++column) {
-      const auto amount = static_cast<Real>(amounts[column]);
+    const auto add = [=, this](std::size_t column, double amount) {
+      const auto share = static_cast<Real>(amount);
       const Real* const response = response_.data() + column * numbers;
 #pragma omp simd
-      for (std::size_t k = first; k < last; ++k) sum[k] += amount * response[k];
-    }
+      for (std::size_t k = first; k < last; ++k) sum[k] += share * response[k];
+    };
+    std::fill(sum + first, sum + last, Real(0));
+    for (std::size_t column = 0; column < columns(); ++column) add(column, amounts[column]);
+    for (std::size_t n = 0; n < factors.size(); ++n) add(columns() + n, factors[n]);
   });
 }
 
 template <class Real>
-void CondensedResponse<Real>::forces(std::span<const Vector> d, std::span<Vector> f) const {
+void CondensedResponse<Real>::forces(std::span<const Vector> d, std::span<Vector> f,
+                                     std::span<const double> factors) const {
   const double* const amounts = d.data()->data();
   for (std::size_t row = 0; row < columns(); ++row) {
     const double* const S = stiffness_.data() + row * columns();
     double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
     for (std::size_t column = 0; column < columns(); ++column) sum += S[column] * amounts[column];
+    for (std::size_t n = 0; n < factors.size(); ++n) sum += load_share_[n * columns() + row] * factors[n];
     f[row / 3][row % 3] = sum;
   }
 }
 
 template <class Real>
 double CondensedResponse<Real>::operations() const {
-  return 2.0 * static_cast<double>(response_.size() + stiffness_.size());
+  return 2.0 * static_cast<double>(response_.size() + stiffness_.size() + load_share_.size());
 }
 
 template <class Real>
 double CondensedResponse<Real>::bytes() const {
   return static_cast<double>(sizeof(Real) * (response_.size() + 3 * outputs_.size()) +
-                             sizeof(double) * (stiffness_.size() + 2 * columns()));
+                             sizeof(double) * (stiffness_.size() + load_share_.size() + 2 * columns()));
 }
 
 template class CondensedResponse<double>;
