@@ -63,11 +63,12 @@ std::vector<Axis> read_axes(const toml::table& root, const std::filesystem::path
 /// Adds or replaces; moves, because copies forget their lines in the file.
 void merge(toml::table& into, toml::table&& from) {
   for (auto&& [key, node] : from) {
-    toml::table* const table = into[key.str()].as_table();
+    const toml::key& name = key;  // clang up to 16 captures no structured binding
+    toml::table* const table = into[name.str()].as_table();
     if (table != nullptr && node.is_table()) {
       merge(*table, std::move(*node.as_table()));
     } else {
-      node.visit([&](auto& value) { into.insert_or_assign(key, std::move(value)); });
+      node.visit([&](auto& value) { into.insert_or_assign(name, std::move(value)); });
     }
   }
 }
