@@ -13,11 +13,16 @@ namespace {
 template <class Real>
 Rows<Real> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
-  const CondensedResponse<Real> response(model, handles_of_sets(scene), all_nodes(scene));
+  std::vector<NodalField> loads;
+  if (!scene.loads.empty()) {
+    loads.emplace_back(layout.nodes);
+    for (const auto& [node, force] : scene.loads) loads[0][static_cast<std::size_t>(node)] = force;
+  }
+  const CondensedResponse<Real> response(model, handles_of_sets(scene), all_nodes(scene), loads);
   std::vector<Vector> d;
   for (const auto& displacement : scene.description.displacements) d.push_back(displacement.value);
   std::vector<typename CondensedResponse<Real>::Displacement> u(layout.nodes);
-  response.displacements(d, u, model.choice().threads);
+  response.displacements(d, u, model.choice().threads, std::vector<double>(loads.size(), 1.0));
   Rows<Real> rows(layout.rows());
   for (std::size_t r = 0; r < layout.nodes; ++r) {
     const auto& value = u[static_cast<std::size_t>(layout.node_of_row[r])];
@@ -57,7 +62,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
     result.interrupted = !observer.proceed(1, 1.0, result.residual);
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,
-                    work_of(scene, body.reactions()), result.residual, 1.0});
+                    work_of(scene, body.reactions()) + 0.5 * body.load_path(), result.residual, 1.0});
   observer.frame(body.frame(1.0, no_velocity));
   return result;
 }
