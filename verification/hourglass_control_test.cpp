@@ -154,7 +154,7 @@ TEST(FollowingControl, grows_as_the_mean_second_variation_of_the_isochoric_energ
       }
       sum += law.isochoric_energy(along_g).slope.slope;
     }
-    const double phi = followed_deformation(H, volume_change(H)).phi;
+    const double phi = followed_deformation<EnergySamplingControl>(H, volume_change(H)).phi;
     EXPECT_NEAR(sum / (10.0 * law.shear_modulus()), phi, 1e-12 * phi);
   }
 }
@@ -168,10 +168,10 @@ TEST(FollowingControl, sees_fluctuations_in_base_vectors_that_move_with_the_body
     HourglassModes<double> q{};
     for (auto& entry : q.entries) entry = random.uniform(-1.0, 1.0);
     const Tensor<double> H = F - identity<double>();
-    const auto followed = followed_deformation(H, volume_change(H));
+    const auto followed = followed_deformation<EnergySamplingControl>(H, volume_change(H));
     EXPECT_LT(largest_entry(convected(q * transpose(F), followed) - q), 64 * eps * 4.0);  // stretches to 2/.5
     const Tensor<double> R = random.rotation() - identity<double>();
-    EXPECT_NEAR(followed_deformation(R, volume_change(R)).phi, 1.0, 16 * eps);
+    EXPECT_NEAR(followed_deformation<EnergySamplingControl>(R, volume_change(R)).phi, 1.0, 16 * eps);
   }
 }
 

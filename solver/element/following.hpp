@@ -14,10 +14,16 @@ namespace sandglass {
 /// tr(F^-1 grad w) = sum_a r_a . grad w_a, so that a nearly incompressible element stays what it was at rest,
 /// however far it is deformed and turned. phi is how the isochoric neo-Hookean energy of fluctuations grows:
 /// the mean of its exact second variation over all fluctuations F^-1 grad w of one size is phi times the mean
-/// at rest. Forces are the derivatives of E, so that momentum and angular momentum are balanced.
+/// at rest. A control that stands for another energy than the isochoric one leaves phi = 1; one that grows
+/// says so with `grows_with_deformation = true`. Forces are the derivatives of E, so that momentum and
+/// angular momentum are balanced.
 template <class Hourglass>
 concept FollowsDeformation = requires {
   requires Hourglass::follows_deformation;
+};
+template <class Hourglass>
+concept GrowsWithDeformation = FollowsDeformation<Hourglass> && requires {
+  requires Hourglass::grows_with_deformation;
 };
 
 /// The mean deformation as a control that follows it needs it.
@@ -25,17 +31,19 @@ template <class T>
 struct FollowedDeformation {
   Tensor<T> inverse_F;
   T J_to_minus_two_thirds;
-  T phi;
+  T phi;  ///< unset where the control does not grow
 };
 
-template <class T>
+template <class Hourglass, class T>
 FollowedDeformation<T> followed_deformation(const Tensor<T>& H, const VolumeChange<T>& change) {
   const T r = change.inverse_root;
   FollowedDeformation<T> followed;
   followed.J_to_minus_two_thirds = r * r;
   followed.inverse_F = (followed.J_to_minus_two_thirds * r) * transpose(cofactor(identity<T>() + H));
-  const T third(1.0 / 3.0);
-  followed.phi = followed.J_to_minus_two_thirds * (T(1) + third * (T(2) * trace(H) + double_dot(H, H)));
+  if constexpr (GrowsWithDeformation<Hourglass>) {
+    const T third(1.0 / 3.0);
+    followed.phi = followed.J_to_minus_two_thirds * (T(1) + third * (T(2) * trace(H) + double_dot(H, H)));
+  }
   return followed;
 }
 
@@ -46,9 +54,13 @@ HourglassModes<T> convected(const HourglassModes<T>& q, const FollowedDeformatio
 }
 
 /// dE/dq_a = phi F^-T dE0/dr_a for resistances s = dE0/dr (N).
-template <class T>
+template <class Hourglass, class T>
 HourglassModes<T> turned_back(const HourglassModes<T>& s, const FollowedDeformation<T>& followed) {
-  return s * (followed.phi * followed.inverse_F);
+  if constexpr (GrowsWithDeformation<Hourglass>) {
+    return s * (followed.phi * followed.inverse_F);
+  } else {
+    return s * followed.inverse_F;
+  }
 }
 
 /// E0 (dphi/dF)^T for 2 E0 = r . s, in J; dphi/dF = 2/3 (J^(-2/3) F - phi F^-T).
@@ -81,6 +93,7 @@ T following_bound(const Matrix<T, 8, 4>& gamma, const NodalVectors<T>& g, const 
   const T material = largest_eigenvalue_bound(transpose(followed.inverse_F) * followed.inverse_F) *
                      Hourglass::stiffness_bound(gamma, control);
   const T geometric = T(2) * sqrt(gg * largest_eigenvalue_bound(transpose(gamma_Q) * gamma_Q));
+  if constexpr (!GrowsWithDeformation<Hourglass>) return material + geometric;
   const Tensor<T> d = followed.J_to_minus_two_thirds * deviator(left_cauchy_green_minus_identity(H));
   const T mixed = T(4.0 / 3.0) * sqrt(double_dot(d, d) * gg * double_dot(gamma_Q, gamma_Q));
   constexpr NeoHookean phi_minus_one{.young_modulus = 4.0 / 3.0, .poisson_ratio = 0.0};  // mu/2 = 1/3

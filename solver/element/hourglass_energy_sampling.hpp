@@ -15,6 +15,7 @@ struct EnergySamplingControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
   static constexpr bool follows_deformation = true;
+  static constexpr bool grows_with_deformation = true;
 
   template <class T>
   struct Element {

@@ -35,6 +35,7 @@ struct HourglassMatrixControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
   static constexpr bool follows_deformation = true;
+  static constexpr bool grows_with_deformation = true;
 
   template <class T>
   struct Element {

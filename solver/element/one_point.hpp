@@ -110,7 +110,7 @@ struct OnePoint {
     now.change = volume_change(now.H);
     if constexpr (Hourglass::active) now.q = hourglass_displacements(motion.u, now.H, element);
     if constexpr (FollowsDeformation<Hourglass>) {
-      now.followed = followed_deformation(now.H, now.change);
+      now.followed = followed_deformation<Hourglass>(now.H, now.change);
       now.q = convected(now.q, now.followed);
     }
     return now;
@@ -127,8 +127,12 @@ struct OnePoint {
     const Tensor<T> VP = transpose(law.weighted_piola(element.V, now.H, now.change, p));
     if constexpr (FollowsDeformation<Hourglass>) {
       const HourglassModes<T> s = Hourglass::resistance(now.q, control);
-      return modal_forces(VP + stress_of_phi(now.q, s, now.H, now.followed), turned_back(s, now.followed),
-                          element.c + now.q, element);
+      const HourglassModes<T> Q = turned_back<Hourglass>(s, now.followed);
+      if constexpr (GrowsWithDeformation<Hourglass>) {
+        return modal_forces(VP + stress_of_phi(now.q, s, now.H, now.followed), Q, element.c + now.q, element);
+      } else {
+        return modal_forces(VP, Q, element.c + now.q, element);
+      }
     } else if constexpr (Hourglass::active) {
       return modal_forces(VP, Hourglass::resistance(now.q, control), element.c, element);
     } else {
@@ -145,8 +149,9 @@ struct OnePoint {
     if constexpr (Hourglass::active) {
       const HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
       if constexpr (FollowsDeformation<Hourglass>) {
-        const FollowedDeformation<T> followed = followed_deformation(H, volume_change(H));
-        energy.hourglass = followed.phi * Hourglass::energy(convected(q, followed), control);
+        const auto followed = followed_deformation<Hourglass>(H, volume_change(H));
+        energy.hourglass = Hourglass::energy(convected(q, followed), control);
+        if constexpr (GrowsWithDeformation<Hourglass>) energy.hourglass = followed.phi * energy.hourglass;
       } else {
         energy.hourglass = Hourglass::energy(q, control);
       }
@@ -185,7 +190,7 @@ struct OnePoint {
     const NodalVectors<T> g = h * inverse_F;
     const T body = element.V * gradient_bound(tangent_bound(law, H), g);
     if constexpr (FollowsDeformation<Hourglass>) {
-      const FollowedDeformation<T> followed = followed_deformation(H, volume_change(H));
+      const auto followed = followed_deformation<Hourglass>(H, volume_change(H));
       const HourglassModes<T> r = convected(hourglass_displacements(motion.u, H, element), followed);
       const Matrix<T, 8, 4> current_gamma = gamma(h, element) - h * transpose(r);
       return body + following_bound<Hourglass>(current_gamma, g, r, H, followed, control);

@@ -1,0 +1,142 @@
+/// The whole product of methods and laws, through the solver: what a kernel by itself cannot show goes wrong
+/// in pairs.
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "comparison/finding.hpp"
+#include "stepping/relaxation.hpp"
+#include "support/exact_stress.hpp"
+#include "support/fitting_elements.hpp"
+#include "support/scenes.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+template <class Pair>
+MethodChoice choice() {
+  return {std::string(Pair::Method::name)};
+}
+
+/// Calls visit.operator()<Method, Law>() for every pair that can be run.
+template <class Visit>
+void for_each_pair(const Visit& visit) {
+  for_each_type(Methods{}, [&]<class Method>() {
+    for_each_type(Laws{}, [&]<class Law>() {
+      if constexpr (knows_law<Method, Law>) {
+        SCOPED_TRACE(std::string(Method::name) + " " + std::string(Law::name));
+        visit.template operator()<Method, Law>();
+      }
+    });
+  });
+}
+
+/// The law that a body at rest shows: of one that relaxes, what has not relaxed is the question of
+/// viscoelastic_test.cpp, and is left out by letting nothing relax.
+template <class Law>
+Law law_at_rest(double nu) {
+  Law law = sample_law<Law>(nu);
+  if constexpr (law_remembers<Law>) law.relaxation_1 = law.relaxation_2 = 0.0;
+  return law;
+}
+
+/// One distorted element under a uniform strain, reached in one step: forces V h P^T with the law's own
+/// stress. A law that is handed the wrong strain, pressure or weight by one of the kinematics fails here.
+TEST(Pairs, uniform_strain_gives_the_stress_of_the_law) {
+  for_each_pair([]<class Method, class Law>() {
+    RandomGeometry random(71);
+    for (int n = 0; n < 5; ++n) {
+      const NodalVectors<double> X = fitting_hexahedron<FormulationOf<Method, NeoHookean>>(random);
+      const Tensor<double> H = random.deformation(0.7, 1.4) - identity<double>();
+      Mesh mesh;
+      mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+      NodalField u;
+      for (int I = 0; I < 8; ++I) {
+        mesh.points.push_back({X(I, 0), X(I, 1), X(I, 2)});
+        u.push_back(linear(H, mesh.points.back()));
+      }
+      const Law law = law_at_rest<Law>(0.45);
+      const Scene scene = make_scene(plain_case(law), mesh);
+      const NodalField force = internal_forces(Model(scene, choice<MethodWithLaw<Method, Law>>()), u);
+      const MeanGradient mean = mean_gradient(X);
+      const auto exact = mean.h * (mean.volume * transpose(exact_stress<Method>(law, H)));
+      // Roundoff of displacements and coordinates, known to eps times the size, times the stiffness.
+      const auto bound = tangent_bound(law, H);
+      const double tolerance = 4096 * eps * (std::abs(bound.volumetric) + bound.gradient) * mean.volume *
+                               largest_entry(mean.h) * (1.0 + largest_entry(mean.h) * largest_entry(X));
+      for (int I = 0; I < 8; ++I) {
+        for (int i = 0; i < 3; ++i) EXPECT_NEAR(force[index(I)][index(i)], exact(I, i), tolerance);
+      }
+    }
+  });
+}
+
+/// What is known to become of a method on the column: it has no control, or none at rest; it locks; or it
+/// knows no rotation. All others must be good.
+template <class Method>
+std::optional<Finding> known_failure() {
+  if (zero_energy_modes<Method>() > 6) return Finding::hourglassing;
+  if (is_linear<Method>) return Finding::inaccurate;
+  if (std::is_same_v<Method, TlFull> || std::is_same_v<Method, T4>) return Finding::locking;
+  return std::nullopt;
+}
+
+/// A short column, pulled and sheared as the paper's, against mean dilatation with the same law.
+Scene short_column(const AnyLaw& law) {
+  Case description = plain_case(law);
+  const Mesh mesh = box({0.1, 0.1, 0.4}, {2, 2, 8});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.399; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.2, 0.0, 0.12}}};
+  description.relaxation.max_steps = 20000;
+  return make_scene(description, mesh, sets);
+}
+
+/// Every pair comes to rest on it, and is good or fails as its method is known to.
+TEST(Pairs, every_control_runs_the_column_with_every_law) {
+  for_each_type(Laws{}, []<class Law>() {
+    const Law law = sample_law<Law>(0.45);
+    const Scene scene = short_column(law);
+    Observer silent;
+    const Relaxation golden = relax(Model(scene, {std::string(TlMeanDilatation::name)}), silent);
+    ASSERT_TRUE(golden.converged) << Law::name;
+    for_each_type(Methods{}, [&]<class Method>() {
+      if constexpr (knows_law<Method, Law>) {
+        SCOPED_TRACE(std::string(Method::name) + " " + std::string(Law::name));
+        Finding found = Finding::not_at_rest;
+        try {
+          const Relaxation answer = relax(Model(scene, {std::string(Method::name)}), silent);
+          const double energy = answer.energies.strain + answer.energies.hourglass;
+          if (answer.converged) found = diagnose(symptoms(scene, answer.u, energy, golden.u, 0.233), 0.02);
+        } catch (const ComputationError&) {
+          found = Finding::inverted;
+        }
+        RecordProperty("finding " + std::string(Method::name) + " " + std::string(Law::name),
+                       std::string(name_of(found)));
+        if (known_failure<Method>()) {
+          EXPECT_NE(found, Finding::good);
+        } else {
+          EXPECT_EQ(name_of(found), name_of(Finding::good));
+        }
+      }
+    });
+  });
+}
+
+/// Small-strain methods say that they cannot tell how a law relaxes, instead of forgetting it.
+TEST(Pairs, linear_methods_refuse_laws_that_relax) {
+  for_each_type(Methods{}, []<class Method>() {
+    if constexpr (is_linear<Method>) {
+      const Mesh mesh = box({1, 1, 1}, {1, 1, 1});
+      EXPECT_THROW(
+          make_internal_force(mesh, sample_law<Viscoelastic<NeoHookean>>(0.45), {std::string(Method::name)}),
+          InputError);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace sandglass::verification
