@@ -78,7 +78,8 @@ double good_limit(const std::optional<double>& golden_to_truth) {
 Finding diagnose(const Symptoms& symptoms, double limit) {
   if (symptoms.error <= limit) return Finding::good;
   if (symptoms.bending_ratio >= 1.5 && symptoms.zigzag_share >= 0.1) return Finding::hourglassing;
-  return symptoms.stiffness_ratio >= 1.03 ? Finding::locking : Finding::inaccurate;
+  const bool stiff = symptoms.stiffness_ratio >= 1.03 && symptoms.bending_ratio <= 1.2;
+  return stiff ? Finding::locking : Finding::inaccurate;
 }
 
 }  // namespace sandglass
