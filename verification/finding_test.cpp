@@ -69,8 +69,9 @@ TEST(Diagnose, tells_the_ways_to_be_wrong_from_each_other) {
   const double limit = 0.02;
   EXPECT_EQ(diagnose({0.02, 0.9, 3.0, 1.5}, limit), Finding::good);
   EXPECT_EQ(diagnose({0.03, 0.1, 1.5, 1.5}, limit), Finding::hourglassing);
-  EXPECT_EQ(diagnose({0.03, 0.09, 1.5, 1.03}, limit), Finding::locking);  // smooth
-  EXPECT_EQ(diagnose({0.03, 0.9, 1.4, 1.03}, limit), Finding::locking);   // rough, and not large
+  EXPECT_EQ(diagnose({0.03, 0.09, 1.2, 1.03}, limit), Finding::locking);     // smooth
+  EXPECT_EQ(diagnose({0.03, 0.9, 1.1, 1.03}, limit), Finding::locking);      // rough, and not large
+  EXPECT_EQ(diagnose({0.03, 0.09, 1.3, 1.03}, limit), Finding::inaccurate);  // bends more, at that
   EXPECT_EQ(diagnose({0.03, 0.9, 1.4, 1.02}, limit), Finding::inaccurate);
   EXPECT_EQ(diagnose({0.03, 0.1, 1.0, 0.5}, limit), Finding::inaccurate);  // soft in the whole
   EXPECT_EQ(diagnose({std::nan(""), 0.1, 1.0, 1.0}, limit), Finding::inaccurate);

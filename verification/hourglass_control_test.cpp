@@ -76,7 +76,7 @@ TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_at_rest) 
 /// On a mesh of distorted elements forces of displacements of relative size e differ by e of themselves.
 TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_to_first_order_on_a_mesh) {
   const auto law = sample_law<TypeParam>(0.49);
-  const Scene scene = patch_scene(law, Tensor<double>{});
+  const Scene scene = patch_scene(law, Tensor<double>{}, macneal_harder_patch());
   const Model one_point(scene, {std::string(TlStabilizationMatrix::name), {}});
   const Model eight_points(scene, {std::string(TlMeanDilatation::name), {}});
   NodalField direction(scene.mesh.points.size());

@@ -34,7 +34,7 @@ class HourglassFormTest : public ::testing::Test {
     return X;
   }
 
-  static NeoHookean law(double nu) { return {sample_young_modulus, nu}; }
+  static NeoHookean law(double nu) { return {.young_modulus = sample_young_modulus, .poisson_ratio = nu}; }
 
   RandomGeometry random{41};
 };

@@ -217,7 +217,7 @@ TYPED_TEST(UpdatedLagrangianTest, bound_of_the_stable_step_holds) {
     for (int n = 0; n < samples; ++n) {
       const auto X = this->random.hexahedron();
       const double density = 1000.0;
-      const NeoHookean sample{3000.0, poisson_ratios[index(n) % poisson_ratios.size()]};
+      const auto sample = sample_law<NeoHookean>(poisson_ratios[index(n) % poisson_ratios.size()]);
       HourglassSettings settings{.density = density};
       if (TypeParam::Hourglass::takes_kappa) settings.kappa = kappa;
       const auto constants = TestFixture::Kernel::precompute(X, sample, settings);

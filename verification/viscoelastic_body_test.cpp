@@ -9,6 +9,7 @@
 #include "stepping/central_difference.hpp"
 #include "stepping/relaxation.hpp"
 #include "stepping/stable_step.hpp"
+#include "support/fitting_elements.hpp"
 #include "support/path.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"

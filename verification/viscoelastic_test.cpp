@@ -300,14 +300,14 @@ TEST(RelaxationStepTest, factors_have_all_their_digits) {
 
 TEST(ViscoelasticParameters, have_to_fit_together) {
   auto law = sample_law<Viscoelastic<NeoHookean>>(0.45);
-  EXPECT_FALSE(law.misfit());
+  EXPECT_FALSE(law.broken_rule());
   law.relaxation_2 = 0.55;
-  EXPECT_EQ(law.misfit()->name, "relaxation_2");
+  EXPECT_EQ(law.broken_rule()->parameter, "relaxation_2");
   law.relaxation_2 = 0.1;
   law.time_2 = 0.0;
-  EXPECT_EQ(law.misfit()->name, "time_2");
+  EXPECT_EQ(law.broken_rule()->parameter, "time_2");
   law.relaxation_2 = 0.0;
-  EXPECT_FALSE(law.misfit());
+  EXPECT_FALSE(law.broken_rule());
 }
 
 /// What has relaxed after 100,000 steps in single precision, with a strain that is held but trembles. Each

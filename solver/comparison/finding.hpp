@@ -48,7 +48,7 @@ double good_limit(const std::optional<double>& golden_to_truth);
 
 /// Good up to `limit`. Beyond it hourglassing when the hourglass amplitudes are 1.5 times the golden's or
 /// more and a tenth of the squared error or more stands in them; locking when the body takes 3 % more energy
-/// to deform than the golden, or more; else inaccurate.
+/// to deform than the golden, or more, and bends at most 1.2 times as much; else inaccurate.
 Finding diagnose(const Symptoms& symptoms, double limit);
 
 }  // namespace sandglass

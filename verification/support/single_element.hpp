@@ -31,7 +31,7 @@ class SingleElement {
   // At the last displacements:
   ElementEnergy<T> energy() const { return Kernel::energy(motion_, element_, history_, law_); }
   T mean_jacobian() const { return Kernel::mean_jacobian(motion_, element_); }
-  T stiffness_bound() const { return Kernel::stiffness_bound(motion_, element_, law_); }
+  T stiffness_bound() const { return Kernel::stiffness_bound(motion_, element_, history_, law_); }
 
  private:
   NodalVectors<T> X_;
