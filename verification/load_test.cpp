@@ -8,8 +8,10 @@
 #include "stepping/central_difference.hpp"
 #include "stepping/relaxation.hpp"
 #include "stepping/stable_step.hpp"
+#include "support/exact_stress.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
+#include "support/softening.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/typed_lists.hpp"
 
@@ -136,9 +138,12 @@ TYPED_TEST_SUITE(LoadTest, PathIndependentPairTypes, EntryName);
 /// undeformed area, the others vanish: small, and with a stress of a third of Young's modulus. The residual
 /// of 1e-8 leaves stresses of that share of the largest.
 TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
-  if (zero_energy_modes<typename TypeParam::Method>() > 6) return;  // such modes keep what the path gave
+  using Method = typename TypeParam::Method;
+  using Law = typename TypeParam::Law;
+  if (zero_energy_modes<Method>() > 6) return;  // such modes keep what the path gave
+  if (!is_isotropic<Law>) return;               // fibres that run askew make the bar shear
   const auto law = this->law();
-  for (const double stress : {1e-6, 1.0 / 3.0}) {
+  for (const double stress : {1e-6, bearable_load<Law>() / 3.0}) {
     const double force = stress * young_modulus_of(law) * 0.1 * 0.2;
     const Scene scene = pulled_bar(law, force);
     Observer silent;
@@ -146,7 +151,7 @@ TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
     ASSERT_TRUE(answer.converged);
     const Vector& u = answer.u.back();
     const Tensor<double> H{{u[0] / 0.1, 0, 0, 0, u[1] / 0.2, 0, 0, 0, u[2] / 0.4}};
-    const Tensor<double> P = law.piola(H);
+    const Tensor<double> P = exact_stress<Method>(law, H);
     EXPECT_NEAR(P(2, 2) * 0.1 * 0.2 / force, 1.0, 1e-6);
     EXPECT_NEAR(P(0, 0) * 0.1 * 0.2 / force, 0.0, 1e-6);
     EXPECT_NEAR(P(1, 1) * 0.1 * 0.2 / force, 0.0, 1e-6);
@@ -173,6 +178,7 @@ TYPED_TEST(LoadTest, work_is_stored_in_the_small) {
 
 /// What the loads put in is found in the body: work = kinetic + strain + hourglass, to second order.
 TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
+  if (is_condensed<typename TypeParam::Method>) return;  // takes no steps
   const auto law = this->law();
   const auto imbalance = [&](double fraction) {
     Scene scene = pulled_bar(law, 0.1 * young_modulus_of(law) * 0.1 * 0.2);

@@ -9,6 +9,7 @@
 #include "support/exact_stress.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/scenes.hpp"
+#include "support/softening.hpp"
 #include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
@@ -74,14 +75,12 @@ TEST(Pairs, uniform_strain_gives_the_stress_of_the_law) {
   });
 }
 
-/// What is known to become of a method on the column: it has no control, or none at rest; it locks; or it
-/// knows no rotation. All others must be good.
+/// Whether a method is known to fail on the column: it has no control, or none at rest; it locks; or it knows
+/// no rotation. All others must be good.
 template <class Method>
-std::optional<Finding> known_failure() {
-  if (zero_energy_modes<Method>() > 6) return Finding::hourglassing;
-  if (is_linear<Method>) return Finding::inaccurate;
-  if (std::is_same_v<Method, TlFull> || std::is_same_v<Method, T4>) return Finding::locking;
-  return std::nullopt;
+constexpr bool known_failure() {
+  return zero_energy_modes<Method>() > 6 || is_linear<Method> || std::is_same_v<Method, TlFull> ||
+         std::is_same_v<Method, T4>;
 }
 
 /// A short column, pulled and sheared as the paper's, against mean dilatation with the same law.
@@ -101,7 +100,10 @@ TEST(Pairs, every_control_runs_the_column_with_every_law) {
     const Law law = sample_law<Law>(0.45);
     const Scene scene = short_column(law);
     Observer silent;
-    const Relaxation golden = relax(Model(scene, {std::string(TlMeanDilatation::name)}), silent);
+    // A law that does not split its volume part gives way where the pressure is averaged.
+    constexpr bool averages = !may_give_way<TlMeanDilatation, Law>();
+    const std::string reference(averages ? TlMeanDilatation::name : TlPerturbation::name);
+    const Relaxation golden = relax(Model(scene, {reference}), silent);
     ASSERT_TRUE(golden.converged) << Law::name;
     for_each_type(Methods{}, [&]<class Method>() {
       if constexpr (knows_law<Method, Law>) {
@@ -116,7 +118,7 @@ TEST(Pairs, every_control_runs_the_column_with_every_law) {
         }
         RecordProperty("finding " + std::string(Method::name) + " " + std::string(Law::name),
                        std::string(name_of(found)));
-        if (known_failure<Method>()) {
+        if (known_failure<Method>() || may_give_way<Method, Law>()) {
           EXPECT_NE(found, Finding::good);
         } else {
           EXPECT_EQ(name_of(found), name_of(Finding::good));

@@ -223,7 +223,10 @@ def test_run_writes_what_it_says(block):
 
 @pytest.mark.parametrize("method", methods())
 def test_every_method_runs(block, method):
-    assert sandglass("run", block, "--method", method).returncode == 0
+    # A control that resists velocities alone lets a body at rest zigzag: no balance is found.
+    assert sandglass("run", block, "--method", method).returncode == (
+        3 if "viscous" in method else 0
+    )
 
 
 def test_kappa_given_is_kappa_used(block):

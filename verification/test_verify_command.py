@@ -19,6 +19,9 @@ def test_verify_holds_and_writes_every_figure(block):
     assert [r["method"] for r in records if r["kappa_is_auto"] or r["kappa"] is None] == methods()
     for record in records:
         assert record["case"] == "block" and record["precision"] == "double"
+        if record["method"] == "ul-viscous":  # no control at rest: shown as failed, not left out
+            assert record["finding"] in ("not at rest", "inverted")
+            continue
         assert record["status"] == "ok"
         assert record["truth"] is None
         for figure in ("max_relative_error", "rms_relative_error"):

@@ -29,6 +29,7 @@ struct Tetrahedra {
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
   static constexpr bool averages_over_nodes = Pressure::averages_over_nodes;
+  static constexpr bool averages_pressure = averages_over_nodes;
   using NoControl = NoHourglassControl;
 
   static Element<double> precompute(const NodalVectors<double>& X) {

@@ -130,12 +130,21 @@ class ViscoelasticPoint : public Law {
     return elastic().isochoric_tangent_bound(H) + memory_bound(H);
   }
 
-  /// The same for a law that knows a bound of the whole.
+  /// The same for a law that knows a bound of the whole, W_iso + U. What answers is a share of W_iso and all
+  /// of U, something between the whole and U alone; where W_iso softens, U alone is the stiffer.
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H) const requires requires(const Law& law) {
     law.tangent_bound(H);
   }
-  { return elastic().tangent_bound(H) + memory_bound(H); }
+  {
+    const T J_minus_one = jacobian_minus_one(H);
+    const TangentBound<T> whole = elastic().tangent_bound(H);
+    const TangentBound<T> volume = volumetric_tangent_bound(
+        T(1) + J_minus_one, elastic().pressure(J_minus_one), elastic().bulk_tangent(J_minus_one));
+    const TangentBound<T> either{max(whole.volumetric, volume.volumetric),
+                                 max(whole.gradient, volume.gradient)};
+    return either + memory_bound(H);
+  }
 
  private:
   const Law& elastic() const { return *this; }
