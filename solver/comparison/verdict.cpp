@@ -90,8 +90,8 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
     verdict.residual = relaxation.residual;
     verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;
     verdict.wall_seconds = relaxation.seconds;
-    verdict.ns_per_element_step = 1e9 * relaxation.seconds / static_cast<double>(relaxation.steps) /
-                                  static_cast<double>(scene.mesh.cells.size());
+    verdict.ns_per_element_step =
+        1e9 * relaxation.step_seconds / static_cast<double>(scene.mesh.cells.size());
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));

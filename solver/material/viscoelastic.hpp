@@ -279,7 +279,7 @@ struct Viscoelastic : Law {
   /// Something has to stay, and what relaxes takes time.
   std::optional<BrokenRule> broken_rule() const {
     if constexpr (requires(const Law& law) { law.broken_rule(); }) {
-      if (const auto broken = Law::broken_rule()) return broken;
+      if (auto broken = Law::broken_rule()) return broken;
     }
     if (!(remaining_share() > 0.0)) {
       return BrokenRule{"relaxation_2", fmt::format("= {} must be below 1 - relaxation_1 = {}", relaxation_2,

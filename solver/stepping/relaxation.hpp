@@ -15,6 +15,8 @@ struct Relaxation {
   bool interrupted = false;  ///< the observer asked to end
   StrainEnergies energies;   ///< at u
   double seconds = 0.0;      ///< wall time from the model to the answer
+  /// Wall time of a step; of a condensed answer that of its superposition, without what all answers share.
+  double step_seconds = 0.0;
 };
 
 /// Finds the displacements at which the internal forces balance. The imposed displacements and forces grow
