@@ -23,7 +23,7 @@ def log_scale(axis, limits, last_tick=math.inf):
     axis.axes.set_xscale("log")
     axis.axes.set_xlim(limits)
     decades = range(math.floor(math.log10(limits[0])), math.ceil(math.log10(limits[1])) + 1)
-    wide = limits[1] > 100 * limits[0]
+    wide = limits[1] > 400 * limits[0]
     ticks = [s * 10.0**d for d in decades for s in ((1,) if wide else TICKS_1_2_5)]
     axis.set_major_locator(
         FixedLocator([t for t in ticks if limits[0] <= t <= min(limits[1], 1.001 * last_tick)])

@@ -7,6 +7,7 @@ from sandglass_report import style
 from sandglass_report.plates import Panel, Plate
 
 FIGURES = (("max", "-", 1.6), ("profile", "--", 1.3), ("rms", ":", 1.6))
+KINDS = ("golden", "truth")
 NAMES = {"max": "max, all nodes", "profile": "max, profile", "rms": "rms"}
 
 
@@ -15,7 +16,7 @@ def kappa_panels(subject, palette):
     if not _curves(subject, "golden") and not _curves(subject, "truth"):
         return ()
     limits = _limits(subject)
-    return tuple(_panel(subject, palette, kind, limits) for kind in ("golden", "truth"))
+    return tuple(_panel(subject, palette, kind, limits) for kind in KINDS)
 
 
 def kappa_plates(subjects, palette):
@@ -25,17 +26,30 @@ def kappa_plates(subjects, palette):
         panels = kappa_panels(subject, palette)
         if panels:
             title = f"{subject.name}: error against the hourglass stiffness kappa"
-            plates.append(Plate(f"kappa.{subject.name}", title, panels, 2))
+            shown = dict.fromkeys(m for kind in KINDS for m in _curves(subject, kind))
+            legend = tuple((m, palette.colour(m), palette.mark(m)) for m in shown)
+            plates.append(Plate(f"kappa.{subject.name}", title, panels, 2, legend=legend))
     return plates
 
 
 def _curves(subject, reference):
-    """method -> runs in order of kappa, for the methods with at least two points."""
+    """method -> runs in order of kappa, for the methods with at least two points.
+
+    A curve that lies on one before it, of the same formulas computed otherwise, is left out.
+    """
     curves = {}
     for run in subject.runs:
         if run.kappa is not None and getattr(run, reference) is not None:
             curves.setdefault(run.method, []).append(run)
-    return {m: sorted(c, key=lambda r: r.kappa) for m, c in curves.items() if len(c) > 1}
+    different = {}
+    for method, runs in curves.items():
+        runs.sort(key=lambda run: run.kappa)
+        heights = [getattr(run, reference).max for run in runs]
+        known = [[getattr(run, reference).max for run in other] for other in different.values()]
+        same = any(len(k) == len(heights) and np.allclose(k, heights, 1e-4) for k in known)
+        if len(runs) > 1 and not same:
+            different[method] = runs
+    return different
 
 
 def _levels(subject):
@@ -46,7 +60,7 @@ def _levels(subject):
 
 def _limits(subject):
     values = [v for v in _levels(subject).values() if v]
-    for kind in ("golden", "truth"):
+    for kind in KINDS:
         for runs in _curves(subject, kind).values():
             values += [getattr(getattr(r, kind), name) or 0 for r in runs for name, _, _ in FIGURES]
     shown = [value for value in values if value > style.FLOOR] or [style.FLOOR, 1.0]
@@ -64,11 +78,10 @@ def _panel(subject, palette, reference, limits):
         helpers.percent_scale(axes.yaxis, limits)
         axes.set_xlabel("κ")
         axes.figure.canvas.draw()
-        labels = []
-        for method, runs in curves.items():
-            labels += _draw_curve(axes, method, runs, palette, reference)
+        # The strokes say which figure it is, for all methods alike: one method's ends are named.
+        labels = [_draw_curve(axes, m, r, palette, reference) for m, r in curves.items()]
         _draw_auto(axes, curves, palette)
-        _label_ends(axes, labels)
+        _label_ends(axes, [(*end[:3], style.INK[0]) for end in labels[0]])
         _draw_levels(axes, levels, curves, reference)
 
     name = f"kappa.{subject.name}.{reference}"
@@ -96,8 +109,8 @@ def _draw_curve(axes, method, runs, palette, reference):
 
 
 def _draw_auto(axes, curves, palette):
-    """A line at the kappa that `auto` takes."""
-    for method, runs in curves.items():
+    """A line at the kappa that `auto` takes; one, for it belongs to the material."""
+    for method, runs in list(curves.items())[:1]:
         for run in runs:
             if run.kappa_is_auto:
                 axes.axvline(run.kappa, color=palette.colour(method), linewidth=0.8, alpha=0.5)

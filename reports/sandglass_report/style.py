@@ -2,7 +2,8 @@
 
 import math
 
-# Okabe and Ito's colours, told apart by colour-blind readers, and a brighter form for dark pages.
+# Okabe and Ito's colours, told apart by colour-blind readers, and a brighter form for dark pages;
+# the last ones need their marks to be told apart.
 METHOD_COLOURS = (
     ("#d55e00", "#ff8a45"),  # vermilion
     ("#0072b2", "#4aa8e8"),  # blue
@@ -12,6 +13,10 @@ METHOD_COLOURS = (
     ("#8a6d00", "#d9bc4a"),  # olive
     ("#6b4fa3", "#b39ae6"),  # violet
     ("#7a4a2b", "#d0986f"),  # brown
+    ("#a3123a", "#f2708f"),  # crimson
+    ("#2f7f86", "#7fc9cf"),  # teal
+    ("#5d6b1c", "#b9c65c"),  # moss
+    ("#4b5563", "#a9b6c6"),  # slate
 )
 METHOD_MARKS = ("X", "o", "s", "D", "^", "v", "P", "h")
 GLYPHS = dict(zip(METHOD_MARKS, "✖●■◆▲▼✚⬢"))  # the marks in running text
