@@ -56,6 +56,20 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Tip:
+    """One method on one variant of a case with a published value; ratios are None without one."""
+
+    family: str
+    variant: str
+    method: str
+    ok: bool
+    finding: str
+    source: str
+    to_published: float | None
+    to_truth: float | None
+
+
+@dataclass(frozen=True)
 class Limit:
     """One expectation of a case and what came of it; figures are fractions."""
 
@@ -79,6 +93,7 @@ class Verdicts:
     provenance: dict
     runs: tuple
     limits: tuple
+    tips: tuple = ()
 
     @property
     def case_names(self):
@@ -109,8 +124,10 @@ def read_verdicts(path):
     if not runs:
         raise ReportError(f"{path}: records is empty: nothing ran, there is nothing to report")
     limits = tuple(_limit(path, i, r) for i, r in enumerate(_list(path, document, "limits")))
+    tables = enumerate(document.get("published", []))
+    tips = tuple(tip for i, record in tables for tip in _tips(path, i, record))
     provenance = {name: str(v) for name, v in document.items() if not isinstance(v, list)}
-    return Verdicts(provenance, runs, limits)
+    return Verdicts(provenance, runs, limits, tips)
 
 
 def _list(path, document, key):
@@ -174,6 +191,27 @@ def _run(path, index, record):
         ns_per_element_step=_field(where, record, "ns_per_element_step", NUMBER),
         wall_seconds=_field(where, record, "wall_seconds", NUMBER),
     )
+
+
+def _tips(path, index, record):
+    """The tips of a record, one for each published value; none for points of a kappa curve."""
+    where = f"{path}: published[{index}]"
+    kappa = _field(where, record, "kappa", NUMBER, none_allowed=True)
+    if kappa is not None and not _field(where, record, "kappa_is_auto", bool):
+        return []
+    return [
+        Tip(
+            family=_field(where, record, "family", str),
+            variant=" ".join(_field(where, record, "variants", list)),
+            method=_field(where, record, "method", str),
+            ok=_field(where, record, "status", str) == "ok",
+            finding=_field(where, record, "finding", str, none_allowed=True) or "",
+            source=_field(where, value, "source", str),
+            to_published=_field(where, value, "ratio", NUMBER, none_allowed=True),
+            to_truth=_field(where, value, "ratio_to_truth", NUMBER, none_allowed=True),
+        )
+        for value in _field(where, record, "values", list)
+    ]
 
 
 def _limit(path, index, record):

@@ -8,7 +8,7 @@ from pathlib import Path
 import jinja2
 import markupsafe
 
-from sandglass_report import bodies, kappa, lines, paper, plates, speed, style
+from sandglass_report import bodies, kappa, lines, paper, plates, speed, style, tips
 from sandglass_report.errors import ReportError
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -89,6 +89,7 @@ def render(verdicts, subjects, palette, sections):
         speed={s.name: speed.speed_panels(s, palette, costs) for s in subjects},
         kappa={s.name: kappa.kappa_panels(s, palette) for s in subjects},
         sections=sections,
+        tip_tables=tips.tip_tables(verdicts.tips),
         paper_method=paper.METHOD,
         line_methods=paper.LINE_METHODS,
     )

@@ -74,6 +74,7 @@ class DataSet:
         }
         (self.folder / "results/column.tl-full.h5").unlink()
         self.records.append(failed)
+        self.published = []
         self.limits = [
             {
                 "case": "column",
@@ -129,6 +130,18 @@ class DataSet:
             "wall_seconds": 0.5,
         }
 
+    @staticmethod
+    def tip(method, ratio, variant="short", status="ok", to_truth=None):
+        """A record of a run with a published value."""
+        value = {"source": "a book", "ratio": ratio, "ratio_to_truth": to_truth}
+        record = {"method": method, "kappa": None, "kappa_is_auto": False, "status": status}
+        return record | {
+            "finding": None,
+            "family": "beam",
+            "variants": [variant],
+            "values": [value],
+        }
+
     def write_reference(self, kind, displacement, **attributes):
         """Writes a golden or truth for the case."""
         with h5py.File(self.folder / f"reference/{kind}/column.h5", "w") as file:
@@ -139,7 +152,7 @@ class DataSet:
     def write_verdicts(self):
         """Writes verdicts.json from the records and limits as they are."""
         document = {"version": "0", "compiler": "none", "processor": "none"}
-        document |= {"records": self.records, "limits": self.limits}
+        document |= {"records": self.records, "limits": self.limits, "published": self.published}
         (self.folder / "verdicts.json").write_text(json.dumps(document), encoding="utf-8")
 
     @property

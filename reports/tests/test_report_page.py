@@ -152,3 +152,22 @@ def test_labels_keep_apart():
     moved = spread([5.0, 5.0, 5.5, 40.0], gap=10.0, low=0.0, high=100.0)
     assert np.diff(np.sort(moved)).min() >= 10.0 - 1e-5
     assert moved.min() >= -1e-5
+
+
+def test_published_values_stand_in_tables(data):
+    data.published = [
+        data.tip("tl-none", 12000.0),
+        data.tip("tl-none", 0.5, "long", status="failed: inverted"),
+        data.tip("tl-full", 0.7654),
+        data.tip("tl-full", 0.9876, "long", to_truth=0.9321),
+    ]
+    data.write_verdicts()
+    page = made(data)
+    assert "over a book" in page and "over the truth" in page
+    for cell in (">1.2·10⁴<", ">0.765<", ">0.988<", ">0.932<"):
+        assert cell in page
+    assert ">0.500<" not in page  # a failed run has no ratio
+
+
+def test_without_published_values_there_is_no_section(page):
+    assert 'id="beams"' not in page

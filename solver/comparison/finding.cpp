@@ -63,12 +63,14 @@ Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const 
                   double unit) {
   const HourglassContent error = hourglass_content(scene.mesh, difference(u, golden));
   const Model element_of_golden(scene, {std::string(TlMeanDilatation::name)});
+  const double energy_of_golden = strain_energies(element_of_golden, golden).strain;
   const double share = ratio(error.hourglass, error.total);
+  const bool moved = largest_imposed(scene) > 0.0;
   return {.error = accuracy(u, golden, nullptr, unit).max_relative_error,
           .zigzag_share = share * share,
           .bending_ratio = ratio(hourglass_content(scene.mesh, u).hourglass,
                                  hourglass_content(scene.mesh, golden).hourglass),
-          .stiffness_ratio = ratio(energy, strain_energies(element_of_golden, golden).strain)};
+          .stiffness_ratio = moved ? ratio(energy, energy_of_golden) : ratio(energy_of_golden, energy)};
 }
 
 double good_limit(const std::optional<double>& golden_to_truth) {

@@ -23,10 +23,12 @@ std::string_view name_of(Finding finding);
 
 /// What tells the ways to be wrong from each other.
 struct Symptoms {
-  double error = 0.0;            ///< max over all nodes of the distance from the golden, over the unit
-  double zigzag_share = 0.0;     ///< share of the squared error that stands in hourglass modes
-  double bending_ratio = 1.0;    ///< hourglass amplitudes over those of the golden
-  double stiffness_ratio = 1.0;  ///< strain energy over that of the golden's element at the golden
+  double error = 0.0;          ///< max over all nodes of the distance from the golden, over the unit
+  double zigzag_share = 0.0;   ///< share of the squared error that stands in hourglass modes
+  double bending_ratio = 1.0;  ///< hourglass amplitudes over those of the golden
+  /// Strain energy over that of the golden's element at the golden; the inverse where loads move the body,
+  /// for there the stiffer one stores less.
+  double stiffness_ratio = 1.0;
 };
 
 /// Hourglass amplitudes and displacements of a field, root mean squares over the volume (m): of gamma^T u and
