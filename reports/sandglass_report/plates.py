@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D  # noqa: E402
 from sandglass_report import style  # noqa: E402
 
 PIXELS_PER_INCH = 96
-LEGEND_WIDTH = 1.8  # inches
+LEGEND_WIDTH = 2.0  # inches
 TEXT = style.INK[0]
 MUTED = style.MUTED[0]
 
