@@ -5,9 +5,9 @@
 
 #include "app/commands.hpp"
 #include "element/methods.hpp"
-#include "element/operation_count.hpp"
 #include "io/text_file.hpp"
 #include "material/laws.hpp"
+#include "model/operations.hpp"
 
 namespace sandglass {
 
@@ -36,8 +36,7 @@ std::vector<Row> count_methods() {
       // Three columns for each handle, a product and a sum with each for every component of a node.
       add("update", "node", {.add = 9, .mul = 9}, 9 * sizeof(double));
     } else {
-      const OperationCount count =
-          count_operations<typename Method::Kinematics, typename Method::Hourglass>(Law{});
+      const OperationCount count = operation_count(Method::name, Law{});
       add("kernel", "gradient", count.gradient);
       add("kernel", "law", count.law);
       add("kernel", "force", count.force);
@@ -53,8 +52,7 @@ std::vector<Row> count_methods() {
 std::vector<Row> count_laws() {
   std::vector<Row> rows;
   for_each_type(Laws{}, [&]<class Law>() {
-    const Operations operations = count_operations<TlNone::Kinematics, TlNone::Hourglass>(Law{}).law;
-    rows.push_back({TlNone::name, Law::name, "kernel", "law", operations});
+    rows.push_back({TlNone::name, Law::name, "kernel", "law", operation_count(TlNone::name, Law{}).law});
   });
   return rows;
 }

@@ -33,12 +33,6 @@ std::vector<std::string> names_of(TypeList<Types...> /*list*/) {
   return {std::string(Types::name)...};
 }
 
-/// How many types a list has.
-template <class... Types>
-constexpr std::size_t size_of(TypeList<Types...> /*list*/) {
-  return sizeof...(Types);
-}
-
 /// Where a type stands in a list, from 0.
 template <class Type, class... Types>
 constexpr std::size_t index_in(TypeList<Types...> /*list*/) {

@@ -39,15 +39,28 @@ inline constexpr std::array<CornerLines, 3> lines_along{
 
 }  // namespace detail
 
-/// Parent gradients du_i/dxi_k at the eight corners, times 8. Along each axis the gradient is bilinear in the
-/// two others, so that it has four values. Modes whose bilinear and trilinear rows are scaled by g and g^2
-/// give the gradients at the points +-g.
-template <class T>
+/// The corners of the parent cube, for the functions below. Other points that stand like them, at +-g along
+/// each axis, scale the bilinear modes with g and the trilinear one with g^2.
+struct AtCorners {
+  template <class T>
+  static T bilinear(const T& mode) {
+    return mode;
+  }
+  template <class T>
+  static T trilinear(const T& mode) {
+    return mode;
+  }
+};
+
+/// Parent gradients du_i/dxi_k at the eight points, times 8. Along each axis the gradient is bilinear in the
+/// two others, so that it has four values.
+template <class Points, class T>
 std::array<Tensor<T>, 8> corner_gradients(const Modes<T>& modes) {
   std::array<Tensor<T>, 8> gradients;
   for (int i = 0; i < 3; ++i) {
-    const std::array<T, 3> bilinear{modes(3, i), modes(4, i), modes(5, i)};
-    const T trilinear = modes(6, i);
+    const std::array<T, 3> bilinear{Points::bilinear(modes(3, i)), Points::bilinear(modes(4, i)),
+                                    Points::bilinear(modes(5, i))};
+    const T trilinear = Points::trilinear(modes(6, i));
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
       const T b = bilinear[detail::parent_axes[axis].with_second];
@@ -63,8 +76,8 @@ std::array<Tensor<T>, 8> corner_gradients(const Modes<T>& modes) {
   return gradients;
 }
 
-/// The transpose of `corner_gradients`: what fluxes at the corners do to the modes.
-template <class T>
+/// The transpose of `corner_gradients`: what fluxes at the points do to the modes.
+template <class Points, class T>
 Modes<T> corner_divergence(const std::array<Tensor<T>, 8>& flux) {
   Modes<T> f;
   for (int i = 0; i < 3; ++i) {
@@ -86,8 +99,8 @@ Modes<T> corner_divergence(const std::array<Tensor<T>, 8>& flux) {
       third = third + (high - low);
       trilinear = trilinear + (high_b - low_b);
     }
-    for (int a = 0; a < 3; ++a) f(3 + a, i) = bilinear[static_cast<std::size_t>(a)];
-    f(6, i) = trilinear;
+    for (int a = 0; a < 3; ++a) f(3 + a, i) = Points::bilinear(bilinear[static_cast<std::size_t>(a)]);
+    f(6, i) = Points::trilinear(trilinear);
   }
   return f;
 }

@@ -171,26 +171,28 @@ struct EightPoint {
  private:
   static constexpr double g = gauss_coordinate;
 
-  /// Modes as the corners of a cube of half edge g see them: its gradients are those at the Gauss points.
-  template <class T>
-  static Modes<T> at_gauss_points(Modes<T> modes) {
-    for (int i = 0; i < 3; ++i) {
-      for (int m = 3; m < 6; ++m) modes(m, i) = T(g) * modes(m, i);
-      modes(6, i) = T(g * g) * modes(6, i);
+  /// The Gauss points, which stand like corners at +-g.
+  struct AtGaussPoints {
+    template <class T>
+    static T bilinear(const T& mode) {
+      return T(g) * mode;
     }
-    return modes;
-  }
+    template <class T>
+    static T trilinear(const T& mode) {
+      return T(g * g) * mode;
+    }
+  };
 
   /// Parent gradients du_i/dxi_k at the Gauss points, times 8.
   template <class T>
   static std::array<Tensor<T>, 8> parent_gradients(const Modes<T>& modes) {
-    return corner_gradients(at_gauss_points(modes));
+    return corner_gradients<AtGaussPoints>(modes);
   }
 
   /// The transpose of `parent_gradients`: what fluxes at the points do to the modes.
   template <class T>
   static Modes<T> parent_divergence(const std::array<Tensor<T>, 8>& flux) {
-    return at_gauss_points(corner_divergence(flux));
+    return corner_divergence<AtGaussPoints>(flux);
   }
 
   /// Displacement gradients at the Gauss points.

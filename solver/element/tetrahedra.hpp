@@ -164,7 +164,7 @@ struct Tetrahedra {
   template <class T>
   static TetrahedronTensors<T> parent_gradients(const Modes<T>& modes) {
     TetrahedronTensors<T> gradients;
-    const auto corners = corner_gradients(modes);
+    const auto corners = corner_gradients<AtCorners>(modes);
     std::copy(corners.begin(), corners.end(), gradients.begin());
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
@@ -180,7 +180,7 @@ struct Tetrahedra {
   static Modes<T> parent_divergence(const TetrahedronTensors<T>& flux) {
     std::array<Tensor<T>, 8> corners;
     std::copy_n(flux.begin(), 8, corners.begin());
-    Modes<T> f = corner_divergence(corners);
+    Modes<T> f = corner_divergence<AtCorners>(corners);
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
         f(k, i) = f(k, i) + (flux[8](i, k) + flux[9](i, k));

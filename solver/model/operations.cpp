@@ -1,6 +1,5 @@
 #include "model/operations.hpp"
 
-#include "element/operation_count.hpp"
 #include "model/method_dispatch.hpp"
 
 namespace sandglass {
@@ -19,17 +18,20 @@ auto counted_law(const Law& law) {
 
 }  // namespace
 
-Operations operations_of(std::string_view method, const AnyLaw& any_law) {
-  Operations operations;
+OperationCount operation_count(std::string_view method, const AnyLaw& any_law) {
+  OperationCount count;
   with_method(method, [&]<class Method>() {
-    operations = std::visit(
+    count = std::visit(
         [](const auto& law) {
-          return count_operations<typename Method::Kinematics, typename Method::Hourglass>(counted_law(law))
-              .total;
+          return count_operations<typename Method::Kinematics, typename Method::Hourglass>(counted_law(law));
         },
         any_law);
   });
-  return operations;
+  return count;
+}
+
+Operations operations_of(std::string_view method, const AnyLaw& law) {
+  return operation_count(method, law).total;
 }
 
 }  // namespace sandglass
