@@ -10,22 +10,24 @@ import basix
 import numpy as np
 
 
-def prescribed_dofs(space, cell_nodes, conditions):
+def prescribed_dofs(space, cell_nodes, conditions, load=1.0):
     """Prescribed degrees of freedom of a vector Lagrange space of order 1 or 2 on hexahedra.
 
     space: dolfinx vector function space. cell_nodes: (m, 8) node numbers, in the space's order of
     cells and vertices. conditions: Conditions on these nodes, which do not contradict each other.
-    Returns (dofs, values): sorted unrolled indices (3 * block + component) and their values, m.
+    load: the load factor. Returns (dofs, values): sorted unrolled indices (3 * block + component)
+    and their values there, m.
     """
     layout = space.dofmap.dof_layout
     cell_dofs = space.dofmap.list.array.reshape(len(cell_nodes), -1)
     dofs, values = [], []
     for condition in conditions:
+        on_nodes = condition.at(load)
         for dim, entities in enumerate(basix.topology(basix.CellType.hexahedron)):
             for index, vertices in enumerate(entities):
                 nodes = cell_nodes[:, vertices]
                 inside = condition.nodes[nodes].all(axis=1)
-                mean = condition.values[nodes[inside]].mean(axis=1)
+                mean = on_nodes[nodes[inside]].mean(axis=1)
                 for local in layout.entity_dofs(dim, index):
                     for axis in condition.components:
                         dofs.append(3 * cell_dofs[inside, local] + axis)

@@ -19,6 +19,21 @@ class Displacement:
 
 
 @dataclass(frozen=True)
+class Rotation:
+    """An imposed rotation: node set, axis (3,) of length one, angle in rad, center, displacement.
+
+    center: a point (3,) of the axis, m, or None for the mean of the set's nodes. displacement: (3,)
+    in m, beside the rotation.
+    """
+
+    set_name: str
+    axis: tuple
+    angle: float
+    center: tuple | None
+    displacement: tuple
+
+
+@dataclass(frozen=True)
 class Force:
     """A dead load on the faces within a node set: total (3,) in N, moment (3,) in N m."""
 
@@ -29,13 +44,14 @@ class Force:
 
 @dataclass(frozen=True)
 class Case:
-    """Name, law, numbers of the law (SI units), imposed displacements and forces of a case."""
+    """Name, law, numbers of the law (SI units), what is imposed on a case."""
 
     name: str
     law: str
     material: dict
     displacements: tuple
     forces: tuple = ()
+    rotations: tuple = ()
 
 
 def read_tables(path):
@@ -92,15 +108,19 @@ def read_case(path, name=None):
         for key, required in parameters(law).items()
         if required or key in tables["material"]
     }
-    entries = tables.get("displacement")
-    if not isinstance(entries, list) or not entries:
-        raise InputError(f"{path}: no [[displacement]]: at least one table is required")
+    entries = tables.get("displacement", [])
+    rotations = tables.get("rotation", [])
+    if not isinstance(entries, list) or not (entries or rotations):
+        raise InputError(
+            f"{path}: no [[displacement]] or [[rotation]]: at least one table is required"
+        )
     return Case(
         name=name,
         law=law,
         material=material,
         displacements=tuple(_displacement(path, i, entry) for i, entry in enumerate(entries)),
         forces=tuple(_force(path, i, entry) for i, entry in enumerate(tables.get("force", []))),
+        rotations=tuple(_rotation(path, i, entry) for i, entry in enumerate(rotations)),
     )
 
 
@@ -134,16 +154,50 @@ def _force(path, index, entry):
     """One checked [[force]] table as a Force."""
     where = f"force[{index}]"
     _check_keys(path, where, entry, ("set", "total", "moment"))
-    vectors = []
-    for key in ("total", "moment"):
-        value = entry.get(key, [0.0, 0.0, 0.0])
-        numbers = isinstance(value, list) and all(_is_number(v) for v in value)
-        if not (numbers and len(value) == 3 and all(math.isfinite(v) for v in value)):
-            raise InputError(f"{path}: {where}.{key} = {value!r}: must be three finite numbers")
-        vectors.append(tuple(float(v) for v in value))
+    none = [0.0, 0.0, 0.0]
+    vectors = [_vector(path, where, key, entry.get(key, none)) for key in ("total", "moment")]
+    return Force(_set_name(path, where, entry), *vectors)
+
+
+def _rotation(path, index, entry):
+    """One checked [[rotation]] table as a Rotation; the file has degrees."""
+    where = f"rotation[{index}]"
+    _check_keys(path, where, entry, ("set", "axis", "angle", "center", "displacement"))
+    axis = entry.get("axis")
+    if isinstance(axis, str):
+        if axis not in ("x", "y", "z"):
+            raise InputError(f"{path}: {where}.axis = {axis!r}: {_allowed(axis, ('x', 'y', 'z'))}")
+        axis = [float(axis == letter) for letter in "xyz"]
+    axis = _vector(path, where, "axis", axis)
+    length = math.hypot(*axis)
+    if not length:
+        raise InputError(f"{path}: {where}.axis = {list(axis)}: must not be zero")
+    angle = entry.get("angle")
+    if not (_is_number(angle) and math.isfinite(angle)):
+        raise InputError(f"{path}: {where}.angle = {angle!r}: must be a finite number (degrees)")
+    center = entry.get("center")
+    return Rotation(
+        _set_name(path, where, entry),
+        tuple(a / length for a in axis),
+        angle / 180 * math.pi,
+        None if center is None else _vector(path, where, "center", center),
+        _vector(path, where, "displacement", entry.get("displacement", [0.0, 0.0, 0.0])),
+    )
+
+
+def _set_name(path, where, entry):
+    """The checked set of a table of something imposed."""
     if not isinstance(entry.get("set"), str):
         raise InputError(f"{path}: {where}.set = {entry.get('set')!r}: must be a node set's name")
-    return Force(entry["set"], *vectors)
+    return entry["set"]
+
+
+def _vector(path, where, key, value):
+    """Three finite numbers as a tuple."""
+    numbers = isinstance(value, list) and all(_is_number(v) for v in value)
+    if not (numbers and len(value) == 3 and all(math.isfinite(v) for v in value)):
+        raise InputError(f"{path}: {where}.{key} = {value!r}: must be three finite numbers")
+    return tuple(float(v) for v in value)
 
 
 def _displacement(path, index, entry):

@@ -53,23 +53,23 @@ def fill_golden_error(golden_path, truth_path):
 def table(folder=FOLDER):
     """The Markdown table of folder/golden/*.h5 against folder/truth/*.h5, as a string."""
     lines = [
-        "| case | golden to truth, max | rms | truth's mesh | truth's own error, max | rms "
-        "| golden, s | truth, s |",
-        "|---|---|---|---|---|---|---|---|",
+        "| case | golden to truth, max | rms | golden's own error, max | rms | order "
+        "| truth's mesh | truth's own error, max | rms | order | golden, s | truth, s |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for golden_path in sorted((folder / "golden").glob("*.h5")):
         truth_path = folder / "truth" / golden_path.name
         _, _, golden = read_result(golden_path)
-        cells = [golden["case"]]
+        seconds = f"{golden['wall_seconds']:.0f}"
         if truth_path.exists():
             _, _, truth = read_result(truth_path)
-            cells += [_percent(error) for error in golden_error(golden_path, truth_path)]
+            cells = [_percent(error) for error in golden_error(golden_path, truth_path)]
+            cells += _own_error(golden)
             cells.append(f"split {truth['refinements']}x" if truth["refinements"] else "same")
-            own = (truth["discretisation_error_max"], truth["discretisation_error_rms"])
-            cells += [_percent(error) for error in own]
-            cells += [f"{golden['wall_seconds']:.0f}", f"{truth['wall_seconds']:.0f}"]
+            cells += _own_error(truth) + [seconds, f"{truth['wall_seconds']:.0f}"]
         else:
-            cells += ["-"] * 5 + [f"{golden['wall_seconds']:.0f}", "-"]
+            cells = ["-", "-"] + _own_error(golden) + ["-"] * 4 + [seconds, "-"]
+        cells.insert(0, golden["case"])
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
@@ -83,6 +83,16 @@ def update_readme(folder=FOLDER):
     if not end:
         raise InputError(f"{readme}: the marks {BEGIN} and {END} are missing")
     readme.write_text(f"{before}{begin}\n{table(folder)}\n{end}{after}", encoding="utf-8")
+
+
+def _own_error(attributes):
+    """The cells of a result's distance from the limit of refinement: max, rms, order."""
+    order = attributes["own_error_order"]
+    if math.isnan(order):
+        return [_percent(math.nan)] * 2 + ["-"]
+    mark = "" if attributes["own_error_note"].endswith(": measured") else " (*)"
+    errors = (attributes["own_error_max"], attributes["own_error_rms"])
+    return [_percent(error) for error in errors] + [f"{order:.2f}{mark}"]
 
 
 def _percent(fraction):

@@ -16,16 +16,44 @@ FACES = np.array(
 
 
 @dataclass(frozen=True)
+class Turn:
+    """A rigid rotation, by its shares in the path of each node: (1 - cos) versine + sin sine.
+
+    angle: rad, at the full load. versine, sine: (n, 3) m.
+    """
+
+    angle: float
+    versine: np.ndarray
+    sine: np.ndarray
+
+    def at(self, load):
+        """Displacement (n, 3) in m at a load factor."""
+        turned = load * self.angle
+        return 2 * np.sin(turned / 2) ** 2 * self.versine + np.sin(turned) * self.sine
+
+    def largest(self):
+        """Largest displacement (n,) on the way, m: the chord of the way's arc."""
+        chord = 2 * np.sin(min(abs(self.angle), np.pi) / 2)
+        return chord * np.linalg.norm(self.versine, axis=1)
+
+
+@dataclass(frozen=True)
 class Condition:
-    """Displacement components imposed on a set of nodes.
+    """Displacement components imposed on a set of nodes, which follow the load straight on.
 
     nodes: (n,) bool, True for the nodes of the set. components: axes (0..2) it acts on.
     values: (n, 3) m; only the rows of the set and the columns of the components mean something.
+    turn: the Turn that the same components make beside that, or None.
     """
 
     nodes: np.ndarray
     components: tuple
     values: np.ndarray
+    turn: Turn | None = None
+
+    def at(self, load):
+        """Values (n, 3) in m at a load factor."""
+        return load * self.values + (self.turn.at(load) if self.turn else 0.0)
 
 
 @dataclass(frozen=True)
@@ -55,19 +83,33 @@ class HexMesh:
     conditions: tuple
     tractions: tuple = ()
 
-    def imposed(self):
-        """All conditions together: (prescribed (n, 3) bool, values (n, 3) m, zero elsewhere)."""
+    def imposed(self, load=1.0):
+        """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, or zero)."""
         prescribed = np.zeros(self.points.shape, dtype=bool)
         values = np.zeros(self.points.shape)
         for condition in self.conditions:
             for axis in condition.components:
                 prescribed[condition.nodes, axis] = True
-                values[condition.nodes, axis] = condition.values[condition.nodes, axis]
+                values[condition.nodes, axis] = condition.at(load)[condition.nodes, axis]
         return prescribed, values
 
+    def largest_turn(self):
+        """Largest displacement by turning alone, on the way: (n,) m."""
+        largest = np.zeros(len(self.points))
+        for condition in self.conditions:
+            if condition.turn:
+                chord = np.where(condition.nodes, condition.turn.largest(), 0.0)
+                largest = np.maximum(largest, chord)
+        return largest
+
     def largest_imposed(self):
-        """Largest imposed displacement: max over the nodes of |d|, m."""
-        return np.linalg.norm(self.imposed()[1], axis=1).max()
+        """Largest imposed displacement: max over the nodes of |d|, m.
+
+        Of nodes that turn, the largest on the way, where what they move beside that counts in full.
+        """
+        straight = tuple(dataclasses.replace(c, turn=None) for c in self.conditions)
+        values = dataclasses.replace(self, conditions=straight).imposed()[1]
+        return (np.linalg.norm(values, axis=1) + self.largest_turn()).max()
 
 
 def faces_of(cells):
@@ -111,6 +153,16 @@ def traction(points, cells, nodes, total, moment):
     return Traction(nodes, np.asarray(total) / area.sum(), np.linalg.solve(inertia, moment), centre)
 
 
+def turn_about(points, axis, center, angle):
+    """The Turn of points (n, 3) by an angle (rad) round an axis (3,) of length 1 through a center.
+
+    With their arms r about the axis a, (R - 1)(X - c) = -(1 - cos) r + sin a x r.
+    """
+    from_center = points - center
+    arm = from_center - np.outer(from_center @ axis, axis)
+    return Turn(angle, -arm, np.cross(axis, arm))
+
+
 def refine(mesh):
     """Split every hexahedron into eight through the images of its parent mid-points.
 
@@ -152,8 +204,14 @@ def refine(mesh):
         offsets = [np.add(corner, other) // 2 for other in corners]
         slots = [positions.index(tuple(offset)) for offset in offsets]
         children.append(local_to_global[:, slots][:, VTK_TO_LEXICOGRAPHIC])
+
+    def extend_turn(turn):
+        return turn and Turn(turn.angle, extend(turn.versine, np.mean), extend(turn.sine, np.mean))
+
     conditions = tuple(
-        Condition(extend(c.nodes, np.all), c.components, extend(c.values, np.mean))
+        Condition(
+            extend(c.nodes, np.all), c.components, extend(c.values, np.mean), extend_turn(c.turn)
+        )
         for c in mesh.conditions
     )
     tractions = tuple(dataclasses.replace(t, nodes=extend(t.nodes, np.all)) for t in mesh.tractions)

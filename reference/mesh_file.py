@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 from errors import InputError
-from hexahedra import Condition, HexMesh, traction
+from hexahedra import Condition, HexMesh, traction, turn_about
 
 
 @dataclass(frozen=True)
@@ -71,18 +71,16 @@ def load_case_mesh(case, mesh_path):
         )
     mesh = HexMesh(file.points, file.cells, ())
     for entry in case.displacements:
-        members = _members(mesh_path, file, "displacement", entry.set_name)
-        prescribed, values = mesh.imposed()
-        for axis in entry.components:
-            already = members[prescribed[members, axis]]
-            if (values[already, axis] != entry.value[axis]).any():
-                raise InputError(
-                    f"{mesh_path}: displacement.set = {entry.set_name!r}: component "
-                    f"{'xyz'[axis]} of node {already[0]} is already prescribed with another value"
-                )
-        nodes = _mask(file, members)
+        nodes = _mask(file, _members(mesh_path, file, "displacement", entry.set_name))
         condition = Condition(nodes, entry.components, np.tile(entry.value, (len(nodes), 1)))
-        mesh = HexMesh(mesh.points, mesh.cells, mesh.conditions + (condition,))
+        mesh = _with_condition(mesh_path, mesh, condition, f"displacement.set = {entry.set_name!r}")
+    for entry in case.rotations:
+        members = _members(mesh_path, file, "rotation", entry.set_name)
+        center = file.points[members].mean(axis=0) if entry.center is None else entry.center
+        turn = turn_about(file.points, np.array(entry.axis), center, entry.angle)
+        values = np.tile(entry.displacement, (len(file.points), 1))
+        condition = Condition(_mask(file, members), (0, 1, 2), values, turn)
+        mesh = _with_condition(mesh_path, mesh, condition, f"rotation.set = {entry.set_name!r}")
     tractions = []
     for entry in case.forces:
         nodes = _mask(file, _members(mesh_path, file, "force", entry.set_name))
@@ -95,6 +93,20 @@ def load_case_mesh(case, mesh_path):
     if not (mesh.largest_imposed() or tractions):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
     return dataclasses.replace(mesh, tractions=tuple(tractions)), file
+
+
+def _with_condition(mesh_path, mesh, condition, where):
+    """The HexMesh with one more Condition. Raises InputError where it contradicts the others."""
+    for load in (1.0, 0.3):  # paths of rotations that meet at one load part at another
+        prescribed, values = mesh.imposed(load)
+        for axis in condition.components:
+            already = np.flatnonzero(prescribed[:, axis] & condition.nodes)
+            if (values[already, axis] != condition.at(load)[already, axis]).any():
+                raise InputError(
+                    f"{mesh_path}: {where}: component {'xyz'[axis]} of node {already[0]} is "
+                    "already prescribed with another value"
+                )
+    return dataclasses.replace(mesh, conditions=mesh.conditions + (condition,))
 
 
 def _members(mesh_path, file, table, set_name):

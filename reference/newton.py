@@ -43,7 +43,7 @@ def solve(problem, load_steps, tolerance, guessed=False):
     method converges quadratically, so the solution is then exact to round-off. Returns an
     Outcome. Raises DivergenceError when halving does not help.
     """
-    scale = np.abs(problem.values).max()
+    scale = problem.scale
     state = (problem.displacement.x.array, problem.pressure.x.array)
     balanced = [np.zeros_like(array) for array in state]  # the last equilibrium: at rest
     load, steps, iterations = 0.0, 0, 0
@@ -75,7 +75,7 @@ def solve(problem, load_steps, tolerance, guessed=False):
 def _equilibrate(problem, load, scale, tolerance):
     """Newton's method at one load: (converged, iterations, residual, increment), both relative."""
     u = problem.displacement.x.array
-    fixed = load * problem.values
+    fixed = problem.values_at(load)
     problem.load = load
     increment = np.inf
     for count in range(1, MAX_ITERATIONS + 1):

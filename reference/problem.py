@@ -5,6 +5,7 @@ The pressure is discontinuous, so every Newton step eliminates it exactly on the
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import basix
 import dolfinx
@@ -47,8 +48,8 @@ class MixedProblem:
     mesh: HexMesh. pair: ElementPair. law: name out of LAWS. material: dict of its numbers (SI),
     directions as tuples.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
-    dofs), values (their full values, m), free (the other dofs), load (the present factor of the
-    tractions, 0 to 1).
+    dofs), values (theirs at the full load, m), scale (the largest of them on the way, m), free (the
+    other dofs), load (the present factor of the tractions, 0 to 1).
     """
 
     def __init__(self, mesh, pair, law, material):
@@ -77,7 +78,9 @@ class MixedProblem:
         cell_dofs = space.dofmap.list.array.reshape(n_cells, -1)
         vertex_dofs = [space.dofmap.dof_layout.entity_dofs(0, v)[0] for v in range(8)]
         self._vertex_block[cell_nodes] = cell_dofs[:, vertex_dofs]
-        self.fixed, self.values = prescribed_dofs(space, cell_nodes, mesh.conditions)
+        self._prescribed = partial(prescribed_dofs, space, cell_nodes, mesh.conditions)
+        self.fixed, self.values = self._prescribed()
+        self.scale = max(np.abs(self.values).max(), mesh.largest_turn().max())
         self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
         self.load = 1.0
         self._external = np.zeros(self.displacement.x.array.size)
@@ -106,6 +109,10 @@ class MixedProblem:
 
         take_over(self.displacement, coarse.displacement)
         take_over(self.pressure, coarse.pressure)
+
+    def values_at(self, load):
+        """Values (in m) of the prescribed dofs at a load factor."""
+        return self._prescribed(load)[1]
 
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh, in its numbering."""

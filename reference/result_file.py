@@ -1,6 +1,8 @@
 """Storing and reading goldens and truths (HDF5). A file is written whole or not at all."""
 
+import math
 import os
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -32,6 +34,18 @@ ATTRIBUTES = {
     "discretisation_error_max": float,
     "discretisation_error_rms": float,
     "discretisation_error_note": str,
+    "own_error_max": float,  # distance from the limit of refinement: convergence.py
+    "own_error_rms": float,
+    "own_error_order": float,
+    "own_error_note": str,
+}
+
+# What a new result knows of its distance from that limit.
+NOT_ESTIMATED = {
+    "own_error_max": math.nan,
+    "own_error_rms": math.nan,
+    "own_error_order": math.nan,
+    "own_error_note": "not estimated: reference/convergence.py has not been run",
 }
 
 
@@ -64,6 +78,29 @@ def write_result(path, points, displacement, attributes):
             for name, kind in ATTRIBUTES.items():
                 file.attrs[name] = kind(attributes[name])
         os.chmod(temporary, 0o644)  # mkstemp makes it readable by its owner only
+        os.replace(temporary, path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot write: {error}") from error
+    finally:
+        if os.path.exists(temporary):
+            os.unlink(temporary)
+
+
+def write_estimate(path, estimate):
+    """Replace the attributes of NOT_ESTIMATED in a stored result; its datasets keep their bytes.
+
+    estimate: dict with those keys. Raises InputError when the file cannot be written.
+    """
+    assert set(estimate) == set(NOT_ESTIMATED), set(estimate) ^ set(NOT_ESTIMATED)
+    require_writable(path)
+    path = Path(path).resolve()
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    os.close(handle)
+    try:
+        shutil.copy(path, temporary)
+        with h5py.File(temporary, "r+") as file:
+            for name, value in estimate.items():
+                file.attrs[name] = ATTRIBUTES[name](value)
         os.replace(temporary, path)
     except OSError as error:
         raise InputError(f"{path}: cannot write: {error}") from error

@@ -66,7 +66,7 @@ def _half(mesh, axis):
     if not np.array_equal(_as_sets(image[mesh.cells]), _as_sets(mesh.cells)):
         return None
     for condition in mesh.conditions:
-        if not np.array_equal(condition.nodes[image], condition.nodes):
+        if condition.turn or not np.array_equal(condition.nodes[image], condition.nodes):
             return None
         for component in condition.components:
             value = np.where(condition.nodes, condition.values[:, component], 0.0)

@@ -1,0 +1,177 @@
+"""How far a golden or a truth is from the limit of refinement of its own element.
+
+Usage: /usr/bin/python3 reference/convergence.py [CASE...]
+Solves the stored results of the named cases, by default of all, again on split meshes where that
+takes minutes, and stores the estimates as attributes beside the untouched displacements.
+Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
+"""
+
+import argparse
+import logging
+import math
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import solve
+from accuracy import relative_errors
+from case_file import find_case, read_case
+from errors import DivergenceError, InputError
+from mesh_file import load_case_mesh
+from result_file import read_result, write_estimate
+from solver_binary import CASES, make_mesh
+from symmetry import halve
+
+FOLDER = Path(__file__).resolve().parent
+
+# With two meshes the order is assumed: 2 is what the golden's element has on smooth answers; a
+# truth has converged so far that the singular edges of the answer rule it.
+ASSUMED_ORDER = {"golden": 2.0, "truth": 1.0}
+
+# At an edge where a body is held or driven, displacements go like r^a with a > 1/2, so that energy,
+# and with it what loads move, converges with order 2 a > 1. A sequence that seems slower has not
+# come to its last order, and its own would extrapolate it too far.
+LOWEST_ORDER = 1.0
+
+# A golden's mesh, halved at its mirror planes, is split as long as that gives no more cells than
+# these: about a minute on one core. A truth is solved on the meshes before the stored one alone.
+MOST_CELLS = 18000
+MOST_SPLITS = 3
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The limit of a sequence of fields and how it was found.
+
+    limit: (n, 3). order: of convergence, that the limit was found with. origin: "measured",
+    "assumed", or "the lowest" where a lower one was measured.
+    """
+
+    limit: np.ndarray
+    order: float
+    origin: str
+
+
+def richardson(fields, assumed_order):
+    """The limit of fields on meshes of edge h, h/2, h/4, ... by Richardson's extrapolation.
+
+    fields: two or more arrays (n, 3), coarse to fine, at the same points. With an error C h^p the
+    differences of neighbours fall by 2^p, and what the last field lacks is the last difference over
+    2^p - 1. Of three or more fields the last three show p, by the root mean square of their
+    differences; of two it is assumed_order.
+    It is taken as LOWEST_ORDER where it is lower. Returns an Estimate, or None when there are less
+    than two fields or differences do not fall.
+    """
+    if len(fields) < 2:
+        return None
+    last = fields[-1] - fields[-2]
+    order, origin = assumed_order, "assumed"
+    if len(fields) > 2:
+        before, after = (np.linalg.norm(d) for d in (fields[-2] - fields[-3], last))
+        if not before > after > 0:
+            return None
+        order, origin = math.log2(before / after), "measured"
+        if order < LOWEST_ORDER:
+            order, origin = LOWEST_ORDER, f"the lowest, measured {order:.2f}"
+    return Estimate(fields[-1] + last / (2**order - 1), order, origin)
+
+
+def attributes_of(kind, fields, stored, unit, reason):
+    """The attributes that say how far `stored` is from the limit of `fields`.
+
+    kind: "golden" or "truth". fields: as for richardson(). stored: (n, 3), m, one of them.
+    unit: m, of relative errors. reason: why there are no more fields, for the note.
+    Returns what result_file.write_estimate() takes.
+    """
+    estimate = richardson(fields, ASSUMED_ORDER[kind])
+    if estimate is None:
+        why = "differences do not fall" if len(fields) > 1 else reason
+        errors, order, note = (math.nan, math.nan), math.nan, f"not estimated: {why}"
+    else:
+        errors = relative_errors(stored, estimate.limit, unit)
+        order = estimate.order
+        note = f"Richardson's extrapolation of {len(fields)} meshes; order {order:.2f}: "
+        note += estimate.origin + (f", for {reason}" if estimate.origin == "assumed" else "")
+    return {
+        "own_error_max": errors[0],
+        "own_error_rms": errors[1],
+        "own_error_order": order,
+        "own_error_note": note,
+    }
+
+
+def splits_of(cells):
+    """How often a golden's mesh of so many cells is split for an estimate."""
+    splits = 0
+    while splits < MOST_SPLITS and cells * 8 ** (splits + 1) <= MOST_CELLS:
+        splits += 1
+    return splits
+
+
+def fields_of(kind, name, displacement, refinements):
+    """The displacements of a stored result's element on its mesh split 0, 1, 2, ... times.
+
+    displacement: the stored one, on the mesh split `refinements` times. Returns (list of (n, 3),
+    m; why there are no more). Raises InputError or DivergenceError.
+    """
+    path = find_case(CASES, name)
+    case = read_case(path, name)
+    with tempfile.TemporaryDirectory() as scratch:
+        make_mesh(path, Path(scratch) / "mesh.h5", name)
+        mesh, _ = load_case_mesh(case, Path(scratch) / "mesh.h5")
+    cells = len(halve(mesh)[0].cells)
+    if kind == "golden":
+        splits = splits_of(cells)
+        reason = f"a mesh of {cells * 8 ** (splits + 1)} cells was too dear"
+        fields, _, _ = solve.solve_case(kind, case, mesh, splits, solve.load_steps_of(kind, case))
+        return [displacement] + fields[1:], reason
+    reason = f"a mesh of {cells * 8 ** (refinements + 1)} cells was too dear"
+    if refinements == 0:
+        return [displacement], reason
+    fields, _, _ = solve.solve_case(
+        kind, case, mesh, refinements - 1, solve.load_steps_of(kind, case)
+    )
+    return fields + [displacement], reason
+
+
+def estimate(kind, name):
+    """Estimate a stored result's own error and store it. Raises InputError or DivergenceError."""
+    path = FOLDER / kind / f"{name}.h5"
+    _, displacement, attributes = read_result(path)
+    fields, reason = fields_of(kind, name, displacement, attributes["refinements"])
+    found = attributes_of(kind, fields, displacement, attributes["largest_imposed"], reason)
+    print(f"{kind} {name}: {100 * found['own_error_max']:.3g} %; {found['own_error_note']}")
+    write_estimate(path, found)
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(
+        description="Estimate the discretisation errors of stored goldens and truths.",
+        epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found",
+    )
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all stored ones")
+    parser.add_argument("--kind", choices=ASSUMED_ORDER, help="default: both")
+    parsed = parser.parse_args(arguments)
+    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
+    try:
+        for kind in [parsed.kind] if parsed.kind else ASSUMED_ORDER:
+            stored = sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
+            for name in parsed.cases or stored:
+                if name not in stored:
+                    raise InputError(f"CASE = {name!r}: allowed: {', '.join(stored)}")
+                estimate(kind, name)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except DivergenceError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 3
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,131 @@
+"""Richardson's extrapolation: exact on sequences whose limit is known, and what is stored of it."""
+
+import math
+
+import h5py
+import numpy as np
+import pytest
+
+import compare
+import convergence
+from convergence import attributes_of, richardson
+from result_file import NOT_ESTIMATED, read_result, write_estimate, write_result
+
+GENERATOR = np.random.default_rng(5)
+LIMIT, COEFFICIENT = GENERATOR.normal(size=(2, 7, 3))
+STORED = sorted(
+    (path.parent.name, path.stem)
+    for kind in ("golden", "truth")
+    for path in (compare.FOLDER / kind).glob("*.h5")
+)
+
+
+def sequence(order, meshes, first=1.0):
+    """Fields LIMIT + COEFFICIENT h^order for h = first, first/2, ..."""
+    return [LIMIT + COEFFICIENT * (first / 2**n) ** order for n in range(meshes)]
+
+
+@pytest.mark.parametrize("order", [1.1, 1.37, 2.0, 3.0])
+@pytest.mark.parametrize("meshes", [3, 4, 5])
+def test_order_and_limit_of_a_power_are_found(order, meshes):
+    found = richardson(sequence(order, meshes), assumed_order=7.0)
+    # Differences of numbers of size 1, the last of them 2^-15 of it, in double precision.
+    assert found.order == pytest.approx(order, abs=1e-10)
+    assert found.origin == "measured"
+    assert np.abs(found.limit - LIMIT).max() < 1e-10
+
+
+def test_two_meshes_take_the_assumed_order():
+    coarse, fine = sequence(2.0, 2)
+    found = richardson([coarse, fine], assumed_order=2.0)
+    assert (found.order, found.origin) == (2.0, "assumed")
+    assert np.abs(found.limit - LIMIT).max() < 1e-14
+    # What the coarse field lacks is 4/3 of the difference, what the fine one lacks 1/3.
+    difference = fine - coarse
+    assert np.allclose(found.limit - coarse, 4 / 3 * difference, rtol=1e-12)
+    assert np.allclose(found.limit - fine, difference / 3, rtol=1e-12)
+
+
+def test_only_the_finest_three_show_the_order():
+    disturbed = sequence(2.0, 4)
+    disturbed[0] = disturbed[0] + 100.0
+    found = richardson(disturbed, assumed_order=1.0)
+    assert found.order == pytest.approx(2.0, abs=1e-12)
+
+
+def test_lower_orders_than_an_elastic_edge_allows_are_not_used():
+    fields = sequence(0.3, 3)
+    found = richardson(fields, assumed_order=2.0)
+    assert found.order == 1.0
+    assert found.origin == "the lowest, measured 0.30"
+    # At order 1 the finest field lacks as much as its difference to the one before.
+    assert np.allclose(found.limit - fields[2], fields[2] - fields[1], rtol=1e-12)
+
+
+def test_sequences_that_do_not_converge_have_no_limit():
+    assert richardson([LIMIT], 2.0) is None
+    assert richardson([LIMIT, LIMIT + 1, LIMIT - 1], 2.0) is None
+    assert richardson([LIMIT, LIMIT + 1, LIMIT + 1], 2.0) is None
+
+
+def test_attributes_hold_the_distance_of_the_stored_field_from_the_limit():
+    fields = sequence(2.0, 3)
+    for stored, share in ((fields[0], 1.0), (fields[2], 1 / 16)):
+        found = attributes_of("golden", fields, stored, unit=0.5, reason="no reason")
+        distance = share * np.linalg.norm(COEFFICIENT, axis=1) / 0.5
+        assert found["own_error_max"] == pytest.approx(distance.max(), rel=1e-9)
+        assert found["own_error_rms"] == pytest.approx(np.sqrt((distance**2).mean()), rel=1e-9)
+        assert found["own_error_order"] == pytest.approx(2.0, abs=1e-9)
+        assert found["own_error_note"].endswith("3 meshes; order 2.00: measured")
+
+
+def test_what_is_not_estimated_says_why():
+    found = attributes_of(
+        "truth", [LIMIT], LIMIT, unit=1.0, reason="a mesh of 9 cells was too dear"
+    )
+    assert math.isnan(found["own_error_max"]) and math.isnan(found["own_error_order"])
+    assert found["own_error_note"] == "not estimated: a mesh of 9 cells was too dear"
+    apart = attributes_of("truth", [LIMIT, LIMIT + 1, LIMIT - 1], LIMIT, unit=1.0, reason="-")
+    assert apart["own_error_note"] == "not estimated: differences do not fall"
+
+
+def test_splits_stay_below_the_cells_that_are_affordable():
+    for cells in (1, 5, 160, 270, 1100, 1500, 10**6):
+        splits = convergence.splits_of(cells)
+        assert splits == 0 or cells * 8**splits <= convergence.MOST_CELLS
+        assert (
+            splits == convergence.MOST_SPLITS or cells * 8 ** (splits + 1) > convergence.MOST_CELLS
+        )
+
+
+def test_an_estimate_leaves_the_displacement_as_it_is(tmp_path):
+    source = compare.FOLDER / "golden" / "column.h5"
+    points, displacement, attributes = read_result(source)
+    path = tmp_path / "golden.h5"
+    write_result(path, points, displacement, attributes | NOT_ESTIMATED)
+
+    def stored():
+        with h5py.File(path, "r") as file:
+            return file["displacement"].id.read_direct_chunk((0, 0))
+
+    before = stored()
+    write_estimate(path, NOT_ESTIMATED | {"own_error_max": 0.25, "own_error_note": "a test"})
+    assert stored() == before
+    _, after, found = read_result(path)
+    assert (after == displacement).all()
+    assert (found["own_error_max"], found["own_error_note"]) == (0.25, "a test")
+    assert {name: found[name] for name in found if name not in NOT_ESTIMATED} == {
+        name: attributes[name] for name in attributes if name not in NOT_ESTIMATED
+    }
+
+
+@pytest.mark.parametrize("kind, name", STORED)
+def test_every_stored_result_has_an_estimate_or_a_reason(kind, name):
+    _, _, attributes = read_result(compare.FOLDER / kind / f"{name}.h5")
+    note = attributes["own_error_note"]
+    if note.startswith("not estimated: "):
+        assert math.isnan(attributes["own_error_max"]) and "has not been run" not in note
+        return
+    assert attributes["own_error_max"] >= attributes["own_error_rms"] > 0
+    assert attributes["own_error_order"] >= convergence.LOWEST_ORDER
+    assert note.startswith("Richardson's extrapolation of ")
