@@ -1,6 +1,8 @@
 #include "io/case_file.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "element/methods.hpp"
@@ -88,6 +90,36 @@ ImposedDisplacement read_displacement(TableReader table) {
   return imposed;
 }
 
+/// An axis as written: a letter, or a vector of any length but zero. Returns it with length one.
+Vector read_axis(TableReader& table) {
+  Vector axis{};
+  if (table.holds_text("axis")) {
+    axis[static_cast<std::size_t>(table.required_choice("axis", {"x", "y", "z"})[0] - 'x')] = 1.0;
+    return axis;
+  }
+  axis = table.required<Vector>("axis");
+  for (const double a : axis) table.require_in_range("axis", a, Range::any());
+  const double length = std::hypot(axis[0], axis[1], axis[2]);
+  if (length == 0.0) table.fail("axis", "= [0, 0, 0] must not be zero: it is a direction");
+  for (double& a : axis) a /= length;
+  return axis;
+}
+
+ImposedRotation read_rotation(TableReader table) {
+  ImposedRotation turned;
+  turned.set = table.required<std::string>("set");
+  turned.axis = read_axis(table);
+  const auto degrees = table.required<double>("angle");
+  table.require_in_range("angle", degrees, Range::any());
+  turned.angle = degrees / 180.0 * std::numbers::pi;
+  turned.center = table.optional<Vector>("center");
+  for (const double c : turned.center.value_or(Vector{})) table.require_in_range("center", c, Range::any());
+  turned.displacement = table.optional<Vector>("displacement").value_or(Vector{});
+  for (const double d : turned.displacement) table.require_in_range("displacement", d, Range::any());
+  table.finish();
+  return turned;
+}
+
 /// Along an axis, or around it.
 std::vector<std::string> directions() {
   return {"x", "y", "z", "around-x", "around-y", "around-z"};
@@ -104,6 +136,23 @@ ImposedForce read_force(TableReader table) {
   for (const double m : force.moment) table.require_in_range("moment", m, Range::any());
   table.finish();
   return force;
+}
+
+InitialVelocity read_velocity(TableReader table) {
+  InitialVelocity velocity;
+  velocity.set = table.optional<std::string>("set");
+  const auto value = table.optional<Vector>("value"), spin = table.optional<Vector>("spin");
+  if (!value && !spin) table.fail("value", "or spin must be given, or both");
+  velocity.value = value.value_or(Vector{});
+  velocity.spin = spin.value_or(Vector{});
+  for (const double v : velocity.value) table.require_in_range("value", v, Range::any());
+  for (const double w : velocity.spin) table.require_in_range("spin", w, Range::any());
+  if (const auto half_waves = table.optional<std::array<int, 3>>("half_waves")) {
+    for (const int n : *half_waves) table.require_in_range("half_waves", n, Range::at_least(0.0));
+    velocity.half_waves = *half_waves;
+  }
+  table.finish();
+  return velocity;
 }
 
 PublishedValue read_published(TableReader table) {
@@ -133,6 +182,38 @@ std::string read_kappa(TableReader& table) {
     return fmt::to_string(kappa);
   }
   return table.optional<std::string>("kappa") ? table.required_choice("kappa", {"auto", "best"}) : "auto";
+}
+
+/// The hourglass parameter of a method as written: a number, or none for "auto".
+std::optional<double> read_strength(TableReader& table, const std::string& method) {
+  if (!table.holds_number("kappa")) {
+    if (table.optional<std::string>("kappa")) table.required_choice("kappa", {"auto"});
+    return std::nullopt;
+  }
+  const auto kappa = table.required<double>("kappa");
+  table.require_in_range("kappa", kappa, Range::at_least(0.0));
+  if (!takes_kappa(method)) {
+    table.fail("kappa", fmt::format("= {} was given, but method '{}' has no such parameter", kappa, method));
+  }
+  return kappa;
+}
+
+MethodChoice read_method(TableReader table) {
+  MethodChoice choice;
+  choice.method = table.required_choice("name", names_of(Methods{}));
+  choice.kappa = read_strength(table, choice.method);
+  const auto is = [&](const std::string& key, const std::vector<std::string>& words, std::string_view word) {
+    return table.optional<std::string>(key) && table.required_choice(key, words) == word;
+  };
+  if (is("kappa_modulus", {"p-wave", "shear"}, "shear")) choice.kappa_modulus = KappaModulus::shear;
+  if (is("precision", {"double", "float"}, "float")) choice.precision = Precision::single_precision;
+  if (const auto accuracy = table.optional<double>("accuracy")) {
+    if (!adapts(choice.method)) table.fail("accuracy", "is for an adaptive method alone; leave it out");
+    if (!(*accuracy > 0.0)) table.fail("accuracy", "must be positive");
+    choice.accuracy = *accuracy;
+  }
+  table.finish();
+  return choice;
 }
 
 Expectation read_expectation(TableReader table) {
@@ -228,27 +309,27 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path) {
   }
   for (const auto& table : reader.tables("displacement"))
     scene.displacements.push_back(read_displacement(table));
+  for (const auto& table : reader.tables("rotation")) scene.rotations.push_back(read_rotation(table));
   for (const auto& table : reader.tables("force")) scene.forces.push_back(read_force(table));
-  if (auto initial = reader.table("initial")) {
-    scene.initial_velocity = initial->required<Vector>("velocity");
-    initial->finish();
-  }
   if (auto profile = reader.table("profile")) scene.profile = read_profile(*profile);
   if (auto relaxation = reader.table("relaxation")) {
     relaxation->parameters(scene.relaxation);
     relaxation->finish();
   }
   if (!scene.quasi_static) {
+    for (const auto& table : reader.tables("velocity")) scene.velocities.push_back(read_velocity(table));
     auto dynamics = reader.required_table("dynamics");
     dynamics.parameters(scene.dynamics);
     dynamics.finish();
   }
+  if (auto method = reader.table("method")) scene.method = read_method(*method);
   if (auto comparison = reader.table("comparison")) read_comparison(*comparison, scene);
   for (const auto& table : reader.tables("published")) scene.published.push_back(read_published(table));
   for (const auto& table : reader.tables("expect")) scene.expectations.push_back(read_expectation(table));
   reader.finish();
-  if (scene.quasi_static && scene.displacements.empty()) {
-    reader.fail("displacement", "is missing; a quasi-static case needs at least one [[displacement]]");
+  if (scene.quasi_static && scene.displacements.empty() && scene.rotations.empty()) {
+    reader.fail("displacement",
+                "is missing; a quasi-static case needs at least one [[displacement]] or [[rotation]]");
   }
   return scene;
 }
@@ -299,14 +380,24 @@ std::string describe_case_keys() {
       "center = [x, y], "
       "semi_axes = [a, b] } }\n  all conditions must hold; lengths in m; inf and -inf are allowed\n"
       "\n[[displacement]] set = NAME, value = [x, y, z] in m, components = \"xyz\" (default: all)\n"
+      "[[rotation]] set = NAME, axis = \"x\", \"y\", \"z\" or [x, y, z], angle in degrees, by the right-hand "
+      "rule:\n  the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis "
+      "(default: the mean of\n  the set's nodes), displacement = [x, y, z] in m, added (default: none)\n"
       "[[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the "
       "faces:\n"
       "  a dead load on the boundary faces within the set\n"
       "[[published]] set = NAME, component = \"x\", ... or \"around-x\", ..., value in m or rad: mean "
       "displacement "
       "or rotation of the set,\n  source: a text\n"
-      "[initial] velocity = [x, y, z] in m/s (dynamic answers)\n"
+      "[[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in "
+      "rad/s about the\n  set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the "
+      "set,\n  value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several "
+      "add "
+      "up\n"
       "[profile] set = NAME, order = \"x\" | \"y\" | \"z\" | \"around-x\" | \"around-y\" | \"around-z\"\n"
+      "[method] name, kappa (number or \"auto\"), kappa_modulus (\"p-wave\" or \"shear\"), accuracy\n"
+      "  (of an adaptive method), precision (\"double\" or \"float\"): what `sandglass run` takes unless its "
+      "options\n  say otherwise; `sandglass choose` writes it\n"
       "[comparison] kappas = [numbers], golden = \"FILE.h5\", truth = \"FILE.h5\"\n"
       "[[expect]] method, kappa (number, \"auto\" or \"best\"), reference (\"golden\", \"truth\" or "
       "\"published\"),\n  figure, below or above, reason\n"

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <unistd.h>
 
-#include <functional>
-#include <numeric>
+#include <algorithm>
+#include <limits>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "base/error.hpp"
+#include "io/file_hash.hpp"
+#include "io/new_file.hpp"
 
 namespace sandglass {
 
@@ -45,20 +48,83 @@ hid_t native(std::int64_t /*tag*/) {
   return H5T_NATIVE_INT64;
 }
 
+/// The largest ratio by which the library's compression shrinks (zlib: 1032 to 1).
+constexpr std::size_t most_compression = 1032;
+
+/// The number of entries of a shape; the largest number where it is too large to be told.
+std::size_t entries_of(const std::vector<std::size_t>& shape) {
+  constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
+  if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) return 0;
+  std::size_t entries = 1;
+  for (const std::size_t extent : shape) {
+    if (entries > most / extent) return most;
+    entries *= extent;
+  }
+  return entries;
+}
+
+/// The most bytes that a dataset can hold for each byte of its file: one, or more when compressed; none when
+/// its values stand in another file that it names.
+std::size_t most_bytes_per_byte(const Identifier& set) {
+  const Identifier creation(H5Dget_create_plist(set.get()), H5Pclose);
+  const H5D_layout_t layout = H5Pget_layout(creation.get());
+  if (layout == H5D_CHUNKED) return most_compression;
+  const bool own =
+      layout == H5D_COMPACT || (layout == H5D_CONTIGUOUS && H5Pget_external_count(creation.get()) == 0);
+  return own ? 1 : 0;
+}
+
+/// Whether a type is a number of at most eight bytes.
+bool is_number(const Identifier& type) {
+  const H5T_class_t kind = H5Tget_class(type.get());
+  return (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Tget_size(type.get()) <= 8;
+}
+
+/// Whether an attribute holds one value, not a list and not nothing.
+bool is_single(const Identifier& attribute) {
+  const Identifier space(H5Aget_space(attribute.get()), H5Sclose);
+  return H5Sget_simple_extent_npoints(space.get()) == 1;
+}
+
+/// What the system said about the last failure of the library; "is the disk full?" where that is not told.
+std::string reason_of_failure() {
+  std::string reason = "is the disk full?";
+  const auto look = [](unsigned /*n*/, const H5E_error2_t* error, void* found) -> herr_t {
+    constexpr std::string_view before = "error message = '";
+    const std::string_view text = error->desc == nullptr ? "" : error->desc;
+    const auto begin = text.find(before);
+    if (begin == std::string_view::npos) return 0;
+    const auto message = text.substr(begin + before.size());
+    *static_cast<std::string*>(found) = message.substr(0, message.find('\''));
+    return 1;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look, &reason);
+  return reason;
+}
+
+/// How this program uses the library, before anything else is asked of it. It closes its files itself: at the
+/// exit the library would try once more to complete one that a full disk kept from being completed, and
+/// crash. Errors are reported in our own words. No filter is loaded because a file asks for it.
+void prepare_library() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5PLset_loading_state(0);
+}
+
 }  // namespace
 
 struct Hdf5File::Handle {
   hid_t file = -1;
   std::filesystem::path path;
-  std::filesystem::path temporary;  // empty when reading
+  std::optional<NewFile> being_written;
+  Storage storage;
+  std::size_t size = 0;  // bytes, of a file being read
 
   Handle() = default;
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   ~Handle() {
     if (file >= 0) H5Fclose(file);
-    std::error_code ignored;
-    if (!temporary.empty()) std::filesystem::remove(temporary, ignored);
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -69,6 +135,11 @@ struct Hdf5File::Handle {
     if (!condition) fail(what);
   }
 
+  void require_written(bool condition, const std::string& what) const {
+    if (condition) return;
+    throw ComputationError(fmt::format("{}: {}: {}", path.string(), what, reason_of_failure()));
+  }
+
   template <class T>
   void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const T> entries) {
     const auto dims = dimensions(shape);
@@ -77,7 +148,7 @@ struct Hdf5File::Handle {
     H5Pset_create_intermediate_group(links.get(), 1);
     const Identifier creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.get(), false);  // the same content gives the same bytes
-    if (entries.size() >= compress_from) {
+    if (storage.compressed && entries.size() >= compress_from) {
       H5Pset_chunk(creation.get(), static_cast<int>(dims.size()), dims.data());
       H5Pset_shuffle(creation.get());
       H5Pset_deflate(creation.get(), 4);
@@ -85,9 +156,9 @@ struct Hdf5File::Handle {
     const Identifier set(
         H5Dcreate2(file, name.c_str(), native(T{}), space.get(), links.get(), creation.get(), H5P_DEFAULT),
         H5Dclose);
-    require(set.valid(), fmt::format("cannot create dataset '{}'", name));
-    require(H5Dwrite(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, entries.data()) >= 0,
-            fmt::format("cannot write dataset '{}'; is the disk full?", name));
+    require_written(set.valid(), fmt::format("cannot create dataset '{}'", name));
+    require_written(H5Dwrite(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, entries.data()) >= 0,
+                    fmt::format("cannot write dataset '{}'", name));
   }
 
   template <class T>
@@ -97,13 +168,19 @@ struct Hdf5File::Handle {
         set.valid(),
         fmt::format("dataset '{}' is missing; this is not a file that this program or its reference wrote",
                     name));
+    const Identifier type(H5Dget_type(set.get()), H5Tclose);
+    require(is_number(type), fmt::format("dataset '{}' must hold numbers", name));
     const Identifier space(H5Dget_space(set.get()), H5Sclose);
-    const int rank = H5Sget_simple_extent_ndims(space.get());
-    std::vector<hsize_t> dims(static_cast<std::size_t>(std::max(rank, 0)));
+    require(H5Sget_simple_extent_type(space.get()) == H5S_SIMPLE,
+            fmt::format("dataset '{}' must be an array", name));
+    std::vector<hsize_t> dims(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
     H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
     FileArray<T> array{{dims.begin(), dims.end()}, {}};
-    array.entries.resize(
-        std::accumulate(array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>()));
+    const std::size_t entries = entries_of(array.shape);
+    require(entries <= most_bytes_per_byte(set) * size / H5Tget_size(type.get()),
+            fmt::format("dataset '{}' claims {} values, more than a file of {} bytes can hold", name, entries,
+                        size));
+    array.entries.resize(entries);
     require(H5Dread(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, array.entries.data()) >= 0,
             fmt::format("dataset '{}' cannot be read; the file is damaged or holds another type", name));
     return array;
@@ -114,27 +191,36 @@ Hdf5File::Hdf5File(std::unique_ptr<Handle> handle) : handle_(std::move(handle)) 
 Hdf5File::Hdf5File(Hdf5File&&) noexcept = default;
 Hdf5File::~Hdf5File() = default;
 
-Hdf5File Hdf5File::create(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported in our own words
+Hdf5File Hdf5File::create(const std::filesystem::path& path, Storage storage) {
+  prepare_library();
   auto handle = std::make_unique<Handle>();
   handle->path = path;
-  std::filesystem::path temporary = path;
-  temporary += fmt::format(".{}.part", getpid());
-  handle->file = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  handle->require(handle->file >= 0, "cannot be written; its folder must exist and be writable");
-  handle->temporary = temporary;
+  handle->storage = storage;
+  handle->being_written.emplace(path);
+  const Identifier creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  if (storage.sealed) H5Pset_userblock(creation.get(), seal_size);
+  handle->file =
+      H5Fcreate(handle->being_written->temporary().c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT);
+  handle->require_written(handle->file >= 0, "cannot be completed");
   return Hdf5File(std::move(handle));
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  prepare_library();
   auto handle = std::make_unique<Handle>();
   handle->path = path;
   std::error_code ignored;
   handle->require(std::filesystem::is_regular_file(path, ignored), "no such file");
+  handle->size = std::filesystem::file_size(path, ignored);
   handle->file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   handle->require(handle->file >= 0, "is not a complete HDF5 file (truncated, or of another kind)");
   return Hdf5File(std::move(handle));
+}
+
+Hdf5File Hdf5File::open_sealed(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) require_seal(path);
+  return open(path);
 }
 
 const std::filesystem::path& Hdf5File::path() const {
@@ -142,14 +228,11 @@ const std::filesystem::path& Hdf5File::path() const {
 }
 
 void Hdf5File::commit() {
-  const bool flushed = H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0;
-  const bool closed = H5Fclose(handle_->file) >= 0;
-  handle_->file = -1;
-  handle_->require(flushed && closed, "cannot be completed; is the disk full?");
-  std::error_code error;
-  std::filesystem::rename(handle_->temporary, handle_->path, error);
-  handle_->require(!error, fmt::format("cannot be put in place: {}", error.message()));
-  handle_->temporary.clear();
+  handle_->require_written(H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0, "cannot be completed");
+  const bool closed = H5Fclose(std::exchange(handle_->file, -1)) >= 0;
+  handle_->require_written(closed, "cannot be completed");
+  if (handle_->storage.sealed) write_seal(handle_->being_written->temporary());
+  handle_->being_written->commit();
 }
 
 bool Hdf5File::contains(const std::string& name) const {
@@ -165,6 +248,7 @@ std::vector<std::string> Hdf5File::names_in(const std::string& group) const {
   for (hsize_t n = 0; n < info.nlinks; ++n) {
     const auto length =
         H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, nullptr, 0, H5P_DEFAULT);
+    handle_->require(length > 0, fmt::format("group '{}' cannot be read; the file is damaged", group));
     std::string name(static_cast<std::size_t>(length), '\0');
     H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size() + 1,
                        H5P_DEFAULT);
@@ -200,8 +284,8 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
                                                space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                              H5Aclose);
   const char* text = value.c_str();
-  handle_->require(attribute.valid() && H5Awrite(attribute.get(), type.get(), &text) >= 0,
-                   fmt::format("cannot write attribute '{}'", name));
+  handle_->require_written(attribute.valid() && H5Awrite(attribute.get(), type.get(), &text) >= 0,
+                           fmt::format("cannot write attribute '{}'", name));
 }
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, double value) {
@@ -209,8 +293,12 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
   const Identifier attribute(H5Acreate_by_name(handle_->file, object.c_str(), name.c_str(), H5T_NATIVE_DOUBLE,
                                                space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                              H5Aclose);
-  handle_->require(attribute.valid() && H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0,
-                   fmt::format("cannot write attribute '{}'", name));
+  handle_->require_written(attribute.valid() && H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0,
+                           fmt::format("cannot write attribute '{}'", name));
+}
+
+bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {
+  return H5Aexists_by_name(handle_->file, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
 std::string Hdf5File::read_text_attribute(const std::string& object, const std::string& name) const {
@@ -218,7 +306,7 @@ std::string Hdf5File::read_text_attribute(const std::string& object, const std::
       H5Aopen_by_name(handle_->file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   handle_->require(attribute.valid(), fmt::format("attribute '{}' is missing", name));
   const Identifier type(H5Aget_type(attribute.get()), H5Tclose);
-  handle_->require(H5Tget_class(type.get()) == H5T_STRING,
+  handle_->require(H5Tget_class(type.get()) == H5T_STRING && is_single(attribute),
                    fmt::format("attribute '{}' must be a text", name));
   if (H5Tis_variable_str(type.get()) > 0) {  // what h5py writes
     char* text = nullptr;
@@ -228,8 +316,8 @@ std::string Hdf5File::read_text_attribute(const std::string& object, const std::
     H5free_memory(text);
     return value;
   }
-  std::string value(H5Tget_size(type.get()), '\0');
-  handle_->require(H5Aread(attribute.get(), type.get(), value.data()) >= 0,
+  std::string value(std::min(H5Tget_size(type.get()), handle_->size + 1), '\0');
+  handle_->require(value.size() <= handle_->size && H5Aread(attribute.get(), type.get(), value.data()) >= 0,
                    fmt::format("attribute '{}' cannot be read", name));
   return value.substr(0, value.find('\0'));
 }
@@ -237,9 +325,13 @@ std::string Hdf5File::read_text_attribute(const std::string& object, const std::
 double Hdf5File::read_number_attribute(const std::string& object, const std::string& name) const {
   const Identifier attribute(
       H5Aopen_by_name(handle_->file, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const std::string rule = fmt::format("attribute '{}' is missing or not a number", name);
+  handle_->require(attribute.valid(), rule);
+  const Identifier type(H5Aget_type(attribute.get()), H5Tclose);
   double value = 0.0;
-  handle_->require(attribute.valid() && H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0,
-                   fmt::format("attribute '{}' is missing or not a number", name));
+  handle_->require(
+      is_number(type) && is_single(attribute) && H5Aread(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0,
+      rule);
   return value;
 }
 

@@ -16,16 +16,26 @@ struct FileArray {
   std::vector<T> entries;
 };
 
-/// An HDF5 file that closes itself. Errors are InputError with the file, the name inside it and the rule.
+/// How a file is stored.
+struct Storage {
+  bool compressed = true;  ///< large datasets; smaller, and many times slower
+  bool sealed = false;     ///< with a checksum of the whole file before its content
+};
+
+/// An HDF5 file that closes itself. Errors of reading, and of places that cannot be written, are InputError
+/// with the file, the name inside it and the rule; a disk that does not take the bytes is a ComputationError.
 /// A file being written goes to a temporary beside its place and is renamed by `commit`; without it nothing
 /// is left.
 class Hdf5File {
  public:
   /// Starts a new file. Throws InputError when the place cannot be written.
-  static Hdf5File create(const std::filesystem::path& path);
+  static Hdf5File create(const std::filesystem::path& path, Storage storage = {});
 
   /// Opens a file for reading. Throws InputError when it is missing, truncated or not HDF5.
   static Hdf5File open(const std::filesystem::path& path);
+
+  /// The same for a file that was sealed; throws InputError, too, when a bit has changed since.
+  static Hdf5File open_sealed(const std::filesystem::path& path);
 
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File(Hdf5File&&) noexcept;
@@ -35,7 +45,7 @@ class Hdf5File {
 
   const std::filesystem::path& path() const;
 
-  /// Finishes a file made by `create`: flush, close, rename into place.
+  /// Finishes a file made by `create`: close, wait for the disk, rename into place.
   void commit();
 
   bool contains(const std::string& name) const;
@@ -54,6 +64,7 @@ class Hdf5File {
   /// Attributes; `object` is "/" for the file itself.
   void write_attribute(const std::string& object, const std::string& name, const std::string& value);
   void write_attribute(const std::string& object, const std::string& name, double value);
+  bool has_attribute(const std::string& object, const std::string& name) const;
   std::string read_text_attribute(const std::string& object, const std::string& name) const;
   double read_number_attribute(const std::string& object, const std::string& name) const;
 

@@ -77,9 +77,15 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
     result.mesh.cells[k / 8][k % 8] = static_cast<int>(cells.entries[k]);
   }
   for (const auto& name : file.names_in("/mesh/sets")) {
+    const std::string dataset = "/mesh/sets/" + name;
+    const auto nodes = file.read_integers(dataset).entries;
+    if (nodes.size() > n_nodes) {
+      throw InputError(fmt::format("{}: {} has {} nodes; allowed are the {} of the mesh, each once",
+                                   path.string(), dataset, nodes.size(), n_nodes));
+    }
     auto& set = result.sets[name];
-    for (const auto node : file.read_integers("/mesh/sets/" + name).entries) {
-      require_node(file, "/mesh/sets/" + name, node, n_nodes);
+    for (const auto node : nodes) {
+      require_node(file, dataset, node, n_nodes);
       set.push_back(static_cast<int>(node));
     }
     std::sort(set.begin(), set.end());

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/error.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/mesh_file.hpp"
@@ -22,6 +24,14 @@ void require_hash(const Hdf5File& file, const std::string& attribute, const std:
 }
 
 }  // namespace
+
+OwnError read_own_error(const std::filesystem::path& path) {
+  const auto file = Hdf5File::open(path);
+  if (!file.has_attribute("/", "own_error_max")) return {{}, "the file does not tell it"};
+  const double largest = file.read_number_attribute("/", "own_error_max");
+  return {std::isfinite(largest) ? std::optional(largest) : std::nullopt,
+          file.read_text_attribute("/", "own_error_note")};
+}
 
 NodalField read_reference(const std::filesystem::path& path, const Scene& scene) {
   const auto file = Hdf5File::open(path);

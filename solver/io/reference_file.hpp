@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "model/model.hpp"
 
@@ -10,5 +12,15 @@ namespace sandglass {
 /// is missing or broken, and when its hashes are not those of the scene; the text names the command that
 /// makes it anew.
 NodalField read_reference(const std::filesystem::path& path, const Scene& scene);
+
+/// What a stored answer says of its own error.
+struct OwnError {
+  std::optional<double> largest;  ///< over all nodes, as a fraction of the unit; none where it was not
+                                  ///< estimated
+  std::string note;               ///< how it was estimated, or why not
+};
+
+/// The own error of a stored golden or truth. Throws InputError when the file is missing or broken.
+OwnError read_own_error(const std::filesystem::path& path);
 
 }  // namespace sandglass

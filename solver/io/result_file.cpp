@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "io/mesh_file.hpp"
 #include "io/text_file.hpp"
 
 namespace sandglass {
 
 namespace {
-
-std::string frame_group(std::size_t number) {
-  return fmt::format("/frames/{:04}", number);
-}
 
 /// One DataItem element of an XDMF file that points into the HDF5 file.
 std::string data_item(const std::string& file, const std::string& dataset, const std::string& dimensions,
@@ -22,6 +19,45 @@ std::string data_item(const std::string& file, const std::string& dataset, const
 
 }  // namespace
 
+std::string frame_group(std::size_t number) {
+  return fmt::format("/frames/{:04}", number);
+}
+
+void write_frame(Hdf5File& file, const std::string& group, const Frame& frame) {
+  const auto write_nodal = [&](const std::string& name, const NodalField& field) {
+    file.write(group + name, {field.size(), 3},
+               std::span<const double>(field.front().data(), 3 * field.size()));
+  };
+  const auto write_elements = [&](const std::string& name, const std::vector<double>& values) {
+    file.write(group + name, {values.size()}, std::span<const double>(values));
+  };
+  write_nodal("/displacement", frame.u);
+  write_nodal("/velocity", frame.v);
+  write_elements("/jacobian", frame.jacobians);
+  write_elements("/hourglass_energy_density", frame.hourglass_energy_densities);
+  file.write_attribute(group + "/hourglass_energy_density", "unit", "J/m^3");
+  if (!frame.levels.empty()) write_elements("/level", frame.levels);
+  file.write_attribute(group, "time", frame.time);
+}
+
+Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_nodes,
+                 std::size_t n_elements) {
+  const auto read_elements = [&](const std::string& name) {
+    auto values = file.read_doubles(group + name);
+    if (values.shape != std::vector<std::size_t>{n_elements}) {
+      throw InputError(fmt::format("{}: dataset '{}' must hold one value for each of {} elements",
+                                   file.path().string(), group + name, n_elements));
+    }
+    return std::move(values.entries);
+  };
+  return {.time = file.read_number_attribute(group, "time"),
+          .u = read_nodal_field(file, group + "/displacement", n_nodes),
+          .v = read_nodal_field(file, group + "/velocity", n_nodes),
+          .jacobians = read_elements("/jacobian"),
+          .hourglass_energy_densities = read_elements("/hourglass_energy_density"),
+          .levels = file.contains(group + "/level") ? read_elements("/level") : std::vector<double>{}};
+}
+
 ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path,
                            const Provenance& provenance)
     : model_(model), path_(path), file_(Hdf5File::create(path)) {
@@ -30,21 +66,9 @@ ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path
 }
 
 void ResultWriter::frame(const Frame& frame) {
-  const std::string group = frame_group(times_.size());
-  const auto write_nodal = [&](const std::string& name, const NodalField& field) {
-    file_.write(group + name, {field.size(), 3},
-                std::span<const double>(field.front().data(), 3 * field.size()));
-  };
-  const auto write_elements = [&](const std::string& name, const std::vector<double>& values) {
-    file_.write(group + name, {values.size()}, std::span<const double>(values));
-  };
-  write_nodal("/displacement", frame.u);
-  write_nodal("/velocity", frame.v);
-  write_elements("/jacobian", frame.jacobians);
-  write_elements("/hourglass_energy_density", frame.hourglass_energy_densities);
-  file_.write_attribute(group + "/hourglass_energy_density", "unit", "J/m^3");
-  file_.write_attribute(group, "time", frame.time);
+  write_frame(file_, frame_group(times_.size()), frame);
   times_.push_back(frame.time);
+  has_levels_ = !frame.levels.empty();
 }
 
 void ResultWriter::write_history() {
@@ -90,6 +114,7 @@ std::string ResultWriter::xdmf() const {
     text += field(group, "velocity", "velocity", true);
     text += field(group, "jacobian", "jacobian", false);
     text += field(group, "hourglass_energy_density", "hourglass energy density [J/m^3]", false);
+    if (has_levels_) text += field(group, "level", "level", false);
     text += "      </Grid>\n";
   }
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
@@ -98,8 +123,9 @@ std::string ResultWriter::xdmf() const {
 void ResultWriter::commit(const std::string& status) {
   write_history();
   file_.write_attribute("/", "status", status);
+  NewTextFile guide(std::filesystem::path(path_).replace_extension(".xdmf"), xdmf());  // both or none
   file_.commit();
-  write_text_file(std::filesystem::path(path_).replace_extension(".xdmf"), xdmf());
+  guide.commit();
 }
 
 }  // namespace sandglass

@@ -12,9 +12,17 @@ namespace sandglass {
 /// Text attributes that tell where a result comes from: revision, flags, method and the like.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
+/// Writes a frame as the group of that name, and reads it again with the numbers of nodes and elements that
+/// its mesh has; throws InputError when they are not there.
+void write_frame(Hdf5File& file, const std::string& group, const Frame& frame);
+Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_nodes, std::size_t n_elements);
+
+/// The name of the group of a frame.
+std::string frame_group(std::size_t number);
+
 /// Writes a run: mesh and sets, /frames/NNNN/{displacement (m), velocity (m/s), jacobian (-),
-/// hourglass_energy_density (J/m^3)} with attribute `time`, and /history/*. Beside it, an XDMF file of the
-/// same stem opens in ParaView. Nothing is in place before `commit`.
+/// hourglass_energy_density (J/m^3), of an adaptive method level} with attribute `time`, and /history/*.
+/// Beside it, an XDMF file of the same stem opens in ParaView. Nothing is in place before `commit`.
 class ResultWriter {
  public:
   ResultWriter(const Model& model, const std::filesystem::path& path, const Provenance& provenance);
@@ -33,6 +41,7 @@ class ResultWriter {
   std::filesystem::path path_;
   Hdf5File file_;
   std::vector<double> times_;
+  bool has_levels_ = false;
   std::vector<HistoryRow> history_;
 };
 

@@ -135,6 +135,11 @@ bool TableReader::holds_number(const std::string& key) {
   return node != nullptr && node->is_number();
 }
 
+bool TableReader::holds_text(const std::string& key) {
+  const toml::node* node = find(key);
+  return node != nullptr && node->is_string();
+}
+
 std::string TableReader::required_choice(const std::string& key, const std::vector<std::string>& allowed) {
   auto value = required<std::string>(key);
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {

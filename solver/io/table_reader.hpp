@@ -1,7 +1,6 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <array>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "base/parameter.hpp"
+#include "io/toml.hpp"
 
 namespace sandglass {
 
@@ -36,8 +36,9 @@ class TableReader {
     fail_missing(key);
   }
 
-  /// Whether the key is there and holds a number.
+  /// Whether the key is there and holds a number, or a text.
   bool holds_number(const std::string& key);
+  bool holds_text(const std::string& key);
 
   /// One of a list of words.
   std::string required_choice(const std::string& key, const std::vector<std::string>& allowed);

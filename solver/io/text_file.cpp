@@ -1,8 +1,8 @@
 #include "io/text_file.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <system_error>
 
@@ -10,26 +10,17 @@
 
 namespace sandglass {
 
+NewTextFile::NewTextFile(const std::filesystem::path& path, const std::string& text) : file_(path) {
+  const auto reason = [] { return std::generic_category().message(errno); };
+  errno = 0;
+  std::ofstream stream(file_.temporary(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw ComputationError(fmt::format("{}: cannot be completed: {}", path.string(), reason()));
+}
+
 void write_text_file(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::path temporary = path;
-  temporary += fmt::format(".{}.part", getpid());
-  std::error_code error;
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) {
-      std::filesystem::remove(temporary, error);
-      throw InputError(fmt::format("{}: cannot be written; its folder must exist, be writable and have room",
-                                   path.string()));
-    }
-  }
-  std::filesystem::rename(temporary, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(temporary, error);
-    throw InputError(fmt::format("{}: cannot be put in place: {}", path.string(), reason));
-  }
+  NewTextFile(path, text).commit();
 }
 
 }  // namespace sandglass

@@ -68,53 +68,55 @@ std::size_t choose_chunks(const Mesh& mesh, const std::vector<int>& order) {
   return n;
 }
 
-/// Puts strips side by side and numbers their nodes.
+std::size_t longest(const std::vector<Strip>& strips) {
+  std::size_t most = 0;
+  for (const auto& strip : strips) most = std::max(most, strip.length());
+  return most;
+}
+
+/// Puts strips side by side.
 class Grouping {
  public:
-  Grouping(const Mesh& mesh, int width) : taken_by_(mesh.points.size(), -1) {
-    layout_.width = width;
-    layout_.nodes = mesh.points.size();
-    layout_.row_of_node.assign(mesh.points.size(), -1);
+  Grouping(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
+
+  /// The strips in pieces of at most so many elements. row_of(node) is called for the nodes of each group in
+  /// turn; lanes to spare run along the rows from `spare_row` on.
+  template <class RowOf>
+  void add(std::vector<Strip> open, std::size_t most_levels, std::size_t spare_row, const RowOf& row_of) {
+    while (!open.empty()) add_group(choose(open, most_levels), spare_row, row_of);
   }
 
-  void add_chunk(std::vector<Strip> open) {
-    const std::size_t first = layout_.groups.size(), first_row = layout_.rows();
-    while (!open.empty()) add_group(choose(open));
-    layout_.chunks.push_back({first, layout_.groups.size(), first_row, layout_.rows()});
+  std::size_t groups() const { return groups_.groups.size(); }
+
+  /// Whether a group from number `first` on has a lane without a strip.
+  bool has_spare_lanes(std::size_t first) const {
+    if (first >= groups()) return false;
+    const auto level = static_cast<std::ptrdiff_t>(groups_.groups[first].first_level * at(groups_.width));
+    return std::find(groups_.elements.begin() + level, groups_.elements.end(), -1) != groups_.elements.end();
   }
 
-  /// The layout, after the last chunk: spare rows come behind the nodes.
-  Layout finish() {
-    for (std::size_t node = 0; node < layout_.nodes; ++node) number(static_cast<int>(node));  // in no element
-    for (const int row : face_rows_) {
-      layout_.face_places.push_back(place_of_row(row < 0 ? layout_.nodes + at(-row - 1) : at(row)));
-    }
-    layout_.node_of_row.insert(layout_.node_of_row.end(), spare_.begin(), spare_.end());
-    return std::move(layout_);
-  }
+  ElementGroups finish() { return std::move(groups_); }
 
  private:
   /// The greatest length that allows `width` pieces, or 1 when elements are too few.
-  std::size_t piece_length(const std::vector<Strip>& open) const {
-    std::size_t longest = 0;
-    for (const auto& strip : open) longest = std::max(longest, strip.length());
-    for (std::size_t length = longest; length > 1; --length) {
+  std::size_t piece_length(const std::vector<Strip>& open, std::size_t most) const {
+    for (std::size_t length = std::min(most, longest(open)); length > 1; --length) {
       std::size_t pieces = 0;
       for (const auto& strip : open) pieces += strip.length() / length;
-      if (pieces >= at(layout_.width)) return length;
+      if (pieces >= at(groups_.width)) return length;
     }
     return 1;
   }
 
   /// Takes up to `width` pieces of equal length off the open strips: first such that share no node, for a
   /// processor waits when lanes add to one row in turn; then any.
-  std::vector<Strip> choose(std::vector<Strip>& open) {
-    const std::size_t length = piece_length(open);
+  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_levels) {
+    const std::size_t length = piece_length(open, most_levels);
     std::vector<Strip> chosen;
     ++round_;
     for (const bool apart : {true, false}) {
       for (auto& strip : open) {
-        while (strip.length() >= length && chosen.size() < at(layout_.width)) {
+        while (strip.length() >= length && chosen.size() < at(groups_.width)) {
           if (apart && !is_free(strip, length)) break;
           chosen.push_back(cut(strip, length));
           if (apart) break;
@@ -148,56 +150,85 @@ class Grouping {
     return piece;
   }
 
-  void add_group(const std::vector<Strip>& strips) {
-    const std::size_t length = strips.front().length();
-    layout_.groups.push_back({layout_.levels(), face_rows_.size() / (4 * at(layout_.width)), length});
+  template <class RowOf>
+  void add_group(const std::vector<Strip>& strips, std::size_t spare_row, const RowOf& row_of) {
+    const std::size_t length = strips.front().length(), width = at(groups_.width);
+    groups_.groups.push_back({groups_.levels(), groups_.face_places.size() / (4 * width), length});
     for (const auto& strip : strips) {
       for (const auto& face : strip.faces) {
-        for (const int node : face) number(node);
+        for (const int node : face) row_of(node);
       }
     }
-    const bool spare = strips.size() < at(layout_.width);
-    const std::size_t first_spare = spare_.size();
+    std::vector<Place>& places = groups_.face_places;
     for (std::size_t k = 0; k <= length; ++k) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
-        for (const auto& strip : strips)
-          face_rows_.push_back(layout_.row_of_node[at(strip.faces[k][corner])]);
-        const auto spare_row = -static_cast<int>(first_spare + 4 * k + corner) - 1;
-        face_rows_.resize(face_rows_.size() + at(layout_.width) - strips.size(), spare_row);
-        if (spare) spare_.push_back(strips.front().faces[k][corner]);
+        for (const auto& strip : strips) places.push_back(place_of_row(row_of(strip.faces[k][corner])));
+        places.resize(places.size() + width - strips.size(), place_of_row(spare_row + 4 * k + corner));
       }
     }
     for (std::size_t k = 0; k < length; ++k) {
-      for (const auto& strip : strips) layout_.elements.push_back(strip.elements[k]);
-      layout_.elements.resize(layout_.elements.size() + at(layout_.width) - strips.size(), -1);
+      for (const auto& strip : strips) groups_.elements.push_back(strip.elements[k]);
+      groups_.elements.resize(groups_.elements.size() + width - strips.size(), -1);
     }
   }
 
-  void number(int node) {
-    int& row = layout_.row_of_node[at(node)];
-    if (row >= 0) return;
-    row = static_cast<int>(layout_.node_of_row.size());
-    layout_.node_of_row.push_back(node);
-  }
-
-  Layout layout_;
-  std::vector<int> face_rows_;  // [face][corner][lane]; -1, -2, ... in spare rows
-  std::vector<int> spare_;      // nodes whose coordinates the spare rows take
-  std::vector<int> taken_by_;   // round in which a node was last chosen
+  ElementGroups groups_;
+  std::vector<int> taken_by_;  // round in which a node was last chosen
   int round_ = -1;
 };
 
 }  // namespace
 
-Layout make_layout(const Mesh& mesh, int width) {
+std::vector<int> Layout::elements_of(const Chunk& chunk) const {
+  std::vector<int> found;
+  for (std::size_t g = chunk.first; g < chunk.last; ++g) {
+    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_level * at(width));
+    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].levels * at(width)),
+                 std::back_inserter(found), [](int e) { return e >= 0; });
+  }
+  return found;
+}
+
+Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
   const NodeElements neighbours(mesh);
   const std::vector<int> order = sorted_along_the_mesh(mesh);
   const std::size_t n = choose_chunks(mesh, order);
-  Grouping grouping(mesh, width);
+  Layout layout;
+  layout.nodes = mesh.points.size();
+  layout.row_of_node.assign(layout.nodes, -1);
+  const auto number = [&](int node) {
+    int& row = layout.row_of_node[at(node)];
+    if (row < 0) {
+      row = static_cast<int>(layout.rows());
+      layout.node_of_row.push_back(node);
+    }
+    return at(row);
+  };
+  std::vector<int> spare;  // nodes whose coordinates the spare rows take: the longest strip of each chunk
+  Grouping grouping(width, layout.nodes);
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t begin = chunk_begin(order.size(), n, c), end = chunk_begin(order.size(), n, c + 1);
-    grouping.add_chunk(cut_into_strips(mesh, neighbours, std::span(order).subspan(begin, end - begin)));
+    const auto strips = cut_into_strips(mesh, neighbours, std::span(order).subspan(begin, end - begin));
+    const std::size_t first = grouping.groups(), first_row = layout.rows(),
+                      spare_row = layout.nodes + spare.size(), spare_levels = longest(strips);
+    grouping.add(strips, spare_levels, spare_row, number);
+    layout.chunks.push_back({first, grouping.groups(), first_row, layout.rows(), spare_row, spare_levels});
+    if (spare_rows == SpareRows::where_needed && !grouping.has_spare_lanes(first)) continue;
+    const auto longest_strip = std::find_if(
+        strips.begin(), strips.end(), [&](const Strip& strip) { return strip.length() == spare_levels; });
+    for (const auto& face : longest_strip->faces) spare.insert(spare.end(), face.begin(), face.end());
   }
+  for (std::size_t node = 0; node < layout.nodes; ++node) number(static_cast<int>(node));  // in no element
+  layout.node_of_row.insert(layout.node_of_row.end(), spare.begin(), spare.end());
+  static_cast<ElementGroups&>(layout) = grouping.finish();
+  return layout;
+}
+
+ElementGroups groups_within(const Layout& layout, const Layout::Chunk& chunk, const Mesh& mesh,
+                            const NodeElements& neighbours, std::span<const int> elements) {
+  Grouping grouping(layout.width, layout.nodes);
+  grouping.add(cut_into_strips(mesh, neighbours, elements), chunk.spare_levels, chunk.spare_row,
+               [&](int node) { return at(layout.row_of_node[at(node)]); });
   return grouping.finish();
 }
 

@@ -1,0 +1,118 @@
+#include "io/case_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "io/case_variants.hpp"
+#include "io/toml_text.hpp"
+#include "mesh/variations.hpp"
+
+namespace sandglass {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The tables that a file has for one case. Throws InputError where it has none of that name any more.
+toml::table tables_of(const Case& description) {
+  for (auto& tables : read_case_tables(description.file)) {
+    if (tables.variants == description.variants) return std::move(tables.root);
+  }
+  throw InputError(
+      fmt::format("{}: has no variant {} any more", description.file.string(), description.name));
+}
+
+/// A path as it is to be written into a file of that folder: relative, so that both may move together.
+std::string path_from(const fs::path& folder, const fs::path& path) {
+  const fs::path to = fs::weakly_canonical(fs::absolute(path));
+  return to.lexically_proximate(fs::weakly_canonical(folder)).generic_string();
+}
+
+toml::table& table_of(toml::table& root, std::string_view key) {
+  return *root.insert(key, toml::table{}).first->second.as_table();
+}
+
+toml::table method_table(const MethodChoice& choice) {
+  toml::table method{{"name", choice.method}, {"precision", std::string(name_of(choice.precision))}};
+  if (adapts(choice.method)) method.insert("accuracy", choice.accuracy);
+  if (!takes_kappa(choice.method)) return method;
+  if (choice.kappa) {
+    method.insert("kappa", *choice.kappa);
+  } else {
+    method.insert("kappa", "auto");
+  }
+  method.insert("kappa_modulus", choice.kappa_modulus == KappaModulus::shear ? "shear" : "p-wave");
+  return method;
+}
+
+/// Numbers and texts are changed where they stand, so that they keep their place in the file.
+void set_counts(toml::table& mesh, const AnyGenerator& generator) {
+  for (const auto& [parameter, counts] : element_counts(generator)) {
+    toml::node& node = *mesh.get(parameter);
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      toml::node& count = node.is_array() ? node.as_array()->at(i) : node;
+      *count.as_integer() = counts[i];
+    }
+  }
+}
+
+void set_text(toml::table& table, std::string_view key, const std::string& text) {
+  *table.get(key)->as_string() = text;
+}
+
+/// References stay where they are; from another folder they have another path.
+void set_references(toml::table& root, const Case& description, const fs::path& folder) {
+  for (const auto& [key, path] : {std::pair{"golden", description.golden}, {"truth", description.truth}}) {
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) continue;
+    table_of(root, "comparison").insert_or_assign(key, path_from(folder, path));
+  }
+}
+
+/// The sets of a case, and no others.
+void keep_sets(toml::table& sets, const Case& description) {
+  const toml::table all = sets;
+  for (const auto& [key, node] : all) {
+    const auto is = [&, name = std::string_view(key.str())](const NodeSetRule& rule) {
+      return rule.name == name;
+    };
+    if (std::none_of(description.sets.begin(), description.sets.end(), is)) sets.erase(key.str());
+  }
+}
+
+/// What the case says of answers on its own mesh.
+void forget_answers(toml::table& root, const Case& description) {
+  set_text(table_of(root, "case"), "name", description.name + "-coarser");
+  root.erase("expect");
+  root.erase("published");
+  root.erase("comparison");
+  root.erase("profile");
+}
+
+}  // namespace
+
+std::string case_text(const Case& description, const MethodChoice& choice, const Case* coarser,
+                      const fs::path& place) {
+  toml::table root = tables_of(description);
+  const fs::path folder = fs::absolute(place).parent_path();
+  set_text(table_of(root, "case"), "name", description.name);
+  if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
+    set_text(table_of(root, "mesh"), "file", path_from(folder, file->path));
+  }
+  if (coarser != nullptr) {
+    set_counts(table_of(root, "mesh"), std::get<AnyGenerator>(coarser->mesh));
+    forget_answers(root, description);
+    keep_sets(table_of(root, "sets"), *coarser);
+  } else {
+    set_references(root, description, folder);
+  }
+  root.insert_or_assign("method", method_table(choice));
+  return fmt::format(
+      "# Written by `sandglass choose` from {}, whose comments are not kept here.\n"
+      "# [method] is what `sandglass run` takes for this case.\n{}",
+      description.file.filename().string(), toml_text(root));
+}
+
+}  // namespace sandglass

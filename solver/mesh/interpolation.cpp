@@ -1,0 +1,164 @@
+#include "mesh/interpolation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "base/error.hpp"
+#include "element/hexahedron.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Values of the trilinear shape functions at a parent point.
+std::array<double, 8> shape_functions(const Vector& xi) {
+  std::array<double, 8> N{};
+  for (int I = 0; I < 8; ++I) {
+    N[static_cast<std::size_t>(I)] = (1.0 + corner_signs(I, 0) * xi[0]) * (1.0 + corner_signs(I, 1) * xi[1]) *
+                                     (1.0 + corner_signs(I, 2) * xi[2]) / 8.0;
+  }
+  return N;
+}
+
+Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
+  const auto N = shape_functions(xi);
+  Vector value{};
+  for (int I = 0; I < 8; ++I) {
+    for (int i = 0; i < 3; ++i) {
+      value[static_cast<std::size_t>(i)] += N[static_cast<std::size_t>(I)] * nodal(I, i);
+    }
+  }
+  return value;
+}
+
+/// How far a parent point is from the centre; inside the element it is at most 1.
+double parent_distance(const Vector& xi) {
+  return std::max({std::abs(xi[0]), std::abs(xi[1]), std::abs(xi[2])});
+}
+
+/// The parent point of X in an element, by Newton's method; none where that does not converge, as far
+/// outside.
+std::optional<Vector> parent_point(const NodalVectors<double>& nodes, const Vector& X) {
+  constexpr int most_steps = 25;
+  constexpr double converged = 1e-13, far_away = 3.0;
+  Vector xi{};
+  for (int step = 0; step < most_steps; ++step) {
+    const Vector at = trilinear(nodes, xi);
+    const Tensor<double> inverse_jacobian = inverse(parent_jacobian(nodes, xi));
+    double moved = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      double d = 0.0;
+      for (int j = 0; j < 3; ++j) {
+        const auto c = static_cast<std::size_t>(j);
+        d += inverse_jacobian(i, j) * (X[c] - at[c]);
+      }
+      xi[static_cast<std::size_t>(i)] += d;
+      moved = std::max(moved, std::abs(d));
+    }
+    if (!(parent_distance(xi) < far_away)) return std::nullopt;
+    if (moved < converged) return xi;
+  }
+  return std::nullopt;
+}
+
+/// Elements by the cells of a grid over the mesh that their boxes touch.
+class ElementGrid {
+ public:
+  explicit ElementGrid(const Mesh& mesh) : mesh_(mesh), low_(bounding_box(mesh.points)[0]) {
+    const Vector high = bounding_box(mesh.points)[1];
+    const double volume = (high[0] - low_[0]) * (high[1] - low_[1]) * (high[2] - low_[2]);
+    spacing_ = std::cbrt(volume / static_cast<double>(mesh.cells.size()));
+    for (std::size_t i = 0; i < 3; ++i) {
+      counts_[i] = std::max(1, static_cast<int>(std::ceil((high[i] - low_[i]) / spacing_)));
+    }
+    bins_.resize(static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1]) *
+                 static_cast<std::size_t>(counts_[2]));
+    for (std::size_t e = 0; e < mesh.cells.size(); ++e) enter(e);
+  }
+
+  /// Elements that may hold a point, or lie beside it.
+  const std::vector<std::size_t>& near(const Vector& X) const {
+    return bins_[number({place(X, 0), place(X, 1), place(X, 2)})];
+  }
+
+ private:
+  void enter(std::size_t e) {
+    Vector low, high;
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+    for (const int node : mesh_.cells[e]) {
+      const Vector& X = mesh_.points[static_cast<std::size_t>(node)];
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], X[i]);
+        high[i] = std::max(high[i], X[i]);
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) {  // points outside the mesh lie within half an element of it
+      const double reach = 0.5 * (high[i] - low[i]);
+      low[i] -= reach;
+      high[i] += reach;
+    }
+    for (int x = place(low, 0); x <= place(high, 0); ++x) {
+      for (int y = place(low, 1); y <= place(high, 1); ++y) {
+        for (int z = place(low, 2); z <= place(high, 2); ++z) bins_[number({x, y, z})].push_back(e);
+      }
+    }
+  }
+
+  int place(const Vector& X, std::size_t i) const {
+    return static_cast<int>(std::clamp((X[i] - low_[i]) / spacing_, 0.0, counts_[i] - 1.0));
+  }
+
+  std::size_t number(const std::array<int, 3>& p) const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      n = n * static_cast<std::size_t>(counts_[i]) + static_cast<std::size_t>(p[i]);
+    }
+    return n;
+  }
+
+  const Mesh& mesh_;
+  Vector low_;
+  double spacing_ = 0.0;
+  std::array<int, 3> counts_{};
+  std::vector<std::vector<std::size_t>> bins_;
+};
+
+}  // namespace
+
+NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalField& points) {
+  const ElementGrid grid(mesh);
+  std::vector<std::size_t> everywhere(mesh.cells.size());
+  std::iota(everywhere.begin(), everywhere.end(), 0U);
+  NodalField values;
+  values.reserve(points.size());
+  for (const Vector& X : points) {
+    constexpr double inside = 1.0 + 1e-10;
+    double least = std::numeric_limits<double>::infinity();
+    Vector value{};
+    const auto look_in = [&](const std::vector<std::size_t>& elements) {
+      for (const std::size_t e : elements) {
+        const auto xi = parent_point(gather(mesh.points, mesh.cells[e]), X);
+        if (!xi || !(parent_distance(*xi) < least)) continue;
+        least = parent_distance(*xi);
+        value = trilinear(gather(field, mesh.cells[e]), *xi);
+        if (least <= inside) return;
+      }
+    };
+    look_in(grid.near(X));
+    if (!std::isfinite(least)) look_in(everywhere);
+    if (!std::isfinite(least)) {
+      throw InputError(
+          fmt::format("interpolation: the point ({}, {}, {}) m is nowhere near the mesh", X[0], X[1], X[2]));
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+}  // namespace sandglass
