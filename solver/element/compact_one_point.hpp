@@ -61,8 +61,9 @@ struct CompactOnePoint {
 
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& /*element*/,
-                           const typename Hourglass::template Element<T>& control, const Law& law) {
-    return OnePoint::stiffness_bound<Hourglass>(motion, OnePoint::geometry(motion.X), control, law);
+                           const typename Hourglass::template Element<T>& control,
+                           const NoHistory<T>& history, const Law& law) {
+    return OnePoint::stiffness_bound<Hourglass>(motion, OnePoint::geometry(motion.X), control, history, law);
   }
 };
 

@@ -5,6 +5,7 @@
 #include "element/corner_gradients.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/one_point.hpp"
+#include "element/point_bound.hpp"
 #include "material/memory.hpp"
 
 namespace sandglass {
@@ -58,14 +59,18 @@ struct EightPoint {
   static constexpr bool averages_pressure = Pressure::shared;
   using NoControl = NoHourglassControl;
 
-  static Element<double> precompute(const NodalVectors<double>& X) {
-    Element<double> element{};
-    const auto points = gauss_points();
+  static Element<double> precompute(const NodalVectors<double>& X) { return geometry(to_modes(X)); }
+
+  /// The same from the modes of the nodal coordinates x (m).
+  template <class T>
+  static Element<T> geometry(const Modes<T>& x) {
+    Element<T> element;
+    const auto jacobian = parent_gradients(x);  // times 8
+    element.V = T(0);
     for (std::size_t q = 0; q < 8; ++q) {
-      const Tensor<double> jacobian = parent_jacobian(X, points[q]);
-      element.inverse_jacobian[q] = 0.125 * inverse(jacobian);
-      element.weight[q] = determinant(jacobian);
-      element.V += element.weight[q];
+      element.inverse_jacobian[q] = inverse(jacobian[q]);
+      element.weight[q] = T(1.0 / 512.0) * determinant(jacobian[q]);
+      element.V = element.V + element.weight[q];
     }
     return element;
   }
@@ -140,32 +145,19 @@ struct EightPoint {
     return T(1) + volume_average(point_dilatations(point_gradients(motion, element)), element);
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness: the points' bounds add up,
-  /// and the stiffness of a pressure that is one for the element acts on one mean spatial gradient.
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
-                           const NoControl::Element<T>& /*control*/, const Law& law) {
+                           const NoControl::Element<T>& /*control*/, const NoHistory<T>& /*history*/,
+                           const Law& law) {
     const auto H = point_gradients(motion, element);
-    const auto own_dilatation = point_dilatations(H);
-    const auto dilatation = Pressure::dilatations(own_dilatation, element);
+    const auto dilatation = Pressure::dilatations(point_dilatations(H), element);
     const auto points = gauss_points();
-    T bound = T(0);
-    NodalVectors<T> mean_spatial_gradient{};
-    for (std::size_t q = 0; q < 8; ++q) {
+    const auto spatial_gradient = [&](std::size_t q) {
       const Tensor<T> to_space = T(8) * (element.inverse_jacobian[q] * inverse(identity<T>() + H[q]));
-      const NodalVectors<T> g = from_double<T>(parent_gradient(points[q])) * to_space;
-      const T J = T(1) + own_dilatation[q];
-      const T bulk = Pressure::shared ? T(0) : law.bulk_tangent(dilatation[q]);
-      const auto point =
-          tangent_bound(at_point(law, q), H[q], own_dilatation[q], law.pressure(dilatation[q]), bulk);
-      bound = bound + element.weight[q] * gradient_bound(point, g);
-      mean_spatial_gradient += (element.weight[q] * J / element.V) * g;
-    }
-    if constexpr (Pressure::shared) {
-      bound = bound + element.V * law.bulk_tangent(dilatation[0]) *
-                          double_dot(mean_spatial_gradient, mean_spatial_gradient);
-    }
-    return bound;
+      return from_double<T>(parent_gradient(points[q])) * to_space;
+    };
+    return point_bound<Pressure::shared>(H, dilatation, element.weight, element.V, spatial_gradient, law);
   }
 
  private:

@@ -70,6 +70,14 @@ struct Formulation {
     return {Kinematics::precompute(X), Hourglass::precompute(X, law, settings)};
   }
 
+  /// The same for any number type from the modes of the reference coordinates (m), for kinematics and
+  /// controls that have it in closed form.
+  template <class T>
+  static Element<T> constants(const Modes<T>& x, const Law& law, const HourglassSettings& settings) {
+    const auto body = Kinematics::geometry(x);
+    return {body, Hourglass::template constants<T>(body, law, settings)};
+  }
+
   /// What the element adds to its nodes in the first of two passes; of the motion, u alone is known.
   template <class T>
   static NodalVolumes<T> nodal_volumes(const ElementMotion<T>& motion, const Element<T>& element) {
@@ -126,7 +134,7 @@ struct Formulation {
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const History<T>& history, const LawAtStep& law) {
     return Kinematics::template stiffness_bound<Hourglass>(motion, element.body, element.hourglass,
-                                                           recalling(law, history.law));
+                                                           history.hourglass, recalling(law, history.law));
   }
 };
 

@@ -21,6 +21,13 @@ struct NoHourglassControl {
                                     const HourglassSettings& /*settings*/) {
     return {};
   }
+
+  /// The same for any number type, from the element's geometry.
+  template <class T, class Geometry, class Law>
+  static Element<T> constants(const Geometry& /*body*/, const Law& /*law*/,
+                              const HourglassSettings& /*settings*/) {
+    return {};
+  }
 };
 
 }  // namespace sandglass

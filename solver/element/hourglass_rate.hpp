@@ -58,12 +58,21 @@ struct RateHourglassControl : Form {
     return Form::stiffness(now.x, now.current, element).energy(history.Q);
   }
 
-  /// The body's bound and lambda_max(K) lambda_max(gamma^T gamma), which is safe whatever the angle between
-  /// their modes.
+  /// The body's bound, lambda_max(K) lambda_max(gamma^T gamma), and what the resistances that are there do
+  /// when velocities v change the geometry they act on: forces gamma Q change by -h (v^T gamma Q) and, as Q
+  /// turns with the spin, by gamma W Q, |W Q_a| <= |L| / sqrt(2) |Q_a|, |L|^2 <= lambda_max(h^T h) |v|^2. The
+  /// sum is safe whatever the angles between their modes.
   template <class T>
   static T stiffness_bound(const T& body, const Matrix<T, 8, 4>& gamma,
-                           const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element) {
-    return body + Form::stiffness(now.x, now.current, element).bound() * shape_vector_bound(gamma);
+                           const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
+                           const History<T>& history) {
+    const T shape = shape_vector_bound(gamma);
+    const NodalVectors<T> h = OnePoint::nodal_gradients(now.current);
+    const NodalVectors<T> gamma_Q = gamma * history.Q;
+    const T gg = largest_eigenvalue_bound(transpose(h) * h);
+    const T geometric = sqrt(gg * largest_eigenvalue_bound(transpose(gamma_Q) * gamma_Q)) +
+                        sqrt(T(0.5) * gg * shape * double_dot(history.Q, history.Q));
+    return body + Form::stiffness(now.x, now.current, element).bound() * shape + geometric;
   }
 };
 

@@ -70,7 +70,8 @@ struct ViscousHourglassControl {
   /// and the density cancels in a.
   template <class T>
   static T stiffness_bound(const T& body, const Matrix<T, 8, 4>& gamma,
-                           const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element) {
+                           const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
+                           const NoHistory<T>& /*history*/) {
     const T shape = shape_vector_bound(gamma);
     const T root = inverse_cube_root(now.current.V);
     const T a =

@@ -113,10 +113,11 @@ struct LinearOnePoint {
   /// That of OnePoint at rest, whatever the displacements: the stiffness is constant.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
-                           const typename Hourglass::template Element<T>& control, const Law& law) {
+                           const typename Hourglass::template Element<T>& control,
+                           const NoHistory<T>& history, const Law& law) {
     ElementMotion<T> rest = motion;
     rest.u = {};
-    return OnePoint::stiffness_bound<Hourglass>(rest, element, control, law);
+    return OnePoint::stiffness_bound<Hourglass>(rest, element, control, history, law);
   }
 };
 

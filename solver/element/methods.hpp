@@ -6,6 +6,7 @@
 #include "element/compact_one_point.hpp"
 #include "element/eight_point.hpp"
 #include "element/formulation.hpp"
+#include "element/four_point.hpp"
 #include "element/hourglass_assumed_strain.hpp"
 #include "element/hourglass_energy_sampling.hpp"
 #include "element/hourglass_enhanced.hpp"
@@ -13,6 +14,7 @@
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
 #include "element/hourglass_rate_perturbation.hpp"
+#include "element/hourglass_sampling.hpp"
 #include "element/hourglass_viscous.hpp"
 #include "element/linear_one_point.hpp"
 #include "element/one_point.hpp"
@@ -183,12 +185,42 @@ struct LinearCondensed {
   using Hourglass = PerturbationHourglassControl;
 };
 
+struct TlModalSampling {
+  static constexpr std::string_view name = "tl-modal-sampling";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, a stiffness for each hourglass mode from its shear energy: no parameter";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = ModalSamplingControl;
+};
+
+struct TlFourPoint {
+  static constexpr std::string_view name = "tl-four-point";
+  static constexpr std::string_view summary =
+      "four points on the element's mean parallelepiped, one pressure: nearly eight, from one point's memory";
+  static constexpr int integration_points = 4;
+  using Kinematics = FourPoint;
+  using Hourglass = LastModeControl;
+};
+
+/// An adaptive method names its `Levels`, methods from the cheapest to the one that it stands for. What it
+/// says of itself beside that is what an element at rest is.
+struct TlAdaptive {
+  static constexpr std::string_view name = "tl-adaptive";
+  static constexpr std::string_view summary =
+      "one, four or eight points, each element as many as the accuracy asked for needs";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = ModalSamplingControl;
+  using Levels = TypeList<TlModalSampling, TlFourPoint, TlMeanDilatation>;
+};
+
 /// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
 /// tables, benchmarks and charts iterate the list.
-using Methods =
-    TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling, TlStabilizationMatrix,
-             TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous, UlAssumedStrain, UlEnhanced, TlFull,
-             TlMeanDilatation, T4, T4Anp, LinearPerturbation, LinearCondensed>;
+using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
+                         TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
+                         UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation, T4, T4Anp, LinearPerturbation,
+                         LinearCondensed, TlModalSampling, TlFourPoint, TlAdaptive>;
 
 /// An hourglass control that resists velocities alone says so with `damps_only`: it loses energy, and does
 /// nothing where time plays no part.
@@ -214,10 +246,16 @@ inline constexpr bool is_condensed = requires {
   requires Method::condensed;
 };
 
+/// Whether a method's elements change the way they integrate.
+template <class Method>
+inline constexpr bool is_adaptive = requires {
+  typename Method::Levels;
+};
+
 /// Whether a method knows what to do with a law: small-strain theory takes a law's moduli at rest, and would
-/// forget that it relaxes.
+/// forget that it relaxes; what an element remembers at one point says nothing of eight.
 template <class Method, class Law>
-inline constexpr bool knows_law = !(is_linear<Method> && law_remembers<Law>);
+inline constexpr bool knows_law = !((is_linear<Method> || is_adaptive<Method>)&&law_remembers<Law>);
 
 /// A method with a law: the element that the assembly runs.
 template <class Method, class Law>

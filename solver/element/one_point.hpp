@@ -183,7 +183,8 @@ struct OnePoint {
   /// their modes.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
-                           const typename Hourglass::template Element<T>& control, const Law& law) {
+                           const typename Hourglass::template Element<T>& control,
+                           const NoHistory<T>& /*history*/, const Law& law) {
     const Tensor<T> H = mean_gradient(motion.u, element);
     const NodalVectors<T> h = nodal_gradients(element);
     const Tensor<T> inverse_F = inverse(identity<T>() + H);

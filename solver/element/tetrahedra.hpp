@@ -137,7 +137,8 @@ struct Tetrahedra {
   /// pressures of a stiffness that, summed over the mesh, is not below the true one.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
-                           const NoControl::Element<T>& /*control*/, const Law& law) {
+                           const NoControl::Element<T>& /*control*/, const NoHistory<T>& /*history*/,
+                           const Law& law) {
     const TetrahedronTensors<T> H = gradients(motion, element);
     const TetrahedronValues<T> dilatation = dilatations(H);
     const auto around = Pressure::around(motion);

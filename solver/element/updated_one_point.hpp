@@ -7,7 +7,8 @@ namespace sandglass {
 /// An hourglass control of the Updated Lagrangian element sees all of UpdatedOnePoint::Deformation and gives
 ///   resistance(now, control, history)          hourglass resistances Q, N; what it remembers goes on,
 ///   energy(now, control, history)              what is stored and could be given back, J,
-///   stiffness_bound(body, gamma, now, control) a bound of the element's tangent, N/m, from that of its body.
+///   stiffness_bound(body, gamma, now, control, history) a bound of the element's tangent, N/m, from that of
+///                                              its body.
 
 /// The uniform strain hexahedron in the Updated Lagrangian formulation: nothing is precomputed. Each step
 /// rebuilds mean gradients, volume and hourglass shape vectors from the current coordinates, takes F from
@@ -94,16 +95,24 @@ struct UpdatedOnePoint {
            jacobian_minus_one(displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, as for OnePoint: h is spatial
-  /// already.
+  /// An upper bound of the largest absolute eigenvalue (N/m) of the tangent stiffness, as for OnePoint: h is
+  /// spatial already. But current geometry bends with the element. Pressure acts on h and changes with G, so
+  /// that the tangent is not symmetric and its volumetric part bounded by |h| |G|; and the volume, on whose
+  /// gradient h V it acts, curves with hourglass displacements, too.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
-                           const typename Hourglass::template Element<T>& control, const Law& law) {
+                           const typename Hourglass::template Element<T>& control,
+                           const typename Hourglass::template History<T>& history, const Law& law) {
     const auto now = deformation<Hourglass>(motion, element);
     const NodalVectors<T> h = OnePoint::nodal_gradients(now.current);
-    const T body = reference_volume(now) * gradient_bound(tangent_bound(law, now.H), h);
+    const NodalVectors<T> G = dilatation_gradient(motion.X, now);
+    const TangentBound<T> bound = tangent_bound(law, now.H);
+    const T body =
+        reference_volume(now) * (max(bound.volumetric, T(0)) * sqrt(double_dot(h, h) * double_dot(G, G)) +
+                                 bound.gradient * largest_eigenvalue_bound(transpose(h) * h)) +
+        bending_bound(now, law);
     if constexpr (Hourglass::active) {
-      return Hourglass::stiffness_bound(body, OnePoint::gamma(h, now.current), now, control);
+      return Hourglass::stiffness_bound(body, OnePoint::gamma(h, now.current), now, control, history);
     }
     return body;
   }
@@ -116,6 +125,40 @@ struct UpdatedOnePoint {
   }
 
  private:
+  /// G_Ii = d ln J / dx_Ii, 1/m, with J = det F and F^-1 = X^T h the mean of dX/dx: tr(F dF^-1) = F X : dh.
+  /// Of x = F X + w the first part is linear in x and gives h; the rest, an hourglass displacement of bent
+  /// elements, the derivative of V h along w over V, for w : h = 0. V h is quadratic in x, so that a central
+  /// difference is exact.
+  template <class T>
+  static NodalVectors<T> dilatation_gradient(const Modes<T>& X, const Deformation<T>& now) {
+    const Modes<T> w = now.x - X * transpose(identity<T>() + now.H);
+    const OnePoint::Element<T> ahead = OnePoint::geometry(now.x + w), behind = OnePoint::geometry(now.x - w);
+    const T half_over_V = T(0.5) / now.current.V;
+    return OnePoint::nodal_gradients(now.current) +
+           half_over_V *
+               (ahead.V * OnePoint::nodal_gradients(ahead) - behind.V * OnePoint::nodal_gradients(behind));
+  }
+
+  /// What pressure does through the change of V h with hourglass displacements v, N/m: |V''| |p| V0 J / V. In
+  /// modes a_m = x_m / 8, V is a sum of triple products (see OnePoint::geometry); those that hold hourglass
+  /// modes couple two of v by a third of x, and the largest sum of such couplings of one mode, 8/3 |a| each,
+  /// over |v|^2 = 8 sum |a|^2, bounds their norm. The other stresses are of the size of mu; what they do so
+  /// is less than what is left between the bound and the truth (eigenvalue_test.cpp).
+  template <class T, class Law>
+  static T bending_bound(const Deformation<T>& now, const Law& law) {
+    const T pressure = abs(law.pressure(now.change.J_minus_one));
+    const T J = T(1) + now.change.J_minus_one;
+    std::array<T, 6> a;
+    for (int m = 0; m < 6; ++m) {
+      const T square = now.x(m, 0) * now.x(m, 0) + now.x(m, 1) * now.x(m, 1) + now.x(m, 2) * now.x(m, 2);
+      a[static_cast<std::size_t>(m)] = T(0.125) * sqrt(square);
+    }
+    const T linear = max(max(a[4] + a[5], a[5] + a[3]), a[3] + a[4]);
+    const T hourglass =
+        max(max(a[1] + a[2] + a[4] + a[5], a[0] + a[2] + a[3] + a[5]), a[0] + a[1] + a[3] + a[4]);
+    return T(1.0 / 3.0) * max(linear, hourglass) * pressure * reference_volume(now) * J / now.current.V;
+  }
+
   /// H = D (I - D)^-1 with D = du/dx: F - I from F^-1 without the cancellation of F - I.
   template <class T>
   static Tensor<T> displacement_gradient(const Modes<T>& u, const OnePoint::Element<T>& current) {

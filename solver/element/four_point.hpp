@@ -1,0 +1,193 @@
+#pragma once
+
+#include <array>
+
+#include "element/one_point.hpp"
+#include "element/point_bound.hpp"
+#include "material/memory.hpp"
+
+namespace sandglass {
+
+/// The hexahedron with four points, between one and eight: half the law's cost of eight, and no more memory
+/// than one. The fluctuation of the displacement gradient is that of the parallelepiped whose inverse
+/// Jacobian is the mean one, sum_a q_a/8 (x) dw_a/dX with w_1..3 = eta zeta, xi zeta, xi eta, evaluated
+/// at every other corner of the Gauss rule: (- - -), (+ + -), (+ - +), (- + +) over sqrt 3. There the means
+/// of xi, of xi eta and of xi^2 - 1/3 are zero, so that the mean gradient stays the exact one and the energy
+/// of the fluctuation is right to second order on parallelepipeds, at every deformation and for every law.
+/// The pressure is one for the element, as in the mean-dilatation element.
+///
+/// The fourth mode would meet the others in the mean of xi eta zeta, which alternate corners do not
+/// cancel. It is left to an hourglass control.
+struct FourPoint {
+  /// What is constant in time: the one-point element's own geometry.
+  template <class T>
+  using Element = OnePoint::Element<T>;
+
+  static constexpr int points = 4;
+  static constexpr bool needs_increment = false;
+  static constexpr bool needs_coordinates = false;
+  static constexpr bool averages_pressure = true;
+
+  /// Whether it matters, to third order, which four corners of the eight the numbering of nodes puts first.
+  static constexpr bool alternates_corners = true;
+
+  static Element<double> precompute(const NodalVectors<double>& X) { return OnePoint::precompute(X); }
+
+  template <class T>
+  static Element<T> geometry(const Modes<T>& x) {
+    return OnePoint::geometry(x);
+  }
+
+  /// What the force needs of the displacements, at each point.
+  template <class T>
+  struct Deformation {
+    std::array<Tensor<T>, 4> H;
+    std::array<T, 4> inverse_root;
+    std::array<T, 4> J_minus_one;
+    HourglassModes<T> q;  ///< hourglass displacements, m
+  };
+
+  template <class Hourglass, class T>
+  static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
+    Deformation<T> now;
+    const Tensor<T> H = OnePoint::mean_gradient(motion.u, element);
+    now.q = OnePoint::hourglass_displacements(motion.u, H, element);
+    now.H = point_gradients(H, now.q, element);
+    for (std::size_t p = 0; p < 4; ++p) {
+      const VolumeChange<T> change = volume_change(now.H[p]);
+      now.J_minus_one[p] = change.J_minus_one;
+      now.inverse_root[p] = change.inverse_root;
+    }
+    return now;
+  }
+
+  /// Internal forces (N) in modes.
+  template <class Hourglass, class T, class Law>
+  static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
+                        const typename Hourglass::template Element<T>& control, NoHistory<T>& /*history*/,
+                        const Law& law) {
+    const T p = law.pressure(mean(now.J_minus_one));
+    const T quarter = T(0.25) * element.V;
+    std::array<Tensor<T>, 4> P;  // times the reference volume of a point
+    for (std::size_t q = 0; q < 4; ++q) {
+      const VolumeChange<T> change{now.J_minus_one[q], now.inverse_root[q]};
+      P[q] = at_point(law, q).weighted_piola(quarter, now.H[q], change, p);
+    }
+    // The transpose of `point_gradients`.
+    const Tensor<T> lower = P[0] + P[1], upper = P[2] + P[3];
+    const Tensor<T> x = P[1] - P[0], y = P[2] - P[3];
+    const Tensor<T> along_xi = x + y, along_eta = x - y, along_zeta = upper - lower;
+    HourglassModes<T> Q;
+    if constexpr (Hourglass::active) Q = Hourglass::resistance(now.q, control);
+    for (int i = 0; i < 3; ++i) {
+      if constexpr (!Hourglass::active) Q(3, i) = T(0);
+      Q(0, i) = scale<T>() * (row_dot(along_eta, i, element, 2) + row_dot(along_zeta, i, element, 1));
+      Q(1, i) = scale<T>() * (row_dot(along_xi, i, element, 2) + row_dot(along_zeta, i, element, 0));
+      Q(2, i) = scale<T>() * (row_dot(along_xi, i, element, 1) + row_dot(along_eta, i, element, 0));
+    }
+    return OnePoint::modal_forces(transpose(lower + upper), Q, element.c, element);
+  }
+
+  /// Strain and hourglass energy (J).
+  template <class Hourglass, class T, class Law>
+  static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
+                                 const typename Hourglass::template Element<T>& control,
+                                 const NoHistory<T>& /*history*/, const Law& law) {
+    const Deformation<T> now = deformation<Hourglass>(motion, element);
+    T W = T(0);
+    for (std::size_t q = 0; q < 4; ++q) W = W + T(0.25) * at_point(law, q).isochoric_energy(now.H[q]);
+    ElementEnergy<T> energy{element.V * (W + law.volumetric_energy(mean(now.J_minus_one))), T(0)};
+    if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now.q, control);
+    return energy;
+  }
+
+  /// Reference volume, m^3.
+  template <class T>
+  static T volume(const ElementMotion<T>& /*motion*/, const Element<T>& element) {
+    return element.V;
+  }
+
+  template <class T>
+  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    const auto J_minus_one = dilatations(motion, element);
+    return T(1) + min(min(J_minus_one[0], J_minus_one[1]), min(J_minus_one[2], J_minus_one[3]));
+  }
+
+  template <class T>
+  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
+    return T(1) + mean(dilatations(motion, element));
+  }
+
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness.
+  template <class Hourglass, class T, class Law>
+  static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
+                           const typename Hourglass::template Element<T>& control,
+                           const NoHistory<T>& /*history*/, const Law& law) {
+    const Deformation<T> now = deformation<Hourglass>(motion, element);
+    const NodalVectors<T> h = OnePoint::nodal_gradients(element);
+    const Matrix<T, 8, 4> gamma = OnePoint::gamma(h, element);
+    std::array<T, 4> weight, dilatation;
+    weight.fill(T(0.25) * element.V);
+    dilatation.fill(mean(now.J_minus_one));
+    const auto spatial_gradient = [&](std::size_t p) {
+      Matrix<T, 4, 3> fluctuation;  // of a unit of each hourglass displacement
+      for (int a = 0; a < 4; ++a) {
+        HourglassModes<T> unit{};
+        unit(a, 0) = T(1);
+        const Tensor<T> G = point_gradients(Tensor<T>{}, unit, element)[p];
+        for (int j = 0; j < 3; ++j) fluctuation(a, j) = G(0, j);
+      }
+      return (h + gamma * fluctuation) * inverse(identity<T>() + now.H[p]);
+    };
+    const T body = point_bound<true>(now.H, dilatation, weight, element.V, spatial_gradient, law);
+    if constexpr (Hourglass::active) return body + Hourglass::stiffness_bound(gamma, control);
+    return body;
+  }
+
+ private:
+  /// A point's coordinate. Modes are sums over the nodes, eight times amplitudes; h has an eighth for it.
+  template <class T>
+  static T scale() {
+    return T(gauss_coordinate);
+  }
+
+  template <class T>
+  static T mean(const std::array<T, 4>& values) {
+    return T(0.25) * ((values[0] + values[1]) + (values[2] + values[3]));
+  }
+
+  /// Displacement gradients at the four points: H + xi A_xi + eta A_eta + zeta A_zeta, where the gradient
+  /// along an axis is that of the two modes which vary along it.
+  template <class T>
+  static std::array<Tensor<T>, 4> point_gradients(const Tensor<T>& H, const HourglassModes<T>& q,
+                                                  const Element<T>& element) {
+    const auto modes = scale<T>() * q;
+    const auto along = [&](int b, int j, int c, int k) {
+      Tensor<T> A;
+      for (int i = 0; i < 3; ++i) {
+        for (int l = 0; l < 3; ++l) A(i, l) = modes(b, i) * element.h(j, l) + modes(c, i) * element.h(k, l);
+      }
+      return A;
+    };
+    const Tensor<T> xi = along(2, 1, 1, 2), eta = along(2, 0, 0, 2), zeta = along(1, 0, 0, 1);
+    const Tensor<T> sum = xi + eta, difference = xi - eta;
+    const Tensor<T> lower = H - zeta, upper = H + zeta;
+    return {lower - sum, lower + sum, upper + difference, upper - difference};
+  }
+
+  /// sum_j P_ij dxi_k/dX_j.
+  template <class T>
+  static T row_dot(const Tensor<T>& P, int i, const Element<T>& element, int k) {
+    return P(i, 0) * element.h(k, 0) + P(i, 1) * element.h(k, 1) + P(i, 2) * element.h(k, 2);
+  }
+
+  template <class T>
+  static std::array<T, 4> dilatations(const ElementMotion<T>& motion, const Element<T>& element) {
+    const Tensor<T> H = OnePoint::mean_gradient(motion.u, element);
+    const auto at = point_gradients(H, OnePoint::hourglass_displacements(motion.u, H, element), element);
+    return {jacobian_minus_one(at[0]), jacobian_minus_one(at[1]), jacobian_minus_one(at[2]),
+            jacobian_minus_one(at[3])};
+  }
+};
+
+}  // namespace sandglass
