@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/element_assembly.hpp"
+#include "model/assembly_of.hpp"
 #include "model/method_dispatch.hpp"
 
 /// The definition of `assemble_part`, for the source files that instantiate it; see CMakeLists.txt.
@@ -19,8 +19,7 @@ ForceOf<Number> assemble_part(const Mesh& mesh, const AnyLaw& any_law, const Met
             const auto law = kernel_law(chosen);
             using Law = std::remove_const_t<decltype(law)>;
             if constexpr (knows_law<Method, Law>) {
-              force = std::make_unique<ElementAssembly<FormulationOf<Method, Law>, Law, Number>>(
-                  mesh, law, settings, choice.threads);
+              force = std::make_unique<AssemblyOf<Method, Law, Number>>(mesh, law, settings, choice.threads);
             } else {
               throw InputError(
                   fmt::format("law: '{}' relaxes, which method '{}' takes no notice of; allowed: an elastic "

@@ -47,6 +47,11 @@ std::string case_hash(const Case& scene) {
   for (const auto& imposed : scene.displacements) {
     text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);
   }
+  for (const auto& turned : scene.rotations) {
+    text += fmt::format("rotation({}:{}:{}:", turned.set, turned.axis, turned.angle);
+    text += turned.center ? fmt::format("{}", *turned.center) : "-";
+    text += fmt::format(":{})", turned.displacement);
+  }
   for (const auto& force : scene.forces) {
     text += fmt::format("force({}:{}:{})", force.set, force.total, force.moment);
   }

@@ -10,6 +10,7 @@
 #include "material/laws.hpp"
 #include "mesh/generators.hpp"
 #include "mesh/node_set.hpp"
+#include "model/internal_force.hpp"
 #include "model/settings.hpp"
 
 namespace sandglass {
@@ -26,11 +27,30 @@ struct ImposedDisplacement {
   std::array<bool, 3> components{true, true, true};  ///< which components are imposed
 };
 
+/// A rigid rotation imposed on a node set, u = (R(f angle) - 1)(X - center) + f displacement at the factor f
+/// of the loading curve.
+struct ImposedRotation {
+  std::string set;
+  Vector axis{};                 ///< of length one; turns by the right-hand rule
+  double angle = 0.0;            ///< final angle, rad
+  std::optional<Vector> center;  ///< a point of the axis, m; else the mean of the nodes' positions
+  Vector displacement{};         ///< final displacement beside the rotation, m
+};
+
 /// A dead load on the boundary faces within a node set; it follows the loading curve.
 struct ImposedForce {
   std::string set;
   Vector total{};   ///< final sum, N
   Vector moment{};  ///< final moment about the centroid of the faces, N m
+};
+
+/// Velocities in which nodes start; what several say of one node adds up.
+struct InitialVelocity {
+  std::optional<std::string> set = {};  ///< none: the whole body
+  Vector value{};                       ///< m/s
+  std::array<int, 3> half_waves{};  ///< of a standing wave between the free ends of the set, on each axis:
+                                    ///< value times cos(pi half_waves (x - low) / (high - low))
+  Vector spin{};                    ///< rad/s, about the centre of mass of the set
 };
 
 /// A motion of a node set that somebody published.
@@ -73,20 +93,22 @@ struct Case {
   double density = 0.0;  ///< kg/m^3
   std::vector<NodeSetRule> sets;
   std::vector<ImposedDisplacement> displacements;
+  std::vector<ImposedRotation> rotations;
   std::vector<ImposedForce> forces;
-  Vector initial_velocity{};  ///< m/s, of every free node
+  std::vector<InitialVelocity> velocities;
   std::optional<Profile> profile;
   RelaxationSettings relaxation;
   DynamicsSettings dynamics;
-  std::vector<double> kappas;  ///< the curve that `sandglass verify` computes beside `auto`
+  std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
+  std::vector<double> kappas;          ///< the curve that `sandglass verify` computes beside `auto`
   std::vector<Expectation> expectations;
   std::vector<PublishedValue> published;
   std::filesystem::path golden;
   std::filesystem::path truth;
 };
 
-/// A hash of what decides the static answer: mesh recipe, law, node sets, imposed displacements and
-/// forces. Settings, limits, published values and words do not enter.
+/// A hash of what decides the static answer: mesh recipe, law, node sets, imposed displacements,
+/// rotations and forces. Method, settings, limits, published values and words do not enter.
 std::string case_hash(const Case& scene);
 
 }  // namespace sandglass

@@ -1,20 +1,17 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "element/element_motion.hpp"
 #include "material/memory.hpp"
 #include "math/lanes.hpp"
+#include "model/chunk_sum.hpp"
+#include "model/element_block.hpp"
 #include "model/face_gather.hpp"
 #include "model/internal_force.hpp"
 
@@ -28,7 +25,6 @@ template <class Kernel, class Law, class Number>
 class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scalar> {
   static constexpr int width = Lanes<Number>::width;
   using Real = typename Lanes<Number>::Scalar;
-  using Element = typename Kernel::template Element<double>;
   using ElementBlock = typename Kernel::template Element<Number>;
   using HistoryBlock = typename Kernel::template History<Number>;
 
@@ -38,7 +34,8 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     blocks_.resize(layout_.levels());
     for (const auto& group : layout_.groups) {
       for (std::size_t k = 0; k < group.levels; ++k) {
-        blocks_[group.first_level + k] = precompute(mesh, group.first_face + k, settings);
+        blocks_[group.first_level + k] = element_block<Kernel, Number>(mesh, layout_, layout_.node_of_row,
+                                                                       group.first_face + k, law, settings);
       }
     }
     streams_ = blocks_.size() * (sizeof(ElementBlock) + sizeof(HistoryBlock)) > cached_bytes;
@@ -60,7 +57,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
 
   void evaluate(State<Real>& state, Rows<Real>& force) const override {
     if constexpr (Kernel::averages_over_nodes) sum_volumes(state.u, state.volumes);
-    sum_over_elements(force, [&](std::size_t c) { add_chunk(c, state, numbers_of(force)); });
+    sum_over_chunks(layout_, threads_, force, [&](std::size_t c) { add_chunk(c, state, numbers_of(force)); });
   }
 
   StrainEnergies energies(const State<Real>& state) const override {
@@ -118,40 +115,11 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     std::array<Number, 4> dilatation;
   };
 
-  /// Clears the rows and adds to them what add(chunk) adds, chunk by chunk. Each thread takes a run of slabs
-  /// and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of even number comes before its
-  /// neighbour, as it does for any number of threads, and finds what it needs still in the cache. The last
-  /// slab of a run waits for the thread that has the next one.
-  template <class Add>
-  void sum_over_elements(Rows<Real>& rows, const Add& add) const {
-    const std::size_t pairs = (layout_.chunks.size() + 1) / 2;
-    const std::size_t runs = std::min(pairs, static_cast<std::size_t>(threads_));
-    const auto first_pair = [=](std::size_t run) { return pairs * run / runs; };
-    in_parallel(runs, threads_, [&](std::size_t run) {
-      for (std::size_t pair = first_pair(run); pair < first_pair(run + 1); ++pair) {
-        if (pair > 0) clear_rows_of(2 * pair - 1, rows);
-        clear_rows_of(2 * pair, rows);
-        add(2 * pair);
-        if (pair > first_pair(run)) add(2 * pair - 1);
-      }
-    });
-    if (layout_.chunks.size() % 2 == 0) clear_rows_of(layout_.chunks.size() - 1, rows);
-    in_parallel(runs, threads_, [&](std::size_t run) {
-      const std::size_t last = 2 * first_pair(run + 1) - 1;
-      if (last < layout_.chunks.size()) add(last);
-    });
-  }
-
-  /// Clears the rows that a chunk is the first to meet.
-  void clear_rows_of(std::size_t c, Rows<Real>& rows) const {
-    std::fill(rows.data() + layout_.chunks[c].first_row, rows.data() + layout_.chunks[c].last_row,
-              Row<Real>{});
-  }
-
   /// Sets each row of `volumes` to the change of volume around the node and to that volume at rest (m^3), a
   /// third number unused.
   void sum_volumes(const Rows<Real>& u, Rows<Real>& volumes) const {
-    sum_over_elements(volumes, [&](std::size_t c) { add_volumes(c, u, numbers_of(volumes)); });
+    sum_over_chunks(layout_, threads_, volumes,
+                    [&](std::size_t c) { add_volumes(c, u, numbers_of(volumes)); });
   }
 
   /// Adds those of one chunk, as `add_chunk` does forces.
@@ -270,12 +238,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
   }
 
   void scatter_face(const Faces& forces, std::size_t face, Real* force) const {
-    const FaceVectors<Number> corners = from_face_modes(forces);
-    for (std::size_t c = 0; c < 4; ++c) {
-      const int corner = static_cast<int>(c);
-      scatter_add<Number>({corners(corner, 0), corners(corner, 1), corners(corner, 2)}, force,
-                          layout_.places(face, c));
-    }
+    scatter_face_modes(forces, force, layout_, face);
   }
 
   static constexpr std::size_t history_numbers = sizeof(HistoryBlock) / sizeof(Real);
@@ -328,44 +291,6 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
           values[static_cast<std::size_t>(e)] = static_cast<double>(Lanes<Number>::get(value, lane));
       }
     });
-  }
-
-  static constexpr std::size_t numbers = sizeof(Element) / sizeof(double);
-  static_assert(sizeof(ElementBlock) == numbers * sizeof(Number),
-                "an element's constants must all be of its number type");
-
-  /// Throws InputError when the kernel cannot be made of an element with coordinates X (m).
-  static void require_accepted(const NodalVectors<double>& X) {
-    if (Kernel::accepts(X)) return;
-    Vector centre{};
-    for (int I = 0; I < 8; ++I) {
-      for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
-    }
-    throw InputError(
-        fmt::format("mesh: the element with centre ({:.6g}, {:.6g}, {:.6g}) does not suit the method; {}; "
-                    "mend the mesh or choose another method",
-                    centre[0], centre[1], centre[2], Kernel::demand));
-  }
-
-  /// The constants of the elements between a face of the layout and the next.
-  ElementBlock precompute(const Mesh& mesh, std::size_t face, const HourglassSettings& settings) const {
-    std::array<Number, numbers> block;
-    for (int lane = 0; lane < width; ++lane) {
-      NodalVectors<double> X;
-      for (int I = 0; I < 8; ++I) {
-        const auto corner = static_cast<std::size_t>(I);
-        const auto row = static_cast<std::size_t>(layout_.places(face + corner / 4, corner % 4)[lane]) / 4;
-        const Vector& point = mesh.points[static_cast<std::size_t>(layout_.node_of_row[row])];
-        for (int i = 0; i < 3; ++i) X(I, i) = point[static_cast<std::size_t>(i)];
-      }
-      require_accepted(X);
-      const auto constants =
-          std::bit_cast<std::array<double, numbers>>(Kernel::precompute(X, law_, settings));
-      for (std::size_t n = 0; n < numbers; ++n) {
-        Lanes<Number>::set(block[n], lane, static_cast<Real>(constants[n]));
-      }
-    }
-    return std::bit_cast<ElementBlock>(block);
   }
 
   Layout layout_;

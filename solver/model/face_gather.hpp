@@ -6,15 +6,34 @@
 
 namespace sandglass {
 
-/// The modes of a face of the layout from the rows at its four corners, one face per lane.
+/// The rows at the four corners of a face of the layout, one face per lane.
 template <class Number, class Real>
-FaceModes<Number> gather_face_modes(const Rows<Real>& rows, const Layout& layout, std::size_t face) {
+FaceVectors<Number> gather_face_vectors(const Rows<Real>& rows, const ElementGroups& layout,
+                                        std::size_t face) {
   FaceVectors<Number> corners;
   for (std::size_t c = 0; c < 4; ++c) {
     const auto x = gather<Number>(numbers_of(rows), layout.places(face, c));
     for (std::size_t i = 0; i < 3; ++i) corners(static_cast<int>(c), static_cast<int>(i)) = x[i];
   }
-  return to_face_modes(corners);
+  return corners;
+}
+
+/// Their modes.
+template <class Number, class Real>
+FaceModes<Number> gather_face_modes(const Rows<Real>& rows, const ElementGroups& layout, std::size_t face) {
+  return to_face_modes(gather_face_vectors<Number>(rows, layout, face));
+}
+
+/// Adds the vectors at the corners of a face, given as modes, to their rows.
+template <class Number, class Real>
+void scatter_face_modes(const FaceModes<Number>& modes, Real* rows, const ElementGroups& layout,
+                        std::size_t face) {
+  const FaceVectors<Number> corners = from_face_modes(modes);
+  for (std::size_t c = 0; c < 4; ++c) {
+    const int corner = static_cast<int>(c);
+    scatter_add<Number>({corners(corner, 0), corners(corner, 1), corners(corner, 2)}, rows,
+                        layout.places(face, c));
+  }
 }
 
 /// Reference coordinates (m) as rows, spare rows included. They are seen from the middle of the mesh: where

@@ -18,6 +18,9 @@ void require_sensible(const MethodChoice& choice) {
   if (choice.kappa && !(*choice.kappa >= 0.0)) {
     throw InputError(fmt::format("kappa: {} must be in [0, inf), or 'auto'", *choice.kappa));
   }
+  if (!(choice.accuracy > 0.0)) {
+    throw InputError(fmt::format("accuracy: {} must be positive", choice.accuracy));
+  }
   if (choice.threads < 1) {
     throw InputError(fmt::format("threads: {} must be at least 1", choice.threads));
   }
@@ -49,6 +52,12 @@ bool answers_by_condensation(std::string_view method) {
   bool condensed = false;
   with_method(method, [&]<class Method>() { condensed = is_condensed<Method>; });
   return condensed;
+}
+
+bool adapts(std::string_view method) {
+  bool adaptive = false;
+  with_method(method, [&]<class Method>() { adaptive = is_adaptive<Method>; });
+  return adaptive;
 }
 
 std::optional<double> auto_kappa(std::string_view method, const AnyLaw& any_law, KappaModulus modulus) {

@@ -21,13 +21,30 @@ struct StrainEnergies {
   double hourglass = 0.0;
 };
 
+/// How an adaptive method's elements stand together at their levels. Only the elements know what is in it.
+class Grouping {
+ public:
+  Grouping() = default;
+  Grouping(const Grouping&) = delete;
+  Grouping& operator=(const Grouping&) = delete;
+  virtual ~Grouping() = default;
+};
+
+/// What changed when elements were given new levels.
+struct Adaptation {
+  std::size_t promoted = 0;  ///< elements
+  std::size_t demoted = 0;
+};
+
 /// What changes in time: nodal values in rows, in the order of the layout, and what elements remember.
 template <class Real>
 struct State {
   Rows<Real> u;               ///< displacements, m
   Rows<Real> increment;       ///< what the last step added to them, m
   std::vector<Real> history;  ///< of the elements; only they know its meaning
-  Rows<Real> volumes;         ///< scratch of `evaluate`, where elements average over nodes; else empty
+  std::vector<Real> levels;   ///< of each element, 0 the cheapest; empty where a method has but one
+  std::shared_ptr<const Grouping> grouping;  ///< of the elements by their levels
+  Rows<Real> volumes;  ///< scratch of `evaluate`, where elements average over nodes; else empty
   double step = std::numeric_limits<double>::infinity();  ///< s, that the increment took; infinite where time
                                                           ///< plays no part
 };
@@ -55,6 +72,18 @@ class InternalForce {
   /// Sets `force` to the internal nodal forces (N); what elements remember goes one step on. Allocates
   /// nothing. The bits do not depend on the number of threads.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
+
+  /// Gives each element the cheapest level that will do, where a method has several. An element's force at
+  /// a level differs from that at the highest; the differences times `mobility` (m/N, by row and component)
+  /// are displacements of its nodes. An element goes up to the lowest level at which none is longer than
+  /// `length` (m), and down to the lowest at which none is longer than `demoting_length` <= length; 0: never.
+  virtual Adaptation adapt(State<Real>& /*state*/, const Rows<Real>& /*mobility*/, double /*length*/,
+                           double /*demoting_length*/) const {
+    return {};
+  }
+
+  /// Groups the elements by the levels of the state, which may have come from a file.
+  virtual void regroup(State<Real>& /*state*/) const {}
 
   /// Strain and hourglass energy.
   virtual StrainEnergies energies(const State<Real>& state) const = 0;
@@ -85,6 +114,9 @@ constexpr std::string_view name_of(Precision precision) {
 /// How many elements a kernel computes at a time: as many as a register holds, or one, for comparison.
 enum class KernelWidth { pack, scalar };
 
+/// What an adaptive method aims at unless told.
+inline constexpr double default_accuracy = 0.003;
+
 /// What a user chooses beside the case.
 struct MethodChoice {
   std::string method;
@@ -93,6 +125,7 @@ struct MethodChoice {
   int threads = 1;
   KernelWidth kernel = KernelWidth::pack;
   KappaModulus kappa_modulus = KappaModulus::p_wave;
+  double accuracy = default_accuracy;  ///< of an adaptive method: displacement error over the largest imposed
 };
 
 /// Elements in one of the two precisions.
@@ -112,6 +145,9 @@ bool takes_kappa(std::string_view method);
 
 /// Whether the method of that name answers by condensation instead of steps. Throws InputError when unknown.
 bool answers_by_condensation(std::string_view method);
+
+/// Whether the method of that name chooses the level of each element. Throws InputError when unknown.
+bool adapts(std::string_view method);
 
 /// The number that `auto` stands for, or none when the method takes no kappa.
 std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law,

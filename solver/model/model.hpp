@@ -6,6 +6,7 @@
 
 #include "mesh/face_load.hpp"
 #include "model/case.hpp"
+#include "model/imposed_path.hpp"
 #include "model/internal_force.hpp"
 
 namespace sandglass {
@@ -14,7 +15,7 @@ namespace sandglass {
 struct Constraint {
   int node;
   int component;
-  double value;  ///< final value, m
+  ImposedPath path;
 };
 
 /// The mesh of a case with its node sets; shared by all methods.
@@ -23,21 +24,38 @@ struct Scene {
   Mesh mesh;
   NodeSets sets;
   std::vector<Constraint> constraints;  ///< sorted by node, then component
+  std::vector<double> angles;           ///< rad, of paths; the first is zero, for those that do not turn
   std::vector<NodalLoad> loads;         ///< final forces, sorted by node
+  NodalField initial_velocities;        ///< m/s; empty: at rest. Imposed components do not obey them
   std::string case_hash;
   std::string mesh_hash;
 };
 
-/// Node sets by their rules, constraints from the imposed displacements, loads from the imposed forces.
-/// Throws InputError for an inverted element, an empty set, a node to which two different values are imposed,
-/// and a force on a set without boundary faces.
+/// Node sets by their rules, constraints from the imposed displacements and rotations, loads from the imposed
+/// forces, initial velocities. Throws InputError for an inverted element, an empty set, a node to which two
+/// different paths are imposed, a force on a set without boundary faces, and a wave along an axis on which
+/// its set has no extent.
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {});
 
 /// The mesh of a case whose mesh comes from a generator.
 Mesh generate_mesh(const AnyGenerator& generator);
 
-/// Largest imposed displacement, m; zero when the case is driven by forces alone.
+/// Mass of each element, kg.
+std::vector<double> element_masses(const Mesh& mesh, double density);
+
+/// Lumped masses of the nodes (kg): an eighth of each element's mass at each of its nodes.
+std::vector<double> lumped_masses(const Mesh& mesh, const std::vector<double>& element_masses);
+
+/// Largest imposed displacement, m: of a set that turns, the largest on its way, where a displacement beside
+/// the rotation counts in full; zero when the case is driven by forces alone.
 double largest_imposed(const Scene& scene);
+
+/// The final displacement (m) of a constraint, where the load factor is one.
+double final_value(const Scene& scene, const Constraint& constraint);
+
+/// Upper bound of the speeds |du/df| (m) of all imposed nodes on their ways; sharp where nothing moves and
+/// turns at once.
+double fastest_imposed(const Scene& scene);
 
 /// The unit of all relative errors against a reference (m): the largest imposed displacement; where none is
 /// imposed, the reference's own largest.
@@ -52,7 +70,7 @@ class Model {
   const MethodChoice& choice() const { return choice_; }
   const AnyInternalForce& internal_force() const { return internal_force_; }
 
-  /// Lumped masses (kg): an eighth of rho V of each element at each of its nodes.
+  /// Lumped masses of the nodes, kg.
   const std::vector<double>& masses() const { return masses_; }
 
   /// Mass of each element, kg.

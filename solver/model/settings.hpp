@@ -11,6 +11,7 @@ namespace sandglass {
 struct RelaxationSettings {
   double tolerance = 1e-8;
   int levels = 0;
+  int cycles = 0;
   int max_steps = 200000;
   int check_interval = 50;
 
@@ -23,6 +24,8 @@ struct RelaxationSettings {
             &S::levels, "levels", "-", Range::at_least(0),
             "load levels; 0 chooses them so that no element's displacement gradient changes by more than 0.3",
             false},
+        Parameter{&S::cycles, "cycles", "-", Range::at_least(0),
+                  "how often the load goes back to a tenth and up again before the answer", false},
         Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1),
                   "give up after this many evaluations of the forces", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),

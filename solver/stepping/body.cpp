@@ -8,24 +8,33 @@
 
 namespace sandglass {
 
+namespace {
+
+template <class Real>
+std::array<Real, 3> rounded(const std::array<double, 3>& values) {
+  return {static_cast<Real>(values[0]), static_cast<Real>(values[1]), static_cast<Real>(values[2])};
+}
+
+}  // namespace
+
 template <class Real>
 Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
     : elements_(elements),
       threads_(model.choice().threads),
+      angles_(model.scene().angles),
+      terms_(angles_.size()),
       state_(elements.rest()),
       force_(state_.u.size()),
       reactions_(model.scene().constraints.size(), 0.0),
       per_element_(model.scene().mesh.cells.size()) {
-  for (const auto& [node, component, value] : model.scene().constraints) {
+  for (const auto& [node, component, path] : model.scene().constraints) {
     const int row = elements.layout().row_of_node[static_cast<std::size_t>(node)];
-    constraints_.push_back(
-        {static_cast<std::size_t>(row), static_cast<std::size_t>(component), static_cast<Real>(value)});
+    constraints_.push_back({static_cast<std::size_t>(row), static_cast<std::size_t>(component),
+                            rounded<Real>(path.share), path.angle});
   }
   for (const auto& [node, force] : model.scene().loads) {
     const int row = elements.layout().row_of_node[static_cast<std::size_t>(node)];
-    loads_.push_back(
-        {static_cast<std::size_t>(row),
-         {static_cast<Real>(force[0]), static_cast<Real>(force[1]), static_cast<Real>(force[2])}});
+    loads_.push_back({static_cast<std::size_t>(row), rounded<Real>(force)});
     load_square_ += force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
   }
 }
@@ -63,8 +72,10 @@ double Body<Real>::residual(double free_square) const {
 template <class Real>
 void Body<Real>::impose(double factor) {
   load_factor_ = factor;
-  for (const auto& [row, component, value] : constraints_) {
-    const Real imposed = static_cast<Real>(factor) * value;
+  for (std::size_t m = 0; m < terms_.size(); ++m) terms_[m] = rounded<Real>(path_terms(angles_[m], factor));
+  for (const auto& [row, component, share, angle] : constraints_) {
+    const std::array<Real, 3>& terms = terms_[angle];
+    const Real imposed = share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2];
     state_.increment[row][component] += imposed - state_.u[row][component];
     state_.u[row][component] = imposed;
   }
@@ -106,8 +117,12 @@ Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) cons
 
 template <class Real>
 Frame Body<Real>::frame(double time, NodalField v) const {
-  Frame frame{time, field(state_.u), std::move(v), std::vector<double>(per_element_.size()),
-              std::vector<double>(per_element_.size())};
+  Frame frame{time,
+              field(state_.u),
+              std::move(v),
+              std::vector<double>(per_element_.size()),
+              std::vector<double>(per_element_.size()),
+              std::vector<double>(state_.levels.begin(), state_.levels.end())};
   elements_.jacobians(state_, frame.jacobians);
   elements_.hourglass_energy_densities(state_, frame.hourglass_energy_densities);
   return frame;
@@ -122,7 +137,7 @@ void Body<Real>::require_healthy(long step) {
 template <class Real>
 bool Body<Real>::healthy() {
   elements_.smallest_jacobians(state_, per_element_);
-  return std::all_of(per_element_.begin(), per_element_.end(), [](double J) { return J > 0.0; });
+  return std::all_of(per_element_.begin(), per_element_.end(), is_healthy);
 }
 
 template <class Real>

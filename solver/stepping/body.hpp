@@ -36,8 +36,8 @@ class Body {
   /// Goes to displacements `target` (m); `impose` sets the constrained components afterwards.
   void move_to(const Rows<Real>& target);
 
-  /// Sets constrained components to `factor` times their final value, and their increments to the change;
-  /// from now on loads, too, are `factor` times their final value.
+  /// Sets constrained components to where their paths are at a load factor, and their increments to the
+  /// change; from now on loads are `factor` times their final value.
   void impose(double factor);
 
   /// The present factor of the loads.
@@ -66,13 +66,33 @@ class Body {
   /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
   const std::vector<double>& stiffness_bounds();
 
+  /// See InternalForce::adapt.
+  Adaptation adapt(const Rows<Real>& mobility, double length, double demoting_length) {
+    return elements_.adapt(state_, mobility, length, demoting_length);
+  }
+
   int threads() const { return threads_; }
+
+  /// What the next step or level reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("displacement", state_.u);
+    archive("increment", state_.increment);
+    archive("element history", state_.history);
+    archive("element level", state_.levels);
+    elements_.regroup(state_);
+    archive("increment step", state_.step);
+    archive("free force", force_);
+    archive("body reaction", reactions_);
+    archive("load factor", load_factor_);
+  }
 
  private:
   struct RowConstraint {
     std::size_t row;
     std::size_t component;
-    Real value;
+    std::array<Real, 3> share;  // of the terms of its path, m
+    std::size_t angle;
   };
 
   struct RowLoad {
@@ -82,6 +102,8 @@ class Body {
 
   const InternalForce<Real>& elements_;
   int threads_;
+  const std::vector<double>& angles_;       // of paths, rad
+  std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the present factor
   std::vector<RowConstraint> constraints_;
   std::vector<RowLoad> loads_;
   double load_square_ = 0.0;  // of the norm of the final loads, N^2

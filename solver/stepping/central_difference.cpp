@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "element/methods.hpp"
 #include "model/loading.hpp"
+#include "stepping/adaption.hpp"
 #include "stepping/explicit_step.hpp"
 #include "stepping/field.hpp"
 #include "stepping/stable_step.hpp"
@@ -25,9 +26,12 @@ class CentralDifference {
   CentralDifference(const Model& model, const InternalForce<Real>& elements)
       : model_(model),
         settings_(model.scene().description.dynamics),
+        layout_(elements.layout()),
         explicit_step_(model, elements),
         body_(explicit_step_.body()),
-        reactions_(model.scene().constraints.size(), 0.0) {}
+        reactions_(model.scene().constraints.size(), 0.0),
+        moved_(model.scene().angles.size()),
+        accelerations_(moved_.size()) {}
 
   Body<Real>& body() { return body_; }
   double time() const { return time_; }
@@ -35,16 +39,31 @@ class CentralDifference {
   double step_size() const { return step_size_; }
   double external_work() const { return work_; }
 
-  /// Starts from the initial velocity: before the first step it is an increment over 1 s.
-  void set_initial_velocity() {
-    const Vector& v = model_.scene().description.initial_velocity;
+  /// What the next step reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    body_.keep(archive);
+    archive("reaction", reactions_);
+    archive("time", time_);
+    archive("step", step_);
+    archive("step size", step_size_);
+    archive("increment time", increment_time_);
+    archive("next step", next_step_);
+    archive("load path", load_path_);
+    archive("work", work_);
+  }
+
+  /// Starts from the initial velocities: before the first step they are increments over 1 s.
+  void set_initial_velocities() {
+    const NodalField& v = model_.scene().initial_velocities;
+    if (v.empty()) return;
     Rows<Real>& increment = body_.state().increment;
+    increment = to_rows<Real>(v, layout_);
     for (std::size_t r = 0; r < increment.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) {
-        increment[r][i] = explicit_step_.inverse_masses()[r][i] > Real(0) ? static_cast<Real>(v[i]) : Real(0);
+        if (!(explicit_step_.inverse_masses()[r][i] > Real(0))) increment[r][i] = Real(0);
       }
     }
-    increment_time_ = 1.0;
   }
 
   /// The next step: the user's, refused when unsafe, or a share of the stable one.
@@ -78,11 +97,15 @@ class CentralDifference {
 
   /// Work of imposed displacements and forces over the last step, from the mean of the forces at its ends.
   void update_external_work() {
-    const double now = loading(time_), before = loading(time_ - step_size_), advance = now - before;
+    const double now = loading(time_), before = loading(time_ - step_size_);
+    follow_paths(before, now);
     const auto& constraints = model_.scene().constraints;
     for (std::size_t k = 0; k < constraints.size(); ++k) {
+      const ImposedPath& path = constraints[k].path;
       const double force = body_.reactions()[k] + inertia(constraints[k]);
-      work_ += 0.5 * (reactions_[k] + force) * advance * constraints[k].value;
+      for (std::size_t i = 0; i < 3; ++i) {
+        work_ += 0.5 * (reactions_[k] + force) * moved_[path.angle][i] * path.share[i];
+      }
       reactions_[k] = force;
     }
     const double path = body_.load_path();
@@ -106,8 +129,10 @@ class CentralDifference {
       }
     }
     NodalField v = body_.field(rows);
-    for (const auto& [node, component, value] : model_.scene().constraints) {
-      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] = loading_rate(time_) * value;
+    for (const auto& [node, component, path] : model_.scene().constraints) {
+      const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], loading(time_)));
+      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
+          loading_rate(time_) * by_factor;
     }
     return v;
   }
@@ -117,11 +142,30 @@ class CentralDifference {
   double loading(double time) const { return loading_curve(time / ramp_time()); }
   double loading_rate(double time) const { return loading_curve_rate(time / ramp_time()) / ramp_time(); }
 
+  /// How the terms of paths changed over the last step, from one load factor to another, and their second
+  /// derivatives by relative time.
+  void follow_paths(double before, double now) {
+    const double rate = loading_curve_rate(time_ / ramp_time());
+    const double acceleration = loading_curve_acceleration(time_ / ramp_time());
+    for (std::size_t m = 0; m < moved_.size(); ++m) {
+      const double angle = model_.scene().angles[m];
+      const PathTerms from = path_terms(angle, before), to = path_terms(angle, now);
+      const PathTerms first = path_rates(angle, now), second = path_accelerations(angle, now);
+      for (std::size_t i = 0; i < 3; ++i) {
+        moved_[m][i] = to[i] - from[i];
+        accelerations_[m][i] = acceleration * first[i] + rate * rate * second[i];
+      }
+    }
+  }
+
   /// Force (N) that accelerates the lumped mass of a driven component.
   double inertia(const Constraint& constraint) const {
-    const double T = ramp_time();
-    return model_.masses()[static_cast<std::size_t>(constraint.node)] * constraint.value *
-           loading_curve_acceleration(time_ / T) / (T * T);
+    const double mass = model_.masses()[static_cast<std::size_t>(constraint.node)], T = ramp_time();
+    double force = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      force += mass * constraint.path.share[i] * accelerations_[constraint.path.angle][i];
+    }
+    return force / (T * T);
   }
 
   void require_stable(const StableStep& stable) const {
@@ -136,10 +180,12 @@ class CentralDifference {
 
   const Model& model_;
   const DynamicsSettings& settings_;
+  const Layout& layout_;
   ExplicitStep<Real> explicit_step_;
   Body<Real>& body_;
   std::vector<double> reactions_;
-  double time_ = 0.0;  // s, of the displacements
+  std::vector<PathTerms> moved_, accelerations_;  // of paths of each angle
+  double time_ = 0.0;                             // s, of the displacements
   long step_ = 0;
   double step_size_ = 0.0;       // s, the step that led here
   double increment_time_ = 1.0;  // s, in which the increments came about
@@ -148,13 +194,21 @@ class CentralDifference {
   double work_ = 0.0;
 };
 
+/// Levels follow a motion at a distance: to judge them costs about ten steps. Elements only go up: in every
+/// vibration one that goes down where its hourglass modes pass through zero, and up again where they are
+/// wide, would take energy from nowhere.
+constexpr long checks_between_adaptions = 10;
+
 template <class Real>
-Motion integrate_body(const Model& model, const InternalForce<Real>& elements, Observer& observer) {
+Motion integrate_body(const Model& model, const InternalForce<Real>& elements, Observer& observer,
+                      const Checkpoint* from) {
   const DynamicsSettings& settings = model.scene().description.dynamics;
   CentralDifference<Real> scheme(model, elements);
   Body<Real>& body = scheme.body();
+  const Adaption<Real> adaption(model, body);
   Motion motion;
   int frames = 0;
+  long checks = 0;
 
   const auto frame_due = [&] {
     return scheme.finished() || scheme.time() >= frames * settings.duration / settings.frames;
@@ -171,12 +225,29 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     motion.interrupted = !observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
   };
 
+  const auto keep = [&](auto archive) {
+    scheme.keep(archive);
+    archive("frames", frames);
+    archive("checks", checks);
+    archive("smallest step", motion.smallest_step);
+  };
+  const auto checkpoint = [&] {
+    Checkpoint state;
+    keep(CheckpointWriter(state));
+    return state;
+  };
+
   const auto start = std::chrono::steady_clock::now();
-  scheme.choose_step();
-  motion.smallest_step = settings.duration;
-  body.evaluate_forces();
-  scheme.set_initial_velocity();
-  report();
+  if (from != nullptr) {
+    keep(CheckpointReader(*from));
+  } else {
+    scheme.choose_step();
+    motion.smallest_step = settings.duration;
+    body.evaluate_forces();
+    scheme.set_initial_velocities();
+    report();
+    observer.resumable(checkpoint);
+  }
   while (!scheme.finished() && !motion.interrupted) {
     scheme.advance();
     scheme.update_external_work();
@@ -184,7 +255,9 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {
       body.require_healthy(scheme.step());
       report();
+      if (++checks % checks_between_adaptions == 0) adaption.apply(body, Demotion::never);
       scheme.choose_step();
+      observer.resumable(checkpoint);
     }
   }
   motion.u = body.field(body.state().u);
@@ -197,14 +270,14 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
 
 }  // namespace
 
-Motion integrate(const Model& model, Observer& observer) {
+Motion integrate(const Model& model, Observer& observer, const Checkpoint* from) {
   if (answers_by_condensation(model.choice().method)) {
     throw InputError(fmt::format(
         "{}: method '{}' has no dynamics: it superposes static answers; use it on quasi-static cases, or "
         "method '{}'",
         model.scene().description.file.string(), model.choice().method, LinearPerturbation::name));
   }
-  return std::visit([&](const auto& elements) { return integrate_body(model, *elements, observer); },
+  return std::visit([&](const auto& elements) { return integrate_body(model, *elements, observer, from); },
                     model.internal_force());
 }
 

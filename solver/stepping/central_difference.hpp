@@ -20,7 +20,8 @@ struct Motion {
 /// settings. Imposed displacements follow eq. 15 over the ramp time. A step chosen by the program follows the
 /// stable one as elements stiffen; a step given by the user is refused when it is above the stable one, at
 /// the start (InputError) or on the way (ComputationError). Throws ComputationError when an element inverts
-/// or the numbers stop being finite.
-Motion integrate(const Model& model, Observer& observer);
+/// or the numbers stop being finite. Every check is a point from which the run can go on; with `from`, taken
+/// there by a run of the same model, it does, and what was told before is not told again.
+Motion integrate(const Model& model, Observer& observer, const Checkpoint* from = nullptr);
 
 }  // namespace sandglass

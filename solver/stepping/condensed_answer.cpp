@@ -12,17 +12,39 @@ namespace sandglass {
 
 namespace {
 
+/// What rotated sets, which no handle moves, do to the other nodes by going to their final places: forces
+/// (N).
+NodalField forces_of_rotations(const Model& model, const Handles& handles) {
+  const Scene& scene = model.scene();
+  NodalField u(scene.mesh.points.size());
+  if (scene.description.rotations.empty()) return u;
+  for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
+    const Constraint& c = scene.constraints[k];
+    if (handles.of_constraint[k] >= 0) continue;
+    u[static_cast<std::size_t>(c.node)][static_cast<std::size_t>(c.component)] = final_value(scene, c);
+  }
+  const Model exact(scene, {.method = model.choice().method, .kappa = model.choice().kappa});
+  NodalField forces = internal_forces(exact, u);
+  for (auto& force : forces) {
+    for (double& component : force) component = -component;
+  }
+  return forces;
+}
+
 /// Displacements (m) of all nodes at the full load, and how long it takes to superpose them (s), the best of
 /// a few times.
 template <class Real>
 std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
+  const Handles handles = handles_of_sets(scene);
   std::vector<NodalField> loads;
-  if (!scene.loads.empty()) {
-    loads.emplace_back(layout.nodes);
-    for (const auto& [node, force] : scene.loads) loads[0][static_cast<std::size_t>(node)] = force;
+  if (!scene.loads.empty() || !scene.description.rotations.empty()) {
+    loads.push_back(forces_of_rotations(model, handles));
+    for (const auto& [node, force] : scene.loads) {
+      for (std::size_t i = 0; i < 3; ++i) loads[0][static_cast<std::size_t>(node)][i] += force[i];
+    }
   }
-  const CondensedResponse<Real> response(model, handles_of_sets(scene), all_nodes(scene), loads);
+  const CondensedResponse<Real> response(model, handles, all_nodes(scene), loads);
   std::vector<Vector> d;
   for (const auto& displacement : scene.description.displacements) d.push_back(displacement.value);
   std::vector<typename CondensedResponse<Real>::Displacement> u(layout.nodes);
@@ -42,10 +64,12 @@ std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layou
   return {std::move(rows), seconds};
 }
 
-/// Work (J) of the imposed displacements on the way from rest along a straight line.
+/// Work (J) of the imposed displacements on the way from rest; a linear body stores the same on every way.
 double work_of(const Scene& scene, const std::vector<double>& reactions) {
   double work = 0.0;
-  for (std::size_t k = 0; k < reactions.size(); ++k) work += 0.5 * reactions[k] * scene.constraints[k].value;
+  for (std::size_t k = 0; k < reactions.size(); ++k) {
+    work += 0.5 * reactions[k] * final_value(scene, scene.constraints[k]);
+  }
   return work;
 }
 

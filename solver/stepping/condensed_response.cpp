@@ -84,8 +84,8 @@ class FreeStiffness {
     std::vector<std::vector<int>> layers;
     std::vector<int> sizes;
     double least = INFINITY;
-    for (const auto& displacement : scene.description.displacements) {
-      auto found = layers_from(nodes_beside(scene, displacement.set, components), neighbours);
+    for (const auto& set : imposed_sets(scene.description)) {
+      auto found = layers_from(nodes_beside(scene, set, components), neighbours);
       std::vector<int> found_sizes;
       double work = 0.0;
       for (const auto& layer : found) {
@@ -125,6 +125,13 @@ class FreeStiffness {
         "to factorise the stiffness takes {:.3g} GB, more than the {:.3g} GB that are allowed; remedy: a "
         "coarser mesh, or a method that takes steps",
         1e-9 * bytes, 1e-9 * most));
+  }
+
+  static std::vector<std::string> imposed_sets(const Case& description) {
+    std::vector<std::string> sets;
+    for (const auto& displacement : description.displacements) sets.push_back(displacement.set);
+    for (const auto& turned : description.rotations) sets.push_back(turned.set);
+    return sets;
   }
 
   /// The nodes that can move and share an element with a set.
@@ -175,7 +182,10 @@ Handles handles_of_sets(const Scene& scene) {
     }
   }
   Handles handles{displacements.size(), {}};
-  for (const auto& c : scene.constraints) handles.of_constraint.push_back(handle.at({c.node, c.component}));
+  for (const auto& c : scene.constraints) {
+    const auto found = handle.find({c.node, c.component});
+    handles.of_constraint.push_back(found == handle.end() ? -1 : found->second);
+  }
   return handles;
 }
 

@@ -14,7 +14,7 @@ struct Handles {
 };
 
 /// One handle for each imposed displacement of the case: its nodes move as they do there, all alike. A node
-/// that two of them hold moves with the first.
+/// that two of them hold moves with the first; one that only turns has none.
 Handles handles_of_sets(const Scene& scene);
 
 /// One handle for each node that has a constraint, in the order of the nodes.

@@ -35,6 +35,13 @@ class Equilibrium {
   /// Evaluations of the forces since construction.
   long evaluations() const { return evaluations_; }
 
+  /// What `start` reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("evaluations", evaluations_);
+    body_.keep(archive);
+  }
+
  private:
   void begin();
   void evaluate();

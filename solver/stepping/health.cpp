@@ -8,12 +8,16 @@
 
 namespace sandglass {
 
+bool is_healthy(double jacobian) {
+  return std::isfinite(jacobian) && jacobian > 0.0;
+}
+
 void require_healthy(std::span<const double> jacobians, long step) {
   std::string listed;
   int ill = 0;
   bool finite = true;
   for (std::size_t e = 0; e < jacobians.size(); ++e) {
-    if (jacobians[e] > 0.0) continue;  // false for NaN too
+    if (is_healthy(jacobians[e])) continue;
     finite = finite && std::isfinite(jacobians[e]);
     if (++ill <= 10) listed += fmt::format("\n  element {}: det F = {:.4g}", e, jacobians[e]);
   }

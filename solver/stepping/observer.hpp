@@ -1,6 +1,9 @@
 #pragma once
 
+#include <functional>
+
 #include "mesh/mesh.hpp"
+#include "stepping/checkpoint.hpp"
 
 namespace sandglass {
 
@@ -22,6 +25,7 @@ struct Frame {
   NodalField v;                                    ///< m/s, at the same time as u
   std::vector<double> jacobians;                   ///< volume ratio of each element
   std::vector<double> hourglass_energy_densities;  ///< J/m^3, per reference volume of each element
+  std::vector<double> levels;                      ///< of each element; empty where a method has but one
 };
 
 /// What a stepper tells while it runs. The base class listens to nothing.
@@ -35,6 +39,10 @@ class Observer {
   virtual void frame(const Frame& /*frame*/) {}
 
   virtual void history(const HistoryRow& /*row*/) {}
+
+  /// Called wherever the run could go on as if it had never stopped, after all that was told so far.
+  /// `checkpoint` copies where it stands; call it within this call or not at all.
+  virtual void resumable(const std::function<Checkpoint()>& /*checkpoint*/) {}
 
   /// Called at every check with the share of the work done; returning false ends the run cleanly.
   virtual bool proceed(long /*step*/, double /*share*/, double /*residual*/) { return true; }

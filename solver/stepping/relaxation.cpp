@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "base/error.hpp"
+#include "stepping/adaption.hpp"
 #include "stepping/condensed_answer.hpp"
 #include "stepping/equilibrium.hpp"
 #include "stepping/load_levels.hpp"
@@ -23,14 +25,24 @@ class Search {
         settings_(model.scene().description.relaxation),
         observer_(observer),
         equilibrium_(model, elements),
+        adaption_(model, equilibrium_.body()),
         levels_(model, equilibrium_.body()),
         no_velocity_(model.masses().size()),
         reactions_(model.scene().constraints.size(), 0.0) {}
 
-  Relaxation run() {
-    observer_.frame(body().frame(0.0, no_velocity_));
-    report();
+  Relaxation run(const Checkpoint* from) {
+    if (from != nullptr) {
+      keep(CheckpointReader(*from));
+    } else {
+      observer_.frame(body().frame(0.0, no_velocity_));
+      report();
+    }
     while (!ended_) {
+      observer_.resumable([this] {
+        Checkpoint checkpoint;
+        keep(CheckpointWriter(checkpoint));
+        return checkpoint;
+      });
       levels_.predict(body());
       if (body().healthy() && solve()) {
         finish_level();
@@ -50,6 +62,10 @@ class Search {
   /// On the way to the full load this residual is good enough to predict from.
   static constexpr double tolerance_on_the_way = 0.1;
 
+  /// At this residual elements may choose their levels: what is left moves none of them from one to another
+  /// that does not show it again at the end.
+  static constexpr double tolerance_of_levels = 1e-3;
+
   /// Evaluations after which a level begins anew from where it is, with a new preconditioner; then twice as
   /// many. So it does once when the residual stagnates, which frees it from the rounding of the secants.
   static constexpr long first_renewal = 500;
@@ -58,15 +74,27 @@ class Search {
 
   Body<Real>& body() { return equilibrium_.body(); }
 
-  double tolerance() const {
-    return levels_.full() ? settings_.tolerance : std::max(settings_.tolerance, tolerance_on_the_way);
+  /// What the next level reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive archive) {
+    equilibrium_.keep(archive);
+    levels_.keep(archive, body());
+    archive("reaction", reactions_);
+    archive("load path", load_path_);
+    archive("work", work_);
   }
 
-  /// Relative time: the load, and at full load the evaluations over those that led there.
+  double tolerance() const {
+    if (!levels_.full()) return std::max(settings_.tolerance, tolerance_on_the_way);
+    if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_of_levels);
+    return settings_.tolerance;
+  }
+
+  /// Relative time: the load gone through, and at the end the evaluations over those that led there.
   double time() const {
-    if (!levels_.full()) return levels_.load();
+    if (!levels_.full()) return levels_.travelled();
     const auto before = static_cast<double>(std::max(1L, first_evaluation_));
-    return 1.0 + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
+    return levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
   }
 
   /// Whether the forces at this load are in balance, within the tolerance or the rounding, and no element is
@@ -77,11 +105,15 @@ class Search {
     int stagnations = 0;
     Stagnation stagnation(epsilon);
     equilibrium_.start();
-    while (!(equilibrium_.residual() < tolerance())) {
+    while (!(equilibrium_.residual() < tolerance()) || settle()) {
       check();
       if (ended_) return false;
       const bool late = equilibrium_.evaluations() - first_evaluation_ >= renewal;
-      if (stagnation.reached() && ++stagnations > 1) break;
+      if (stagnation.reached() && ++stagnations > 1) {
+        if (!settle()) break;
+        stagnations = 0;
+        stagnation = Stagnation(epsilon);
+      }
       if ((late || stagnation.reached()) && body().healthy()) {
         if (late) renewal *= 2;
         stagnation = Stagnation(epsilon);
@@ -94,13 +126,28 @@ class Search {
     return body().healthy();
   }
 
+  /// Lets elements choose their levels for the displacements as they stand; whether the search goes on. At
+  /// the full load they do so until they are settled at a moderate residual, where they may go down the first
+  /// time, and once more at the end; going up only, that ends.
+  bool settle() {
+    if (!levels_.full()) {
+      adaption_.apply(body(), Demotion::reluctant);
+      return false;
+    }
+    const Adaptation changes = adaption_.apply(body(), lowered_ ? Demotion::never : Demotion::where_enough);
+    lowered_ = true;
+    if (changes.promoted + changes.demoted == 0) return !std::exchange(settled_, true) && adaption_.active();
+    equilibrium_.start();
+    return true;
+  }
+
   void finish_level() {
     result_.converged = levels_.full() && !result_.stagnated;
     ended_ = levels_.full();
     add_work();
     report();
     if (ended_) return;
-    observer_.frame(body().frame(levels_.load(), no_velocity_));
+    observer_.frame(body().frame(levels_.travelled(), no_velocity_));
     levels_.solved(body());
   }
 
@@ -123,17 +170,22 @@ class Search {
     const double residual = equilibrium_.residual();
     const double digits =
         std::log(std::clamp(residual, settings_.tolerance, 1.0)) / std::log(settings_.tolerance);
-    result_.interrupted =
-        !observer_.proceed(evaluations, levels_.full() ? 0.3 + 0.7 * digits : 0.3 * levels_.load(), residual);
+    result_.interrupted = !observer_.proceed(
+        evaluations, levels_.full() ? 0.3 + 0.7 * digits : 0.3 * levels_.travelled() / levels_.way(),
+        residual);
     ended_ = ended_ || result_.interrupted;
   }
 
   /// Work of imposed displacements and forces over a level, from the mean of the forces at its ends.
   void add_work() {
     const auto& constraints = model_.scene().constraints;
+    const auto moved = levels_.moved();
     for (std::size_t k = 0; k < constraints.size(); ++k) {
+      const ImposedPath& path = constraints[k].path;
       const double force = body().reactions()[k];
-      work_ += 0.5 * (reactions_[k] + force) * levels_.increment() * constraints[k].value;
+      for (std::size_t i = 0; i < 3; ++i) {
+        work_ += 0.5 * (reactions_[k] + force) * moved[path.angle][i] * path.share[i];
+      }
       reactions_[k] = force;
     }
     const double path = body().load_path();
@@ -151,6 +203,7 @@ class Search {
   const RelaxationSettings& settings_;
   Observer& observer_;
   Equilibrium<Real> equilibrium_;
+  Adaption<Real> adaption_;
   LoadLevels<Real> levels_;
   NodalField no_velocity_;
   Relaxation result_;
@@ -158,6 +211,8 @@ class Search {
   double load_path_ = 0.0;
   double work_ = 0.0;
   long first_evaluation_ = 0;  // of this level
+  bool lowered_ = false;       // elements have gone down at the full load
+  bool settled_ = false;       // and then asked for no more at a moderate residual
   bool ended_ = false;
 };
 
@@ -175,13 +230,13 @@ std::string outcome(const Relaxation& relaxation, Precision precision) {
   return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
 }
 
-Relaxation relax(const Model& model, Observer& observer) {
+Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from) {
   const auto start = std::chrono::steady_clock::now();
   Relaxation result = answers_by_condensation(model.choice().method)
                           ? condensed_answer(model, observer)
                           : std::visit(
                                 [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
-                                  return Search<Real>(model, *elements, observer).run();
+                                  return Search<Real>(model, *elements, observer).run(from);
                                 },
                                 model.internal_force());
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -24,8 +24,9 @@ struct Relaxation {
 /// preconditioned conjugate gradients: coarsely on the way, to the tolerance at the end. A level that fails
 /// is tried again at half the distance. A condensed method answers at once, by superposition, with one step.
 /// Settings are the case's. Throws ComputationError when an element stays inverted or no level is short
-/// enough.
-Relaxation relax(const Model& model, Observer& observer);
+/// enough. Every level begins at a point from which the search can go on; with `from`, taken there by a run
+/// of the same model, it does, and what was told before is not told again. A condensed method has none.
+Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from = nullptr);
 
 /// Whether the answer is as good as asked for, or as the numbers allow: in single precision the rounding of
 /// the forces may keep the residual above the tolerance.

@@ -14,8 +14,14 @@ double step_of(double stiffness, double mass) {
 
 std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
   std::vector<double> bounds(model.element_masses().size());
-  std::visit([&](const auto& elements) { elements->stiffness_bounds(state_at(*elements, u), bounds); },
-             model.internal_force());
+  std::visit(
+      [&](const auto& elements) {
+        auto state = state_at(*elements, u);
+        auto force = state.u;
+        elements->evaluate(state, force);  // elements may remember how they came here
+        elements->stiffness_bounds(state, bounds);
+      },
+      model.internal_force());
   return bounds;
 }
 

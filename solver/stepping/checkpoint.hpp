@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "base/error.hpp"
+#include "math/rows.hpp"
+
+namespace sandglass {
+
+/// Where a stepper stands at a point from which it can go on with the same bits: named arrays, whose meaning
+/// only it knows. A double holds every float, and every integer up to 2^53, exactly.
+struct Checkpoint {
+  std::map<std::string, std::vector<double>> arrays;
+};
+
+/// Hands out what a stepper keeps. A stepper lists it once, in a template `keep(archive)` that calls
+/// archive(name, value) for a writer as for a reader, so that the two cannot differ. Values are numbers,
+/// vectors of numbers, and rows.
+class CheckpointWriter {
+ public:
+  explicit CheckpointWriter(Checkpoint& checkpoint) : arrays_(checkpoint.arrays) {}
+
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void operator()(const std::string& name, Number& value) { arrays_[name] = {static_cast<double>(value)}; }
+
+  template <std::floating_point Real>
+  void operator()(const std::string& name, std::vector<Real>& values) {
+    arrays_[name].assign(values.begin(), values.end());
+  }
+
+  template <class Real>
+  void operator()(const std::string& name, Rows<Real>& rows) {
+    const Real* numbers = numbers_of(rows);
+    arrays_[name].assign(numbers, numbers + 4 * rows.size());
+  }
+
+ private:
+  std::map<std::string, std::vector<double>>& arrays_;
+};
+
+/// Takes it back into values that have their sizes already. Throws InputError where an array is missing, has
+/// another size, or where an integer is none.
+class CheckpointReader {
+ public:
+  explicit CheckpointReader(const Checkpoint& checkpoint) : arrays_(checkpoint.arrays) {}
+
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void operator()(const std::string& name, Number& value) const {
+    const double number = find(name, 1).front();
+    if constexpr (std::is_integral_v<Number>) {
+      constexpr double most = 2147483647.0;
+      if (!(std::abs(number) <= most) || number != std::floor(number)) fail(name, "must hold an integer");
+    }
+    value = static_cast<Number>(number);
+  }
+
+  template <std::floating_point Real>
+  void operator()(const std::string& name, std::vector<Real>& values) const {
+    take(find(name, values.size()), values.data());
+  }
+
+  template <class Real>
+  void operator()(const std::string& name, Rows<Real>& rows) const {
+    take(find(name, 4 * rows.size()), numbers_of(rows));
+  }
+
+ private:
+  [[noreturn]] static void fail(const std::string& name, const std::string& rule) {
+    throw InputError("checkpoint: '" + name + "' " + rule + "; it belongs to another program or run");
+  }
+
+  const std::vector<double>& find(const std::string& name, std::size_t size) const {
+    const auto found = arrays_.find(name);
+    if (found == arrays_.end()) fail(name, "is missing");
+    if (found->second.size() != size) {
+      fail(name,
+           "has " + std::to_string(found->second.size()) + " values and must have " + std::to_string(size));
+    }
+    return found->second;
+  }
+
+  template <class Real>
+  static void take(const std::vector<double>& from, Real* to) {
+    for (const double number : from) *to++ = static_cast<Real>(number);
+  }
+
+  const std::map<std::string, std::vector<double>>& arrays_;
+};
+
+}  // namespace sandglass

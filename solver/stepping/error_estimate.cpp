@@ -1,0 +1,44 @@
+#include "stepping/error_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "element/methods.hpp"
+#include "stepping/equilibrium.hpp"
+
+namespace sandglass {
+
+ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
+  constexpr double share_left = 0.01;
+  const Scene& scene = model.scene();
+  const Model exact(scene,
+                    {.method = std::string(TlMeanDilatation::name), .threads = model.choice().threads});
+  const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(exact.internal_force());
+  Equilibrium<double> search(exact, elements);
+  search.body().state() = state_at(elements, u);
+  search.body().impose(1.0);
+  if (!search.body().healthy()) {
+    throw ComputationError("the mean-dilatation element is inverted at this answer: no estimate");
+  }
+  search.start();
+  const double enough = std::max(share_left * search.residual(), scene.description.relaxation.tolerance);
+  while (search.residual() > enough) {
+    if (!search.step()) {
+      throw ComputationError("the mean-dilatation element found no way on from this answer: no estimate");
+    }
+  }
+  ErrorEstimate estimate{.evaluations = search.evaluations()};
+  const NodalField better = search.body().field(search.body().state().u);
+  double squares = 0.0;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    const double square = std::pow(better[n][0] - u[n][0], 2) + std::pow(better[n][1] - u[n][1], 2) +
+                          std::pow(better[n][2] - u[n][2], 2);
+    estimate.largest = std::max(estimate.largest, std::sqrt(square));
+    squares += square;
+  }
+  estimate.rms = std::sqrt(squares / static_cast<double>(u.size()));
+  return estimate;
+}
+
+}  // namespace sandglass
