@@ -17,6 +17,7 @@
 #include "benchmark/stepped_model.hpp"
 #include "element/methods.hpp"
 #include "io/case_file.hpp"
+#include "io/new_file.hpp"
 #include "io/text_file.hpp"
 
 namespace sandglass {
@@ -184,8 +185,10 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->excludes(rest)
       ->capture_default_str();
   command->add_option("--json", options->json, "write every figure to this file");
-  command->callback(
-      [options, &exit_code] { exit_code = options->rest ? run_rest(*options) : run_bench(*options); });
+  command->callback([options, &exit_code] {
+    if (!options->json.empty()) require_place(options->json);
+    exit_code = options->rest ? run_rest(*options) : run_bench(*options);
+  });
 }
 
 }  // namespace sandglass

@@ -5,6 +5,7 @@
 
 #include "app/commands.hpp"
 #include "element/methods.hpp"
+#include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "material/laws.hpp"
 #include "model/operations.hpp"
@@ -87,6 +88,7 @@ void add_flops_command(CLI::App& app) {
       app.add_subcommand("flops", "operations per element and step, counted in the kernels that run");
   command->add_option("--json", *json, "write every count to this file");
   command->callback([json] {
+    if (!json->empty()) require_place(*json);
     auto rows = count_methods();
     fmt::print(
         "operations per element and step with the law {}; bytes: constants in double, places of nodes, "

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "app/checkpoint_keeper.hpp"
 #include "app/commands.hpp"
 #include "app/execution_options.hpp"
 #include "app/kappa_option.hpp"
@@ -10,9 +12,11 @@
 #include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "comparison/verdict.hpp"
+#include "element/methods.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
 #include "stepping/central_difference.hpp"
+#include "stepping/error_estimate.hpp"
 #include "stepping/relaxation.hpp"
 
 namespace sandglass {
@@ -21,37 +25,58 @@ namespace {
 
 struct RunOptions {
   std::string name;
-  std::string method = "tl-perturbation";
-  std::string kappa = "auto";
-  std::string kappa_modulus = "p-wave";
-  std::string precision = "double";
+  std::optional<std::string> method = {};
+  std::optional<std::string> kappa = {};
+  std::optional<std::string> kappa_modulus = {};
+  std::optional<std::string> precision = {};
+  std::optional<std::string> accuracy = {};
   int threads = 1;
   std::string output;
+  std::string checkpoint;
+  double checkpoint_every = 60.0;
+  bool estimate = false;
   bool describe = false;
 };
 
-/// Writes frames and history to the result file, shows progress, and ends on Ctrl-C.
+/// Writes frames and history to the result file, keeps the run, shows progress, and ends on Ctrl-C.
 class RunObserver final : public Observer {
  public:
-  RunObserver(const std::string& title, ResultWriter* writer) : progress_(title), writer_(writer) {}
+  /// `writer` and `keeper` may be null. What a run that goes on told before goes into its result first.
+  RunObserver(const std::string& title, ResultWriter* writer, CheckpointKeeper* keeper)
+      : progress_(title), writer_(writer) {
+    if (keeper != nullptr) {
+      for (const auto& told : keeper->run().frames) frame(told);
+      for (const auto& row : keeper->run().history) history(row);
+    }
+    keeper_ = keeper;
+  }
 
   void frame(const Frame& frame) override {
     if (writer_ != nullptr) writer_->frame(frame);
+    if (keeper_ != nullptr) keeper_->frame(frame);
+    levels_ = frame.levels;
   }
   void history(const HistoryRow& row) override {
     if (writer_ != nullptr) writer_->history(row);
+    if (keeper_ != nullptr) keeper_->history(row);
     last_ = row;
+  }
+  void resumable(const std::function<Checkpoint()>& checkpoint) override {
+    if (keeper_ != nullptr) keeper_->resumable(checkpoint);
   }
   bool proceed(long step, double share, double residual) override {
     progress_.show(share, fmt::format("step {}, residual {:.1e}", step, residual));
     return !interrupted();
   }
   const HistoryRow& last() const { return last_; }
+  const std::vector<double>& levels() const { return levels_; }
 
  private:
   Progress progress_;
   ResultWriter* writer_;
+  CheckpointKeeper* keeper_ = nullptr;
   HistoryRow last_{};
+  std::vector<double> levels_;
 };
 
 std::string kappa_text(const Model& model) {
@@ -103,15 +128,95 @@ void print_accuracy(const Scene& scene, const NodalField& u) {
   print("truth", references.truth);
 }
 
+/// How many elements of an adaptive method stand at each of its levels.
+void print_levels(const std::string& name, const std::vector<double>& levels) {
+  if (levels.empty()) return;
+  std::string text;
+  with_named_type(Methods{}, name, [&]<class Method>() {
+    if constexpr (is_adaptive<Method>) {
+      double level = 0.0;
+      for_each_type(typename Method::Levels{}, [&]<class Level>() {
+        const auto count = static_cast<double>(std::count(levels.begin(), levels.end(), level++));
+        text += fmt::format("{}{:.3g} % {}", text.empty() ? "" : ", ",
+                            100.0 * count / static_cast<double>(levels.size()), Level::name);
+      });
+    }
+  });
+  fmt::print("elements: {}\n", text);
+}
+
+void print_estimate(const Model& model, const NodalField& u) {
+  const ErrorEstimate estimate = estimate_error(model, u);
+  const double unit = displacement_unit(model.scene(), u);
+  fmt::print(
+      "estimated error against {}: max {:.4g} %, rms {:.4g} % of the {} displacement, after {} "
+      "evaluations\n",
+      TlMeanDilatation::name, 100.0 * estimate.largest / unit, 100.0 * estimate.rms / unit,
+      largest_imposed(model.scene()) > 0.0 ? "imposed" : "largest", estimate.evaluations);
+}
+
+void print_time(double seconds, long steps, std::size_t elements, bool went_on) {
+  if (went_on) {
+    fmt::print("wall time {:.3g} s since the checkpoint\n", seconds);
+    return;
+  }
+  fmt::print("wall time {:.3g} s, {:.4g} ns per element and step\n", seconds,
+             1e9 * seconds / static_cast<double>(std::max(steps, 1L)) / static_cast<double>(elements));
+}
+
+/// The options that were given.
+struct Given {
+  std::optional<Precision> precision;
+  std::optional<std::optional<double>> kappa;
+  std::optional<KappaModulus> kappa_modulus;
+  std::optional<double> accuracy;
+};
+
+Given parse(const RunOptions& options) {
+  Given given;
+  if (options.precision) given.precision = parse_precision(*options.precision);
+  if (options.kappa) given.kappa = parse_kappa(*options.kappa);
+  if (options.kappa_modulus) given.kappa_modulus = parse_kappa_modulus(*options.kappa_modulus);
+  if (options.accuracy) given.accuracy = parse_share("--accuracy", *options.accuracy);
+  return given;
+}
+
+/// What the case says of its method, and before it what the options say. What the case says of kappa is about
+/// its own method, not about one that an option names.
+MethodChoice choose_method(const RunOptions& options, const Given& given, const Case& description) {
+  MethodChoice choice = description.method.value_or(MethodChoice{.method = "tl-perturbation"});
+  if (options.method && *options.method != choice.method) {
+    choice = {.method = *options.method, .precision = choice.precision};
+  }
+  choice.kappa = given.kappa.value_or(choice.kappa);
+  choice.kappa_modulus = given.kappa_modulus.value_or(choice.kappa_modulus);
+  choice.precision = given.precision.value_or(choice.precision);
+  choice.accuracy = given.accuracy.value_or(choice.accuracy);
+  choice.threads = options.threads;
+  return choice;
+}
+
 int run_case(const RunOptions& options) {
-  const Precision precision = parse_precision(options.precision);
+  const Given given = parse(options);
   require_threads(options.threads);
+  if (!(options.checkpoint_every >= 0.0)) {
+    throw InputError(
+        fmt::format("--checkpoint-every = {} must be in [0, inf) seconds", options.checkpoint_every));
+  }
+  if (!options.output.empty() && options.output == options.checkpoint) {
+    throw InputError(
+        fmt::format("--checkpoint = '{}' must be another file than --output", options.checkpoint));
+  }
   const Scene scene = read_scene(find_case(options.name));
-  const Model model(scene, {.method = options.method,
-                            .kappa = parse_kappa(options.kappa),
-                            .precision = precision,
-                            .threads = options.threads,
-                            .kappa_modulus = parse_kappa_modulus(options.kappa_modulus)});
+  if (options.estimate && !scene.description.quasi_static) {
+    throw InputError(fmt::format("--estimate: '{}' is in motion; the estimate is for quasi-static answers",
+                                 scene.description.name));
+  }
+  const Model model(scene, choose_method(options, given, scene.description));
+  std::optional<CheckpointKeeper> keeper;
+  if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
+  const Checkpoint* from = keeper ? keeper->from() : nullptr;
+  if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
   std::string status;
@@ -119,36 +224,39 @@ int run_case(const RunOptions& options) {
   double seconds = 0.0;
   watch_for_interrupt();
   {
-    RunObserver observer(scene.description.name, writer ? &*writer : nullptr);
+    RunObserver observer(scene.description.name, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr);
     NodalField u;
     if (scene.description.quasi_static) {
-      Relaxation relaxation = relax(model, observer);
+      Relaxation relaxation = relax(model, observer, from);
       u = std::move(relaxation.u);
       steps = relaxation.steps;
       seconds = relaxation.seconds;
       const std::string ending = outcome(relaxation, model.choice().precision);
       status = at_rest(relaxation, model.choice().precision) ? "complete" : ending;
-      fmt::print("{} {} {}: {} after {} steps, residual {:.2e}\n", scene.description.name, options.method,
-                 kappa_text(model), ending, steps, relaxation.residual);
+      fmt::print("{} {} {}: {} after {} steps, residual {:.2e}\n", scene.description.name,
+                 model.choice().method, kappa_text(model), ending, steps, relaxation.residual);
     } else {
-      Motion motion = integrate(model, observer);
+      Motion motion = integrate(model, observer, from);
       u = std::move(motion.u);
       steps = motion.steps;
       seconds = motion.seconds;
       status = motion.interrupted ? fmt::format("interrupted at step {}", steps) : "complete";
       fmt::print("{} {} {}: {} s in {} steps of at least {:.4g} s, {}\n", scene.description.name,
-                 options.method, kappa_text(model), motion.time, steps, motion.smallest_step, status);
+                 model.choice().method, kappa_text(model), motion.time, steps, motion.smallest_step, status);
     }
     print_energies(scene, observer.last());
-    if (scene.description.quasi_static && status == "complete") print_accuracy(scene, u);
+    print_levels(model.choice().method, observer.levels());
+    if (scene.description.quasi_static && status == "complete") {
+      print_accuracy(scene, u);
+      if (options.estimate) print_estimate(model, u);
+    }
   }
-  fmt::print("wall time {:.3g} s, {:.4g} ns per element and step\n", seconds,
-             1e9 * seconds / static_cast<double>(std::max(steps, 1L)) /
-                 static_cast<double>(scene.mesh.cells.size()));
+  print_time(seconds, steps, scene.mesh.cells.size(), from != nullptr);
   if (writer) {
     writer->commit(status);
     fmt::print("wrote {}\n", options.output);
   }
+  if (keeper && status == "complete") keeper->finish();
   if (status != "complete") {
     throw ComputationError(fmt::format("{}: {}; what was complete is {}", scene.description.name, status,
                                        writer ? "in " + options.output : "not kept (no --output)"));
@@ -162,22 +270,36 @@ void add_run_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "compute a case with a method");
   command->add_option("CASE", options->name, "name or file of the case");
-  command->add_option("-m,--method", options->method, "method, see `sandglass methods`")
-      ->capture_default_str();
-  command->add_option("-k,--kappa", options->kappa, "strength of the hourglass control, a number or 'auto'")
-      ->capture_default_str();
-  command
-      ->add_option("--kappa-modulus", options->kappa_modulus,
-                   "what kappa multiplies: 'p-wave' (lambda + 2 mu, the paper) or 'shear' (mu), whose best "
-                   "kappa hardly "
-                   "depends on Poisson's ratio; 'auto' gives the same stiffness with both")
-      ->capture_default_str();
-  command->add_option("-p,--precision", options->precision, "numbers to compute in, 'double' or 'float'")
-      ->capture_default_str();
+  command->add_option("-m,--method", options->method,
+                      "method, see `sandglass methods`; without it that of the case's [method], else "
+                      "tl-perturbation in double with kappa auto");
+  command->add_option("-k,--kappa", options->kappa, "strength of the hourglass control, a number or 'auto'");
+  command->add_option(
+      "--kappa-modulus", options->kappa_modulus,
+      "what kappa multiplies: 'p-wave' (lambda + 2 mu, the paper) or 'shear' (mu), whose best "
+      "kappa hardly "
+      "depends on Poisson's ratio; 'auto' gives the same stiffness with both");
+  command->add_option("-p,--precision", options->precision, "numbers to compute in, 'double' or 'float'");
+  command->add_option(
+      "--accuracy", options->accuracy,
+      fmt::format("what an adaptive method aims at, as 0.5% or 0.005: displacement error against its highest "
+                  "level over the largest imposed displacement; {:g}% unless told",
+                  100.0 * default_accuracy));
   command->add_option("-t,--threads", options->threads, "threads; the answer does not depend on their number")
       ->capture_default_str();
   command->add_option("-o,--output", options->output,
                       "result file (HDF5; an XDMF file for ParaView goes beside it)");
+  command->add_option("--checkpoint", options->checkpoint,
+                      "file that keeps the run: killed at any moment, the same command goes on from it and "
+                      "ends with the same bits; removed when the run is complete");
+  command
+      ->add_option("--checkpoint-every", options->checkpoint_every,
+                   "seconds between checkpoints; 0 means wherever the run can go on from: at the checks of "
+                   "dynamic runs, at the load levels of quasi-static ones")
+      ->capture_default_str();
+  command->add_flag("--estimate", options->estimate,
+                    "estimate how far a quasi-static answer is from that of the mean-dilatation element, the "
+                    "mixed element's twin, on the same mesh");
   command->add_flag("--describe", options->describe,
                     "print every key of a case file with unit, range and meaning");
   command->callback([options, &exit_code] {

@@ -1,23 +1,23 @@
 #include <fmt/format.h>
 
-#include <atomic>
 #include <deque>
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "app/commands.hpp"
 #include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
+#include "app/task_pool.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "comparison/published_table.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
 #include "element/methods.hpp"
+#include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "stepping/body.hpp"
@@ -85,38 +85,22 @@ void write_result(const Task& task, const NodalField& u, const std::string& fold
   writer.commit("complete");
 }
 
+/// What came of the tasks, in their order.
+struct Outcome {
+  std::vector<Verdict> verdicts;
+  std::vector<NodalField> answers;  // empty where there is none
+};
+
 /// Runs all tasks on a few threads. Every run is by itself and deterministic; only their order in time is
 /// not.
-std::vector<Verdict> run_tasks(const std::vector<Task>& tasks, const VerifyOptions& options) {
-  std::vector<Verdict> verdicts(tasks.size());
-  std::vector<NodalField> answers(tasks.size());
-  std::atomic<std::size_t> next = 0;
-  std::atomic<std::size_t> done = 0;
-  const auto work = [&] {
-    for (std::size_t n = next++; n < tasks.size() && !interrupted(); n = next++) {
-      verdicts[n] = judge(tasks[n].subject->scene, tasks[n].subject->references, tasks[n].choice, answers[n]);
-      ++done;
-    }
-  };
-  const int wanted =
-      options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  std::vector<std::jthread> threads;
-  for (int t = 0; t < std::max(wanted, 1); ++t) threads.emplace_back(work);
-  Progress progress("verify");
-  while (done < tasks.size() && !interrupted()) {
-    progress.show(static_cast<double>(done) / static_cast<double>(tasks.size()),
-                  fmt::format("{} of {} runs", done.load(), tasks.size()));
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  threads.clear();
-  if (interrupted()) throw ComputationError("verify: interrupted; nothing was written");
-  if (!options.results.empty()) {
-    std::filesystem::create_directories(options.results);
-    for (std::size_t n = 0; n < tasks.size(); ++n) {
-      if (!answers[n].empty()) write_result(tasks[n], answers[n], options.results);
-    }
-  }
-  return verdicts;
+Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
+  Outcome outcome{std::vector<Verdict>(tasks.size()), std::vector<NodalField>(tasks.size())};
+  const bool complete = run_tasks("verify", tasks.size(), options.threads, [&](std::size_t n) {
+    outcome.verdicts[n] =
+        judge(tasks[n].subject->scene, tasks[n].subject->references, tasks[n].choice, outcome.answers[n]);
+  });
+  if (!complete) throw ComputationError("verify: interrupted; nothing was written");
+  return outcome;
 }
 
 std::string percent(const std::optional<double>& fraction) {
@@ -205,7 +189,10 @@ int verify(const VerifyOptions& options) {
   const Precision precision = parse_precision(options.precision);
   watch_for_interrupt();
   const auto subjects = read_subjects(options.names);
-  const auto verdicts = run_tasks(make_tasks(subjects, precision), options);
+  if (!options.json.empty()) require_place(options.json);
+  if (!options.results.empty()) make_folder(options.results);
+  const auto tasks = make_tasks(subjects, precision);
+  const auto [verdicts, answers] = run_all(tasks, options);
   std::vector<LimitCheck> limits;
   for (const auto& subject : subjects) {
     if (precision != Precision::double_precision) break;
@@ -219,6 +206,9 @@ int verify(const VerifyOptions& options) {
     fmt::print("\nlimits of the cases are for double: none was checked in {}\n", options.precision);
   }
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), verdicts, limits));
+  for (std::size_t n = 0; n < tasks.size() && !options.results.empty(); ++n) {
+    if (!answers[n].empty()) write_result(tasks[n], answers[n], options.results);
+  }
   return std::all_of(limits.begin(), limits.end(), [](const auto& check) { return check.holds; }) ? 0 : 1;
 }
 

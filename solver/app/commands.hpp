@@ -7,10 +7,12 @@ namespace sandglass {
 /// Each adds one subcommand to the command line. A command returns its exit code through `exit_code`.
 void add_cases_command(CLI::App& app);
 void add_methods_command(CLI::App& app);
+void add_choose_command(CLI::App& app, int& exit_code);
 void add_mesh_command(CLI::App& app);
 void add_flops_command(CLI::App& app);
 void add_run_command(CLI::App& app, int& exit_code);
 void add_verify_command(CLI::App& app, int& exit_code);
+void add_stability_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 
 }  // namespace sandglass

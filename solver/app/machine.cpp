@@ -3,6 +3,8 @@
 #include <fstream>
 
 #include "app/build_info.hpp"
+#include "base/error.hpp"
+#include "io/file_hash.hpp"
 
 namespace sandglass {
 
@@ -25,6 +27,18 @@ Provenance build_provenance() {
           {"compiler", std::string(build_info::compiler)},
           {"build_flags", std::string(build_info::flags)},
           {"processor", processor()}};
+}
+
+Identity program_identity() {
+  std::string program = "unknown";
+  try {
+    program = hash_of_file("/proc/self/exe");
+  } catch (const InputError&) {  // a system without /proc
+  }
+  return {{"revision", std::string(build_info::revision)},
+          {"compiler", std::string(build_info::compiler)},
+          {"build_flags", std::string(build_info::flags)},
+          {"program_hash", program}};
 }
 
 }  // namespace sandglass

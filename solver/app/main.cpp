@@ -3,7 +3,10 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <csignal>
+#include <cstdio>
 #include <exception>
+#include <new>
 
 #include "app/build_info.hpp"
 #include "app/commands.hpp"
@@ -24,11 +27,14 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("sandglass {} ({})", sandglass::build_info::version,
                                                 sandglass::build_info::revision));
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
   int exit_code = ok;
   sandglass::add_cases_command(app);
   sandglass::add_methods_command(app);
   sandglass::add_run_command(app, exit_code);
   sandglass::add_verify_command(app, exit_code);
+  sandglass::add_stability_command(app, exit_code);
+  sandglass::add_choose_command(app, exit_code);
   sandglass::add_mesh_command(app);
   sandglass::add_flops_command(app);
   sandglass::add_bench_command(app, exit_code);
@@ -42,8 +48,15 @@ int main(int argc, char** argv) {
   } catch (const sandglass::ComputationError& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return computation_failed;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: not enough memory\n");
+    return computation_failed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "error: {}\n", error.what());
+    return computation_failed;
+  }
+  if (std::fflush(stdout) != 0) {
+    fmt::print(stderr, "error: standard output: cannot be written\n");
     return computation_failed;
   }
   return exit_code;

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "benchmark/condensed_model.hpp"
 #include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "element/methods.hpp"
@@ -69,10 +70,6 @@ Group make_group(const Scene& scene, const std::vector<MethodChoice>& variants, 
   }
   return group;
 }
-
-/// Nodes of a scene up to which condensed methods are set up, for each variant anew: some seconds for a cube
-/// of so many; the work grows with their number to the power of 7/3.
-constexpr std::size_t most_condensed_nodes = 10000;
 
 /// Takes the variants that would take too long to set up out of the list, and makes their records.
 std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>& variants) {

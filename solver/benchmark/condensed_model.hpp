@@ -4,6 +4,10 @@
 
 namespace sandglass {
 
+/// Nodes of a scene up to which condensed methods are set up to be timed, for each variant anew: some seconds
+/// for a cube of so many; the work grows with their number to the power of 7/3.
+inline constexpr std::size_t most_condensed_nodes = 10000;
+
 /// A condensed method that repeats its update: from displacements of the driven sets to those of all nodes
 /// and the forces on the sets. The scene must outlive it.
 std::unique_ptr<SteppedModel> make_condensed_model(const Scene& scene, const MethodChoice& choice);

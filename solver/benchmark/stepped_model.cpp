@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/work.hpp"
+#include "stepping/adaption.hpp"
 #include "stepping/explicit_step.hpp"
 #include "stepping/stable_step.hpp"
 
@@ -22,16 +23,18 @@ constexpr double relative_height = 0.03;  ///< of the waves, in element sizes
 template <class Real>
 class SteppedModelOf final : public SteppedModel {
  public:
-  SteppedModelOf(const Scene& scene, const MethodChoice& choice)
-      : field_(wavy_field(scene)),
+  SteppedModelOf(const Scene& scene, const MethodChoice& choice, const NodalField* start)
+      : field_(start != nullptr ? *start : wavy_field(scene)),
         model_(scene, choice),
         elements_(*std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force())),
         step_(model_, elements_) {
     const double imposed = largest_imposed(scene);
     if (imposed > 0.0) loading_ = relative_height * element_size(scene) / imposed;
+    if (start != nullptr) loading_ = 1.0;
     Body<Real>& body = step_.body();
     body.state() = state_at(elements_, field_);
     body.impose(loading_);
+    Adaption<Real>(model_, body).apply(body, Demotion::never);
     body.evaluate_forces();
     Rows<Real>& increment = body.state().increment;
     std::fill(increment.begin(), increment.end(), Row<Real>{});  // it stands still
@@ -158,12 +161,13 @@ NodalField wavy_field(const Scene& scene) {
   return u;
 }
 
-std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice) {
+std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
+                                                 const NodalField* start) {
   if (answers_by_condensation(choice.method)) return make_condensed_model(scene, choice);
   if (choice.precision == Precision::double_precision) {
-    return std::make_unique<SteppedModelOf<double>>(scene, choice);
+    return std::make_unique<SteppedModelOf<double>>(scene, choice, start);
   }
-  return std::make_unique<SteppedModelOf<float>>(scene, choice);
+  return std::make_unique<SteppedModelOf<float>>(scene, choice, start);
 }
 
 }  // namespace sandglass

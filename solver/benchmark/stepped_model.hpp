@@ -36,6 +36,9 @@ class SteppedModel : public Candidate {
 template <class Real>
 NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field);
 
-std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice);
+/// With `start`, steps go on from those displacements (m) under the full load instead of from the waves; a
+/// condensed method has no steps and needs neither.
+std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
+                                                 const NodalField* start = nullptr);
 
 }  // namespace sandglass

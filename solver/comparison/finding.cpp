@@ -45,6 +45,11 @@ std::string_view name_of(Finding finding) {
   return "not at rest";
 }
 
+Finding finding_of(Breakdown breakdown) {
+  if (breakdown == Breakdown::inverted) return Finding::inverted;
+  return breakdown == Breakdown::not_finite ? Finding::unstable : Finding::not_at_rest;
+}
+
 HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u) {
   double hourglass = 0.0, total = 0.0, volume = 0.0;
   for (const auto& cell : mesh.cells) {

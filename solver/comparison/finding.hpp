@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 
+#include "base/error.hpp"
 #include "model/model.hpp"
 
 namespace sandglass {
@@ -18,8 +20,16 @@ enum class Finding {
   not_at_rest    ///< no balance of forces was found
 };
 
+/// All of them, from the best to the worst.
+inline constexpr std::array all_findings{Finding::good,       Finding::inaccurate, Finding::hourglassing,
+                                         Finding::locking,    Finding::inverted,   Finding::unstable,
+                                         Finding::not_at_rest};
+
 /// The word for a finding: "good", "not at rest", ...
 std::string_view name_of(Finding finding);
+
+/// The finding that a computation which broke down leaves.
+Finding finding_of(Breakdown breakdown);
 
 /// What tells the ways to be wrong from each other.
 struct Symptoms {

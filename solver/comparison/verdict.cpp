@@ -48,20 +48,10 @@ std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
   return accuracy(u, *reference, profile, displacement_unit(scene, *reference));
 }
 
-namespace {
-
-Finding finding_of(Breakdown breakdown) {
-  if (breakdown == Breakdown::inverted) return Finding::inverted;
-  return breakdown == Breakdown::not_finite ? Finding::unstable : Finding::not_at_rest;
-}
-
-/// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
 std::optional<double> golden_to_truth(const Scene& scene, const References& references) {
   if (!references.golden || !references.truth) return std::nullopt;
   return accuracy_of(scene, *references.golden, references.truth)->max_relative_error;
 }
-
-}  // namespace
 
 Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
   Verdict verdict{.case_name = scene.description.name,

@@ -26,6 +26,9 @@ References read_references(const Scene& scene);
 std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
                                     const std::optional<NodalField>& reference);
 
+/// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
+std::optional<double> golden_to_truth(const Scene& scene, const References& references);
+
 /// What came of one method on one case.
 struct Verdict {
   std::string case_name;

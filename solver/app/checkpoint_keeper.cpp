@@ -1,0 +1,83 @@
+#include "app/checkpoint_keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "app/machine.hpp"
+#include "app/progress.hpp"
+#include "base/error.hpp"
+#include "io/file_hash.hpp"
+#include "io/new_file.hpp"
+#include "mesh/hash.hpp"
+
+namespace sandglass {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A hash of everything that a run reads, to the bit: case file and mesh. The hashes of case and mesh are
+/// those of an answer; they leave out settings, and roundoff in a mesh.
+std::string input_hash(const Scene& scene) {
+  std::ostringstream bytes;
+  bytes << std::ifstream(scene.description.file, std::ios::binary).rdbuf() << scene.description.name;
+  const auto& [points, cells] = scene.mesh;
+  bytes.write(reinterpret_cast<const char*>(points.data()),
+              static_cast<std::streamsize>(points.size() * sizeof points[0]));
+  bytes.write(reinterpret_cast<const char*>(cells.data()),
+              static_cast<std::streamsize>(cells.size() * sizeof cells[0]));
+  return hash_of(bytes.str());
+}
+
+Identity identity_of(const Model& model) {
+  const Scene& scene = model.scene();
+  const MethodChoice& choice = model.choice();
+  Identity identity{{"case", scene.description.name},
+                    {"case_hash", scene.case_hash},
+                    {"mesh_hash", scene.mesh_hash},
+                    {"input_hash", input_hash(scene)},
+                    {"method", choice.method},
+                    {"kappa", choice.kappa ? fmt::to_string(*choice.kappa) : "auto"},
+                    {"kappa_modulus", choice.kappa_modulus == KappaModulus::shear ? "shear" : "p-wave"},
+                    {"accuracy", fmt::to_string(choice.accuracy)},
+                    {"precision", std::string(name_of(choice.precision))}};
+  for (auto& entry : program_identity()) identity.push_back(std::move(entry));
+  return identity;
+}
+
+}  // namespace
+
+CheckpointKeeper::CheckpointKeeper(const Model& model, fs::path file, double seconds)
+    : file_(std::move(file)), identity_(identity_of(model)), interval_(seconds) {
+  require_place(file_);
+  std::error_code ignored;
+  if (!fs::exists(file_, ignored)) return;
+  const Mesh& mesh = model.scene().mesh;
+  run_ = read_checkpoint_file(file_, identity_, mesh.points.size(), mesh.cells.size());
+  resumed_ = true;
+}
+
+void CheckpointKeeper::resumable(const std::function<Checkpoint()>& checkpoint) {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < interval_ && !interrupted()) return;
+  last_ = now;
+  try {
+    run_.point = checkpoint();
+    write_checkpoint_file(file_, identity_, run_);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "warning: no checkpoint now, the run goes on: {}\n", error.what());
+  }
+}
+
+void CheckpointKeeper::finish() {
+  std::error_code error;
+  fs::remove(file_, error);
+  if (error) {
+    fmt::print(stderr, "warning: {}: cannot be removed: {}\n", file_.string(), error.message());
+  }
+}
+
+}  // namespace sandglass

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "choice/choose.hpp"
+#include "io/result_file.hpp"
+
+namespace sandglass {
+
+/// A choice as JSON text: provenance, what was asked for, the reference, coarser meshes, and one record for
+/// each rung in the order of cost. What is not known is null. "chosen" counts into the records; null: nothing
+/// suffices.
+std::string to_json(const Provenance& provenance, const Scene& scene, const Choice& choice);
+
+}  // namespace sandglass

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "benchmark/measure.hpp"
+#include "choice/ladder.hpp"
+#include "comparison/finding.hpp"
+#include "io/reference_file.hpp"
+
+namespace sandglass {
+
+/// What the rungs are measured against.
+struct Reference {
+  std::string name;  ///< "tl-mean-dilatation", "golden" or "truth"
+  NodalField u;      ///< m, at the nodes of the user's mesh
+  double unit;       ///< of errors, m: the largest imposed displacement
+  OwnError
+      own;  ///< of the truth from what it stands for; of the others, from the answer of ever finer meshes
+};
+
+/// The reference of a scene: with `against` "golden" or "truth" the stored one, else what the golden's own
+/// element finds on the user's mesh. Throws InputError where there is none, ComputationError where that
+/// element finds no answer.
+Reference make_reference(const Scene& scene, const std::string& against, const Proceed& proceed);
+
+/// How well a rung answers.
+struct Judgement {
+  std::optional<double> error = {};              ///< max over all nodes of the user's mesh, over the unit
+  std::optional<double> smallest_jacobian = {};  ///< det F, at the answer
+  std::string reason = {};                       ///< why it is refused; empty: good enough
+};
+
+/// Judges rungs of one scene by one reference.
+class Judge {
+ public:
+  /// `scene` is the user's; it and the reference must outlive the judge.
+  Judge(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed);
+
+  /// Computes the rung's answer and its distance from the reference at all nodes of the user's mesh. One that
+  /// is near enough must come to rest with a tenth more load, too, where the golden's own element does.
+  /// Throws ComputationError when told to end.
+  Judgement judge(const Rung& rung);
+
+  /// The error of the golden's own element on a mesh: what the mesh costs, whatever the method.
+  Judgement judge_mesh(const LadderMesh& mesh);
+
+ private:
+  /// All but the margin.
+  Judgement judge_answer(const Rung& rung);
+  std::string margin_reason(const Rung& rung);
+
+  const Scene& scene_;
+  const Reference& reference_;
+  double tolerance_;
+  const Proceed& proceed_;
+  double largest_gradient_;  // of displacements, in the reference's elements
+};
+
+/// The scene of a coarser mesh of the same case. What only tables and pictures need is left out. Throws
+/// InputError where a set of the case finds no node on it.
+Scene scene_on(const AnyGenerator& mesh, Case description);
+
+}  // namespace sandglass
