@@ -243,12 +243,22 @@ TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing
   EXPECT_LT(largest_distance(force(here), force(far)), tolerance(here, 1.2e-7));
 }
 
+/// A number that would be ignored is refused.
+TYPED_TEST(AssemblyTest, kappa_is_taken_or_refused) {
+  const MethodChoice choice{std::string(TypeParam::name), 0.037};
+  if (TypeParam::Hourglass::takes_kappa) {
+    EXPECT_NO_THROW(make_internal_force(box({1, 1, 1}, {1, 1, 1}), law, choice));
+  } else {
+    EXPECT_THROW(make_internal_force(Mesh{}, law, choice), InputError);
+  }
+}
+
 /// Dynamics in full: the same bits from any number of threads.
 TYPED_TEST(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads) {
   Case description = plain_case(law);
   description.quasi_static = false;
   description.dynamics.duration = 0.02;
-  description.initial_velocity = {0.3, 0.1, -0.2};
+  description.velocities = {{.value = {0.3, 0.1, -0.2}}};
   const Mesh mesh = box({0.1, 0.1, 0.4}, {5, 5, 20});
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })}};
   description.displacements = {{"foot", {}}};

@@ -66,6 +66,9 @@ std::string with(const std::string& old, const std::string& replacement) {
   return std::string(good).replace(at, old.size(), replacement);
 }
 
+/// `good` in motion.
+const std::string moving = with("\"quasi-static\"", "\"dynamic\"") + "[dynamics]\nduration = 2.0\n";
+
 TEST(CaseFile, good_case_is_read_as_written) {
   const TemporaryFolder folder;
   const Scene scene = read_scene(folder.write("good.toml", good));
@@ -88,7 +91,7 @@ TEST(CaseFile, good_case_is_read_as_written) {
   for (const auto& constraint : scene.constraints) {
     const double z = scene.mesh.points[index(constraint.node)][2];
     const std::array<double, 3> top{0.5, NAN, 0.3};
-    EXPECT_EQ(constraint.value, z == 0.0 ? 0.0 : top[index(constraint.component)]);
+    EXPECT_EQ(final_value(scene, constraint), z == 0.0 ? 0.0 : top[index(constraint.component)]);
   }
   EXPECT_DOUBLE_EQ(largest_imposed(scene), std::hypot(0.5, 0.3));
 }
@@ -96,12 +99,59 @@ TEST(CaseFile, good_case_is_read_as_written) {
 TEST(CaseFile, dynamic_case_is_read_as_written) {
   const TemporaryFolder folder;
   const auto text = with("\"quasi-static\"", "\"dynamic\"") +
-                    "[initial]\nvelocity = [1, 2.5, -3]\n[dynamics]\nduration = 2.0\ndamping = 0.5\n";
+                    "[[velocity]]\nvalue = [1, 2.5, -3]\n"
+                    "[[velocity]]\nset = \"top\"\nspin = [0, 0, 2]\n"
+                    "[[velocity]]\nvalue = [0, 0, 1]\nhalf_waves = [0, 0, 2]\n"
+                    "[dynamics]\nduration = 2.0\ndamping = 0.5\n";
   const Case c = read_case_file(folder.write("dynamic.toml", text));
   EXPECT_FALSE(c.quasi_static);
-  EXPECT_EQ(c.initial_velocity, (Vector{1.0, 2.5, -3.0}));
+  ASSERT_EQ(c.velocities.size(), 3U);
+  EXPECT_EQ(c.velocities[0].set, std::nullopt);
+  EXPECT_EQ(c.velocities[0].value, (Vector{1.0, 2.5, -3.0}));
+  EXPECT_EQ(c.velocities[0].spin, Vector{});
+  EXPECT_EQ(c.velocities[0].half_waves, (std::array<int, 3>{}));
+  EXPECT_EQ(c.velocities[1].set, "top");
+  EXPECT_EQ(c.velocities[1].value, Vector{});
+  EXPECT_EQ(c.velocities[1].spin, (Vector{0.0, 0.0, 2.0}));
+  EXPECT_EQ(c.velocities[2].half_waves, (std::array<int, 3>{0, 0, 2}));
   EXPECT_EQ(c.dynamics.duration, 2.0);
   EXPECT_EQ(c.dynamics.damping, 0.5);
+}
+
+/// What several entries say of a node adds up: uniform motion, a wave over the height of 3 m, and a spin of
+/// the top about its own centre of mass. Lumped masses of a plane of equal elements are symmetric, so that
+/// this is the middle of the top, (0.5, 1); spin (0, 0, 2) moves X by 2 (1 - y, x - 0.5, 0).
+TEST(CaseFile, initial_velocities_add_up) {
+  const TemporaryFolder folder;
+  const auto text = with("\"quasi-static\"", "\"dynamic\"") +
+                    "[[velocity]]\nvalue = [1, 2.5, -3]\n"
+                    "[[velocity]]\nset = \"top\"\nspin = [0, 0, 2]\n"
+                    "[[velocity]]\nvalue = [0, 0, 4]\nhalf_waves = [0, 0, 1]\n"
+                    "[dynamics]\nduration = 2.0\n";
+  const Scene scene = read_scene(folder.write("dynamic.toml", text));
+  ASSERT_EQ(scene.initial_velocities.size(), scene.mesh.points.size());
+  for (std::size_t n = 0; n < scene.mesh.points.size(); ++n) {
+    const auto [x, y, z] = scene.mesh.points[n];
+    const double top = z > 2.9 ? 1.0 : 0.0;
+    const Vector& v = scene.initial_velocities[n];
+    EXPECT_NEAR(v[0], 1.0 + top * 2.0 * (1.0 - y), 1e-14);
+    EXPECT_NEAR(v[1], 2.5 + top * 2.0 * (x - 0.5), 1e-14);
+    EXPECT_NEAR(v[2], -3.0 + 4.0 * std::cos(std::numbers::pi * z / 3.0), 1e-14);
+  }
+  EXPECT_TRUE(read_scene(folder.write("good.toml", good)).initial_velocities.empty());
+}
+
+/// The centre of mass is that of the masses, not of the nodes: two elements of lengths 1 and 3 have theirs
+/// at 2, their nodes at (0 + 1 + 4) / 3.
+TEST(CaseFile, spin_is_about_the_centre_of_mass) {
+  Mesh mesh = box({2.0, 1.0, 1.0}, {2, 1, 1});
+  for (auto& X : mesh.points) X[0] = X[0] < 1.5 ? X[0] : 4.0;
+  Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
+  description.velocities = {{.spin = {0.0, 0.0, 1.0}}};
+  const Scene scene = make_scene(description, mesh);
+  for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+    EXPECT_NEAR(scene.initial_velocities[n][1], mesh.points[n][0] - 2.0, 1e-14);
+  }
 }
 
 TEST(CaseFile, hash_follows_what_decides_the_answer_and_nothing_else) {
@@ -280,6 +330,25 @@ INSTANTIATE_TEST_SUITE_P(
                 {"node 0 is given two displacements in x: 0 by set 'bottom' and 0.5 by set 'bottom'"}},
         BadCase{
             "no_displacement", good.substr(0, good.find("[[displacement]]")), {"displacement is missing"}},
+        BadCase{"velocity_of_a_static_answer",
+                good + "[[velocity]]\nvalue = [0.0, 0.0, 1.0]\n",
+                {"velocity is not a key"}},
+        BadCase{"velocity_of_nothing",
+                moving + "[[velocity]]\nset = \"tip\"\nvalue = [0.0, 0.0, 1.0]\n",
+                {"velocity.set = 'tip' is not a node set", "did you mean 'top'?"}},
+        BadCase{"velocity_without_value_and_spin",
+                moving + "[[velocity]]\nset = \"top\"\n",
+                {"velocity.value or spin must be given"}},
+        BadCase{"infinite_spin",
+                moving + "[[velocity]]\nspin = [0.0, inf, 1.0]\n",
+                {"velocity.spin = inf must be in (-inf, inf)"}},
+        BadCase{"negative_half_waves",
+                moving + "[[velocity]]\nvalue = [0.0, 0.0, 1.0]\nhalf_waves = [0, -1, 0]\n",
+                {"velocity.half_waves = -1 must be in [0, inf)"}},
+        BadCase{"wave_without_extent",
+                moving + "[[velocity]]\nset = \"top\"\nvalue = [0.0, 0.0, 1.0]\nhalf_waves = [0, 0, 1]\n",
+                {"velocity.half_waves = 1 along z: the set top has no extent along z"}},
+        BadCase{"key_of_old", moving + "[initial]\nvelocity = [0.0, 0.0, 1.0]\n", {"initial is not a key"}},
         BadCase{"dynamic_without_duration",
                 with("\"quasi-static\"", "\"dynamic\"") + "[dynamics]\nframes = 3\n",
                 {"dynamics.duration is missing"}}),

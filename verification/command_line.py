@@ -1,15 +1,18 @@
 """The program under test and the small case that its tests use.
 
 The program is the one that SANDGLASS_BINARY in the environment names, else build/release/sandglass.
+Of a slow one, SANDGLASS_PATIENCE says how many times longer its commands may take.
 """
 
 import os
 import pathlib
+import signal
 import subprocess
 
 import h5py
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+PATIENCE = float(os.environ.get("SANDGLASS_PATIENCE", "1"))
 BINARY = os.environ.get("SANDGLASS_BINARY", str(ROOT / "build" / "release" / "sandglass"))
 
 BLOCK = """
@@ -59,7 +62,17 @@ reason = "a test"
 def sandglass(*arguments, **options):
     """Runs the program; its outcome with the texts it wrote."""
     command = [BINARY, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=120 * PATIENCE, **options
+    )
+
+
+def catches_interrupts(process):
+    """Whether a process has taken charge of Ctrl-C, as the kernel tells."""
+    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("SigCgt:"):
+            return bool(int(line.split()[1], 16) >> (signal.SIGINT - 1) & 1)
+    return False
 
 
 def methods():

@@ -32,7 +32,7 @@ DynamicsSettings settings(double duration, double time_step) {
 Scene breathing_cube(const AnyLaw& law, double h, double speed) {
   Case scene = plain_case(law, density);
   scene.quasi_static = false;
-  scene.initial_velocity = {speed, speed, speed};
+  scene.velocities = {{.value = {speed, speed, speed}}};
   const Mesh mesh = box({h, h, h}, {1, 1, 1});
   NodeSets sets;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -140,7 +140,8 @@ TYPED_TEST(DynamicsTest, converges_with_second_order_in_displacement_and_velocit
 TYPED_TEST(DynamicsTest, free_body_moves_uniformly) {
   Case description = plain_case(this->law(), density);
   description.quasi_static = false;
-  description.initial_velocity = {0.3, -0.2, 0.1};
+  const Vector velocity{0.3, -0.2, 0.1};
+  description.velocities = {{.value = velocity}};
   description.dynamics.duration = 0.5;
   const Scene scene = make_scene(description, box({0.1, 0.1, 0.2}, {2, 2, 3}));
   const Model model(scene, {this->method(), {}});
@@ -149,8 +150,8 @@ TYPED_TEST(DynamicsTest, free_body_moves_uniformly) {
   EXPECT_NEAR(motion.time, 0.5, 1e-12);  // the last step ends where the user said
   for (std::size_t n = 0; n < motion.u.size(); ++n) {
     for (std::size_t i = 0; i < 3; ++i) {
-      EXPECT_NEAR(motion.v[n][i], description.initial_velocity[i], 1e-10);
-      EXPECT_NEAR(motion.u[n][i], description.initial_velocity[i] * motion.time, 1e-11);
+      EXPECT_NEAR(motion.v[n][i], velocity[i], 1e-10);
+      EXPECT_NEAR(motion.u[n][i], velocity[i] * motion.time, 1e-11);
     }
   }
   for (const auto& row : recorder.rows) {
@@ -165,7 +166,7 @@ TYPED_TEST(DynamicsTest, energy_is_conserved_to_second_order) {
   const auto largest_change = [&](double fraction) {
     Case description = plain_case(this->law(), density);
     description.quasi_static = false;
-    description.initial_velocity = {0.4 * this->load, 0.1 * this->load, 0.0};
+    description.velocities = {{.value = {0.4 * this->load, 0.1 * this->load, 0.0}}};
     const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
     const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })}};
     description.displacements.push_back({"foot", {}});
@@ -230,7 +231,7 @@ TEST(Dynamics, damping_slows_a_free_body_with_second_order) {
   for (std::size_t level = 0; level < 2; ++level) {
     Case description = plain_case(sample_law<NeoHookean>(0.45), density);
     description.quasi_static = false;
-    description.initial_velocity = {1.0, 0.0, 0.0};
+    description.velocities = {{.value = {1.0, 0.0, 0.0}}};
     const int steps = 32 << level;
     description.dynamics = settings(1.0, 1.0 / steps);
     description.dynamics.damping = damping;

@@ -40,7 +40,7 @@ Scene in_millimetres(const Scene& scene) {
   std::get<NeoHookean>(description.law).young_modulus *= 1e-6;
   description.density *= 1e-12;
   for (auto& imposed : description.displacements) imposed.value = thousandfold(imposed.value);
-  description.initial_velocity = thousandfold(description.initial_velocity);
+  for (auto& start : description.velocities) start.value = thousandfold(start.value);
   return with_points(description, scene, thousandfold);
 }
 
@@ -101,7 +101,7 @@ TEST_P(FloatBudgetTest, at_rest) {
 /// taking J - 1 from J, as (1 + (J - 1)) - 1, breaks it; the strains of the cases hide that.
 TEST_P(FloatBudgetTest, at_rest_near_rest) {
   Scene scene = canonical("column");
-  for (auto& constraint : scene.constraints) constraint.value *= 0.01;
+  for (auto& constraint : scene.constraints) constraint.path.share[0] *= 0.01;
   for (auto& imposed : scene.description.displacements) {
     for (double& component : imposed.value) component *= 0.01;
   }
@@ -126,7 +126,7 @@ TEST_P(FloatBudgetTest, at_rest_in_other_units_and_far_away) {
 Scene vibrating_block(long steps) {
   Case description = plain_case(tissue);
   description.quasi_static = false;
-  description.initial_velocity = {0.1, 0.025, 0.0};
+  description.velocities = {{.value = {0.1, 0.025, 0.0}}};
   const Mesh mesh = box({0.08, 0.08, 0.12}, {4, 4, 6});
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })}};
   description.displacements.push_back({"foot", {}});
@@ -151,7 +151,7 @@ Swing swing_of(const Scene& scene, const Recorder& recorder) {
     swing.amplitude = std::max(swing.amplitude, largest_distance(frame.u, NodalField(frame.u.size())));
   }
   swing.advance =
-      scene.description.initial_velocity[0] / swing.amplitude * scene.description.dynamics.time_step;
+      scene.initial_velocities.front()[0] / swing.amplitude * scene.description.dynamics.time_step;
   return swing;
 }
 

@@ -262,6 +262,19 @@ TEST(NodeSets, do_not_depend_on_the_unit_of_length) {
   }
 }
 
+/// Rules forgive a thousand-millionth of the body's diagonal, sqrt(3) of the edge here: nodes that are off a
+/// plane by a tenth of it are on it, by ten times it are not, in a body of a micrometre as in one of a
+/// thousand kilometres.
+TEST(NodeSets, forgive_a_share_of_the_body_and_no_length) {
+  for (const double size : {1e-6, 1.0, 1e6}) {
+    Mesh mesh = box({size, size, size}, {1, 1, 1});
+    const std::array<double, 4> off{1e-10, -1e-10, 1e-8, -1e-8};  // of nodes 4 to 7, the upper ones
+    for (std::size_t n = 0; n < 4; ++n) mesh.points[4 + n][2] *= 1.0 + off[n];
+    const NodeSetRule top{"top", false, {{{}, {}, Interval{size, size}}}, {}};
+    EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), top), (std::vector<int>{4, 5})) << "size " << size;
+  }
+}
+
 /// The elliptic cylinder by its definition, along each axis, with the other coordinates in the order of the
 /// axes.
 TEST(NodeSets, cylinder_selects_what_lies_inside) {

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "stepping/central_difference.hpp"
+#include "stepping/health.hpp"
 #include "stepping/relaxation.hpp"
 #include "stepping/stable_step.hpp"
 #include "support/random_hexahedra.hpp"
@@ -180,6 +181,19 @@ TYPED_TEST(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
   EXPECT_TRUE(contains(outcome(answer, choice.precision), "not at rest"));
 }
 
+/// The residual must fall below the tolerance; to reach it is not enough. With the residual of an answer for
+/// tolerance the search goes the same way, bit by bit, and must go on from there.
+TYPED_TEST(StepperTest, residual_at_the_tolerance_is_not_yet_rest) {
+  Scene scene = driven_block({0.04, 0.0, 0.03});
+  Observer silent;
+  const Relaxation answer = relax(Model(scene, this->method()), silent);
+  ASSERT_TRUE(answer.converged);
+  scene.description.relaxation.tolerance = answer.residual;
+  const Relaxation further = relax(Model(scene, this->method()), silent);
+  EXPECT_LT(further.residual, answer.residual);
+  EXPECT_GT(further.steps, answer.steps);
+}
+
 TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
   Scene scene = driven_block({0.0, 0.0, 0.01});
   scene.description.quasi_static = false;
@@ -255,6 +269,26 @@ TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   } catch (const ComputationError& error) {
     expect_helpful(error.what());
   }
+}
+
+/// A volume that is no number is neither positive nor negative; it must not pass for healthy.
+TEST(Health, numbers_that_are_none_are_told_from_inverted_elements) {
+  const auto breakdown_of = [](const std::vector<double>& jacobians) -> std::optional<Breakdown> {
+    try {
+      require_healthy(jacobians, 7);
+    } catch (const ComputationError& error) {
+      EXPECT_TRUE(contains(error.what(), "step 7: 1 of 3 elements"));
+      EXPECT_TRUE(contains(error.what(), "element 1: "));
+      return error.breakdown();
+    }
+    return std::nullopt;
+  };
+  EXPECT_EQ(breakdown_of({1.0, 1e-300, 2.0}), std::nullopt);
+  EXPECT_EQ(breakdown_of({1.0, 0.0, 2.0}), Breakdown::inverted);
+  EXPECT_EQ(breakdown_of({1.0, -0.1, 2.0}), Breakdown::inverted);
+  EXPECT_EQ(breakdown_of({1.0, std::nan(""), 2.0}), Breakdown::not_finite);
+  EXPECT_EQ(breakdown_of({1.0, -INFINITY, 2.0}), Breakdown::not_finite);
+  EXPECT_EQ(breakdown_of({1.0, INFINITY, 2.0}), Breakdown::not_finite);
 }
 
 TYPED_TEST(StepperTest, an_observer_may_end_the_run) {

@@ -14,7 +14,7 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 import pytest
-from command_line import BINARY, BLOCK, ROOT, methods, sandglass, text_of
+from command_line import BINARY, BLOCK, ROOT, catches_interrupts, methods, sandglass, text_of
 
 CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
 COMMANDS = ["cases", "methods", "mesh", "run", "verify", "bench"]
@@ -319,14 +319,6 @@ def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
     assert "not at rest after 30 steps" in outcome.stderr
     with h5py.File(result) as file:
         assert text_of(file.attrs["status"]) == "not at rest after 30 steps"
-
-
-def catches_interrupts(process):
-    """Whether a process has taken charge of Ctrl-C, as the kernel tells it."""
-    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
-        if line.startswith("SigCgt:"):
-            return bool(int(line.split()[1], 16) >> (signal.SIGINT - 1) & 1)
-    return False
 
 
 @pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="needs Linux's /proc")

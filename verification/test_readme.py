@@ -24,6 +24,18 @@ def test_first_own_case_runs_as_written(tmp_path):
         assert output.with_suffix(".xdmf").exists()
 
 
+def test_the_choice_runs_as_written(tmp_path):
+    """Both commands do what they say, and what is written names its method."""
+    case = re.search(r"```toml\n(.*?)```", README, re.DOTALL)[1]
+    (tmp_path / "my-beam.toml").write_text(case)
+    commands = re.findall(r"^    build/release/sandglass (.*chosen\.toml)$", README, re.MULTILINE)
+    assert [command.split()[0] for command in commands] == ["choose", "run"]
+    for command in commands:
+        done = sandglass(*command.split(), cwd=tmp_path)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert "[method]" in (tmp_path / "chosen.toml").read_text()
+
+
 def test_files_and_folders_that_the_readme_names_are_there():
     named = re.findall(
         r"`((?:solver|cases|verification|reference)/[\w./-]*|\w+\.(?:md|cff))`", README

@@ -154,7 +154,7 @@ class DampedCube {
 Scene sliding_bar(const Law& law, const Mesh& mesh, double speed) {
   Case description = plain_case(law, density);
   description.quasi_static = false;
-  description.initial_velocity = {0.0, 0.0, speed};
+  description.velocities = {{.value = {0.0, 0.0, speed}}};
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
                       {"rest", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.0; })}};
   description.displacements = {{"foot", {}}, {"rest", {}, {true, true, false}}};

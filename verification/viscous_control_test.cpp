@@ -133,7 +133,7 @@ TEST(ViscousControl, stable_step_knows_of_the_damping) {
 TEST(ViscousControl, thrown_block_loses_energy) {
   Case description = plain_case(law, density);
   description.quasi_static = false;
-  description.initial_velocity = {0.4, 0.1, 0.0};
+  description.velocities = {{.value = {0.4, 0.1, 0.0}}};
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })}};
   description.displacements.push_back({"foot", {}});

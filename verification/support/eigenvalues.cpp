@@ -4,14 +4,42 @@
 #include "support/eigenvalues.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 
 namespace sandglass::verification {
 
 std::vector<double> symmetric_eigenvalues(const double* entries, int size) {
   const Eigen::MatrixXd matrix = Eigen::Map<const Eigen::MatrixXd>(entries, size, size);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
-  const Eigen::VectorXd values = solver.eigenvalues();
+  const Eigen::VectorXd& values = solver.eigenvalues();
   return {values.begin(), values.end()};
+}
+
+std::vector<std::pair<double, std::vector<double>>> symmetric_eigenpairs(const double* entries, int size) {
+  const Eigen::MatrixXd matrix = Eigen::Map<const Eigen::MatrixXd>(entries, size, size);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  std::vector<std::pair<double, std::vector<double>>> pairs;
+  for (int n = 0; n < size; ++n) {
+    const Eigen::VectorXd vector = solver.eigenvectors().col(n);
+    pairs.emplace_back(solver.eigenvalues()[n], std::vector<double>{vector.begin(), vector.end()});
+  }
+  return pairs;
+}
+
+double largest_eigenvalue_magnitude(const double* entries, int size) {
+  // Gelfand's formula, the limit of |A^m|^(1/m), m = 2, 4, 8, ...: what the norm is above the radius, a
+  // factor of the size and the eigenvectors' angles, has its m-th root taken. (The QR iteration finds no end
+  // on some tangents of symmetric elements.) Rows for columns: a matrix and its transpose have the same
+  // eigenvalues.
+  Eigen::MatrixXd power = Eigen::Map<const Eigen::MatrixXd>(entries, size, size);
+  double log_radius = 0.0, root = 1.0;
+  for (int squared = 0; squared < 34; ++squared, root *= 0.5) {
+    const double norm = power.norm();
+    log_radius += root * std::log(norm);
+    power /= norm;
+    power = (power * power).eval();
+  }
+  return std::exp(log_radius);
 }
 
 }  // namespace sandglass::verification

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "math/matrix.hpp"
@@ -9,6 +10,12 @@ namespace sandglass::verification {
 
 /// Eigenvalues of a symmetric matrix given by rows, in ascending order.
 std::vector<double> symmetric_eigenvalues(const double* entries, int size);
+
+/// The same with their eigenvectors, of length one.
+std::vector<std::pair<double, std::vector<double>>> symmetric_eigenpairs(const double* entries, int size);
+
+/// The largest absolute value of the eigenvalues, which may be complex, of any square matrix.
+double largest_eigenvalue_magnitude(const double* entries, int size);
 
 template <int N>
 std::vector<double> eigenvalues(const Matrix<double, N, N>& symmetric) {

@@ -33,6 +33,11 @@ constexpr double bearable_load() {
 /// where pressed fibres may buckle into hourglass modes that nothing holds.
 template <class Method, class Law>
 constexpr bool may_give_way() {
+  if constexpr (is_adaptive<Method>) {
+    bool any = false;
+    for_each_type(typename Method::Levels{}, [&]<class Level>() { any = any || may_give_way<Level, Law>(); });
+    return any;
+  }
   if constexpr (requires { Method::Kinematics::averages_pressure; }) {
     if (Method::Kinematics::averages_pressure && !Law::splits_volume) return true;
   }

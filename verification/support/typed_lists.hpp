@@ -67,10 +67,11 @@ struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
                                       TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>;
 };
 
-/// Whether a method's forces follow from the displacements, not from the path to them or from its speed.
+/// Whether a method's forces follow from the displacements, not from the path to them or from its speed. The
+/// levels of an adaptive method come about on the way; adaptive_test.cpp looks after it.
 template <class Method>
-inline constexpr bool path_independent =
-    !FormulationOf<Method, NeoHookean>::remembers && !DampsOnly<typename Method::Hourglass>;
+inline constexpr bool path_independent = !FormulationOf<Method, NeoHookean>::remembers &&
+                                         !DampsOnly<typename Method::Hourglass> && !is_adaptive<Method>;
 
 /// The methods whose answer does not depend on the path.
 template <class List>
@@ -149,6 +150,9 @@ using UpdatedLagrangianTypes = detail::AsTestTypes<detail::Updated<Methods>::typ
 using SteppedMethods = detail::Stepped<PathIndependentMethods>::type;
 using SteppedMethodTypes = detail::AsTestTypes<SteppedMethods>::type;
 using SteppedPairTypes = detail::AsTestTypes<PairsOf<SteppedMethods>>::type;
+
+/// All methods that can move, whatever their answers depend on.
+using MovingMethodTypes = detail::AsTestTypes<detail::Stepped<Methods>::type>::type;
 
 using ElasticMethodWithLawTypes = detail::AsTestTypes<detail::Elastic<PairsOf<Methods>>::type>::type;
 

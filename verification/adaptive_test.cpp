@@ -1,0 +1,481 @@
+/// The four-point element and the adaptive method: what the levels are, how they are mixed, and what the
+/// accuracy that is asked for means.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "stepping/adaption.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/error_estimate.hpp"
+#include "stepping/relaxation.hpp"
+#include "support/orderings.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+#include "support/single_element.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+using Law = NeoHookean;
+using OnePointKernel = FormulationOf<TlModalSampling, Law>;
+using FourPointKernel = FormulationOf<TlFourPoint, Law>;
+using EightPointKernel = FormulationOf<TlMeanDilatation, Law>;
+
+Law law() {
+  return sample_law<NeoHookean>(0.45);
+}
+
+template <class Kernel>
+double energy_of(const NodalVectors<double>& X, const NodalVectors<double>& u) {
+  SingleElement<Kernel, Law> element(X, law());
+  element.to(u);
+  const auto energy = element.energy();
+  return energy.strain + energy.hourglass;
+}
+
+/// A cube of 2 m in which every corner stands at its signs, deformed by F and by amplitudes of the four
+/// hourglass modes.
+NodalVectors<double> cube() {
+  return corner_signs;
+}
+NodalVectors<double> displaced(const NodalVectors<double>& X, const Tensor<double>& F,
+                               const HourglassModes<double>& amplitudes) {
+  return X * transpose(F - identity<double>()) + hourglass_base_vectors() * amplitudes;
+}
+
+/// On a parallelepiped the energies of four and of eight points agree to second order in the first three
+/// hourglass modes, at any mean deformation: halving the modes divides the difference by eight, or by more.
+TEST(FourPoint, knows_the_second_variation_of_eight_points) {
+  RandomGeometry random(11);
+  for (int n = 0; n < 20; ++n) {
+    const NodalVectors<double> X = cube() * transpose(random.deformation(0.5, 2.0));
+    const Tensor<double> F = random.deformation(0.8, 1.25);
+    HourglassModes<double> q{};
+    for (int a = 0; a < 3; ++a) {
+      for (int i = 0; i < 3; ++i) q(a, i) = random.uniform(-0.02, 0.02);
+    }
+    const double none = energy_of<EightPointKernel>(X, displaced(X, F, {}));
+    const auto difference = [&](double share) {
+      const auto u = displaced(X, F, share * q);
+      return energy_of<FourPointKernel>(X, u) - energy_of<EightPointKernel>(X, u);
+    };
+    const double second_order = energy_of<EightPointKernel>(X, displaced(X, F, q)) - none;
+    EXPECT_LT(std::abs(difference(1.0)), 0.1 * std::abs(second_order));
+    // A third-order difference, with a fourth-order one of a few percent beside it at this size.
+    EXPECT_LT(std::abs(difference(0.5)), std::abs(difference(1.0)) / 8.0 * 1.3 + 1e-12 * second_order);
+  }
+}
+
+/// Numbered so that the other four corners come first, an element has an energy that differs to third order.
+TEST(FourPoint, other_corners_differ_to_third_order) {
+  const std::array<int, 8> turned{1, 2, 3, 0, 5, 6, 7, 4};
+  RandomGeometry random(13);
+  for (int n = 0; n < 20; ++n) {
+    const NodalVectors<double> X = cube() * transpose(random.deformation(0.5, 2.0));
+    const Tensor<double> F = random.deformation(0.8, 1.25);
+    HourglassModes<double> q{};
+    for (auto& entry : q.entries) entry = random.uniform(-0.02, 0.02);
+    const auto difference = [&](double share) {
+      const auto u = displaced(X, F, share * q);
+      return energy_of<FourPointKernel>(reordered(X, turned), reordered(u, turned)) -
+             energy_of<FourPointKernel>(X, u);
+    };
+    EXPECT_NE(difference(1.0), 0.0);
+    EXPECT_NEAR(difference(0.5) / difference(1.0), 0.125, 0.03);  // odd: a fifth-order term stands beside it
+  }
+}
+
+/// The last mode on a cube of edge a: |d(xi eta zeta)/dX|^2 has the mean 3 (2/a)^2 / 9, so that an amplitude
+/// A holds the energy 10/9 mu/2 a^3 (4/3)/a^2 A^2 = 20/27 mu a A^2.
+TEST(FourPoint, last_mode_of_a_cube_in_closed_form) {
+  const double edge = 0.3, amplitude = 1e-3;
+  HourglassModes<double> q{};
+  q(3, 1) = amplitude;
+  const NodalVectors<double> X = 0.5 * edge * cube();
+  const double energy = energy_of<FourPointKernel>(X, displaced(X, identity<double>(), q));
+  EXPECT_NEAR(energy / (20.0 / 27.0 * law().shear_modulus() * edge * amplitude * amplitude), 1.0, 1e-9);
+}
+
+template <class Kernel>
+void expect_same_constants(const NodalVectors<double>& X) {
+  using Element = typename Kernel::template Element<double>;
+  using Numbers = std::array<double, sizeof(Element) / sizeof(double)>;
+  const auto set_up = std::bit_cast<Numbers>(Kernel::precompute(X, law(), {}));
+  const auto anew = std::bit_cast<Numbers>(Kernel::constants(to_modes(X), law(), {}));
+  double largest = 0.0;
+  for (const double number : set_up) largest = std::max(largest, std::abs(number));
+  for (std::size_t n = 0; n < set_up.size(); ++n) {
+    // Roundoff of the closed form, whose terms are as large as an element's edges squared over its volume.
+    EXPECT_NEAR(anew[n], set_up[n], 1e-11 * std::max(std::abs(set_up[n]), 1e-3 * largest)) << n;
+  }
+}
+
+TEST(Levels, constants_from_coordinates_are_those_of_the_set_up) {
+  RandomGeometry random(5);
+  for (int n = 0; n < 10; ++n) {
+    NodalVectors<double> X = cube();
+    for (auto& x : X.entries) x += random.uniform(-0.3, 0.3);
+    expect_same_constants<OnePointKernel>(X);
+    expect_same_constants<FourPointKernel>(X);
+    expect_same_constants<EightPointKernel>(X);
+  }
+}
+
+/// A block of distorted elements, large enough for several chunks, pressed hard on a part of its top.
+Scene pressed_block(double press, const std::array<int, 3>& elements = {6, 6, 8}) {
+  Case description = plain_case(law());
+  Mesh mesh = box({0.06, 0.06, 0.08}, elements);
+  RandomGeometry random(3);
+  const auto inner = [](double x, double size) { return x > 1e-9 && x < size - 1e-9; };
+  for (auto& X : mesh.points) {
+    if (!inner(X[0], 0.06) || !inner(X[1], 0.06) || !inner(X[2], 0.08)) continue;
+    for (auto& x : X) x += random.uniform(-0.001, 0.001);
+  }
+  const NodeSets sets{
+      {"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+      {"pressed", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.079 && X[0] < 0.025; })}};
+  description.displacements = {{"foot", {}}, {"pressed", {0.0, 0.0, -press}}};
+  return make_scene(description, mesh, sets);
+}
+
+NodalField some_displacements(const Mesh& mesh) {
+  RandomGeometry random(17);
+  NodalField u(mesh.points.size());
+  for (auto& v : u) {
+    for (auto& x : v) x = random.uniform(-0.001, 0.001);
+  }
+  return u;
+}
+
+const InternalForce<double>& elements_of(const Model& model) {
+  return *std::get<0>(model.internal_force());
+}
+
+NodalField forces(const InternalForce<double>& elements, State<double> state) {
+  Rows<double> force(state.u.size());
+  elements.evaluate(state, force);
+  return to_field(force, elements.layout());
+}
+
+/// The same numbers, to the bit where products are not contracted; else within the roundoff of a few hundred
+/// operations on the largest of them.
+void expect_same(std::vector<double> found, const std::vector<double>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+#ifdef SANDGLASS_STRICT_FP
+  EXPECT_EQ(found, expected);
+#else
+  double largest = 0.0;
+  for (const double number : expected) largest = std::max(largest, std::abs(number));
+  for (std::size_t n = 0; n < found.size(); ++n) EXPECT_NEAR(found[n], expected[n], 1e-13 * largest) << n;
+#endif
+}
+
+std::vector<double> numbers_in(const NodalField& field) {
+  std::vector<double> numbers;
+  for (const auto& row : field) numbers.insert(numbers.end(), row.begin(), row.end());
+  return numbers;
+}
+
+/// With all elements at one level the method is that level's method: forces, energies, det F and bounds of
+/// the step.
+TEST(Adaptive, every_level_by_itself_is_its_method) {
+  const Scene scene = pressed_block(0.01);
+  const NodalField u = some_displacements(scene.mesh);
+  const Model adaptive(scene, {"tl-adaptive"});
+  const auto& elements = elements_of(adaptive);
+  double level = 0.0;
+  for_each_type(TlAdaptive::Levels{}, [&]<class Method>() {
+    SCOPED_TRACE(Method::name);
+    const Model fixed(scene, {std::string(Method::name)});
+    State<double> state = state_at(elements, u), expected = state_at(elements_of(fixed), u);
+    state.levels.assign(state.levels.size(), level);
+    elements.regroup(state);
+    expect_same(numbers_in(forces(elements, state)), numbers_in(forces(elements_of(fixed), expected)));
+    const auto energies = elements.energies(state), wanted_energies = elements_of(fixed).energies(expected);
+    expect_same({energies.strain, energies.hourglass}, {wanted_energies.strain, wanted_energies.hourglass});
+    std::vector<double> values(scene.mesh.cells.size()), wanted(values.size());
+    const auto expect_same_values = [&](auto quantity) {
+      (elements.*quantity)(state, values);
+      (elements_of(fixed).*quantity)(expected, wanted);
+      expect_same(values, wanted);
+    };
+    expect_same_values(&InternalForce<double>::jacobians);
+    expect_same_values(&InternalForce<double>::smallest_jacobians);
+    expect_same_values(&InternalForce<double>::stiffness_bounds);
+    expect_same_values(&InternalForce<double>::hourglass_energy_densities);
+    level += 1.0;
+  });
+}
+
+/// Nodal forces of one element.
+template <class Kernel>
+NodalVectors<double> element_force(const Scene& scene, const NodalField& u, std::size_t e) {
+  SingleElement<Kernel, Law> element(gather(scene.mesh.points, scene.mesh.cells[e]), law());
+  return element.to(gather(u, scene.mesh.cells[e]));
+}
+NodalVectors<double> element_force(const Scene& scene, const NodalField& u, std::size_t e, int level) {
+  if (level == 0) return element_force<OnePointKernel>(scene, u, e);
+  if (level == 1) return element_force<FourPointKernel>(scene, u, e);
+  return element_force<EightPointKernel>(scene, u, e);
+}
+
+/// Elements of all levels, mixed at random, add up as they do one by one; and any number of threads gives the
+/// same bits.
+TEST(Adaptive, mixed_levels_add_up) {
+  const Scene scene = pressed_block(0.01);
+  const NodalField u = some_displacements(scene.mesh);
+  RandomGeometry random(29);
+  std::vector<double> levels(scene.mesh.cells.size());
+  for (double& level : levels) level = std::floor(random.uniform(0.0, 3.0));
+  std::optional<NodalField> first;
+  for (const int threads : {1, 2, 3}) {
+    const Model model(scene, {.method = "tl-adaptive", .threads = threads});
+    State<double> state = state_at(elements_of(model), u);
+    state.levels = levels;
+    elements_of(model).regroup(state);
+    const NodalField together = forces(elements_of(model), state);
+    if (first) {
+      EXPECT_EQ(together, *first) << threads;
+      continue;
+    }
+    first = together;
+    NodalField sum(u.size());
+    double largest = 0.0;
+    for (std::size_t e = 0; e < levels.size(); ++e) {
+      const auto f = element_force(scene, u, e, static_cast<int>(levels[e]));
+      for (std::size_t I = 0; I < 8; ++I) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          sum[index(scene.mesh.cells[e][I])][i] += f(static_cast<int>(I), static_cast<int>(i));
+          largest = std::max(largest, std::abs(f(static_cast<int>(I), static_cast<int>(i))));
+        }
+      }
+    }
+    for (std::size_t n = 0; n < sum.size(); ++n) {
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(together[n][i], sum[n][i], 1e-13 * largest);
+    }
+  }
+}
+
+/// Levels are chosen by the rule, computed here element by element: the lowest whose force, less that of
+/// eight points, displaces no node by more than the length.
+TEST(Adaptive, levels_follow_the_rule) {
+  const Scene scene = pressed_block(0.01);
+  const NodalField u = some_displacements(scene.mesh);
+  const Model model(scene, {"tl-adaptive"});
+  const auto& elements = elements_of(model);
+  State<double> state = state_at(elements, u);
+  RandomGeometry random(31);
+  std::vector<double> mobility(scene.mesh.points.size());
+  for (double& m : mobility) m = random.uniform(0.0, 1e-3);
+  Rows<double> rows(elements.layout().rows());
+  for (std::size_t r = 0; r < mobility.size(); ++r) {
+    const double m = mobility[index(elements.layout().node_of_row[r])];
+    rows[r] = {m, m, m};
+  }
+  std::vector<std::array<double, 2>> defects(scene.mesh.cells.size());
+  std::vector<double> all;
+  for (std::size_t e = 0; e < defects.size(); ++e) {
+    for (int level = 0; level < 2; ++level) {
+      const auto d = element_force(scene, u, e, level) - element_force(scene, u, e, 2);
+      double& largest = defects[e][index(level)];
+      for (int I = 0; I < 8; ++I) {
+        const double m = mobility[index(scene.mesh.cells[e][index(I)])];
+        largest = std::max(largest, m * std::hypot(d(I, 0), d(I, 1), d(I, 2)));
+      }
+      all.push_back(largest);
+    }
+  }
+  // Half of the numbers lie below the length: all levels come up. It is no number of them, up to roundoff.
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  const double length = *middle * 1.0001;
+  const auto cheapest = [&](std::size_t e, double most) {
+    return defects[e][0] <= most ? 0.0 : defects[e][1] <= most ? 1.0 : 2.0;
+  };
+
+  const Adaptation up = elements.adapt(state, rows, length, 0.5 * length);
+  std::size_t promoted = 0;
+  std::array<int, 3> seen{};
+  for (std::size_t e = 0; e < defects.size(); ++e) {
+    EXPECT_EQ(state.levels[e], cheapest(e, length)) << e;
+    if (state.levels[e] > 0.0) ++promoted;
+    ++seen[static_cast<std::size_t>(state.levels[e])];
+  }
+  EXPECT_EQ(up.promoted, promoted);
+  EXPECT_EQ(up.demoted, 0U);
+  for (const int count : seen) EXPECT_GT(count, 5) << "a level that was not tried";
+
+  const std::vector<double> before = state.levels;
+  const double longer = 3.0 * length;
+  EXPECT_EQ(elements.adapt(state, rows, longer, 0.0).demoted, 0U);
+  EXPECT_EQ(state.levels, before);
+  const Adaptation down = elements.adapt(state, rows, longer, 0.5 * longer);
+  EXPECT_GT(down.demoted, 0U);
+  for (std::size_t e = 0; e < defects.size(); ++e) {
+    EXPECT_EQ(state.levels[e], std::min(before[e], cheapest(e, 0.5 * longer))) << e;
+  }
+}
+
+NodalField at_rest(const Scene& scene, const MethodChoice& choice) {
+  Observer silent;
+  const Relaxation answer = relax(Model(scene, choice), silent);
+  EXPECT_TRUE(answer.converged);
+  return answer.u;
+}
+
+double distance(const Scene& scene, const NodalField& a, const NodalField& b) {
+  return largest_distance(a, b) / largest_imposed(scene);
+}
+
+/// What is asked for is what comes out. That it is met twice over is no promise, only what was ever seen;
+/// little asked for gives the lowest level, very much the highest. Balances are told to 1e-8 of the forces.
+TEST(Adaptive, answers_are_as_near_as_asked_for) {
+  const Scene scene = pressed_block(0.02);
+  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
+  for (const double accuracy : {0.05, 0.01, 0.003, 0.001}) {
+    const NodalField u = at_rest(scene, {.method = "tl-adaptive", .accuracy = accuracy});
+    EXPECT_LT(distance(scene, u, exact), 2.0 * accuracy) << accuracy;
+  }
+  const NodalField low = at_rest(scene, {"tl-modal-sampling"});
+  EXPECT_GT(distance(scene, low, exact), 0.005) << "the scene asks for nothing";
+  EXPECT_LT(distance(scene, at_rest(scene, {.method = "tl-adaptive", .accuracy = 1e9}), low), 1e-7);
+  const NodalField high = at_rest(scene, {.method = "tl-adaptive", .accuracy = 1e-12});
+  EXPECT_LT(distance(scene, high, exact), 1e-7);
+}
+
+/// Keeps the frames and the largest difference between energy and work, over the work.
+class FrameRecorder final : public Observer {
+ public:
+  void frame(const Frame& frame) override { frames.push_back(frame); }
+  void history(const HistoryRow& row) override {
+    work = std::max(work, std::abs(row.external_work));
+    const double energy = row.kinetic + row.strain + row.hourglass;
+    imbalance = std::max(imbalance, std::abs(energy - row.external_work));
+  }
+  std::vector<Frame> frames;
+  double work = 0.0;       ///< J, largest
+  double imbalance = 0.0;  ///< J
+};
+
+/// The answer is balanced at the levels that it is told with, and they are those that it asks for.
+TEST(Adaptive, answers_rest_at_their_levels) {
+  const Scene scene = pressed_block(0.02);
+  const MethodChoice choice{.method = "tl-adaptive", .accuracy = 0.005};
+  const Model model(scene, choice);
+  FrameRecorder told;
+  ASSERT_TRUE(relax(model, told).converged);
+  const auto& elements = elements_of(model);
+  Body<double> body(model, elements);
+  body.state() = state_at(elements, told.frames.back().u);
+  body.state().levels = told.frames.back().levels;
+  elements.regroup(body.state());
+  body.impose(1.0);
+  body.evaluate_forces();
+  EXPECT_LT(body.residual(), 1.01 * scene.description.relaxation.tolerance);
+  EXPECT_GT(std::count(told.frames.back().levels.begin(), told.frames.back().levels.end(), 2.0), 0);
+  EXPECT_EQ(Adaption<double>(model, body).apply(body, Demotion::never).promoted, 0U);
+}
+
+/// In motion elements only go up. Each that does brings the energy that it holds more at its new level, the
+/// work of a difference of forces that the accuracy keeps small. A beam that is bent and let vibrate for many
+/// periods, until most of its elements have gone up, gains 8 times the accuracy of the work put into it, 4.6
+/// times with finer elements; were elements to go down again, it would gain without end.
+TEST(Adaptive, motion_keeps_its_energy) {
+  Case description = plain_case(law());
+  const Mesh mesh = box({0.02, 0.02, 0.1}, {3, 3, 12});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.099; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.05, 0.0, 0.02}}};
+  description.quasi_static = false;
+  description.dynamics.duration = 1.0;
+  description.dynamics.ramp_time = 0.1;
+  const Scene scene = make_scene(description, mesh, sets);
+  FrameRecorder fixed;
+  integrate(Model(scene, {"tl-mean-dilatation"}), fixed);
+  for (const double accuracy : {0.01, 0.003}) {
+    FrameRecorder told;
+    integrate(Model(scene, {.method = "tl-adaptive", .accuracy = accuracy}), told);
+    EXPECT_LT(told.imbalance / told.work, fixed.imbalance / fixed.work + 10.0 * accuracy) << accuracy;
+    RecordProperty("imbalance over work, accuracy " + std::to_string(accuracy),
+                   std::to_string(told.imbalance / told.work));
+    for (std::size_t n = 1; n < told.frames.size(); ++n) {
+      const auto &before = told.frames[n - 1].levels, &now = told.frames[n].levels;
+      EXPECT_TRUE(std::equal(now.begin(), now.end(), before.begin(), std::greater_equal{}));
+    }
+    EXPECT_GT(told.frames.back().levels, told.frames.front().levels) << "nothing was adapted";
+  }
+}
+
+/// Single precision stops at its rounding, and only then do its elements settle: at the same levels, but for
+/// those that roundoff decides, and as near.
+TEST(Adaptive, floats_settle_too) {
+  const Scene scene = pressed_block(0.02);
+  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
+  for (const double accuracy : {0.01, 0.003}) {
+    FrameRecorder in_double, in_float;
+    MethodChoice choice{.method = "tl-adaptive", .accuracy = accuracy};
+    relax(Model(scene, choice), in_double);
+    choice.precision = Precision::single_precision;
+    const Relaxation answer = relax(Model(scene, choice), in_float);
+    EXPECT_TRUE(at_rest(answer, choice.precision));
+    EXPECT_LT(distance(scene, answer.u, exact), 2.0 * accuracy) << accuracy;
+    int differ = 0;
+    const auto &a = in_double.frames.back().levels, &b = in_float.frames.back().levels;
+    for (std::size_t e = 0; e < a.size(); ++e) differ += a[e] != b[e] ? 1 : 0;
+    EXPECT_LE(differ, static_cast<int>(a.size() / 50)) << accuracy;
+  }
+}
+
+/// Imposed by forces alone, the largest displacement there is stands for the imposed one. Nothing holds the
+/// body in place then, and defects add up to a little more: 2.4 times the accuracy here.
+TEST(Adaptive, forces_alone_wake_elements_too) {
+  Scene scene = pressed_block(0.0);
+  Case description = scene.description;
+  description.displacements.pop_back();
+  description.forces = {{"pressed", {0.0, 0.0, -0.25}, {}}};
+  scene = make_scene(description, scene.mesh, scene.sets);
+  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
+  const double unit = displacement_unit(scene, exact);
+  const NodalField u = at_rest(scene, {.method = "tl-adaptive", .accuracy = 0.002});
+  EXPECT_LT(largest_distance(u, exact), 3.0 * 0.002 * unit);
+  EXPECT_GT(largest_distance(at_rest(scene, {"tl-modal-sampling"}), exact), 3.0 * 0.002 * unit);
+}
+
+/// The estimate is the error of whatever method, but for the hundredth of the forces that is left.
+TEST(ErrorEstimate, is_the_error) {
+  const Scene scene = pressed_block(0.02);
+  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
+  for (const auto* method : {"tl-perturbation", "tl-full", "tl-four-point", "tl-adaptive"}) {
+    const MethodChoice choice{.method = method, .accuracy = 0.01};
+    const NodalField u = at_rest(scene, choice);
+    const ErrorEstimate estimate = estimate_error(Model(scene, choice), u);
+    EXPECT_NEAR(estimate.largest / largest_distance(u, exact), 1.0, 0.05) << method;
+    EXPECT_GT(estimate.largest, estimate.rms);
+    EXPECT_GT(estimate.rms, 0.0);
+  }
+  EXPECT_LT(estimate_error(Model(scene, {"tl-mean-dilatation"}), exact).largest,
+            1e-7 * largest_imposed(scene));
+}
+
+TEST(Adaptive, wrong_input_is_refused) {
+  const Scene scene = pressed_block(0.01, {2, 2, 2});
+  for (const double accuracy : {0.0, -1.0, std::nan("")}) {
+    EXPECT_TRUE(contains(input_error([&] { Model(scene, {.method = "tl-adaptive", .accuracy = accuracy}); }),
+                         "accuracy"));
+  }
+  Scene relaxing = scene;
+  relaxing.description.law = sample_law<Viscoelastic<NeoHookean>>(0.45);
+  EXPECT_TRUE(contains(input_error([&] { Model(relaxing, {"tl-adaptive"}); }), "relaxes"));
+  const Model model(scene, {"tl-adaptive"});
+  State<double> state = elements_of(model).rest();
+  for (const double level : {-1.0, 0.5, 3.0, std::nan("")}) {
+    state.levels[3] = level;
+    EXPECT_TRUE(contains(input_error([&] { elements_of(model).regroup(state); }), "element level"));
+  }
+}
+
+}  // namespace
+}  // namespace sandglass::verification

@@ -1,0 +1,299 @@
+/// Checkpoints: a run that goes on from any of them tells and ends as the run that was never stopped, to the
+/// bit; a file that is not whole, or of another run, is refused.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <fstream>
+
+#include "io/checkpoint_file.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/relaxation.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// A block on its foot, whose head is moved and whose side is loaded.
+Scene loaded_block(const AnyLaw& law, bool quasi_static) {
+  Case description = plain_case(law);
+  const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })},
+                      {"side", nodes_where(mesh.points, [](const Vector& X) { return X[0] > 0.09; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.02, 0.0, 0.01}}};
+  description.forces = {{"side", {0.1, 0.2, 0.0}, {}}};
+  description.relaxation.levels = 4;
+  description.relaxation.tolerance = 1e-6;
+  description.relaxation.max_steps = 600;  // what comes to rest needs less
+  description.quasi_static = quasi_static;
+  description.dynamics.duration = 0.1;
+  description.dynamics.ramp_time = 0.05;
+  description.dynamics.damping = 2.0;
+  description.dynamics.frames = 6;
+  description.velocities = {{.value = {0.0, 0.05, 0.0}}};
+  return make_scene(description, mesh, sets);
+}
+
+/// Keeps all that is told, and every checkpoint with what was told before it.
+class KeepingRecorder final : public Observer {
+ public:
+  explicit KeepingRecorder(RunSoFar run = {}) : run_(std::move(run)) {}
+  void frame(const Frame& frame) override { run_.frames.push_back(frame); }
+  void history(const HistoryRow& row) override { run_.history.push_back(row); }
+  void resumable(const std::function<Checkpoint()>& checkpoint) override {
+    run_.point = checkpoint();
+    kept_.push_back(run_);
+  }
+  const RunSoFar& run() const { return run_; }
+  const std::vector<RunSoFar>& kept() const { return kept_; }
+
+ private:
+  RunSoFar run_;
+  std::vector<RunSoFar> kept_;
+};
+
+/// The bits of everything that a run told and of the answer it ended with.
+std::vector<std::uint64_t> bits_of(const RunSoFar& run, const NodalField& answer) {
+  std::vector<std::uint64_t> bits;
+  const auto add = [&](double number) { bits.push_back(std::bit_cast<std::uint64_t>(number)); };
+  const auto add_field = [&](const NodalField& field) {
+    for (const auto& row : field) std::for_each(row.begin(), row.end(), add);
+  };
+  for (const auto& frame : run.frames) {
+    add(frame.time);
+    add_field(frame.u);
+    add_field(frame.v);
+    std::for_each(frame.jacobians.begin(), frame.jacobians.end(), add);
+    std::for_each(frame.hourglass_energy_densities.begin(), frame.hourglass_energy_densities.end(), add);
+  }
+  for (const auto& row : run.history) {
+    for (const double number :
+         {row.time, row.kinetic, row.strain, row.hourglass, row.external_work, row.residual, row.step_size}) {
+      add(number);
+    }
+  }
+  add_field(answer);
+  return bits;
+}
+
+/// How a run ended: the bits, and what it says of itself. One that breaks down says that, and is compared all
+/// the same: viscous control finds no rest.
+struct Ending {
+  std::vector<std::uint64_t> bits;
+  std::string words;
+  bool operator==(const Ending&) const = default;
+};
+
+Ending run(const Scene& scene, const MethodChoice& choice, KeepingRecorder& recorder,
+           const Checkpoint* from = nullptr) {
+  const Model model(scene, choice);
+  try {
+    if (scene.description.quasi_static) {
+      const Relaxation answer = relax(model, recorder, from);
+      return {bits_of(recorder.run(), answer.u),
+              fmt::format("{} {} {}", answer.steps, answer.residual, outcome(answer, choice.precision))};
+    }
+    const Motion motion = integrate(model, recorder, from);
+    NodalField both = motion.u;
+    both.insert(both.end(), motion.v.begin(), motion.v.end());
+    return {bits_of(recorder.run(), both),
+            fmt::format("{} {} {}", motion.steps, motion.time, motion.smallest_step)};
+  } catch (const ComputationError& error) {
+    return {bits_of(recorder.run(), {}), error.what()};
+  }
+}
+
+/// Goes on from every checkpoint, through the file, with another number of threads.
+void expect_same_from_everywhere(const Scene& scene, MethodChoice choice, std::size_t at_least) {
+  const TemporaryFolder folder;
+  const Identity identity{{"method", choice.method}};
+  KeepingRecorder uninterrupted;
+  const Ending ending = run(scene, choice, uninterrupted);
+  ASSERT_GE(uninterrupted.kept().size(), at_least);
+  choice.threads = 2;
+  for (const auto& kept : uninterrupted.kept()) {
+    write_checkpoint_file(folder / "run.h5", identity, kept);
+    const RunSoFar read =
+        read_checkpoint_file(folder / "run.h5", identity, scene.mesh.points.size(), scene.mesh.cells.size());
+    EXPECT_EQ(read.point.arrays, kept.point.arrays);
+    KeepingRecorder goes_on(read);
+    EXPECT_EQ(run(scene, choice, goes_on, &read.point), ending)
+        << "from the point after " << kept.history.size() << " rows of history";
+    ASSERT_EQ(goes_on.kept().size(), uninterrupted.kept().size() -
+                                         static_cast<std::size_t>(&kept - uninterrupted.kept().data()) -
+                                         (scene.description.quasi_static ? 0 : 1));
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+template <class Method>
+class CheckpointTest : public ::testing::Test {
+ protected:
+  static void expect_same(const AnyLaw& law, bool quasi_static, std::size_t points) {
+    const Scene scene = loaded_block(law, quasi_static);
+    for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+      expect_same_from_everywhere(scene, {.method = std::string(Method::name), .precision = precision},
+                                  points);
+    }
+  }
+
+  /// With the first law, and with one that remembers where the method runs it.
+  static void expect_same_with_laws(bool quasi_static, std::size_t points) {
+    expect_same(sample_law<NeoHookean>(0.45), quasi_static, points);
+    using Remembering = Viscoelastic<NeoHookean>;
+    if constexpr (knows_law<Method, Remembering>) {
+      expect_same(sample_law<Remembering>(0.45), quasi_static, points);
+    }
+  }
+};
+
+TYPED_TEST_SUITE(CheckpointTest, MethodTypes, EntryName);
+
+TYPED_TEST(CheckpointTest, motion_goes_on_with_the_same_bits) {
+  if constexpr (!is_condensed<TypeParam>) this->expect_same_with_laws(false, 5);
+}
+
+/// A condensed answer comes at once and has no point to go on from. A control that only damps breaks down on
+/// the first levels.
+TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
+  if constexpr (is_condensed<TypeParam>) {
+    this->expect_same(sample_law<NeoHookean>(0.45), true, 0);
+  } else {
+    this->expect_same_with_laws(true, DampsOnly<typename TypeParam::Hourglass> ? 1 : 5);
+  }
+}
+
+/// Levels that failed and were tried again at half the distance are part of what goes on.
+TEST(Checkpoint, goes_on_after_levels_that_failed) {
+  Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
+  scene.description.displacements[1].value = {0.0, 0.0, -0.17};
+  scene.description.forces.clear();
+  scene.description.relaxation.levels = 1;
+  scene.description.relaxation.max_steps = 2000;
+  scene = make_scene(scene.description, scene.mesh, scene.sets);
+  KeepingRecorder recorder;
+  run(scene, {"tl-perturbation", {}}, recorder);
+  ASSERT_GT(recorder.kept().back().point.arrays.at("failures").front(), 0.0) << "no level failed";
+  expect_same_from_everywhere(scene, {"tl-perturbation", {}}, 3);
+}
+
+/// The load that turns back is part of what goes on, on each of its legs.
+TEST(Checkpoint, goes_on_in_every_cycle) {
+  Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
+  scene.description.relaxation.cycles = 2;
+  KeepingRecorder recorder;
+  run(scene, {"ul-perturbation", {}}, recorder);
+  ASSERT_EQ(recorder.kept().back().point.arrays.at("leg").front(), 5.0) << "not on the last way up";
+  expect_same_from_everywhere(scene, {"ul-perturbation", {}}, 10);
+}
+
+/// Everything in a checkpoint is asked for: without any one array, or with one number more, it is refused.
+TEST(Checkpoint, of_another_shape_is_refused) {
+  for (const bool quasi_static : {false, true}) {
+    const Scene scene = loaded_block(sample_law<NeoHookean>(0.45), quasi_static);
+    KeepingRecorder recorder;
+    run(scene, {"ul-perturbation", {}}, recorder);
+    const Checkpoint good = recorder.kept().front().point;
+    ASSERT_GT(good.arrays.size(), 10U);
+    for (const auto& [name, values] : good.arrays) {
+      Checkpoint checkpoint = good;
+      checkpoint.arrays[name].push_back(0.0);
+      KeepingRecorder silent;
+      EXPECT_TRUE(contains(input_error([&] {
+                             run(scene, {"ul-perturbation", {}}, silent, &checkpoint);
+                           }),
+                           "'" + name + "' has"));
+      checkpoint.arrays.erase(name);
+      EXPECT_TRUE(contains(input_error([&] {
+                             run(scene, {"ul-perturbation", {}}, silent, &checkpoint);
+                           }),
+                           "'" + name + "' is missing"));
+    }
+  }
+}
+
+class CheckpointFileTest : public ::testing::Test {
+ protected:
+  static RunSoFar sample() {
+    const Frame frame{0.5, {{1.0, 2.0, 3.0}, {}}, {{}, {4.0, 5.0, 6.0}}, {0.9}, {0.1}};
+    const double inf = std::numeric_limits<double>::infinity();
+    return {.frames = {frame, frame},
+            .history = {{1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0}},
+            .point = {{{"empty", {}}, {"step", {inf}}, {"tiny", {-0.0, 5e-324}}}}};
+  }
+  std::string error(const Identity& of_run) const {
+    return input_error([&] { read_checkpoint_file(path, of_run, 2, 1); });
+  }
+
+  TemporaryFolder folder;
+  std::filesystem::path path = folder / "run.h5";
+  Identity identity{{"method", "tl-full"}, {"precision", "double"}, {"revision", "abc"}};
+};
+
+TEST_F(CheckpointFileTest, is_read_as_it_was_written) {
+  write_checkpoint_file(path, identity, sample());
+  EXPECT_EQ(folder.entries(), 1U);
+  const RunSoFar read = read_checkpoint_file(path, identity, 2, 1);
+  EXPECT_EQ(read.point.arrays, sample().point.arrays);
+  EXPECT_TRUE(std::signbit(read.point.arrays.at("tiny").front()));
+  EXPECT_EQ(bits_of(read, {}), bits_of(sample(), {}));
+}
+
+TEST_F(CheckpointFileTest, of_another_run_is_refused_and_told_in_what) {
+  write_checkpoint_file(path, identity, sample());
+  const std::string text = error({{"method", "t4"}, {"precision", "double"}, {"revision", "abd"}});
+  EXPECT_TRUE(contains(text, "run.h5"));
+  EXPECT_TRUE(contains(text, "method: 'tl-full' in the checkpoint, 't4' in this run"));
+  EXPECT_TRUE(contains(text, "revision: 'abc' in the checkpoint, 'abd' in this run"));
+  EXPECT_EQ(text.find("precision"), std::string::npos);
+  EXPECT_TRUE(contains(text, "delete it to start anew"));
+}
+
+/// No bit can change unseen, be it in the seal, in the library's own structures, in numbers or behind them.
+TEST_F(CheckpointFileTest, with_any_byte_changed_is_refused) {
+  write_checkpoint_file(path, identity, sample());
+  std::ostringstream stream;
+  stream << std::ifstream(path, std::ios::binary).rdbuf();
+  const std::string good = stream.str();
+  for (std::size_t k = 0; k < good.size(); k += k < 64 ? 1 : 37) {
+    std::string bad = good;
+    bad[k] = static_cast<char>(bad[k] ^ 1);
+    folder.write("run.h5", bad);
+    EXPECT_TRUE(contains(error(identity), "run.h5: is damaged")) << "byte " << k;
+  }
+  for (const std::size_t size : {std::size_t{0}, std::size_t{100}, good.size() / 2, good.size() - 1}) {
+    folder.write("run.h5", good.substr(0, size));
+    EXPECT_TRUE(contains(error(identity), "run.h5: is damaged")) << size << " bytes";
+  }
+  folder.write("run.h5", good + "x");
+  EXPECT_TRUE(contains(error(identity), "run.h5: is damaged"));
+  folder.write("run.h5", good);
+  EXPECT_NO_THROW(read_checkpoint_file(path, identity, 2, 1));
+}
+
+TEST_F(CheckpointFileTest, of_another_mesh_is_refused) {
+  write_checkpoint_file(path, identity, sample());
+  EXPECT_TRUE(contains(input_error([&] { read_checkpoint_file(path, identity, 3, 1); }), "[3, 3]"));
+  EXPECT_TRUE(
+      contains(input_error([&] { read_checkpoint_file(path, identity, 2, 2); }), "each of 2 elements"));
+}
+
+/// What a killed program left beside the file goes with the next one; what belongs to somebody stays.
+TEST_F(CheckpointFileTest, removes_what_killed_programs_left) {
+  const std::string unused = "999999999";  // above what Linux gives to processes
+  const auto ours = fmt::format("run.h5.{}.part", getppid());
+  for (const auto& name :
+       {"run.h5." + unused + ".part", ours, std::string("run.h5.x1.part"), "other.h5." + unused + ".part"}) {
+    folder.write(name, "");
+  }
+  write_checkpoint_file(path, identity, sample());
+  EXPECT_FALSE(std::filesystem::exists(folder / ("run.h5." + unused + ".part")));
+  EXPECT_TRUE(std::filesystem::exists(folder / ours));
+  EXPECT_EQ(folder.entries(), 4U);
+}
+
+}  // namespace
+}  // namespace sandglass::verification

@@ -1,0 +1,283 @@
+/// The ladder of methods and meshes, its judge, and what is chosen.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "choice/candidates.hpp"
+#include "choice/choose.hpp"
+#include "io/case_file.hpp"
+#include "stability/answer.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+namespace fs = std::filesystem;
+
+NodeSetRule plane(const std::string& name, std::size_t axis, double at) {
+  NodeSetRule rule{.name = name};
+  rule.within[axis] = Interval{at, at};
+  return rule;
+}
+
+/// A cantilever along x whose end is moved sideways.
+Case cantilever(double sideways) {
+  Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
+  description.mesh = BoxMesh{{1.0, 0.2, 0.2}, {8, 2, 2}};
+  description.sets = {plane("foot", 0, 0.0), plane("head", 0, 1.0)};
+  description.displacements = {{"foot", {}}, {"head", {0.0, 0.0, sideways}}};
+  return description;
+}
+
+/// A cube whose middle is pushed in from above.
+Case pushed_cube(double depth) {
+  Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.3});
+  description.mesh = BoxMesh{{1.0, 1.0, 1.0}, {4, 4, 4}};
+  NodeSetRule middle = plane("middle", 2, 1.0);
+  middle.within[0] = middle.within[1] = Interval{0.25, 0.75};
+  description.sets = {plane("foot", 2, 0.0), middle};
+  description.displacements = {{"foot", {}}, {"middle", {0.0, 0.0, -depth}}};
+  return description;
+}
+
+Scene scene_of_case(const Case& description) {
+  return make_scene(description, generate_mesh(std::get<AnyGenerator>(description.mesh)));
+}
+
+bool go_on(double /*share*/) {
+  return true;
+}
+
+Choice choose_quietly(const Case& description, const Demand& demand) {
+  return choose(scene_of_case(description), demand, [](double, const std::string&) { return true; });
+}
+
+/// Every method of the list is there in both precisions, or told to be unfit; one with a kappa that matters
+/// with other strengths, too.
+TEST(Ladder, has_every_method) {
+  std::deque<LadderMesh> meshes;
+  meshes.push_back({{}, scene_of_case(cantilever(0.1)), {}});
+  const auto rungs = make_ladder(meshes, {});
+  for_each_type(Methods{}, [&]<class Method>() {
+    int in_double = 0, in_float = 0, unfit = 0, automatic = 0;
+    for (const auto& rung : rungs) {
+      if (rung.choice.method != Method::name) continue;
+      ++(rung.choice.precision == Precision::double_precision ? in_double : in_float);
+      unfit += !rung.unfit.empty();
+      automatic += !rung.choice.kappa;
+    }
+    constexpr bool without_answer = DampsOnly<typename Method::Hourglass> || zero_energy_modes<Method>() > 6;
+    EXPECT_EQ(unfit, without_answer ? 1 : 0) << Method::name;
+    EXPECT_EQ(in_float, without_answer ? 0 : in_double) << Method::name;
+    EXPECT_GE(in_double, kappa_matters_at_rest<Method> ? 3 : 1) << Method::name;
+    EXPECT_GE(automatic, 1) << Method::name;
+  });
+  EXPECT_EQ(make_ladder(meshes, {.methods = {"linear"}}).size(), 6u);
+}
+
+/// An adaptive method stands on several rungs, on both sides of what the user asks for.
+TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
+  const auto choices = choices_of<TlAdaptive>({"tl-adaptive"}, NeoHookean{}, 0.01);
+  ASSERT_GE(choices.size(), 3u);
+  EXPECT_GT(choices.front().accuracy, 0.01);
+  EXPECT_LT(choices.back().accuracy, 0.01);
+}
+
+/// What the table promises: cheapest first, adaptive rungs a tenth behind; up to the choice all are refused
+/// and told why; the choice is near enough; what is dearer was not tried.
+TEST(Choose, takes_the_first_that_suffices) {
+  const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 0.02});
+  ASSERT_TRUE(choice.chosen);
+  double before = 0.0;
+  for (std::size_t n = 0; n < choice.attempts.size(); ++n) {
+    const auto& [rung, cost, judgement, outcome] = choice.attempts[n];
+    if (!cost) {
+      EXPECT_EQ(outcome, Outcome::refused) << name_of(rung);
+      continue;
+    }
+    const double rank = (adapts(rung.choice.method) ? 1.1 : 1.0) * cost->per_simulated_second();
+    EXPECT_GE(rank, before) << name_of(rung);
+    before = rank;
+    EXPECT_GT(cost->seconds, 0.0) << name_of(rung);
+    EXPECT_EQ(cost->step_size.has_value(), !answers_by_condensation(rung.choice.method));
+    const auto expected = n < *choice.chosen   ? Outcome::refused
+                          : n > *choice.chosen ? Outcome::not_tried
+                                               : Outcome::chosen;
+    EXPECT_EQ(outcome, expected) << name_of(rung);
+    EXPECT_EQ(judgement.reason.empty(), outcome != Outcome::refused) << name_of(rung);
+    EXPECT_TRUE(outcome != Outcome::not_tried || !judgement.error);
+  }
+  for (const auto& mesh : choice.coarser) EXPECT_EQ(mesh.kept, *mesh.judgement.error <= 0.02);
+  const Judgement& chosen = choice.attempts[*choice.chosen].judgement;
+  EXPECT_LE(*chosen.error, 0.02);
+  EXPECT_GT(*chosen.smallest_jacobian, 0.0);
+}
+
+/// The prediction is the distance of the rung's own answer from the reference's, at every node.
+TEST(Choose, predicts_what_a_run_gives) {
+  const Case description = cantilever(0.3);
+  const Choice choice = choose_quietly(
+      description, {.tolerance = 1e-4, .methods = {"tl-enhanced", "tl-perturbation"}, .all = true});
+  EXPECT_FALSE(choice.chosen);
+  const Scene scene = scene_of_case(description);
+  Observer silent;
+  const NodalField golden = answer_at_rest(scene, {"tl-mean-dilatation"}, silent).u;
+  int compared = 0;
+  for (const auto& [rung, cost, judgement, outcome] : choice.attempts) {
+    if (rung.mesh->coarser) continue;
+    const NodalField u = answer_at_rest(scene, rung.choice, silent).u;
+    EXPECT_EQ(*judgement.error, largest_distance(u, golden) / 0.3) << name_of(rung);
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2 + 6);
+  for (const auto& mesh : choice.coarser) EXPECT_FALSE(mesh.kept);
+}
+
+/// Small strains suffice for a small motion, and not for a large one, whatever the numbers and the kappa.
+TEST(Choose, takes_small_strains_for_small_motions_only) {
+  const std::vector<std::string> linear_ones{"linear", "linear-condensed"};
+  const Choice small = choose_quietly(cantilever(1e-3), {.tolerance = 0.05, .methods = linear_ones});
+  ASSERT_TRUE(small.chosen);
+  const Choice large = choose_quietly(cantilever(0.6), {.tolerance = 0.05, .methods = linear_ones});
+  EXPECT_FALSE(large.chosen);
+  for (const auto& attempt : large.attempts) {
+    EXPECT_TRUE(contains(attempt.judgement.reason, "small-strain theory")) << name_of(attempt.rung);
+  }
+  EXPECT_TRUE(contains(remarks(large).back(), "the nearest"));
+}
+
+/// The golden's own element in double is the reference, to the bit: nothing can ask for more.
+TEST(Choose, always_has_the_reference_itself) {
+  const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 1e-15});
+  ASSERT_TRUE(choice.chosen);
+  const Attempt& chosen = choice.attempts[*choice.chosen];
+  EXPECT_EQ(chosen.rung.choice.method, choice.reference.name);
+  EXPECT_EQ(*chosen.judgement.error, 0.0);
+}
+
+/// Nothing is as fast as a picosecond; what is too dear is not computed unless all is asked for.
+TEST(Choose, keeps_within_the_budget) {
+  Demand demand{.tolerance = 0.05, .budget = 1e-12, .methods = {"tl-perturbation"}};
+  Choice choice = choose_quietly(cantilever(0.1), demand);
+  EXPECT_FALSE(choice.chosen);
+  for (const auto& attempt : choice.attempts) {
+    EXPECT_TRUE(contains(attempt.judgement.reason, "a step takes"));
+    EXPECT_FALSE(attempt.judgement.error);
+  }
+  EXPECT_TRUE(contains(remarks(choice).back(), "too dear"));
+  demand.all = true;
+  choice = choose_quietly(cantilever(0.1), demand);
+  EXPECT_FALSE(choice.chosen);
+  for (const auto& attempt : choice.attempts) EXPECT_TRUE(attempt.judgement.error);
+}
+
+/// A soft body has ten milliseconds for a step, ten thousand times what a machine needs; one with a stiffness
+/// of 3e17 Pa has a nanosecond for some 1e4 operations, which none can do.
+TEST(Choose, tells_what_real_time_allows) {
+  Case description = cantilever(0.1);
+  const Demand demand{.tolerance = 0.5, .real_time = true, .methods = {"tl-perturbation"}};
+  EXPECT_TRUE(choose_quietly(description, demand).chosen);
+  std::get<NeoHookean>(description.law).young_modulus = 3e17;
+  const Choice stiff = choose_quietly(description, demand);
+  EXPECT_FALSE(stiff.chosen);
+  for (const auto& attempt : stiff.attempts) {
+    EXPECT_TRUE(contains(attempt.judgement.reason, "not in real time"));
+  }
+}
+
+TEST(Choose, refuses_what_it_cannot_do) {
+  Case moving = cantilever(0.1);
+  moving.quasi_static = false;
+  EXPECT_TRUE(contains(input_error([&] { choose_quietly(moving, {}); }), "quasi-static"));
+  const auto unknown = [] { choose_quietly(cantilever(0.1), {.methods = {"tl-perturbatio"}}); };
+  EXPECT_TRUE(contains(input_error(unknown), "did you mean 'tl-perturbation'"));
+  const auto without = [] { choose_quietly(cantilever(0.1), {.against = "truth"}); };
+  EXPECT_FALSE(input_error(without).empty());
+  const auto stop = [](double, const std::string&) { return false; };
+  EXPECT_THROW(choose(scene_of_case(cantilever(0.1)), {}, stop), ComputationError);
+}
+
+/// The judge with one method on the user's mesh.
+class JudgeTest : public ::testing::Test {
+ protected:
+  Judgement judged(const Case& description, const MethodChoice& choice, double tolerance) {
+    const Scene scene = scene_of_case(description);
+    const Proceed proceed = go_on;
+    const Reference reference = make_reference(scene, "", proceed);
+    const LadderMesh own{{}, scene, reference.u};
+    return Judge(scene, reference, tolerance, proceed).judge({choice, &own});
+  }
+
+  static bool inverts(const Case& description) {
+    Observer silent;
+    return answer_at_rest(scene_of_case(description), {"linear-condensed"}, silent).failure ==
+           Finding::inverted;
+  }
+};
+
+/// Small strains turn elements under a pressed node inside out at some depth, where the golden's own element
+/// gives way: beyond 1/1.1 of that depth there is no reserve, before it there is.
+TEST_F(JudgeTest, asks_for_a_reserve_of_load) {
+  double low = 0.0, high = 1.0;
+  ASSERT_TRUE(inverts(pushed_cube(high)));
+  for (int n = 0; n < 12; ++n) {
+    const double middle = 0.5 * (low + high);
+    (inverts(pushed_cube(middle)) ? high : low) = middle;
+  }
+  const Judgement near = judged(pushed_cube(low / 1.09), {"linear-condensed"}, 10.0);
+  EXPECT_TRUE(contains(near.reason, "no reserve: with a tenth more load an element turns inside out"));
+  ASSERT_TRUE(near.smallest_jacobian);
+  EXPECT_GT(*near.smallest_jacobian, 0.0);
+  EXPECT_EQ(judged(pushed_cube(low / 1.11), {"linear-condensed"}, 10.0).reason, "");
+}
+
+/// A body that is pressed to a twentieth along x, and can move nowhere else, cannot be pressed by a tenth
+/// more, by no method: nobody is asked for what the golden's own element has not.
+TEST_F(JudgeTest, asks_nobody_for_what_the_golden_has_not) {
+  Case description = cantilever(0.0);
+  description.displacements[1].value = {-0.95, 0.0, 0.0};
+  description.sets.push_back({.name = "all"});
+  description.displacements.push_back({.set = "all", .components = {false, true, true}});
+  description.relaxation.max_steps = 2000;
+  const Scene scene = scene_of_case(description);
+  const Proceed proceed = go_on;
+  const Reference reference{"none", NodalField(scene.mesh.points.size()), 1.0, {}};
+  const LadderMesh own{{}, scene, reference.u};
+  Judge judge(scene, reference, 10.0, proceed);
+  const Judgement found = judge.judge({{.method = "linear-condensed"}, &own});
+  EXPECT_EQ(found.reason, "");
+  EXPECT_NEAR(found.smallest_jacobian.value_or(0.0), 0.05, 1e-9);
+}
+
+/// Displacement elements lock as Poisson's ratio nears one half; without volume to keep they do not.
+TEST_F(JudgeTest, names_locking_and_hourglassing) {
+  Case description = cantilever(0.2);
+  std::get<NeoHookean>(description.law).poisson_ratio = 0.4999;
+  EXPECT_TRUE(contains(judged(description, {"tl-full"}, 0.01).reason, "locks"));
+  EXPECT_TRUE(contains(judged(cantilever(0.2), {"tl-perturbation", 1e-5}, 0.01).reason, "nodes zigzag"));
+}
+
+/// A truth that is known to a percent cannot show that anything is within a tenth of that.
+TEST(Reference, that_is_stored_tells_its_own_error) {
+  const Scene scene = read_scene(fs::path(SANDGLASS_SOURCE) / "cases" / "column.toml");
+  const Reference truth = make_reference(scene, "truth", go_on);
+  ASSERT_TRUE(truth.own.largest);
+  EXPECT_GT(*truth.own.largest, 1e-5);
+  EXPECT_LT(*truth.own.largest, 0.01);
+  EXPECT_EQ(truth.unit, largest_imposed(scene));
+  const Reference computed = make_reference(scene, "", go_on),
+                  golden = make_reference(scene, "golden", go_on);
+  EXPECT_EQ(*computed.own.largest, *golden.own.largest);
+  EXPECT_LT(largest_distance(computed.u, golden.u), 1e-6 * golden.unit);
+  Demand demand{.tolerance = 0.5 * *truth.own.largest, .against = "truth", .methods = {"tl-mean-dilatation"}};
+  const Choice choice = choose(scene, demand, [](double, const std::string&) { return true; });
+  EXPECT_FALSE(choice.chosen);
+  EXPECT_TRUE(contains(remarks(choice).front(), "cannot be shown"));
+  EXPECT_TRUE(contains(remarks(choice).back(), "no method mends it"));
+}
+
+}  // namespace
+}  // namespace sandglass::verification

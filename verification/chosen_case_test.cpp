@@ -1,0 +1,154 @@
+/// The method that a case may have, and the case that `sandglass choose` writes.
+
+#include <gtest/gtest.h>
+
+#include "choice/judge.hpp"
+#include "io/case_file.hpp"
+#include "io/case_writer.hpp"
+#include "io/toml_text.hpp"
+#include "mesh/variations.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view head = R"(
+[case]
+name = "bar"
+requirement = "A bar is pulled."
+answer = "quasi-static"
+[mesh]
+generator = "box"
+size = [0.1, 0.1, 0.2]
+elements = [4, 4, 8]
+[material]
+law = "neo-hookean"
+young_modulus = 3000
+poisson_ratio = 0.3
+density = 1000.0
+[sets]
+foot = { z = [0.0, 0.0] }
+"a head" = { z = [0.2, inf] }
+edge = { x = [0.025, 0.025], y = [0.0, 0.0] }
+[[displacement]]
+set = "foot"
+value = [0.0, 0.0, 0.0]
+[[displacement]]
+set = "a head"
+value = [0.0, 0.0, 0.02]
+[profile]
+set = "edge"
+order = "z"
+)";
+
+class MethodTableTest : public ::testing::Test {
+ protected:
+  Case read(const std::string& table) {
+    return read_case_file(folder.write("bar.toml", std::string(head) + table));
+  }
+
+  std::string refused(const std::string& table) {
+    return input_error([&] { read("[method]\n" + table); });
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(MethodTableTest, is_read_and_changes_no_answer) {
+  EXPECT_FALSE(read("").method);
+  const Case plain = read("[method]\nname = \"tl-enhanced\"\n");
+  ASSERT_TRUE(plain.method);
+  EXPECT_EQ(plain.method->method, "tl-enhanced");
+  EXPECT_EQ(plain.method->kappa, std::nullopt);
+  EXPECT_EQ(plain.method->precision, Precision::double_precision);
+  const Case full = read(
+      "[method]\nname = \"tl-perturbation\"\nkappa = 0.02\nkappa_modulus = \"shear\"\nprecision = "
+      "\"float\"\n");
+  EXPECT_EQ(full.method->kappa, 0.02);
+  EXPECT_EQ(full.method->kappa_modulus, KappaModulus::shear);
+  EXPECT_EQ(full.method->precision, Precision::single_precision);
+  EXPECT_EQ(case_hash(full), case_hash(read("")));
+}
+
+TEST_F(MethodTableTest, is_read_strictly) {
+  EXPECT_TRUE(contains(refused("name = \"tl-perturbatio\"\n"), "did you mean 'tl-perturbation'"));
+  EXPECT_TRUE(contains(refused("kappa = 0.1\n"), "method.name"));
+  EXPECT_TRUE(contains(refused("name = \"tl-full\"\nkappa = 0.1\n"), "has no such parameter"));
+  EXPECT_TRUE(contains(refused("name = \"tl-perturbation\"\nkappa = -1\n"), "[0, inf)"));
+  EXPECT_TRUE(contains(refused("name = \"tl-perturbation\"\nkappa = \"best\"\n"), "auto"));
+  EXPECT_TRUE(contains(refused("name = \"tl-perturbation\"\nprecision = \"half\"\n"), "float"));
+  EXPECT_TRUE(contains(refused("name = \"tl-perturbation\"\nkapa = 1\n"), "did you mean 'kappa'"));
+}
+
+/// Every committed case, and every variant, comes back as itself from another folder, with its method.
+TEST(CaseWriter, gives_back_every_case) {
+  const TemporaryFolder folder;
+  const MethodChoice choice{
+      .method = "tl-perturbation", .kappa = 0.0123, .precision = Precision::single_precision};
+  int written = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(SANDGLASS_SOURCE) / "cases")) {
+    if (entry.path().extension() != ".toml") continue;
+    for (const Case& original : read_cases(entry.path())) {
+      const Case again = read_case_file(
+          folder.write("again.toml", case_text(original, choice, nullptr, folder / "again.toml")));
+      EXPECT_EQ(again.name, original.name);
+      EXPECT_EQ(case_hash(again), case_hash(original)) << original.name;
+      EXPECT_EQ(again.density, original.density);
+      EXPECT_EQ(again.requirement, original.requirement);
+      EXPECT_EQ(again.relaxation.max_steps, original.relaxation.max_steps);
+      EXPECT_EQ(again.dynamics.duration, original.dynamics.duration);
+      EXPECT_EQ(again.velocities.size(), original.velocities.size());
+      EXPECT_EQ(again.expectations.size(), original.expectations.size());
+      EXPECT_EQ(again.published.size(), original.published.size());
+      EXPECT_EQ(again.kappas, original.kappas);
+      EXPECT_EQ(again.method->kappa, choice.kappa);
+      EXPECT_EQ(again.method->precision, choice.precision);
+      EXPECT_TRUE(!fs::exists(original.golden) || fs::equivalent(again.golden, original.golden));
+      ++written;
+    }
+  }
+  EXPECT_GE(written, 20);
+}
+
+/// On a coarser mesh the case is another one, which has what the run needs: here the profile's nodes would
+/// not be there.
+TEST_F(MethodTableTest, goes_with_a_coarser_mesh) {
+  const Case original = read("");
+  for (const auto& mesh : coarser_meshes(std::get<AnyGenerator>(original.mesh))) {
+    const Scene coarser = scene_on(mesh, original);
+    const fs::path place = folder / "coarser.toml";
+    const Case again = read_case_file(folder.write(
+        "coarser.toml", case_text(original, {.method = "tl-full"}, &coarser.description, place)));
+    EXPECT_EQ(case_hash(again), coarser.case_hash);
+    EXPECT_NE(again.name, original.name);
+    EXPECT_EQ(again.method->method, "tl-full");
+    EXPECT_NO_THROW(read_scene(again));
+  }
+}
+
+TEST(TomlText, keeps_order_values_and_odd_words) {
+  const std::string text = R"(answer = 42
+
+[z]
+b = 1.0
+a = [1, 2.5e-30, inf]
+"a b" = "quote \" and \\ and \n"
+
+[[y]]
+t = { deep = { x = true, e = "" } }
+
+[[y]]
+n = 0.1
+)";
+  const toml::table table = toml::parse(text);
+  const std::string written = toml_text(table);
+  EXPECT_EQ(toml::parse(written), table);
+  EXPECT_LT(written.find("[z]"), written.find("[[y]]"));
+  EXPECT_LT(written.find("b = 1.0"), written.find("a = ["));
+  EXPECT_TRUE(contains(written, "n = 0.1\n"));
+}
+
+}  // namespace
+}  // namespace sandglass::verification

@@ -1,0 +1,5 @@
+#include "fuzz/target.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return sandglass::verification::feed(sandglass::verification::read_as_case_file, data, size);
+}

@@ -1,0 +1,38 @@
+/// Readers make scenes and never compute. The kernels, minutes of compilation, stay out of the fuzzers; these
+/// are the names that the linker still asks for.
+
+#include <stdexcept>
+
+#include "model/internal_force.hpp"
+
+namespace sandglass {
+
+namespace {
+
+[[noreturn]] void refuse() {
+  throw std::logic_error("a reader asked for elements");
+}
+
+}  // namespace
+
+AnyInternalForce make_internal_force(const Mesh& /*mesh*/, const AnyLaw& /*law*/,
+                                     const MethodChoice& /*choice*/, double /*density*/) {
+  refuse();
+}
+
+template <class Real>
+NodalField to_field(const Rows<Real>& /*rows*/, const Layout& /*layout*/) {
+  refuse();
+}
+
+template <class Real>
+State<Real> state_at(const InternalForce<Real>& /*elements*/, const NodalField& /*u*/) {
+  refuse();
+}
+
+template NodalField to_field(const Rows<double>&, const Layout&);
+template NodalField to_field(const Rows<float>&, const Layout&);
+template State<double> state_at(const InternalForce<double>&, const NodalField&);
+template State<float> state_at(const InternalForce<float>&, const NodalField&);
+
+}  // namespace sandglass

@@ -1,0 +1,151 @@
+/// Manufactured solutions: how fast each method's answer comes near to an exact one of finite strain.
+
+#include "support/manufactured.hpp"
+
+#include <gtest/gtest.h>
+
+#include "stepping/relaxation.hpp"
+#include "support/softening.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// Compressible, and soft tissue: K/mu = 2.2 and 9.7.
+constexpr std::array<double, 2> ratios{0.3, 0.45};
+
+/// How far the nodes of distorted meshes are moved, in edges; see `distorted_cube`.
+constexpr double distortion = 0.15;
+
+/// A condensed answer is that of its linear method (condensed_test.cpp), and would need a response to every
+/// held node. Who leaves modes without energy by nature finds no unique answer; see the last test.
+template <class Method>
+constexpr bool has_one_answer() {
+  return !is_condensed<Method> && zero_energy_modes<Method>() == 6;
+}
+
+template <class Pair>
+class ManufacturedTest : public ::testing::Test {
+ protected:
+  using Method = typename Pair::Method;
+  using Law = typename Pair::Law;
+
+  /// Errors of the method's answer on a mesh of the unit cube. The exact displacements are imposed on five of
+  /// its faces; on the sixth, x = 1, tractions act.
+  static FieldErrors errors(const Mesh& mesh, double nu) {
+    const WaveField field{bearable_load<Law>()};
+    const ManufacturedSolution<Method, Law, WaveField> solution{field, sample_law<Law>(nu)};
+    Case description = plain_case(solution.law);
+    NodeSets sets;
+    const std::vector<bool> surface = boundary_nodes(mesh);
+    std::vector<int> held;
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+      const auto& [x, y, z] = mesh.points[n];
+      const bool inside_the_loaded_face = x == 1.0 && y > 0.0 && y < 1.0 && z > 0.0 && z < 1.0;
+      if (surface[n] && !inside_the_loaded_face) held.push_back(static_cast<int>(n));
+    }
+    impose_field(
+        held, mesh.points, [&](const Vector& X) { return solution.displacement(X); }, description, sets);
+    Scene scene = make_scene(description, mesh, sets);
+    scene.loads = manufactured_loads(mesh, solution);
+    Observer silent;
+    const Relaxation answer = relax(Model(scene, {std::string(Method::name)}), silent);
+    EXPECT_TRUE(answer.converged) << outcome(answer, Precision::double_precision);
+    return field_errors(mesh, answer.u, field);
+  }
+
+  /// Observed orders of the three norms from n^3 to (2 n)^3 elements.
+  FieldErrors orders(int n, double share, double nu) {
+    const auto seed = static_cast<std::uint64_t>(n);
+    const FieldErrors coarse = errors(distorted_cube(n, share, seed), nu);
+    const FieldErrors fine = errors(distorted_cube(2 * n, share, seed + 1), nu);
+    const FieldErrors found{std::log2(coarse.displacement / fine.displacement),
+                            std::log2(coarse.gradient / fine.gradient), std::log2(coarse.nodal / fine.nodal)};
+    const std::string where = (share > 0.0 ? "_distorted_nu_" : "_regular_nu_") + std::to_string(nu);
+    this->RecordProperty("order_L2" + where, std::to_string(found.displacement));
+    this->RecordProperty("order_H1" + where, std::to_string(found.gradient));
+    this->RecordProperty("order_nodal" + where, std::to_string(found.nodal));
+    return found;
+  }
+
+  /// Order 2 in L2 and 1 in the H1 seminorm, on meshes of 6 and 12 elements per edge. On regular ones an
+  /// error C h^p (1 + c h^2) shows the order p + c h^2 3/ln 2 with h = 1/12; waves of |k| = 2.7 have c of
+  /// about k^2/8, whence 0.03. On distorted ones C is a root mean square over n^3 elements, no two of which
+  /// are alike: with a spread of their own size it is known to 1/(2 sqrt(n^3)) = 3.4 %, .05 in the order; and
+  /// elements at the surface, whose outer faces stay plane, are 70 % of the coarse and 42 % of the fine mesh,
+  /// which for errors that distortion raises by 6 % is another .02. So a tenth is granted.
+  ///
+  /// Both norms hold what interpolation alone leaves, which is most of them. The nodes' own errors are a
+  /// tenth of it; here locking (tl-full and t4 at nu = .45) and few elements show, so that order 2 is asked
+  /// for as more than half-way from order 1: what is 1.66 here, t4's, is 1.87 on meshes twice as fine.
+  void expect_orders(double share) {
+    if (!has_one_answer<Method>()) GTEST_SKIP() << "no answer of its own";
+    for (const double nu : ratios) {
+      const FieldErrors found = orders(6, share, nu);
+      EXPECT_NEAR(found.displacement, 2.0, 0.1) << "nu " << nu;
+      EXPECT_NEAR(found.gradient, 1.0, 0.1) << "nu " << nu;
+      EXPECT_GT(found.nodal, 1.5) << "nu " << nu;
+    }
+  }
+};
+
+using MethodsWithLaws = detail::AsTestTypes<PairsOf<Methods>>::type;
+TYPED_TEST_SUITE(ManufacturedTest, MethodsWithLaws, EntryName);
+
+TYPED_TEST(ManufacturedTest, converges_on_regular_meshes) {
+  this->expect_orders(0.0);
+}
+
+TYPED_TEST(ManufacturedTest, converges_on_randomly_distorted_meshes) {
+  this->expect_orders(distortion);
+}
+
+/// The field is what it is said to be: displacement gradients of 0.2 to 0.33 somewhere, no inversion, on a
+/// grid of 21^3 points.
+TEST(Manufactured, field_is_of_finite_strain) {
+  double largest = 0.0, smallest_J = 2.0, largest_J = 0.0;
+  for (int n = 0; n < 21 * 21 * 21; ++n) {
+    Triple<double> X{};
+    for (int i = 0, rest = n; i < 3; ++i, rest /= 21) X(i, 0) = 0.05 * (rest % 21);
+    const Tensor<double> H = field_gradient(WaveField{}, X);
+    largest = std::max(largest, std::sqrt(double_dot(H, H)));
+    smallest_J = std::min(smallest_J, 1.0 + jacobian_minus_one(H));
+    largest_J = std::max(largest_J, 1.0 + jacobian_minus_one(H));
+  }
+  EXPECT_NEAR(largest, 0.33, 0.005);
+  EXPECT_NEAR(smallest_J, 0.955, 0.002);
+  EXPECT_NEAR(largest_J, 1.040, 0.002);
+}
+
+/// Body force and tractions of the exact stress balance: their sum is zero to what three Gauss points leave,
+/// h^6 of the tractions. A sign or factor wrong in either would leave a large part of them.
+TEST(Manufactured, loads_balance) {
+  const ManufacturedSolution<TlFull, NeoHookean, WaveField> solution{{}, sample_law<NeoHookean>(0.45)};
+  const auto sums = [&](int n) {
+    double size = 0.0;
+    Vector sum{};
+    for (const auto& load : manufactured_loads(distorted_cube(n, distortion, 3), solution)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        sum[i] += load.force[i];
+        size += std::abs(load.force[i]);
+      }
+    }
+    return std::hypot(sum[0], sum[1], sum[2]) / size;
+  };
+  EXPECT_LT(sums(4), 1e-6);
+  EXPECT_LT(sums(8), 1e-6 / 32);
+}
+
+/// That these tests see hourglassing: without a control the gradients of distorted meshes, whose elements
+/// press each other out of shape, do not converge with order 1, although displacements nearly do with 2.
+TEST(Manufactured, uncontrolled_gradients_lose_their_order_on_distorted_meshes) {
+  struct Uncontrolled : ManufacturedTest<MethodWithLaw<TlNone, NeoHookean>> {
+    void TestBody() override {}
+    using ManufacturedTest::orders;
+  } test;
+  EXPECT_LT(test.orders(6, distortion, 0.45).gradient, 0.8);
+  EXPECT_NEAR(test.orders(6, 0.0, 0.45).gradient, 1.0, 0.1);
+}
+
+}  // namespace
+}  // namespace sandglass::verification

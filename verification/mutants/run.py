@@ -1,0 +1,194 @@
+"""Mutation tests: does a test fail when somebody makes a mistake that people make?
+
+Each patch of this folder is applied to a copy of HEAD, built and tested until the first failure.
+Prints what killed each mutant and writes RESULTS.md. Finished mutants are kept under
+build/mutant-results and not run again while patch and tree are the same.
+Exit codes: 0 all killed or proven equivalent, 1 some survived or a clean tree failed, 2 bad usage,
+3 interrupted or a mutant that does not build.
+"""
+
+import argparse
+import datetime
+import hashlib
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import results
+from patches import ROOT, read_patches
+from worker import OutOfTime, Stopped, Worker
+
+
+def git(*arguments):
+    """What git says about the checkout."""
+    command = ["git", "-C", str(ROOT), *arguments]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def tree_digest():
+    """Of all files of HEAD that can decide a verdict: not of texts, nor of the mutants."""
+    lines = [
+        line
+        for line in git("ls-tree", "-r", "HEAD").splitlines()
+        if "\tverification/mutants/" not in line and not line.endswith(".md")
+    ]
+    return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
+
+
+def result_of(worker, patch, programs, timeout):
+    """What becomes of one mutant, as it is stored."""
+    started = time.monotonic()
+    result = {"patch": patch.digest, "by": "", "program": ""}
+    try:
+        failure = worker.first_failure(patch, programs, timeout)
+    except OutOfTime as error:
+        result |= {"verdict": "no verdict", "by": str(error)}
+    else:
+        result["verdict"] = "equivalent" if patch.equivalent else "survived"
+        if failure:
+            # A test that hangs would be noticed, too.
+            hangs = failure.kind == "timeout"
+            result["verdict"] = "killed" if hangs else failure.kind
+            result["by"] = failure.by + (" (timeout)" if hangs else "")
+            result["program"] = failure.program
+    return result | {"seconds": time.monotonic() - started}
+
+
+def clean_runs(worker, wanted, tree, revision):
+    """Runs all tests of the clean tree until it has had `wanted` runs; earlier ones count.
+
+    Raises RuntimeError when a test has failed in every run: no verdict on mutants would count.
+    """
+    known = results.stored(results.CLEAN)
+    if known is None or known["tree"] != tree:
+        known = {"tree": tree, "revision": revision, "alarms": [], "seconds": {}}
+    while len(known["alarms"]) < wanted:
+        alarms = []
+        for program in worker.programs():
+            failed, known["seconds"][program.name] = worker.failures(program)
+            alarms += failed
+        known["alarms"].append(alarms)
+        results.store(results.CLEAN, known)
+        total = sum(known["seconds"].values())
+        failed = f"{', '.join(alarms)} failed, " if alarms else ""
+        print(f"clean tree: run {len(known['alarms'])}, {failed}{total:.0f} s", flush=True)
+    always = set.intersection(*map(set, known["alarms"]))
+    if always:
+        raise RuntimeError(f"the clean tree fails: {', '.join(sorted(always))}")
+
+
+def work(worker, todo, options, tree, revision):
+    """Takes mutants from a queue until it is empty."""
+    programs = worker.programs()
+    seconds = results.stored(results.CLEAN)["seconds"]
+    while True:
+        try:
+            patch = todo.get_nowait()
+        except queue.Empty:
+            return
+        killers = results.killers()
+        for program in programs:
+            program.seconds, program.kills = seconds[program.name], killers[program.name]
+        programs.sort(key=lambda program: program.cost())
+        result = result_of(worker, patch, programs, options.timeout)
+        result |= {"tree": tree, "revision": revision, "date": str(datetime.date.today())}
+        results.store(patch.name, result)
+        told = f"{patch.name:<44} {result['seconds']:5.0f} s  {result['by']}"
+        print(f"{result['verdict']:<10} {told}", flush=True)
+
+
+def is_finished(patch, tree):
+    """Whether this patch has a verdict on this tree."""
+    result = results.stored(patch.name)
+    wanted = (patch.digest, tree)
+    if result is None or result["verdict"] in ("broken", "no verdict"):
+        return False
+    return (result["patch"], result["tree"]) == wanted
+
+
+def chosen_patches(names):
+    """The patches whose names begin with one of the names given; all without names."""
+    patches = read_patches()
+    if not names:
+        return patches
+    for name in names:
+        if not any(patch.name.startswith(name) for patch in patches):
+            raise UsageError(f"no mutant begins with '{name}' in verification/mutants")
+    return [patch for patch in patches if patch.name.startswith(tuple(names))]
+
+
+class UsageError(Exception):
+    """Bad usage."""
+
+
+def run(options, stop):
+    """Everything; returns the exit code."""
+    patches = chosen_patches(options.names)
+    tree, revision = tree_digest(), git("rev-parse", "--short=12", "HEAD").strip()
+    todo = queue.Queue()
+    for patch in patches:
+        if not is_finished(patch, tree):
+            todo.put(patch)
+    errors = []
+
+    def one_worker(first):
+        try:
+            with Worker(revision, stop) as worker:
+                if first:
+                    clean_runs(worker, max(1, options.clean), tree, revision)
+                    clean_is_known.set()
+                while not clean_is_known.wait(0.2):
+                    if stop.is_set():
+                        return
+                work(worker, todo, options, tree, revision)
+        except Stopped:
+            pass
+        except Exception as error:  # the other workers end, and the user hears of it
+            errors.append(error)
+            stop.set()
+
+    clean_is_known = threading.Event()
+    count = max(1, min(options.jobs, todo.qsize()))
+    threads = [threading.Thread(target=one_worker, args=(n == 0,)) for n in range(count)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    rows = results.write_table(read_patches(), revision)
+    for error in errors:
+        print(f"error: {error}", file=sys.stderr)
+    if errors:
+        return 1
+    verdicts = [row[2] for row in rows if row[0] in {patch.name for patch in patches}]
+    for verdict in sorted(set(verdicts)):
+        print(f"{verdicts.count(verdict):4} {verdict}")
+    if stop.is_set() or {"broken", "no verdict", "not run"} & set(verdicts):
+        return 3
+    return 1 if "survived" in verdicts else 0
+
+
+def main():
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(
+        prog="ci/mutants", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", metavar="NAME", help="mutants, or how they begin: 017")
+    parser.add_argument("--jobs", type=int, default=1, help="copies side by side (default 1)")
+    parser.add_argument("--timeout", type=float, default=1800, help="s for each mutant (1800)")
+    parser.add_argument("--clean", type=int, default=1, help="runs of the clean tree first (1)")
+    options = parser.parse_args()
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    try:
+        return run(options, stop)
+    except UsageError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,127 @@
+#pragma once
+
+#define EIGEN_DONT_VECTORIZE  // GCC 12 warns of its own AVX-512 headers when Eigen uses them
+
+#include <Eigen/Dense>
+
+#include "model/model.hpp"
+#include "support/newton_krylov.hpp"
+#include "support/plain_assembly.hpp"
+
+namespace sandglass::verification {
+
+/// The balance of a scene's free components: displacements from `from` on, by which elements remember
+/// `histories`, with the imposed ones at a share of their final values.
+template <class Kernel, class Law>
+class Balance {
+ public:
+  using Assembly = PlainAssembly<Kernel, Law>;
+  using Histories = typename Assembly::template Histories<double>;
+
+  Balance(const Scene& scene, const Law& law)
+      : scene_(scene),
+        assembly_(scene.mesh, law, {.kappa = {}, .density = scene.description.density}),
+        from_(assembly_.numbers(), 0.0),
+        histories_(assembly_.template rest<double>()) {
+    std::vector<bool> is_free(assembly_.numbers(), true);
+    for (const Constraint& constraint : scene.constraints) {
+      is_free[3 * index(constraint.node) + index(constraint.component)] = false;
+    }
+    for (std::size_t k = 0; k < is_free.size(); ++k) {
+      if (is_free[k]) free_.push_back(k);
+    }
+  }
+
+  /// Goes on from displacements (m) with what elements remember there.
+  void start_from(std::vector<double> u, Histories histories) {
+    from_ = std::move(u);
+    histories_ = std::move(histories);
+  }
+
+  const Assembly& assembly() const { return assembly_; }
+
+  std::size_t size() const { return free_.size(); }
+
+  /// All displacements, from those of the free components.
+  std::vector<double> displacements(const std::vector<double>& x, double share) const {
+    std::vector<double> u(from_.size());
+    for (const Constraint& constraint : scene_.constraints) {
+      u[3 * index(constraint.node) + index(constraint.component)] = share * final_value(scene_, constraint);
+    }
+    for (std::size_t k = 0; k < free_.size(); ++k) u[free_[k]] = x[k];
+    return u;
+  }
+
+  /// The free components of a nodal field.
+  std::vector<double> free_of(const std::vector<double>& u) const {
+    std::vector<double> x;
+    for (const std::size_t k : free_) x.push_back(u[k]);
+    return x;
+  }
+
+  /// Forces (N) of all components.
+  std::vector<double> forces(const std::vector<double>& u) const {
+    std::vector<double> increment = u;
+    for (std::size_t k = 0; k < u.size(); ++k) increment[k] -= from_[k];
+    Histories histories = histories_;
+    return assembly_.template force<double>(u, increment, infinite, histories);
+  }
+
+  /// Their change along a direction of the free components.
+  std::vector<double> derivative(const std::vector<double>& u, const std::vector<double>& direction) const {
+    std::vector<D> at(u.size()), increment(u.size());
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      at[k] = D(u[k]);
+      increment[k] = D(u[k] - from_[k]);
+    }
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      at[free_[k]].slope = increment[free_[k]].slope = direction[k];
+    }
+    auto histories = assembly_.dual(histories_);
+    const std::vector<D> f = assembly_.template force<D>(at, increment, infinite, histories);
+    std::vector<double> slopes;
+    for (const std::size_t k : free_) slopes.push_back(f[k].slope);
+    return slopes;
+  }
+
+  /// The tangent stiffness of the free components, column by column.
+  Eigen::MatrixXd tangent(const std::vector<double>& u) const {
+    const auto n = static_cast<Eigen::Index>(size());
+    Eigen::MatrixXd K(n, n);
+    std::vector<double> direction(size(), 0.0);
+    for (std::size_t k = 0; k < size(); ++k) {
+      direction[k] = 1.0;
+      const std::vector<double> column = derivative(u, direction);
+      K.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(column.data(), n);
+      direction[k] = 0.0;
+    }
+    return K;
+  }
+
+  /// Free components in balance at a share of what is imposed, by Newton's method from x.
+  std::vector<double> solved(const std::vector<double>& x, double share, double unit,
+                             double tolerance) const {
+    const Eigen::PartialPivLU<Eigen::MatrixXd> solver(tangent(displacements(x, share)));
+    const NonlinearSystem system{[&](const auto& at) { return free_of(forces(displacements(at, share))); },
+                                 [&](const auto& at, const auto& direction) {
+                                   return derivative(displacements(at, share), direction);
+                                 },
+                                 [&](const auto& r) {
+                                   const Eigen::VectorXd z = solver.solve(Eigen::Map<const Eigen::VectorXd>(
+                                       r.data(), static_cast<Eigen::Index>(r.size())));
+                                   return std::vector<double>(z.begin(), z.end());
+                                 }};
+    return solved_by_newton_krylov(system, x, unit, tolerance);
+  }
+
+ private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+  const Scene& scene_;
+  Assembly assembly_;
+  std::vector<std::size_t> free_;
+  std::vector<double> from_;
+  Histories histories_;
+};
+
+}  // namespace sandglass::verification

@@ -1,0 +1,225 @@
+#pragma once
+
+#include "element/hexahedron.hpp"
+#include "support/derivatives.hpp"
+#include "support/exact_stress.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+
+/// Manufactured solutions: a displacement field is chosen, and the loads under which it is the exact answer
+/// follow from it by derivatives.
+namespace sandglass::verification {
+
+inline double sine(double x) {
+  return std::sin(x);
+}
+inline double cosine(double x) {
+  return std::cos(x);
+}
+template <class T>
+Dual<T> cosine(const Dual<T>& x);
+template <class T>
+Dual<T> sine(const Dual<T>& x) {
+  return {sine(x.value), cosine(x.value) * x.slope};
+}
+template <class T>
+Dual<T> cosine(const Dual<T>& x) {
+  return {cosine(x.value), -(sine(x.value) * x.slope)};
+}
+
+/// Three waves, u = sum_m a_m sin(k_m . X + phase_m), in m on a body of about a metre. They are almost
+/// transverse: displacement gradients reach 0.33 in their Frobenius norm while det F stays between 0.955 and
+/// 1.040, so that nearly incompressible laws bear it, too. Nothing in it is symmetric or a polynomial.
+struct WaveField {
+  double amplitude = 1.0;
+
+  template <class T>
+  Triple<T> operator()(const Triple<T>& X) const {
+    constexpr Tensor<double> k{{2.1, 1.2, -0.9, -1.1, 1.8, 1.3, 1.4, -0.8, 2.0}};  // 1/m, a wave in each row
+    constexpr Tensor<double> a{{0.03, -0.015, 0.06, 0.06, -0.01, 0.06, 0.03, 0.06, 0.0}};  // m
+    constexpr std::array<double, 3> phase{0.3, 1.1, -0.4};
+    Triple<T> u = from_double<T>(Triple<double>{});
+    for (int m = 0; m < 3; ++m) {
+      const T angle = T(k(m, 0)) * X(0, 0) + T(k(m, 1)) * X(1, 0) + T(k(m, 2)) * X(2, 0);
+      const T wave = sine(angle + T(phase[index(m)]));
+      for (int i = 0; i < 3; ++i) u(i, 0) = u(i, 0) + T(amplitude * a(m, i)) * wave;
+    }
+    return u;
+  }
+};
+
+/// X with the slope 1 in component j.
+template <class T>
+Triple<Dual<T>> moving_along(const Triple<T>& X, int j) {
+  Triple<Dual<T>> moving;
+  for (int i = 0; i < 3; ++i) moving(i, 0) = {X(i, 0), T(i == j ? 1.0 : 0.0)};
+  return moving;
+}
+
+/// H_ij = du_i/dX_j.
+template <class Field, class T>
+Tensor<T> field_gradient(const Field& field, const Triple<T>& X) {
+  Tensor<T> H;
+  for (int j = 0; j < 3; ++j) {
+    const Triple<Dual<T>> u = field(moving_along(X, j));
+    for (int i = 0; i < 3; ++i) H(i, j) = u(i, 0).slope;
+  }
+  return H;
+}
+
+/// A field with the loads that hold it: b = -Div P in the body, t = P N on its surface. P is the stress that
+/// the method stands for, the law's or that of small strains.
+template <class Method, class Law, class Field>
+struct ManufacturedSolution {
+  Field field;
+  Law law;
+
+  /// First Piola-Kirchhoff stress, Pa.
+  Tensor<double> stress(const Triple<double>& X) const {
+    return exact_stress<Method>(law, field_gradient(field, X));
+  }
+
+  /// N/m^3.
+  Triple<double> body_force(const Triple<double>& X) const {
+    Triple<double> b{};
+    for (int j = 0; j < 3; ++j) {
+      const Tensor<D> P = exact_stress<Method>(law, field_gradient(field, moving_along(X, j)));
+      for (int i = 0; i < 3; ++i) b(i, 0) -= P(i, j).slope;
+    }
+    return b;
+  }
+
+  Vector displacement(const Vector& X) const { return field(Triple<double>{{X[0], X[1], X[2]}}).entries; }
+};
+
+/// The Gauss rule of three points on [-1, 1]: exact to degree 5. With it in each direction what integration
+/// leaves of loads and errors is of order h^6 and more.
+inline constexpr std::array<double, 3> rich_points{-0.77459666924148337704, 0.0, 0.77459666924148337704};
+inline constexpr std::array<double, 3> rich_weights{5.0 / 9, 8.0 / 9, 5.0 / 9};
+
+/// A point of the rich rule in an element: shape functions, place (m) and weight (m^3).
+struct RichPoint {
+  std::array<double, 3> xi;
+  Matrix<double, 8, 1> N;
+  Triple<double> X;
+  double weight;
+};
+
+/// Calls visit(point) for all 27 points of an element with nodes at X.
+template <class Visit>
+void for_rich_points(const NodalVectors<double>& X, const Visit& visit) {
+  for (std::size_t p = 0; p < 27; ++p) {
+    const std::array<std::size_t, 3> at{p % 3, p / 3 % 3, p / 9};
+    RichPoint point{};
+    for (std::size_t i = 0; i < 3; ++i) point.xi[i] = rich_points[at[i]];
+    for (int I = 0; I < 8; ++I) {
+      point.N(I, 0) = 0.125;
+      for (int i = 0; i < 3; ++i) point.N(I, 0) *= 1.0 + corner_signs(I, i) * point.xi[index(i)];
+    }
+    point.X = transpose(X) * point.N;
+    point.weight = rich_weights[at[0]] * rich_weights[at[1]] * rich_weights[at[2]] *
+                   determinant(parent_jacobian(X, point.xi));
+    visit(point);
+  }
+}
+
+/// Adds the integral of N t over a face to the loads of its nodes; t(X, N) is the traction (Pa) where the
+/// outward normal is N.
+template <class Traction>
+void add_face_loads(const NodalField& points, const Quadrilateral& face, const Traction& traction,
+                    NodalField& loads) {
+  constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  for (std::size_t p = 0; p < 9; ++p) {
+    const double xi = rich_points[p % 3], eta = rich_points[p / 3];
+    std::array<double, 4> N{};
+    Triple<double> X{}, along_xi{}, along_eta{};
+    for (std::size_t I = 0; I < 4; ++I) {
+      const auto [s, t] = signs[I];
+      N[I] = 0.25 * (1 + s * xi) * (1 + t * eta);
+      const Triple<double> corner{points[index(face[I])]};
+      X += N[I] * corner;
+      along_xi += 0.25 * s * (1 + t * eta) * corner;
+      along_eta += 0.25 * t * (1 + s * xi) * corner;
+    }
+    const Triple<double> area = rich_weights[p % 3] * rich_weights[p / 3] * cross(along_xi, along_eta);
+    const Triple<double> force = traction(X, area);
+    for (std::size_t I = 0; I < 4; ++I) {
+      for (int i = 0; i < 3; ++i) loads[index(face[I])][index(i)] += N[I] * force(i, 0);
+    }
+  }
+}
+
+/// The consistent nodal loads of a manufactured solution on the mesh, sorted by node: body force and, on the
+/// whole surface, tractions. What meets held nodes becomes part of their reactions.
+template <class Solution>
+std::vector<NodalLoad> manufactured_loads(const Mesh& mesh, const Solution& solution) {
+  NodalField loads(mesh.points.size(), Vector{});
+  for (const auto& cell : mesh.cells) {
+    for_rich_points(gather(mesh.points, cell), [&](const RichPoint& point) {
+      const Triple<double> force = point.weight * solution.body_force(point.X);
+      for (int I = 0; I < 8; ++I) {
+        for (int i = 0; i < 3; ++i) {
+          loads[index(cell[index(I)])][index(i)] += point.N(I, 0) * force(i, 0);
+        }
+      }
+    });
+  }
+  const auto traction = [&](const Triple<double>& X, const Triple<double>& area) {
+    return solution.stress(X) * area;
+  };
+  for (const auto& face : boundary_faces(mesh.cells)) add_face_loads(mesh.points, face, traction, loads);
+  std::vector<NodalLoad> result;
+  for (std::size_t n = 0; n < loads.size(); ++n) result.push_back({static_cast<int>(n), loads[n]});
+  return result;
+}
+
+/// How far a trilinear field is from the exact one: norms over the body, relative to those of the exact one.
+struct FieldErrors {
+  double displacement;  ///< L2
+  double gradient;      ///< H1 seminorm
+  double nodal;         ///< L2 of the trilinear field of the nodes' own errors: without interpolation
+};
+
+template <class Field>
+FieldErrors field_errors(const Mesh& mesh, const NodalField& u, const Field& field) {
+  double distance = 0.0, size = 0.0, gradient_distance = 0.0, gradient_size = 0.0, nodal_distance = 0.0;
+  NodalField errors;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    const Triple<double> error = Triple<double>{u[n]} - field(Triple<double>{mesh.points[n]});
+    errors.push_back(error.entries);
+  }
+  for (const auto& cell : mesh.cells) {
+    const NodalVectors<double> X = gather(mesh.points, cell), nodal = gather(u, cell);
+    const NodalVectors<double> nodal_error = gather(errors, cell);
+    for_rich_points(X, [&](const RichPoint& point) {
+      const Triple<double> exact = field(point.X), error = transpose(nodal) * point.N - exact;
+      const Tensor<double> H = field_gradient(field, point.X);
+      const Tensor<double> H_error = transpose(nodal) * point_gradient(X, point.xi).gradient - H;
+      distance += point.weight * double_dot(error, error);
+      const Triple<double> own = transpose(nodal_error) * point.N;
+      nodal_distance += point.weight * double_dot(own, own);
+      size += point.weight * double_dot(exact, exact);
+      gradient_distance += point.weight * double_dot(H_error, H_error);
+      gradient_size += point.weight * double_dot(H, H);
+    });
+  }
+  return {std::sqrt(distance / size), std::sqrt(gradient_distance / gradient_size),
+          std::sqrt(nodal_distance / size)};
+}
+
+/// A unit cube of n x n x n elements whose nodes are moved by up to `share` of an edge along each axis; those
+/// of the surface stay in it. Up to 0.15 every corner of every element keeps a positive volume: the edges
+/// there are I + E with |E_ij| <= 0.3, and det(I + E) >= 0.7^3 - 3 0.7 0.3^2 - 2 0.3^3 = 0.1.
+inline Mesh distorted_cube(int n, double share, std::uint64_t seed) {
+  Mesh mesh = box({1.0, 1.0, 1.0}, {n, n, n});
+  RandomGeometry random(seed);
+  for (auto& X : mesh.points) {
+    for (double& x : X) {
+      const double shift = random.uniform(-share, share) / n;
+      if (x > 0.5 / n && x < 1.0 - 0.5 / n) x += shift;
+    }
+  }
+  return mesh;
+}
+
+}  // namespace sandglass::verification

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace sandglass::verification {
+
+/// F(x) = 0 with what a Newton-Krylov method needs of it.
+struct NonlinearSystem {
+  using Vector = std::vector<double>;
+  std::function<Vector(const Vector& x)> residual;
+  std::function<Vector(const Vector& x, const Vector& direction)> jacobian_product;  ///< dF/dx . direction
+  std::function<Vector(const Vector& r)> precondition;  ///< approximately (dF/dx)^-1 r
+};
+
+/// A root of the system by KINSOL (SUNDIALS) with line search and flexible GMRES, from x. It ends when the
+/// largest component of the residual is below `tolerance`, or earlier when roundoff leaves no shorter one to
+/// be found: who takes the answer looks at its residual. `size` is the unit of x. Throws std::runtime_error.
+std::vector<double> solved_by_newton_krylov(const NonlinearSystem& system, std::vector<double> x, double size,
+                                            double tolerance);
+
+}  // namespace sandglass::verification

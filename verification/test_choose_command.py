@@ -1,0 +1,246 @@
+"""`sandglass choose`: what it picks and why, that a run gives what it predicts, what is refused."""
+
+import json
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+from command_line import BINARY, BLOCK, ROOT, catches_interrupts, sandglass, write_golden
+from scipy.interpolate import RegularGridInterpolator
+
+CASES = ROOT / "cases"
+
+
+def choose(case, *arguments):
+    """The outcome of the command, and what it wrote as JSON."""
+    file = case.parent / "choice.json" if hasattr(case, "parent") else None
+    outcome = sandglass("choose", case, *arguments, "--json", file)
+    return outcome, json.loads(file.read_text())
+
+
+def copied(name, folder, *replaced):
+    """A case of the repository in a folder of its own, with texts replaced."""
+    text = (CASES / f"{name}.toml").read_text()
+    for old, new in replaced:
+        assert old in text
+        text = text.replace(old, new)
+    for kind in ("golden", "truth"):
+        stored = ROOT / "reference" / kind / f"{name}.h5"
+        text = text.replace("[comparison]", f'[comparison]\n{kind} = "{stored}"')
+    case = folder / f"{name}.toml"
+    case.write_text(text)
+    return case
+
+
+def answer(case, *arguments):
+    """Nodes and final displacements of a run, m."""
+    result = case.parent / "result.h5"
+    outcome = sandglass("run", case, *arguments, "-o", result)
+    assert outcome.returncode == 0, outcome.stderr
+    with h5py.File(result) as file:
+        last = sorted(file["frames"])[-1]
+        return file["mesh/points"][:], file[f"frames/{last}/displacement"][:]
+
+
+def on_lattice(points, u, wanted):
+    """A field on a lattice of boxes at other points, by scipy's trilinear interpolation."""
+    axes = [np.unique(points[:, i].round(12)) for i in range(3)]
+    places = tuple(np.searchsorted(axes[i], points[:, i].round(12)) for i in range(3))
+    grid = np.zeros([len(axis) for axis in axes] + [3])
+    grid[places] = u
+    return RegularGridInterpolator(axes, grid, bounds_error=False, fill_value=None)(wanted)
+
+
+def largest(difference, unit):
+    return np.linalg.norm(difference, axis=1).max() / unit
+
+
+def chosen_of(document):
+    return document["rungs"][document["chosen"]]
+
+
+def test_light_touch_takes_the_condensed_linear_answer(tmp_path):
+    """1 mm on an organ of 16 cm at 5 %; the chosen case gives the predicted error, to the digit."""
+    case = copied("ellipsoid-touch", tmp_path, ("-0.01]", "-0.001]"))
+    chosen = tmp_path / "chosen.toml"
+    outcome, document = choose(case, "--tolerance", "5%", "-o", chosen)
+    assert outcome.returncode == 0, outcome.stderr
+    rung = chosen_of(document)
+    assert rung["method"] == "linear-condensed" and rung["mesh"] == "own mesh"
+    assert rung["error"] <= 0.05 and rung["smallest_jacobian"] > 0.9
+    _, golden = answer(case, "--method", "tl-mean-dilatation")
+    _, u = answer(chosen)
+    assert largest(u - golden, 0.001) == pytest.approx(rung["error"], rel=1e-9)
+
+
+def test_column_takes_one_nonlinear_point(tmp_path):
+    """Where everything turns, small strains are refused for that; one point with control is enough.
+
+    The chosen mesh may be coarser: its answer is compared at the user's nodes by other means.
+    """
+    case = copied("column", tmp_path)
+    chosen = tmp_path / "chosen.toml"
+    outcome, document = choose(case, "--tolerance", "2%", "-o", chosen)
+    assert outcome.returncode == 0, outcome.stderr
+    rung = chosen_of(document)
+    words = {line.split()[0]: line for line in sandglass("methods").stdout.splitlines()}
+    assert "one point" in words[rung["method"]]
+    linear = [r for r in document["rungs"] if r["method"].startswith("linear") and r["error"]]
+    assert linear and all("small-strain theory" in r["reason"] for r in linear)
+    nodes, golden = answer(case, "--method", "tl-mean-dilatation")
+    points, u = answer(chosen)
+    unit = np.hypot(0.5, 0.3)
+    predicted = largest(on_lattice(points, u, nodes) - golden, unit)
+    assert predicted == pytest.approx(rung["error"], rel=1e-6)
+    assert predicted <= 0.02
+
+
+def test_ellipsoid_takes_the_adaptive_method_at_half_a_percent(tmp_path):
+    case = copied("ellipsoid-indentation", tmp_path)
+    chosen = tmp_path / "chosen.toml"
+    outcome, document = choose(case, "--tolerance", "0.5%", "--against", "golden", "-o", chosen)
+    assert outcome.returncode == 0, outcome.stderr
+    rung = chosen_of(document)
+    tried = document["rungs"][: document["chosen"]]
+    assert all(r["error"] > 0.005 and r["outcome"] == "refused" and r["reason"] for r in tried)
+    assert {"linear", "linear-condensed", "tl-perturbation"} <= {r["method"] for r in tried}
+    assert rung["error"] <= 0.005 and rung["method"] == "tl-adaptive"
+    with h5py.File(ROOT / "reference" / "golden" / "ellipsoid-indentation.h5") as file:
+        golden = file["displacement"][:]
+    assert largest(answer(chosen)[1] - golden, 0.04) == pytest.approx(rung["error"], rel=1e-9)
+
+
+def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
+    """No method mends a mesh that is a percent off; a truth known less well shows nothing."""
+    case = copied("column", tmp_path)
+    chosen = tmp_path / "chosen.toml"
+    outcome, document = choose(case, "--tolerance", "0.01%", "--against", "truth", "-o", chosen)
+    assert outcome.returncode == 1, outcome.stderr
+    assert not chosen.exists() and document["chosen"] is None
+    assert "nothing suffices" in outcome.stdout and "was not written" in outcome.stdout
+    words = " ".join(document["remarks"])
+    assert "cannot be shown" in words and "no method mends it" in words and "the nearest" in words
+    assert all(r["reason"] and r["outcome"] == "refused" for r in document["rungs"])
+    assert all(remark in outcome.stdout for remark in document["remarks"])
+
+
+def test_without_a_stored_golden_it_is_the_same_choice_as_with_one(block):
+    write_golden(block)
+    computed = choose(block, "--methods", "tl-perturbation", "--all", "--tolerance", "1e-9")[1]
+    stored = choose(
+        block, "--methods", "tl-perturbation", "--all", "--tolerance", "1e-9", "--against", "golden"
+    )[1]
+    errors = [
+        {r["rung"]: r["error"] for r in document["rungs"] if r["mesh"] == "own mesh"}
+        for document in (computed, stored)
+    ]
+    assert errors[0] == errors[1] and len(errors[0]) == 6
+
+
+def test_a_mesh_from_a_file_stays_where_it_is(block, tmp_path):
+    """The case is written into another folder; its mesh is found from there, the only one."""
+    mesh = tmp_path / "mesh.h5"
+    assert sandglass("mesh", block, "-o", mesh).returncode == 0
+    before, rest = BLOCK.split("[mesh]")
+    text = f'{before}[mesh]\nfile = "mesh.h5"\n\n[material]{rest.split("[material]")[1]}'
+    case = tmp_path / "filed.toml"
+    case.write_text(text)
+    (tmp_path / "there").mkdir()
+    chosen = tmp_path / "there" / "chosen.toml"
+    outcome, document = choose(case, "--tolerance", "5%", "-o", chosen)
+    assert outcome.returncode == 0, outcome.stderr
+    assert document["coarser_meshes"] == []
+    run = sandglass("run", chosen)
+    assert run.returncode == 0, run.stderr
+    assert chosen_of(document)["method"] in run.stdout
+
+
+def test_the_written_case_is_the_users_own(block, tmp_path):
+    chosen = tmp_path / "chosen.toml"
+    assert sandglass("choose", block, "--tolerance", "2%", "-o", chosen).returncode == 0
+    text = chosen.read_text()
+    assert text.startswith("#") and "comments are not kept" in text
+    for line in ("size = [0.1, 0.1, 0.2]", "young_modulus = 3000.0", "[method]"):
+        assert line in text
+    assert 'requirement = "A block is pulled and sheared."' in text
+
+
+def test_run_takes_the_method_of_the_case_unless_told(block):
+    block.write_text(BLOCK + '\n[method]\nname = "tl-perturbation"\nkappa = 0.02\n')
+    assert "block tl-perturbation 0.02:" in sandglass("run", block).stdout
+    assert "block tl-perturbation 0.03:" in sandglass("run", block, "-k", "0.03").stdout
+    assert "(auto)" in sandglass("run", block, "-k", "auto").stdout
+    # What the case says of kappa is about its own method.
+    assert "block tl-full :" in sandglass("run", block, "-m", "tl-full").stdout
+    assert (
+        "block ul-perturbation 0.00649" in sandglass("run", block, "-m", "ul-perturbation").stdout
+    )
+    block.write_text(BLOCK + '\n[method]\nname = "tl-full"\nprecision = "float"\n')
+    assert "at rest within the rounding of single" in sandglass("run", block).stdout
+    assert "block tl-full : at rest after" in sandglass("run", block, "-p", "double").stdout
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("--tolerance", "0"), ["--tolerance = '0'", "(0, 1]"]),
+        (("--tolerance", "1pc"), ["--tolerance = '1pc'", "1%"]),
+        (("--tolerance", "200%"), ["--tolerance = '200%'"]),
+        (("--budget", "1min"), ["--budget = '1min'", "1ms"]),
+        (("--budget", "-1ms"), ["--budget = '-1ms'"]),
+        (("--against", "gold"), ["--against", "golden"]),
+        (("--against", "truth"), ["block.h5"]),
+        (("--methods", "tl-nothing"), ["'tl-nothing'", "known"]),
+        (("--threads", "0"), ["--threads = 0"]),
+        (("--json", "/dev/null/choice.json"), ["/dev/null/choice.json"]),
+        (("--output", "/dev/null/chosen.toml"), ["/dev/null/chosen.toml"]),
+    ],
+)
+def test_wrong_input_is_told(block, arguments, words):
+    outcome = sandglass("choose", block, *arguments)
+    assert outcome.returncode == 2, outcome.stdout
+    for word in words:
+        assert word in outcome.stderr
+
+
+def test_does_not_write_over_the_case(block):
+    outcome = sandglass("choose", block, "-o", block)
+    assert outcome.returncode == 2 and "another file" in outcome.stderr
+    assert block.read_text() == BLOCK
+
+
+def test_dynamic_cases_are_refused():
+    outcome = sandglass("choose", "bar-wave")
+    assert outcome.returncode == 2
+    assert "quasi-static" in outcome.stderr
+
+
+@pytest.mark.parametrize(
+    "budget, suffices", [("0.000000000001", False), ("10s", True), ("1e9us", True)]
+)
+def test_budgets_are_kept(block, budget, suffices):
+    outcome, document = choose(
+        block, "--methods", "linear", "--tolerance", "50%", "--budget", budget
+    )
+    assert outcome.returncode == (0 if suffices else 1)
+    for rung in document["rungs"]:
+        assert suffices or ("may take" in rung["reason"] and rung["error"] is None)
+
+
+def test_ctrl_c_leaves_nothing(tmp_path):
+    case = copied("ellipsoid-indentation", tmp_path)
+    chosen, table = tmp_path / "chosen.toml", tmp_path / "choice.json"
+    command = [BINARY, "choose", case, "--all", "-o", chosen, "--json", table]
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+    while process.poll() is None and not catches_interrupts(process):
+        time.sleep(0.002)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == 3, told
+    assert "interrupted" in told
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["ellipsoid-indentation.toml"]

@@ -1,0 +1,86 @@
+/// Every loop that threads share, for the thread sanitizer to watch: elements of every method, the steppers'
+/// passes over rows, the preconditioner, superposition, and runs side by side on one scene. That they give
+/// the same bits as one thread is checked too: a loop that was left out would not run.
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "stepping/central_difference.hpp"
+#include "stepping/relaxation.hpp"
+#include "support/scenes.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// A block long enough that it is cut up.
+Scene block(const AnyLaw& law, bool quasi_static) {
+  Case description = plain_case(law);
+  const Mesh mesh = box({0.1, 0.1, 0.4}, {4, 4, 18});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.39; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.01, 0.0, 0.02}}};
+  description.quasi_static = quasi_static;
+  description.relaxation.max_steps = 8;
+  description.relaxation.check_interval = 4;
+  description.dynamics.duration = 0.01;
+  description.dynamics.check_interval = 4;
+  description.dynamics.frames = 2;
+  return make_scene(description, mesh, sets);
+}
+
+template <class Method>
+class ThreadsTest : public ::testing::Test {
+ protected:
+  static NodalField answer(const Scene& scene, int threads) {
+    Observer silent;
+    const Model model(scene, {.method = std::string(Method::name), .threads = threads});
+    return scene.description.quasi_static ? relax(model, silent).u : integrate(model, silent).u;
+  }
+
+  template <class Law>
+  static void expect_same(bool quasi_static) {
+    const Scene scene = block(sample_law<Law>(0.45), quasi_static);
+    const Model model(scene, {.method = std::string(Method::name)});
+    ASSERT_GE(std::get<0>(model.internal_force())->layout().chunks.size(), 4U) << "too few to share out";
+    EXPECT_EQ(answer(scene, 3), answer(scene, 1));
+  }
+};
+
+TYPED_TEST_SUITE(ThreadsTest, MethodTypes, EntryName);
+
+TYPED_TEST(ThreadsTest, relaxation) {
+  this->template expect_same<NeoHookean>(true);
+}
+
+TYPED_TEST(ThreadsTest, motion) {
+  if constexpr (!is_condensed<TypeParam>) this->template expect_same<NeoHookean>(false);
+}
+
+TYPED_TEST(ThreadsTest, motion_with_a_law_that_remembers) {
+  if constexpr (!is_condensed<TypeParam> && knows_law<TypeParam, Viscoelastic<NeoHookean>>) {
+    this->template expect_same<Viscoelastic<NeoHookean>>(false);
+  }
+}
+
+/// As `sandglass verify` runs them: each by itself, on scene and model of all.
+TEST(Threads, share_a_model) {
+  const Scene scene = block(sample_law<NeoHookean>(0.45), true);
+  const Model model(scene, {.method = "tl-perturbation"});
+  std::vector<NodalField> answers(3);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& answer : answers) {
+      threads.emplace_back([&] {
+        Observer silent;
+        answer = relax(model, silent).u;
+      });
+    }
+  }
+  EXPECT_EQ(answers[0], answers[1]);
+  EXPECT_EQ(answers[0], answers[2]);
+}
+
+}  // namespace
+}  // namespace sandglass::verification
