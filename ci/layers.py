@@ -18,7 +18,9 @@ LAYERS = [
     "stepping",
     "io",
     "comparison",
+    "stability",
     "benchmark",
+    "choice",
     "app",
 ]
 

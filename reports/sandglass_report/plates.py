@@ -2,6 +2,7 @@
 
 import io
 import re
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -16,6 +17,7 @@ from sandglass_report import style  # noqa: E402
 
 PIXELS_PER_INCH = 96
 LEGEND_WIDTH = 2.0  # inches
+LETTERS_PER_INCH = 15  # of a note
 TEXT = style.INK[0]
 MUTED = style.MUTED[0]
 
@@ -134,7 +136,8 @@ def save_plate(plate, folder):
             if plate.legend:
                 _draw_legend(figure, plate.legend)
             if plate.note:
-                figure.supxlabel(plate.note, x=0.01, ha="left", fontsize=8.25, color=MUTED)
+                note = textwrap.fill(plate.note, int(LETTERS_PER_INCH * width))
+                figure.supxlabel(note, x=0.01, ha="left", fontsize=8.25, color=MUTED)
             paths = folder / f"{plate.name}.svg", folder / f"{plate.name}.png"
             figure.savefig(paths[0], metadata={"Date": None})
             figure.savefig(paths[1], dpi=160)

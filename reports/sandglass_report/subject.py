@@ -30,7 +30,7 @@ class Subject:
     name: str
     requirement: str
     unit: float  # largest imposed displacement, m
-    imposed: tuple  # (set name, value in m)
+    imposed: tuple  # (set name, value in m; of a rotation its axis times the angle in degrees)
     profile_set: str | None
     profile_order: str | None
     runs: tuple
@@ -96,7 +96,7 @@ def _read_subject(verdicts, name, case_files, references, results):
     path, tables = case_files[name]
     runs = tuple(run for run in verdicts.runs if run.case == name)
     try:
-        imposed = tuple((d["set"], tuple(map(float, d["value"]))) for d in tables["displacement"])
+        imposed = _imposed(tables)
         requirement = tables["case"]["requirement"]
         profile = tables.get("profile", {})
         profile_set, profile_order = profile.get("set"), profile.get("order")
@@ -105,25 +105,26 @@ def _read_subject(verdicts, name, case_files, references, results):
         raise ReportError(f"{path}: not a case of this solver: {error!r}") from error
     files = _result_files(runs, results)
     mesh, displacements, hashes = _read_results(files)
+    stored_answers = {
+        kind: _read_reference(
+            path.parent / stored[kind] if kind in stored else references / kind / f"{name}.h5",
+            name,
+            hashes,
+            mesh.get("points"),
+        )
+        for kind in REFERENCES
+    }
     subject = Subject(
         name=name,
         requirement=requirement,
-        unit=max(float(np.linalg.norm(value)) for _, value in imposed),
+        unit=_unit(tables, stored_answers),
         imposed=imposed,
         profile_set=profile_set,
         profile_order=profile_order,
         runs=runs,
         displacements=displacements,
         **mesh,
-        **{
-            kind: _read_reference(
-                path.parent / stored[kind] if kind in stored else references / kind / f"{name}.h5",
-                name,
-                hashes,
-                mesh.get("points"),
-            )
-            for kind in REFERENCES
-        },
+        **stored_answers,
     )
     if profile_set is not None and files and profile_set not in subject.sets:
         raise ReportError(f"{files[0][1]}: node set {profile_set} of the profile is missing")
@@ -168,6 +169,26 @@ def _read_results(files):
             )
         displacements[run.method, None if run.is_main else run.kappa] = u
     return mesh, displacements, hashes
+
+
+def _imposed(tables):
+    """(set name, value) of all that is imposed: zero where the set is held."""
+    moved = [(d["set"], tuple(map(float, d["value"]))) for d in tables.get("displacement", [])]
+    for turned in tables.get("rotation", []):
+        axis, angle = turned["axis"], float(turned["angle"])
+        axis = [axis == letter for letter in "xyz"] if isinstance(axis, str) else axis
+        moved.append((turned["set"], tuple(angle * float(a) for a in axis)))
+    return tuple(moved)
+
+
+def _unit(tables, references):
+    """The largest imposed displacement, m; where sets turn, as the references have it."""
+    if "rotation" in tables:
+        for reference in references.values():
+            if reference is not None:
+                return float(reference.attributes["largest_imposed"])
+    values = [displacement["value"] for displacement in tables.get("displacement", [])]
+    return max((float(np.linalg.norm(value)) for value in values), default=0.0)
 
 
 def _read_reference(path, name, hashes, points):

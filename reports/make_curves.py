@@ -1,0 +1,28 @@
+"""Draws error against cost of a step from files of `sandglass choose --all --json`.
+
+Several files of one case add up: another tolerance tries the adaptive method at other accuracies.
+
+Usage: /usr/bin/python3 reports/make_curves.py FILE... [-o FOLDER]
+Exit codes: 0 done, 2 an input is missing or broken.
+"""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from sandglass_report.curves import curve_plate, read_rungs  # noqa: E402 (path first)
+from sandglass_report.drawing import draw  # noqa: E402
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+
+    def plates_of(files):
+        return [curve_plate(read_rungs(files))]
+
+    return draw(__doc__, "of sandglass choose --all --json", plates_of, arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,113 @@
+"""Failure maps: what becomes of every method along two axes, one small map per method."""
+
+import json
+from pathlib import Path
+
+from matplotlib.patches import Rectangle
+
+from sandglass_report import style
+from sandglass_report.errors import ReportError
+from sandglass_report.plates import MUTED, Panel, Plate
+
+COLUMNS = 5
+CELL = 30  # pixels
+GOLDEN_FAILS = "the golden fails"
+REFUSED = "not taken"
+
+# Outcome -> colour and letter; the letter tells what colours do not, and is the command line's own.
+OUTCOMES = {
+    "good": ("#9bd3ae", "."),
+    "inaccurate": ("#f3dd85", "o"),
+    "hourglassing": ("#c9a2dd", "H"),
+    "locking": ("#8fbce8", "L"),
+    "inverted": ("#ef9a8c", "I"),
+    "unstable": ("#c8553d", "U"),
+    "not at rest": ("#b9a58f", "R"),
+    GOLDEN_FAILS: ("#d9dde2", "?"),
+    REFUSED: ("#f4f5f7", "-"),
+}
+
+
+def read_maps(path):
+    """The maps of a case as `sandglass stability --json` writes them. Raises ReportError."""
+    try:
+        document = json.loads(Path(path).read_text())
+    except (OSError, ValueError) as error:
+        raise ReportError(f"{path}: not a file of sandglass stability --json: {error}") from error
+    missing = {"case", "limit", "maps", "revision"} - set(document)
+    if missing:
+        raise ReportError(f"{path}: has no {sorted(missing)[0]!r}; sandglass stability --json has")
+    return document
+
+
+def outcome(cell):
+    """The word for a cell: its finding, or why there is none."""
+    if cell["refused"]:
+        return REFUSED
+    return cell["finding"] or GOLDEN_FAILS
+
+
+def words_in(cell):
+    """What stands in a cell: where the method works its error in percent, else a letter."""
+    word = outcome(cell)
+    if word not in ("good", "inaccurate"):
+        return OUTCOMES[word][1]
+    percent = 100 * cell["symptoms"]["error"]
+    if percent < 0.001:
+        return "0"
+    return f"{percent:.0f}" if percent >= 10 else f"{percent:.1g}"
+
+
+def map_plates(document):
+    """One plate per map of a case, one panel per method."""
+    return [_plate(document, one) for one in document["maps"] if one["cells"]]
+
+
+def _plate(document, one):
+    case, limit = document["case"], style.exact_percent(round(document["limit"], 4))
+    methods = dict.fromkeys(cell["method"] for cell in one["cells"])
+    panels = tuple(_panel(case, one, method) for method in methods)
+    shown = {outcome(cell) for cell in one["cells"]}
+    legend = tuple(
+        (f"{letter}  {word}" if letter.isupper() else word, colour, "s")
+        for word, (colour, letter) in OUTCOMES.items()
+        if word in shown
+    )
+    axes = [axis for axis in (one["x"], one["y"]) if axis]
+    note = "; ".join(f"{axis['name']}: {axis['meaning']}" for axis in axes)
+    note += ". Numbers: largest distance in % from the golden's element on this mesh"
+    note += f"; good up to {limit}, unless an axis says otherwise"
+    title = f"{case}: " + " and ".join(axis["name"] for axis in axes)
+    return Plate(f"stability.{case}.{one['name']}", title, panels, COLUMNS, note, legend)
+
+
+def _panel(case, one, method):
+    xs = one["x"]["values"]
+    ys = one["y"]["values"] if one["y"] else [0.0]
+    cells = {(c["x"], c["y"]): c for c in one["cells"] if c["method"] == method}
+
+    written = {"ha": "center", "va": "center", "color": style.INK[0], "fontsize": 7.5}
+
+    def draw(axes):
+        axes.grid(False)
+        for i, x in enumerate(xs):
+            for j, y in enumerate(ys):
+                colour, _ = OUTCOMES[outcome(cells[x, y])]
+                axes.add_patch(Rectangle((i, j), 1, 1, facecolor=colour, edgecolor="white"))
+                axes.text(i + 0.5, j + 0.47, words_in(cells[x, y]), **written)
+        axes.set_xlim(0, len(xs))
+        axes.set_ylim(0, len(ys))
+        axes.set_xticks([i + 0.5 for i in range(len(xs))], [f"{x:g}" for x in xs], fontsize=7)
+        axes.set_yticks([j + 0.5 for j in range(len(ys))], [f"{y:g}" for y in ys], fontsize=7)
+        axes.tick_params(length=0)
+        axes.spines[:].set_visible(False)
+        axes.set_xlabel(one["x"]["name"], color=MUTED)
+        axes.set_ylabel(one["y"]["name"] if one["y"] else "", color=MUTED)
+        if not one["y"]:
+            axes.set_yticks([])
+
+    outcomes = [outcome(cell) for cell in cells.values()]
+    words = ", ".join(f"{outcomes.count(word)} {word}" for word in OUTCOMES if word in outcomes)
+    alt = f"{case}, {method}: of {len(cells)} cells {words}"
+    width, height = max(190, 62 + CELL * len(xs)), 62 + CELL * len(ys)
+    return Panel(f"stability.{case}.{one['name']}.{method}", method, alt, draw, width, height)

@@ -1,0 +1,94 @@
+"""Curves of the adaptive method: what is drawn, in which unit; broken files are refused."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sandglass_report.curves import curve_plate, read_rungs
+from sandglass_report.errors import ReportError
+
+SCRIPT = Path(__file__).resolve().parent.parent / "make_curves.py"
+
+
+def rung(method, seconds, error=0.01, accuracy=None, **changed):
+    name = f"{method} accuracy {accuracy} double" if accuracy else f"{method} double"
+    common = {"kappa": None, "precision": "double", "mesh": "own mesh", "step_size": 1e-3}
+    return (
+        {"rung": name, "method": method, "seconds": seconds, "error": error, "accuracy": accuracy}
+        | common
+        | changed
+    )
+
+
+def write(path, rungs, case="block"):
+    path.write_text(json.dumps({"case": case, "rungs": rungs}))
+    return path
+
+
+def test_costs_are_in_steps_of_the_unit_of_their_own_file(tmp_path):
+    """Two files of one case are two measurements: each is over the unit of its own."""
+    one = write(
+        tmp_path / "1", [rung("tl-perturbation", 2e-5), rung("tl-adaptive", 3e-5, accuracy=0.01)]
+    )
+    two = write(
+        tmp_path / "2", [rung("tl-perturbation", 4e-5), rung("tl-adaptive", 8e-5, accuracy=0.001)]
+    )
+    rungs = read_rungs([one, two])["block"]
+    assert [(r["accuracy"], r["cost"]) for r in rungs] == [(None, 1.0), (0.01, 1.5), (0.001, 2.0)]
+
+
+@pytest.mark.parametrize(
+    "left_out",
+    [
+        {"precision": "float"},
+        {"mesh": "[2, 2, 2]"},
+        {"kappa": 0.01},
+        {"seconds": None},
+        {"step_size": None},
+        {"error": None},
+    ],
+    ids=lambda changed: next(iter(changed)),
+)
+def test_other_rungs_are_left_out(tmp_path, left_out):
+    shown, hidden = rung("tl-perturbation", 1e-5), rung("other", 1e-5) | left_out
+    rungs = read_rungs([write(tmp_path / "1", [shown, hidden])])["block"]
+    assert [r["method"] for r in rungs] == ["tl-perturbation"]
+
+
+def test_a_panel_for_each_case_says_its_curve(tmp_path):
+    files = [
+        write(
+            tmp_path / case,
+            [rung("tl-perturbation", 1e-5), rung("tl-adaptive", 2e-5, 0.003, accuracy=0.005)],
+            case,
+        )
+        for case in ("a", "b")
+    ]
+    plate = curve_plate(read_rungs(files))
+    assert [panel.title for panel in plate.panels] == ["a", "b"]
+    assert all("0.3 % at 2.00" in panel.alt for panel in plate.panels)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{}", '{"case": "a", "rungs": [{}]}', '{"case": "a", "rungs": []}']
+)
+def test_broken_files_are_refused(tmp_path, text):
+    path = tmp_path / "broken.json"
+    path.write_text(text)
+    with pytest.raises(ReportError, match="broken.json"):
+        read_rungs([path])
+
+
+def test_the_script_draws_and_refuses(tmp_path):
+    file = write(tmp_path / "1", [rung("tl-perturbation", 1e-5)])
+    call = [sys.executable, SCRIPT, file, "-o", tmp_path]
+    outcome = subprocess.run(call, capture_output=True, text=True)
+    assert outcome.returncode == 0, outcome.stderr
+    assert (tmp_path / "adaptive.png").stat().st_size > 1000
+    outcome = subprocess.run(
+        [sys.executable, SCRIPT, tmp_path / "none"], capture_output=True, text=True
+    )
+    assert outcome.returncode == 2 and "none" in outcome.stderr
