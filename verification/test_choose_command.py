@@ -88,8 +88,11 @@ def test_column_takes_one_nonlinear_point(tmp_path):
     rung = chosen_of(document)
     words = {line.split()[0]: line for line in sandglass("methods").stdout.splitlines()}
     assert "one point" in words[rung["method"]]
-    linear = [r for r in document["rungs"] if r["method"].startswith("linear") and r["error"]]
-    assert linear and all("small-strain theory" in r["reason"] for r in linear)
+    small_strains = ("--methods", "linear", "linear-condensed")
+    refused, linear = choose(case, "--tolerance", "2%", *small_strains)
+    assert refused.returncode == 1
+    computed = [r for r in linear["rungs"] if r["error"]]
+    assert computed and all("small-strain theory" in r["reason"] for r in computed)
     nodes, golden = answer(case, "--method", "tl-mean-dilatation")
     points, u = answer(chosen)
     unit = np.hypot(0.5, 0.3)

@@ -18,6 +18,7 @@
 #include "stepping/central_difference.hpp"
 #include "stepping/error_estimate.hpp"
 #include "stepping/relaxation.hpp"
+#include "stepping/sleep.hpp"
 
 namespace sandglass {
 
@@ -30,6 +31,7 @@ struct RunOptions {
   std::optional<std::string> kappa_modulus = {};
   std::optional<std::string> precision = {};
   std::optional<std::string> accuracy = {};
+  std::optional<std::string> sleep = {};
   int threads = 1;
   std::string output;
   std::string checkpoint;
@@ -155,9 +157,10 @@ void print_estimate(const Model& model, const NodalField& u) {
       largest_imposed(model.scene()) > 0.0 ? "imposed" : "largest", estimate.evaluations);
 }
 
-void print_time(double seconds, long steps, std::size_t elements, bool went_on) {
-  if (went_on) {
-    fmt::print("wall time {:.3g} s since the checkpoint\n", seconds);
+/// `asleep`: steps had different numbers of elements.
+void print_time(double seconds, long steps, std::size_t elements, bool went_on, bool asleep) {
+  if (went_on || asleep) {
+    fmt::print("wall time {:.3g} s{}\n", seconds, went_on ? " since the checkpoint" : "");
     return;
   }
   fmt::print("wall time {:.3g} s, {:.4g} ns per element and step\n", seconds,
@@ -170,6 +173,7 @@ struct Given {
   std::optional<std::optional<double>> kappa;
   std::optional<KappaModulus> kappa_modulus;
   std::optional<double> accuracy;
+  std::optional<double> sleep;
 };
 
 Given parse(const RunOptions& options) {
@@ -178,6 +182,7 @@ Given parse(const RunOptions& options) {
   if (options.kappa) given.kappa = parse_kappa(*options.kappa);
   if (options.kappa_modulus) given.kappa_modulus = parse_kappa_modulus(*options.kappa_modulus);
   if (options.accuracy) given.accuracy = parse_share("--accuracy", *options.accuracy);
+  if (options.sleep) given.sleep = parse_share("--sleep", *options.sleep);
   return given;
 }
 
@@ -196,8 +201,8 @@ MethodChoice choose_method(const RunOptions& options, const Given& given, const 
   return choice;
 }
 
-int run_case(const RunOptions& options) {
-  const Given given = parse(options);
+/// Throws InputError for options that do not go together.
+void require_sensible(const RunOptions& options) {
   require_threads(options.threads);
   if (!(options.checkpoint_every >= 0.0)) {
     throw InputError(
@@ -207,11 +212,36 @@ int run_case(const RunOptions& options) {
     throw InputError(
         fmt::format("--checkpoint = '{}' must be another file than --output", options.checkpoint));
   }
-  const Scene scene = read_scene(find_case(options.name));
-  if (options.estimate && !scene.description.quasi_static) {
-    throw InputError(fmt::format("--estimate: '{}' is in motion; the estimate is for quasi-static answers",
-                                 scene.description.name));
+  if (options.sleep && !options.checkpoint.empty()) {
+    throw InputError("--sleep: a run of which a part sleeps keeps no checkpoints; leave out --checkpoint");
   }
+}
+
+/// Throws InputError for options that are for quasi-static cases only.
+void require_rest(const RunOptions& options, const Case& description) {
+  if (description.quasi_static) return;
+  const auto refuse = [&](const char* option, const char* what) {
+    throw InputError(
+        fmt::format("{}: '{}' is in motion; {} quasi-static answers", option, description.name, what));
+  };
+  if (options.estimate) refuse("--estimate", "the estimate is for");
+  if (options.sleep) refuse("--sleep", "what sleeps is known of");
+}
+
+/// A static answer, of the whole or of what moves.
+Relaxation answer(const Model& model, const std::optional<double>& sleep, Observer& observer,
+                  const Checkpoint* from) {
+  if (!sleep) return relax(model, observer, from);
+  LocalRelaxation local = relax_awake(model.scene(), model.choice(), *sleep, observer);
+  fmt::print("awake: {} of {} elements\n", local.elements, model.scene().mesh.cells.size());
+  return std::move(local.relaxation);
+}
+
+int run_case(const RunOptions& options) {
+  const Given given = parse(options);
+  require_sensible(options);
+  const Scene scene = read_scene(find_case(options.name));
+  require_rest(options, scene.description);
   const Model model(scene, choose_method(options, given, scene.description));
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
@@ -227,7 +257,7 @@ int run_case(const RunOptions& options) {
     RunObserver observer(scene.description.name, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr);
     NodalField u;
     if (scene.description.quasi_static) {
-      Relaxation relaxation = relax(model, observer, from);
+      Relaxation relaxation = answer(model, given.sleep, observer, from);
       u = std::move(relaxation.u);
       steps = relaxation.steps;
       seconds = relaxation.seconds;
@@ -251,7 +281,7 @@ int run_case(const RunOptions& options) {
       if (options.estimate) print_estimate(model, u);
     }
   }
-  print_time(seconds, steps, scene.mesh.cells.size(), from != nullptr);
+  print_time(seconds, steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
   if (writer) {
     writer->commit(status);
     fmt::print("wrote {}\n", options.output);
@@ -285,6 +315,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
       fmt::format("what an adaptive method aims at, as 0.5% or 0.005: displacement error against its highest "
                   "level over the largest imposed displacement; {:g}% unless told",
                   100.0 * default_accuracy));
+  command->add_option(
+      "--sleep", options->sleep,
+      "leave out what would move by less than this share of the largest imposed displacement, as 0.1%: "
+      "elements wake where something moves near them; for quasi-static answers to a local push");
   command->add_option("-t,--threads", options->threads, "threads; the answer does not depend on their number")
       ->capture_default_str();
   command->add_option("-o,--output", options->output,

@@ -209,11 +209,12 @@ void CoarseStiffness::solve(const CoarseVector& q, CoarseVector& c) const {
         odd[i] += column[stride_ + i] * q[j + 1];
       }
     }
-    const double last = size_ % 2 == 1 ? q[size_ - 1] : 0.0;
-    for (std::size_t i = 0; i < strip; ++i) {
-      const double sum = even[i] + odd[i] + column[i] * last;
-      if (first + i < size_) c[first + i] = sum;
+    if (size_ % 2 == 1) {  // else no column is left
+#pragma omp simd
+      for (std::size_t i = 0; i < strip; ++i) even[i] += column[i] * q[size_ - 1];
     }
+    const std::size_t left = std::min(strip, size_ - first);
+    for (std::size_t i = 0; i < left; ++i) c[first + i] = even[i] + odd[i];
   }
 }
 

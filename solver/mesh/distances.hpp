@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/strips.hpp"
+
+namespace sandglass {
+
+/// Distances between the nodes of a mesh: how many elements one has to cross, corner to corner.
+class Distances {
+ public:
+  explicit Distances(const Mesh& mesh) : mesh_(mesh), elements_(mesh) {}
+
+  /// For each node how far it is from the nearest of some; -1 where elements do not lead there.
+  std::vector<int> from(const std::vector<int>& nodes) const;
+
+  /// Marks the elements that lie within margin[node] of a node; a margin of 0 marks none.
+  void mark(std::vector<int> margin, std::vector<bool>& marked) const;
+
+ private:
+  template <class Visit>
+  void for_neighbours(int node, const Visit& visit) const;
+
+  const Mesh& mesh_;
+  NodeElements elements_;
+};
+
+}  // namespace sandglass

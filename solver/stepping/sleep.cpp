@@ -1,0 +1,316 @@
+#include "stepping/sleep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "mesh/distances.hpp"
+#include "mesh/mesh_part.hpp"
+#include "stepping/equilibrium.hpp"
+#include "stepping/load_levels.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::size_t at(int n) {
+  return static_cast<std::size_t>(n);
+}
+
+// Shares of what may be neglected: the error of the first motion, and what holding a part of it may change in
+// the rest of it. Together one.
+constexpr double share_of_motion = 0.3, share_of_holding = 0.7;
+
+/// Where the first motion is less than so many times what is held, the last one is compared with it; up to
+/// this factor their difference is no reason to begin anew.
+constexpr double outskirts = 10.0, tolerated_swelling = 1.1;
+
+double length(const Vector& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+/// The nodes that are pushed: by an imposed displacement or a force.
+std::vector<int> pushed_nodes(const Scene& scene) {
+  std::vector<int> nodes;
+  for (const auto& constraint : scene.constraints) {
+    const auto& share = constraint.path.share;
+    if (std::any_of(share.begin(), share.end(), [](double s) { return s != 0.0; })) {
+      nodes.push_back(constraint.node);
+    }
+  }
+  for (const auto& load : scene.loads) nodes.push_back(load.node);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+/// The scene on a part of its mesh, held at the rim.
+Scene scene_of(const Scene& whole, const MeshPart& part) {
+  Scene scene = {.description = whole.description,
+                 .mesh = part.mesh,
+                 .sets = {},
+                 .constraints = {},
+                 .angles = whole.angles,
+                 .loads = {},
+                 .initial_velocities = {},
+                 .case_hash = whole.case_hash,
+                 .mesh_hash = whole.mesh_hash};
+  for (const auto& constraint : whole.constraints) {
+    const int node = part.part_of[at(constraint.node)];
+    if (node >= 0 && !part.on_the_rim[at(node)]) {
+      scene.constraints.push_back({node, constraint.component, constraint.path});
+    }
+  }
+  for (std::size_t n = 0; n < part.on_the_rim.size(); ++n) {
+    for (int i = 0; i < 3 && part.on_the_rim[n]; ++i) {
+      scene.constraints.push_back({static_cast<int>(n), i, {}});
+    }
+  }
+  std::sort(scene.constraints.begin(), scene.constraints.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.node, a.component) < std::pair(b.node, b.component);
+  });
+  for (const auto& load : whole.loads) {
+    const int node = part.part_of[at(load.node)];
+    if (node >= 0) scene.loads.push_back({node, load.force});
+  }
+  return scene;
+}
+
+NodalField on_the_whole(const NodalField& field, const MeshPart& part) {
+  NodalField whole(part.part_of.size());
+  for (std::size_t n = 0; n < field.size(); ++n) whole[at(part.node_of[n])] = field[n];
+  return whole;
+}
+
+std::vector<double> on_the_whole(const std::vector<double>& per_element, const MeshPart& part,
+                                 std::size_t elements, double asleep) {
+  std::vector<double> whole(elements, asleep);
+  for (std::size_t e = 0; e < per_element.size(); ++e) whole[at(part.element_of[e])] = per_element[e];
+  return whole;
+}
+
+/// Keeps what is told of a part until it is known that the part is large enough.
+class PartObserver final : public Observer {
+ public:
+  explicit PartObserver(Observer& listener) : listener_(listener) {}
+
+  void frame(const Frame& frame) override { told_.push_back(frame); }
+  void history(const HistoryRow& row) override { rows_.push_back(row); }
+  bool proceed(long step, double share, double residual) override {
+    return listener_.proceed(step, share, residual);
+  }
+
+  void tell(const MeshPart& part, std::size_t elements) {
+    for (const Frame& frame : told_) {
+      listener_.frame(
+          {frame.time, on_the_whole(frame.u, part), on_the_whole(frame.v, part),
+           on_the_whole(frame.jacobians, part, elements, 1.0),
+           on_the_whole(frame.hourglass_energy_densities, part, elements, 0.0),
+           frame.levels.empty() ? frame.levels : on_the_whole(frame.levels, part, elements, 0.0)});
+    }
+    for (const HistoryRow& row : rows_) listener_.history(row);
+  }
+
+ private:
+  Observer& listener_;
+  std::vector<Frame> told_;
+  std::vector<HistoryRow> rows_;
+};
+
+/// The displacements of a part of a body under its first load, from a guess of the whole, divided by that
+/// load: it is so small that answers grow with it.
+class FirstAnswer {
+ public:
+  FirstAnswer(const Model& model, const MeshPart& part) : model_(model), part_(part) {}
+
+  /// Replaces the nodes of the part in u (m); returns the evaluations of forces that it took.
+  long find(NodalField& u) const {
+    return std::visit([&](const auto& elements) { return find(u, *elements); }, model_.internal_force());
+  }
+
+ private:
+  /// Of the forces out of balance at the guess. They may be small, but they are what wakes the surroundings.
+  static constexpr double share_left = 0.05;
+  static constexpr long most_evaluations = 1000;
+
+  template <class Real>
+  long find(NodalField& whole, const InternalForce<Real>& elements) const {
+    const double load = first_load(model_);
+    NodalField u;
+    for (const int node : part_.node_of) u.push_back(scaled(whole[at(node)], load));
+    Equilibrium<Real> search(model_, elements);
+    search.body().state() = state_at(elements, u);
+    search.body().impose(load);
+    search.start();
+    const double enough = share_left * search.residual();
+    while (search.residual() > enough && search.evaluations() < most_evaluations && search.step()) {
+    }
+    u = search.body().field(search.body().state().u);
+    for (std::size_t n = 0; n < u.size(); ++n) whole[at(part_.node_of[n])] = scaled(u[n], 1.0 / load);
+    return search.evaluations();
+  }
+
+  static Vector scaled(const Vector& v, double factor) {
+    return {factor * v[0], factor * v[1], factor * v[2]};
+  }
+
+  const Model& model_;
+  const MeshPart& part_;
+};
+
+/// The largest distance (m) between two fields.
+double largest_difference(const NodalField& a, const NodalField& b) {
+  double largest = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    largest = std::max(largest, std::hypot(a[n][0] - b[n][0], a[n][1] - b[n][1], a[n][2] - b[n][2]));
+  }
+  return largest;
+}
+
+/// The motion of a body as it begins, found no farther than it reaches.
+class FirstMotion {
+ public:
+  FirstMotion(const Scene& scene, const MethodChoice& choice)
+      : scene_(scene),
+        choice_(choice),
+        distances_(scene.mesh),
+        from_pushed_(distances_.from(pushed_nodes(scene))),
+        awake_(scene.mesh.cells.size(), false),
+        u_(scene.mesh.points.size()) {
+    std::vector<int> margin(u_.size(), 0);
+    for (std::size_t n = 0; n < margin.size(); ++n) margin[n] = from_pushed_[n] == 0 ? first_margin : 0;
+    distances_.mark(margin, awake_);
+    find();
+  }
+
+  /// Displacements (m) over the load, with an error of at most `share` of the largest.
+  const NodalField& within(double share) {
+    const auto allowed = [&] { return share * displacement_unit(scene_, u_); };
+    while (left_ > allowed() && wake(allowed())) find();
+    return u_;
+  }
+
+  /// The elements around nodes that move by more than a length (m), and next to them.
+  std::vector<bool> around_what_moves(double by_more_than) const {
+    std::vector<int> margin(u_.size(), 0);
+    for (std::size_t n = 0; n < u_.size(); ++n) margin[n] = length(u_[n]) > by_more_than ? 1 : 0;
+    std::vector<bool> marked(awake_.size(), false);
+    distances_.mark(margin, marked);
+    for (std::size_t e = 0; e < marked.size(); ++e) marked[e] = marked[e] && awake_[e];
+    return marked;
+  }
+
+  long evaluations() const { return evaluations_; }
+
+ private:
+  /// From one part to the next, a third larger, the error of a motion that falls off as 1/r falls by this
+  /// factor; no motion falls off more slowly.
+  static constexpr double slowest = 0.75;
+  static constexpr int first_margin = 4;  // elements around what is pushed
+  static constexpr int least_margin = 2;  // the next rim is a third farther, not the last node that moves
+
+  /// Wakes the elements around nodes that move by more than a length, as far as a third of their own distance
+  /// from what is pushed; whether something slept there.
+  bool wake(double by_more_than) {
+    std::vector<int> margin(u_.size(), 0);
+    for (std::size_t n = 0; n < u_.size(); ++n) {
+      if (length(u_[n]) > by_more_than) margin[n] = from_pushed_[n] / 3 + least_margin;
+    }
+    const auto before = std::count(awake_.begin(), awake_.end(), true);
+    distances_.mark(std::move(margin), awake_);
+    return std::count(awake_.begin(), awake_.end(), true) > before;
+  }
+
+  /// Computes what is awake. What changed by waking some was the error before, and how fast it falls from
+  /// part to part tells what is left.
+  void find() {
+    const NodalField before = u_;
+    const MeshPart part = part_of_mesh(scene_.mesh, awake_);
+    const Scene scene = scene_of(scene_, part);
+    evaluations_ += FirstAnswer(Model(scene, choice_), part).find(u_);
+    const double change = largest_difference(u_, before);
+    const double falls = std::min(slowest, change / change_), factor = std::max(falls, falls_);
+    left_ = change * factor / (1.0 - factor);
+    change_ = change;
+    falls_ = falls;
+  }
+
+  const Scene& scene_;
+  const MethodChoice& choice_;
+  Distances distances_;
+  std::vector<int> from_pushed_;  // of each node
+  std::vector<bool> awake_;       // elements
+  NodalField u_;
+  double falls_ = slowest;                                 // factor from the last change but one to the last
+  double change_ = 0.0;                                    // m, by the last computation
+  double left_ = std::numeric_limits<double>::infinity();  // m, of error
+  long evaluations_ = 0;
+};
+
+/// How much farther nodes move than a field says, where it says that they move by less than a length (m).
+double swelling(const NodalField& u, const NodalField& field, double by_less_than) {
+  double said = 0.0, moved = 0.0;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    const double by_field = length(field[n]);
+    if (by_field >= by_less_than) continue;
+    said = std::max(said, by_field);
+    moved = std::max(moved, length(u[n]));
+  }
+  return said > 0.0 ? moved / said : 1.0;
+}
+
+}  // namespace
+
+LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share,
+                            Observer& observer) {
+  if (answers_by_condensation(choice.method)) {
+    throw InputError(fmt::format(
+        "sleep: '{}' computes no elements that could sleep; allowed: a method that steps", choice.method));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  FirstMotion first(scene, choice);
+  LocalRelaxation local;
+  long evaluations = 0;
+  double swollen = 1.0, held = 0.5 * share;
+  while (true) {
+    const double neglected = share / (swollen * tolerated_swelling);
+    const NodalField& motion = first.within(share_of_motion * neglected);
+    const double unit = displacement_unit(scene, motion);
+    const MeshPart part = part_of_mesh(scene.mesh, first.around_what_moves(held * unit));
+    local.elements = part.mesh.cells.size();
+    const bool everything = local.elements == scene.mesh.cells.size();
+    const Scene awake = scene_of(scene, part);
+    const Model model(awake, choice);
+    if (!everything) {
+      NodalField neglecting(motion.size());
+      for (const int node : part.node_of) neglecting[at(node)] = motion[at(node)];
+      evaluations += FirstAnswer(model, part).find(neglecting);
+      if (largest_difference(neglecting, motion) > share_of_holding * neglected * unit) {
+        held *= 0.6;
+        continue;
+      }
+    }
+    PartObserver told(observer);
+    Relaxation answer = relax(model, told);
+    answer.u = on_the_whole(answer.u, part);
+    evaluations += answer.steps;
+    const double swells = swelling(answer.u, motion, outskirts * held * unit);
+    if (answer.converged && !everything && swells > swollen * tolerated_swelling) {
+      swollen = swells;
+      held = std::min(held, 0.5 * share / swollen);
+      continue;
+    }
+    told.tell(part, scene.mesh.cells.size());
+    local.relaxation = std::move(answer);
+    break;
+  }
+  local.relaxation.steps = evaluations + first.evaluations();
+  local.relaxation.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return local;
+}
+
+}  // namespace sandglass

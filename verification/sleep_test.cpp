@@ -1,0 +1,216 @@
+/// What sleeps: distances and parts of meshes in exact numbers, and that what is neglected is within the
+/// bound.
+
+#include "stepping/sleep.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "mesh/distances.hpp"
+#include "mesh/mesh_part.hpp"
+#include "support/scenes.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+std::size_t count(const std::vector<bool>& marked) {
+  return static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
+}
+
+/// Of a lattice corner to corner the largest of the three differences.
+TEST(Distances, count_elements_corner_to_corner) {
+  const Mesh mesh = box({5, 4, 3}, {5, 4, 3});
+  const Vector from{1, 4, 2};
+  const auto distance =
+      Distances(mesh).from(nodes_where(mesh.points, [&](const Vector& X) { return X == from; }));
+  for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+    double expected = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      expected = std::max(expected, std::abs(mesh.points[n][i] - from[i]));
+    }
+    EXPECT_EQ(distance[n], static_cast<int>(expected));
+  }
+}
+
+TEST(Distances, no_way_is_told) {
+  Mesh mesh = box({2, 1, 1}, {2, 1, 1});
+  mesh.cells.pop_back();
+  const auto distance = Distances(mesh).from({mesh.cells[0][0]});
+  EXPECT_EQ(std::count(distance.begin(), distance.end(), -1), 4);
+}
+
+/// A margin of m around an inner node of a lattice marks a cube of 2 m elements an edge, m around two nodes
+/// the union, and of two margins that meet the larger goes further.
+TEST(Distances, margins_mark_cubes) {
+  const Mesh mesh = box({8, 8, 8}, {8, 8, 8});
+  const Distances distances(mesh);
+  const auto node = [&](double x, double y, double z) {
+    return index(nodes_where(mesh.points, [&](const Vector& X) { return X == Vector{x, y, z}; }).front());
+  };
+  std::vector<int> margin(mesh.points.size(), 0);
+  const auto marked = [&] {
+    std::vector<bool> marks(mesh.cells.size(), false);
+    distances.mark(margin, marks);
+    return count(marks);
+  };
+  EXPECT_EQ(marked(), 0U);
+  margin[node(4, 4, 4)] = 1;
+  EXPECT_EQ(marked(), 8U);
+  margin[node(4, 4, 4)] = 3;
+  EXPECT_EQ(marked(), 216U);
+  margin[node(0, 0, 0)] = 1;
+  EXPECT_EQ(marked(), 217U);
+  margin[node(4, 4, 5)] = 2;  // inside of the larger one
+  EXPECT_EQ(marked(), 217U);
+  margin[node(4, 4, 7)] = 2;  // 4 x 4 elements, of which a layer was not in it
+  EXPECT_EQ(marked(), 217U + 16U);
+}
+
+TEST(MeshPart, half_of_a_box) {
+  const Mesh mesh = box({4, 2, 2}, {4, 2, 2});
+  std::vector<bool> marked(mesh.cells.size());
+  for (std::size_t e = 0; e < marked.size(); ++e) {
+    marked[e] = gather(mesh.points, mesh.cells[e])(0, 0) >= 2.0;
+  }
+  const MeshPart part = part_of_mesh(mesh, marked);
+  EXPECT_EQ(part.mesh.cells.size(), 8U);
+  ASSERT_EQ(part.mesh.points.size(), 27U);
+  for (std::size_t n = 0; n < part.mesh.points.size(); ++n) {
+    EXPECT_EQ(part.mesh.points[n], mesh.points[index(part.node_of[n])]);
+    EXPECT_EQ(part.part_of[index(part.node_of[n])], static_cast<int>(n));
+    EXPECT_EQ(part.on_the_rim[n], part.mesh.points[n][0] == 2.0);
+  }
+  EXPECT_EQ(std::count(part.part_of.begin(), part.part_of.end(), -1), 18);
+  for (std::size_t e = 0; e < part.mesh.cells.size(); ++e) {
+    EXPECT_EQ(gather(part.mesh.points, part.mesh.cells[e]).entries,
+              gather(mesh.points, mesh.cells[index(part.element_of[e])]).entries);
+  }
+}
+
+/// A block on a fixed base, elements of a millimetre; four of its upper faces in the middle go down by
+/// `depth`.
+struct Touched {
+  Scene scene;
+
+  explicit Touched(const std::array<int, 3>& n, double depth, double poisson_ratio = 0.45) {
+    Case touched = plain_case(sample_law<NeoHookean>(poisson_ratio));
+    const auto size = [&](std::size_t i) { return 1e-3 * n[i]; };
+    Mesh mesh = box({size(0), size(1), size(2)}, n);
+    NodeSets sets;
+    sets["base"] = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; });
+    sets["touched"] = nodes_where(mesh.points, [&](const Vector& X) {
+      return X[2] > size(2) - 1e-6 && std::abs(X[0] - 0.5 * size(0)) < 1.1e-3 &&
+             std::abs(X[1] - 0.5 * size(1)) < 1.1e-3;
+    });
+    touched.displacements = {{"base", {}}, {"touched", {0, 0, -depth}}};
+    touched.relaxation.tolerance = 1e-6;
+    touched.relaxation.check_interval = 10;
+    scene = make_scene(std::move(touched), std::move(mesh), std::move(sets));
+  }
+
+  NodalField whole(const std::string& method) const {
+    Observer nobody;
+    const Model model(scene, {.method = method});
+    return relax(model, nobody).u;
+  }
+
+  LocalRelaxation awake(const std::string& method, double share) const {
+    Observer nobody;
+    return relax_awake(scene, {.method = method}, share, nobody);
+  }
+};
+
+/// Motion in a thin block falls off within a few times its height, in a thick one as 1 / r, and where volume
+/// keeps, what is held drives it elsewhere: all stay within what may be neglected. A tolerance of 1e-6 stays
+/// far below the shares.
+TEST(Sleep, neglects_no_more_than_it_may) {
+  const double depth = 1e-3;
+  const Touched thin({64, 64, 3}, depth);
+  const NodalField u = thin.whole("tl-perturbation");
+  std::size_t before = 0;
+  for (const double share : {0.05, 0.01, 0.001}) {
+    const LocalRelaxation local = thin.awake("tl-perturbation", share);
+    EXPECT_TRUE(local.relaxation.converged);
+    const double neglected = largest_distance(local.relaxation.u, u);
+    EXPECT_LT(neglected, share * depth) << share;
+    EXPECT_GT(neglected, 0.1 * share * depth) << "more sleeps than might";
+    EXPECT_GT(local.elements, before) << "less may be neglected";
+    before = local.elements;
+  }
+  EXPECT_LT(before, thin.scene.mesh.cells.size() / 2) << "at 0.1 %";
+
+  for (const double poisson_ratio : {0.3, 0.49}) {
+    const Touched thick({32, 32, 12}, depth, poisson_ratio);
+    const LocalRelaxation local = thick.awake("tl-perturbation", 0.1);
+    EXPECT_LT(largest_distance(local.relaxation.u, thick.whole("tl-perturbation")), 0.1 * depth);
+    EXPECT_LT(local.elements, thick.scene.mesh.cells.size());
+  }
+}
+
+/// Methods of all kinds sleep: what elements remember, and levels, stay with the part. A push this deep
+/// drives the surroundings farther than its beginning shows.
+TEST(Sleep, holds_for_methods_of_every_kind) {
+  const double depth = 1.2e-3, share = 0.02;
+  const Touched scene({48, 48, 3}, depth);
+  for (const std::string method : {"tl-adaptive", "ul-perturbation", "tl-mean-dilatation", "linear"}) {
+    const LocalRelaxation local = scene.awake(method, share);
+    EXPECT_LT(largest_distance(local.relaxation.u, scene.whole(method)), share * depth) << method;
+    EXPECT_LT(local.elements, scene.scene.mesh.cells.size()) << method;
+  }
+}
+
+/// Where everything has to be awake the answer is the whole one.
+TEST(Sleep, everything_awake_is_the_whole) {
+  const Touched scene({8, 8, 4}, 0.5e-3);
+  const LocalRelaxation local = scene.awake("tl-perturbation", 1e-4);
+  EXPECT_EQ(local.elements, scene.scene.mesh.cells.size());
+  EXPECT_EQ(local.relaxation.u, scene.whole("tl-perturbation"));
+}
+
+TEST(Sleep, listeners_hear_of_the_whole_mesh) {
+  const Touched scene({48, 48, 3}, 0.5e-3);
+  Recorder told;
+  const LocalRelaxation local = relax_awake(scene.scene, {.method = "tl-adaptive"}, 0.02, told);
+  const std::size_t nodes = scene.scene.mesh.points.size(), elements = scene.scene.mesh.cells.size();
+  ASSERT_GE(told.frames.size(), 2U);
+  for (const Frame& frame : told.frames) {
+    EXPECT_EQ(frame.u.size(), nodes);
+    EXPECT_EQ(frame.v.size(), nodes);
+    EXPECT_EQ(frame.jacobians.size(), elements);
+    EXPECT_EQ(frame.hourglass_energy_densities.size(), elements);
+    EXPECT_EQ(frame.levels.size(), elements);
+  }
+  EXPECT_EQ(told.frames.front().time, 0.0);
+  EXPECT_EQ(told.frames.back().u, local.relaxation.u);
+  EXPECT_EQ(told.frames.back().jacobians.front(), 1.0) << "asleep";
+  EXPECT_FALSE(told.rows.empty());
+  Recorder impatient;
+  impatient.last_step = 0;
+  EXPECT_TRUE(
+      relax_awake(scene.scene, {.method = "tl-perturbation"}, 0.02, impatient).relaxation.interrupted);
+}
+
+/// A force pushes as well as a displacement; what may be neglected is a share of the largest displacement.
+TEST(Sleep, wakes_where_a_force_pushes) {
+  Touched touched({48, 48, 3}, 0.5e-3);
+  Case pushed = touched.scene.description;
+  pushed.displacements.pop_back();
+  pushed.forces = {{"touched", {0, 0, -0.002}}};
+  const Scene scene = make_scene(pushed, touched.scene.mesh, touched.scene.sets);
+  Observer nobody;
+  const MethodChoice choice{.method = "tl-perturbation"};
+  const NodalField u = relax(Model(scene, choice), nobody).u;
+  const LocalRelaxation local = relax_awake(scene, choice, 0.01, nobody);
+  EXPECT_LT(largest_distance(local.relaxation.u, u), 0.01 * displacement_unit(scene, u));
+  EXPECT_LT(local.elements, scene.mesh.cells.size());
+  EXPECT_GT(local.elements, 0U);
+}
+
+TEST(Sleep, what_answers_at_once_has_nothing_to_leave_out) {
+  const Touched scene({8, 8, 3}, 0.5e-3);
+  EXPECT_THROW(scene.awake("linear-condensed", 0.01), InputError);
+}
+
+}  // namespace
+}  // namespace sandglass::verification
