@@ -1,0 +1,148 @@
+"""A block touched in the middle: what sleep saves, and what it neglects.
+
+Usage: /usr/bin/python3 bench/local_touch.py [--elements NX NY NZ] [--shares 1% 0.1%] [--case FILE]
+Runs `sandglass run` on the whole and with each --sleep, in turn, and prints medians of the wall
+time and the largest difference of displacements, over all nodes, in percent of the depth.
+--case keeps the case file, for other commands. The binary is build/release/sandglass, or the one
+that SANDGLASS_BINARY names.
+Exit codes: 0 done, 2 bad usage, 3 a run failed.
+"""
+
+import argparse
+import os
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parent.parent
+EDGE = 0.002  # m, of an element
+
+CASE = """# A block on a fixed base, touched in the middle of its upper side.
+
+[case]
+name = "touched-block"
+requirement = "A local touch costs what moves, not what is there."
+answer = "quasi-static"
+
+[mesh]
+generator = "box"
+size = [{size}]
+elements = [{elements}]
+
+[material]
+law = "neo-hookean"
+young_modulus = 3000.0
+poisson_ratio = 0.49
+density = 1000.0
+
+[sets]
+base = {{ z = [0.0, 0.0] }}
+touched = {{ x = [{x}], y = [{y}], z = [{z}, {z}] }}
+
+[[displacement]]
+set = "base"
+value = [0.0, 0.0, 0.0]
+
+[[displacement]]
+set = "touched"
+value = [0.0, 0.0, {depth}]
+"""
+
+
+class RunError(Exception):
+    """A run of the solver failed."""
+
+
+def case_text(elements, patch, depth):
+    """A block of so many elements; patch x patch of them are pushed in by depth (m)."""
+    middle = [EDGE * (n // 2) for n in elements[:2]]
+    reach = EDGE * (patch / 2 + 0.1)
+    numbers = {
+        "size": ", ".join(f"{EDGE * n:.6g}" for n in elements),
+        "elements": ", ".join(map(str, elements)),
+        "z": f"{EDGE * elements[2]:.6g}",
+        "depth": f"{-depth:.6g}",
+    }
+    for name, centre in zip("xy", middle):
+        numbers[name] = f"{centre - reach:.6g}, {centre + reach:.6g}"
+    return CASE.format(**numbers)
+
+
+def run(case, method, folder, share=None):
+    """Seconds, share of the elements awake and displacements (m) of one run."""
+    binary = os.environ.get("SANDGLASS_BINARY", str(REPOSITORY / "build/release/sandglass"))
+    result = Path(folder) / "result.h5"
+    command = [binary, "run", case, "--method", method, "--output", result]
+    command += ["--sleep", share] if share else []
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    if done.returncode:
+        raise RunError(done.stderr.strip() or f"the solver ended with {done.returncode}")
+    seconds = float(re.search(r"wall time (\S+) s", done.stdout)[1])
+    awake = re.search(r"awake: (\d+) of (\d+)", done.stdout)
+    with h5py.File(result) as file:
+        u = file["frames"][sorted(file["frames"])[-1]]["displacement"][:]
+    return seconds, int(awake[1]) / int(awake[2]) if awake else 1.0, u
+
+
+def measure(case, method, shares, repetitions):
+    """For None, the whole, and each share: all seconds, the share awake, the displacements."""
+    rows = {share: ([], 1.0, None) for share in [None, *shares]}
+    with tempfile.TemporaryDirectory() as folder:
+        for _ in range(repetitions):
+            for share, (seconds, _, _) in rows.items():
+                clocked, awake, u = run(case, method, folder, share)
+                rows[share] = (seconds + [clocked], awake, u)
+    return rows
+
+
+def table(rows, depth):
+    """The lines of the table, the whole first."""
+    whole, _, u = rows[None]
+    lines = [
+        f"{'may neglect':>12} {'awake %':>8} {'s (range)':>22} {'speed-up':>9} {'neglects %':>11}"
+    ]
+    for share, (seconds, awake, local) in rows.items():
+        clocked = f"{statistics.median(seconds):.3g} ({min(seconds):.3g} to {max(seconds):.3g})"
+        gain = statistics.median(whole) / statistics.median(seconds)
+        neglected = 100 * np.linalg.norm(local - u, axis=1).max() / depth
+        name = share or "nothing"
+        lines.append(f"{name:>12} {100 * awake:8.3g} {clocked:>22} {gain:9.3g} {neglected:11.3g}")
+    return lines
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "--elements", nargs=3, type=int, default=[182, 182, 6], metavar=("NX", "NY", "NZ")
+    )
+    parser.add_argument("--patch", type=int, default=4, help="touched faces along x and y")
+    parser.add_argument("--depth", type=float, default=EDGE, help="of the touch, m")
+    parser.add_argument("--method", default="tl-perturbation")
+    parser.add_argument("--shares", nargs="+", default=["1%", "0.1%"], help="what to neglect")
+    parser.add_argument("--repetitions", type=int, default=3)
+    parser.add_argument("--case", type=Path, help="keep the case file there")
+    options = parser.parse_args(arguments)
+    if min(options.elements) < 1 or options.repetitions < 1 or options.patch < 1:
+        parser.error("--elements, --patch and --repetitions must be at least 1")
+    with tempfile.TemporaryDirectory() as folder:
+        case = options.case or Path(folder) / "touched-block.toml"
+        case.write_text(case_text(options.elements, options.patch, options.depth))
+        try:
+            rows = measure(case, options.method, options.shares, options.repetitions)
+        except RunError as error:
+            print(error, file=sys.stderr)
+            return 3
+    print(f"{' x '.join(map(str, options.elements))} elements, {options.method}")
+    print("\n".join(table(rows, options.depth)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
