@@ -180,6 +180,7 @@ TEST(Counted, tells_the_kinds_apart_and_skips_constants) {
   EXPECT_EQ(tally.add, 1);
   EXPECT_EQ(tally.div, 1);
   EXPECT_EQ(tally.special, 1);
+  EXPECT_EQ(tally.total(), 4) << "every kind counts";
 }
 
 }  // namespace

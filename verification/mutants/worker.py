@@ -80,7 +80,7 @@ def programs_of(tree):
     text = (tree / "verification" / "CMakeLists.txt").read_text(encoding="utf-8")
     programs = []
     for library, names in re.findall(r"^add_tests\((\w+)\n([^)]*)\)", text, re.MULTILINE):
-        programs += [Program(n, False, library == "sandglass") for n in names.split()]
+        programs += [Program(n, False, library != "sandglass_options") for n in names.split()]
     return programs + [Program(folder, True, True) for folder in PYTHON_FOLDERS]
 
 

@@ -1,0 +1,54 @@
+"""`sandglass run --sleep`: what it prints and writes, what it refuses."""
+
+import h5py
+import pytest
+from command_line import BLOCK, sandglass
+
+# As long as it is thin, pulled at one end: motion does not reach the other.
+BEAM = (
+    BLOCK.replace("size = [0.1, 0.1, 0.2]", "size = [0.1, 0.1, 3.0]")
+    .replace("elements = [2, 2, 4]", "elements = [2, 2, 60]")
+    .replace("foot = { z = [0.0, 0.0] }", "foot = { x = [0.0, 0.0] }")
+    .replace("head = { z = [0.2, 0.2] }", "head = { x = [0.1, 0.1], z = [3.0, 3.0] }")
+)
+
+
+@pytest.fixture
+def beam(tmp_path):
+    path = tmp_path / "beam.toml"
+    path.write_text(BEAM.replace('golden = "golden.h5"\n', ""))
+    return path
+
+
+def test_what_sleeps_is_in_the_result_at_rest(beam):
+    result = beam.parent / "result.h5"
+    outcome = sandglass("run", beam, "--sleep", "1%", "-o", result)
+    assert outcome.returncode == 0, outcome.stderr
+    awake = next(line for line in outcome.stdout.splitlines() if line.startswith("awake: "))
+    assert 0 < int(awake.split()[1]) < 120 and awake.endswith("of 240 elements")
+    assert "at rest" in outcome.stdout
+    with h5py.File(result) as file:
+        points = file["mesh/points"][:]
+        last = sorted(file["frames"])[-1]
+        u = file[f"frames/{last}/displacement"][:]
+    assert len(u) == 9 * 61
+    assert (u[points[:, 2] < 1.0] == 0.0).all()
+    assert abs(u).max() > 0.01
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("column", "--sleep", "0"), "--sleep = '0' must be a share in (0, 1]"),
+        (("column", "--sleep", "120%"), "--sleep = '120%' must be a share in (0, 1]"),
+        (("bar-wave", "--sleep", "1%"), "--sleep: 'bar-wave' is in motion"),
+        (("column", "--sleep", "1%", "--method", "linear-condensed"), "'linear-condensed'"),
+        (("column", "--sleep", "1%", "--checkpoint", "kept"), "leave out --checkpoint"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_wrong_use_is_told(arguments, words, tmp_path):
+    outcome = sandglass("run", *arguments, cwd=tmp_path)
+    assert outcome.returncode == 2
+    assert words in outcome.stderr
+    assert not list(tmp_path.iterdir())
