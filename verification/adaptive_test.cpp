@@ -259,10 +259,38 @@ TEST(Adaptive, mixed_levels_add_up) {
   }
 }
 
+using Defects = std::vector<std::array<double, 2>>;
+
+/// What becomes of levels where the lanes that a level leaves empty in a chunk go to those elements of the
+/// level below that come nearest to needing it.
+std::vector<double> with_full_lanes(std::vector<double> levels, const Layout& layout,
+                                    const Defects& defects) {
+  constexpr std::size_t lanes = Lanes<Pack<double>>::width;
+  for (const auto& chunk : layout.chunks) {
+    const auto elements = layout.elements_of(chunk);
+    const auto count = [&](double level) {
+      return static_cast<std::size_t>(
+          std::count_if(elements.begin(), elements.end(), [&](int e) { return levels[index(e)] == level; }));
+    };
+    for (const int level : {2, 1}) {
+      while (count(level) % lanes != 0 && count(level - 1) > 0) {
+        int next = -1;
+        for (const int e : elements) {
+          if (levels[index(e)] != level - 1) continue;
+          if (next < 0 || defects[index(e)][index(level - 1)] > defects[index(next)][index(level - 1)])
+            next = e;
+        }
+        levels[index(next)] = level;
+      }
+    }
+  }
+  return levels;
+}
+
 /// Levels are chosen by the rule, computed here element by element: the lowest whose force, less that of
-/// eight points, displaces no node by more than the length.
+/// eight points, displaces no node by more than the length; and no lane is wasted.
 TEST(Adaptive, levels_follow_the_rule) {
-  const Scene scene = pressed_block(0.01);
+  const Scene scene = pressed_block(0.01, {8, 8, 12});
   const NodalField u = some_displacements(scene.mesh);
   const Model model(scene, {"tl-adaptive"});
   const auto& elements = elements_of(model);
@@ -275,7 +303,7 @@ TEST(Adaptive, levels_follow_the_rule) {
     const double m = mobility[index(elements.layout().node_of_row[r])];
     rows[r] = {m, m, m};
   }
-  std::vector<std::array<double, 2>> defects(scene.mesh.cells.size());
+  Defects defects(scene.mesh.cells.size());
   std::vector<double> all;
   for (std::size_t e = 0; e < defects.size(); ++e) {
     for (int level = 0; level < 2; ++level) {
@@ -292,21 +320,21 @@ TEST(Adaptive, levels_follow_the_rule) {
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
   const double length = *middle * 1.0001;
-  const auto cheapest = [&](std::size_t e, double most) {
-    return defects[e][0] <= most ? 0.0 : defects[e][1] <= most ? 1.0 : 2.0;
+  const auto by_the_rule = [&](double most, const std::vector<double>& at_most) {
+    std::vector<double> levels;
+    for (std::size_t e = 0; e < defects.size(); ++e) {
+      levels.push_back(std::min(at_most[e], defects[e][0] <= most ? 0.0 : defects[e][1] <= most ? 1.0 : 2.0));
+    }
+    return with_full_lanes(levels, elements.layout(), defects);
   };
 
   const Adaptation up = elements.adapt(state, rows, length, 0.5 * length);
-  std::size_t promoted = 0;
-  std::array<int, 3> seen{};
-  for (std::size_t e = 0; e < defects.size(); ++e) {
-    EXPECT_EQ(state.levels[e], cheapest(e, length)) << e;
-    if (state.levels[e] > 0.0) ++promoted;
-    ++seen[static_cast<std::size_t>(state.levels[e])];
-  }
-  EXPECT_EQ(up.promoted, promoted);
+  std::array<std::size_t, 3> seen{};
+  EXPECT_EQ(state.levels, by_the_rule(length, std::vector<double>(defects.size(), 2.0)));
+  for (const double level : state.levels) ++seen[static_cast<std::size_t>(level)];
+  EXPECT_EQ(up.promoted, seen[1] + seen[2]);
   EXPECT_EQ(up.demoted, 0U);
-  for (const int count : seen) EXPECT_GT(count, 5) << "a level that was not tried";
+  for (const std::size_t count : seen) EXPECT_GT(count, 5U) << "a level that was not tried";
 
   const std::vector<double> before = state.levels;
   const double longer = 3.0 * length;
@@ -314,9 +342,7 @@ TEST(Adaptive, levels_follow_the_rule) {
   EXPECT_EQ(state.levels, before);
   const Adaptation down = elements.adapt(state, rows, longer, 0.5 * longer);
   EXPECT_GT(down.demoted, 0U);
-  for (std::size_t e = 0; e < defects.size(); ++e) {
-    EXPECT_EQ(state.levels[e], std::min(before[e], cheapest(e, 0.5 * longer))) << e;
-  }
+  EXPECT_EQ(state.levels, by_the_rule(0.5 * longer, before));
 }
 
 NodalField at_rest(const Scene& scene, const MethodChoice& choice) {
@@ -409,8 +435,8 @@ TEST(Adaptive, motion_keeps_its_energy) {
   }
 }
 
-/// Single precision stops at its rounding, and only then do its elements settle: at the same levels, but for
-/// those that roundoff decides, and as near.
+/// Single precision stops at its rounding, and only then do its elements settle: as near, and at the same
+/// levels or higher ones, for it has more lanes to fill, but for those that roundoff decides.
 TEST(Adaptive, floats_settle_too) {
   const Scene scene = pressed_block(0.02);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
@@ -422,10 +448,10 @@ TEST(Adaptive, floats_settle_too) {
     const Relaxation answer = relax(Model(scene, choice), in_float);
     EXPECT_TRUE(at_rest(answer, choice.precision));
     EXPECT_LT(distance(scene, answer.u, exact), 2.0 * accuracy) << accuracy;
-    int differ = 0;
+    int lower = 0;
     const auto &a = in_double.frames.back().levels, &b = in_float.frames.back().levels;
-    for (std::size_t e = 0; e < a.size(); ++e) differ += a[e] != b[e] ? 1 : 0;
-    EXPECT_LE(differ, static_cast<int>(a.size() / 50)) << accuracy;
+    for (std::size_t e = 0; e < a.size(); ++e) lower += b[e] < a[e] ? 1 : 0;
+    EXPECT_LE(lower, static_cast<int>(a.size() / 50)) << accuracy;
   }
 }
 

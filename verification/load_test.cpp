@@ -162,6 +162,19 @@ TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
   }
 }
 
+/// A body at rest that holds nothing yet is out of balance by all of its loads: its residual is one, at any
+/// factor of the loads.
+TEST(Residual, is_told_over_the_loads) {
+  const Scene scene = pulled_bar(sample_law<NeoHookean>(0.3), 2.0);
+  const Model model(scene, {"tl-perturbation"});
+  Body<double> body(model, *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force()));
+  for (const double factor : {0.01, 1.0}) {
+    body.impose(factor);
+    body.evaluate_forces();
+    EXPECT_NEAR(body.residual(), 1.0, 1e-14) << factor;
+  }
+}
+
 /// In the linear range the work of the loads is half of load times displacement, and all of it is stored.
 TYPED_TEST(LoadTest, work_is_stored_in_the_small) {
   const auto law = this->law();

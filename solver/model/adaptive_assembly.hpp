@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "element/methods.hpp"
@@ -79,17 +80,19 @@ class AdaptiveAssembly<TypeList<Methods...>, Law, Number> final
     std::vector<std::array<double, top>> defects(mesh_.cells.size());
     in_parallel(layout_.chunks.size(), threads_,
                 [&](std::size_t c) { measure_defects(layout_.chunks[c], state.u, mobility, defects); });
-    Adaptation changes;
+    std::vector<std::size_t> wanted(defects.size());
     for (std::size_t e = 0; e < defects.size(); ++e) {
       const auto level = static_cast<std::size_t>(state.levels[e]);
       const std::size_t needed = cheapest(defects[e], length), kept = cheapest(defects[e], demoting_length);
-      if (needed > level) {
-        state.levels[e] = static_cast<Real>(needed);
-        ++changes.promoted;
-      } else if (demoting_length > 0.0 && kept < level) {
-        state.levels[e] = static_cast<Real>(kept);
-        ++changes.demoted;
-      }
+      wanted[e] = needed > level ? needed : demoting_length > 0.0 ? std::min(kept, level) : level;
+    }
+    for (const auto& elements : elements_) fill_lanes(elements, defects, wanted);
+    Adaptation changes;
+    for (std::size_t e = 0; e < wanted.size(); ++e) {
+      const auto level = static_cast<Real>(wanted[e]);
+      if (level > state.levels[e]) ++changes.promoted;
+      if (level < state.levels[e]) ++changes.demoted;
+      state.levels[e] = level;
     }
     if (changes.promoted + changes.demoted > 0) regroup(state);
     return changes;
@@ -160,6 +163,30 @@ class AdaptiveAssembly<TypeList<Methods...>, Law, Number> final
     std::size_t level = 0;
     while (level < top && !(defects[level] <= length)) ++level;
     return level;
+  }
+
+  /// Lanes of a chunk that a level leaves empty are computed with the others: the elements of the level below
+  /// that come nearest to needing it take them. As many lanes as packs have, whatever `Number` is, so that
+  /// the levels are the same for all.
+  static void fill_lanes(const std::vector<int>& elements,
+                         const std::vector<std::array<double, top>>& defects,
+                         std::vector<std::size_t>& wanted) {
+    constexpr std::size_t lanes = Lanes<Pack<Real>>::width;
+    for (std::size_t level = top; level > 0; --level) {
+      std::vector<std::size_t> below;
+      std::size_t at_level = 0;
+      for (const int number : elements) {
+        const auto e = static_cast<std::size_t>(number);
+        if (wanted[e] == level) ++at_level;
+        if (wanted[e] + 1 == level) below.push_back(e);
+      }
+      const std::size_t empty = std::min((lanes - at_level % lanes) % lanes, below.size());
+      std::partial_sort(below.begin(), below.begin() + static_cast<std::ptrdiff_t>(empty), below.end(),
+                        [&](std::size_t a, std::size_t b) {
+                          return std::pair(-defects[a][level - 1], a) < std::pair(-defects[b][level - 1], b);
+                        });
+      for (std::size_t k = 0; k < empty; ++k) wanted[below[k]] = level;
+    }
   }
 
   std::shared_ptr<const Parts> parts_of(std::size_t c, const std::vector<Real>& levels) const {

@@ -73,10 +73,10 @@ class InternalForce {
   /// nothing. The bits do not depend on the number of threads.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
-  /// Gives each element the cheapest level that will do, where a method has several. An element's force at
-  /// a level differs from that at the highest; the differences times `mobility` (m/N, by row and component)
-  /// are displacements of its nodes. An element goes up to the lowest level at which none is longer than
-  /// `length` (m), and down to the lowest at which none is longer than `demoting_length` <= length; 0: never.
+  /// Gives each element the cheapest level that will do, where a method has several. What its force lacks of
+  /// that at the highest level, times `mobility` (m/N, by row and component), displaces its nodes: up it
+  /// goes to the lowest level at which none by more than `length` (m), down to the lowest at which none by
+  /// more than `demoting_length` <= length; 0: never. Those in lanes that would be empty may stand higher.
   virtual Adaptation adapt(State<Real>& /*state*/, const Rows<Real>& /*mobility*/, double /*length*/,
                            double /*demoting_length*/) const {
     return {};
