@@ -22,12 +22,8 @@ std::size_t at(int n) {
 }
 
 // Shares of what may be neglected: the error of the first motion, and what holding a part of it may change in
-// the rest of it. Together one.
-constexpr double share_of_motion = 0.3, share_of_holding = 0.7;
-
-/// Where the first motion is less than so many times what is held, the last one is compared with it; up to
-/// this factor their difference is no reason to begin anew.
-constexpr double outskirts = 10.0, tolerated_swelling = 1.1;
+// the rest of it. A tenth is left for what the whole load changes.
+constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
 
 double length(const Vector& v) {
   return std::hypot(v[0], v[1], v[2]);
@@ -86,39 +82,32 @@ NodalField on_the_whole(const NodalField& field, const MeshPart& part) {
   return whole;
 }
 
-std::vector<double> on_the_whole(const std::vector<double>& per_element, const MeshPart& part,
-                                 std::size_t elements, double asleep) {
-  std::vector<double> whole(elements, asleep);
-  for (std::size_t e = 0; e < per_element.size(); ++e) whole[at(part.element_of[e])] = per_element[e];
-  return whole;
-}
-
-/// Keeps what is told of a part until it is known that the part is large enough.
+/// Tells of the whole what it hears of a part.
 class PartObserver final : public Observer {
  public:
-  explicit PartObserver(Observer& listener) : listener_(listener) {}
+  PartObserver(Observer& listener, const MeshPart& part, std::size_t elements)
+      : listener_(listener), part_(part), elements_(elements) {}
 
-  void frame(const Frame& frame) override { told_.push_back(frame); }
-  void history(const HistoryRow& row) override { rows_.push_back(row); }
+  void frame(const Frame& frame) override {
+    listener_.frame({frame.time, on_the_whole(frame.u, part_), on_the_whole(frame.v, part_),
+                     per_element(frame.jacobians, 1.0), per_element(frame.hourglass_energy_densities, 0.0),
+                     frame.levels.empty() ? frame.levels : per_element(frame.levels, 0.0)});
+  }
+  void history(const HistoryRow& row) override { listener_.history(row); }
   bool proceed(long step, double share, double residual) override {
     return listener_.proceed(step, share, residual);
   }
 
-  void tell(const MeshPart& part, std::size_t elements) {
-    for (const Frame& frame : told_) {
-      listener_.frame(
-          {frame.time, on_the_whole(frame.u, part), on_the_whole(frame.v, part),
-           on_the_whole(frame.jacobians, part, elements, 1.0),
-           on_the_whole(frame.hourglass_energy_densities, part, elements, 0.0),
-           frame.levels.empty() ? frame.levels : on_the_whole(frame.levels, part, elements, 0.0)});
-    }
-    for (const HistoryRow& row : rows_) listener_.history(row);
+ private:
+  std::vector<double> per_element(const std::vector<double>& values, double asleep) const {
+    std::vector<double> whole(elements_, asleep);
+    for (std::size_t e = 0; e < values.size(); ++e) whole[at(part_.element_of[e])] = values[e];
+    return whole;
   }
 
- private:
   Observer& listener_;
-  std::vector<Frame> told_;
-  std::vector<HistoryRow> rows_;
+  const MeshPart& part_;
+  std::size_t elements_;
 };
 
 /// The displacements of a part of a body under its first load, from a guess of the whole, divided by that
@@ -251,18 +240,6 @@ class FirstMotion {
   long evaluations_ = 0;
 };
 
-/// How much farther nodes move than a field says, where it says that they move by less than a length (m).
-double swelling(const NodalField& u, const NodalField& field, double by_less_than) {
-  double said = 0.0, moved = 0.0;
-  for (std::size_t n = 0; n < u.size(); ++n) {
-    const double by_field = length(field[n]);
-    if (by_field >= by_less_than) continue;
-    said = std::max(said, by_field);
-    moved = std::max(moved, length(u[n]));
-  }
-  return said > 0.0 ? moved / said : 1.0;
-}
-
 }  // namespace
 
 LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share,
@@ -273,44 +250,27 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
   }
   const auto start = std::chrono::steady_clock::now();
   FirstMotion first(scene, choice);
-  LocalRelaxation local;
-  long evaluations = 0;
-  double swollen = 1.0, held = 0.5 * share;
-  while (true) {
-    const double neglected = share / (swollen * tolerated_swelling);
-    const NodalField& motion = first.within(share_of_motion * neglected);
-    const double unit = displacement_unit(scene, motion);
+  const NodalField& motion = first.within(share_of_motion * share);
+  const double unit = displacement_unit(scene, motion);
+  long evaluations = first.evaluations();
+  for (double held = 0.5 * share;; held *= 0.6) {
     const MeshPart part = part_of_mesh(scene.mesh, first.around_what_moves(held * unit));
-    local.elements = part.mesh.cells.size();
-    const bool everything = local.elements == scene.mesh.cells.size();
     const Scene awake = scene_of(scene, part);
     const Model model(awake, choice);
-    if (!everything) {
+    if (part.element_of.size() < scene.mesh.cells.size()) {
       NodalField neglecting(motion.size());
       for (const int node : part.node_of) neglecting[at(node)] = motion[at(node)];
       evaluations += FirstAnswer(model, part).find(neglecting);
-      if (largest_difference(neglecting, motion) > share_of_holding * neglected * unit) {
-        held *= 0.6;
-        continue;
-      }
+      if (largest_difference(neglecting, motion) > share_of_holding * share * unit) continue;
     }
-    PartObserver told(observer);
-    Relaxation answer = relax(model, told);
-    answer.u = on_the_whole(answer.u, part);
-    evaluations += answer.steps;
-    const double swells = swelling(answer.u, motion, outskirts * held * unit);
-    if (answer.converged && !everything && swells > swollen * tolerated_swelling) {
-      swollen = swells;
-      held = std::min(held, 0.5 * share / swollen);
-      continue;
-    }
-    told.tell(part, scene.mesh.cells.size());
-    local.relaxation = std::move(answer);
-    break;
+    PartObserver told(observer, part, scene.mesh.cells.size());
+    LocalRelaxation local{relax(model, told), part.element_of.size()};
+    local.relaxation.u = on_the_whole(local.relaxation.u, part);
+    local.relaxation.steps += evaluations;
+    local.relaxation.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return local;
   }
-  local.relaxation.steps = evaluations + first.evaluations();
-  local.relaxation.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return local;
 }
 
 }  // namespace sandglass
