@@ -1,5 +1,6 @@
 """The touched block: its case, what is printed, and that sleep neglects no more than it may."""
 
+import numpy as np
 import pytest
 
 import local_touch
@@ -24,7 +25,24 @@ def test_tells_of_a_failed_run(capsys):
     assert "'tl-nothing'" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("option", [["--repetitions", "0"], ["--elements", "0", "4", "4"]])
+def test_survey_tells_the_worst_first(monkeypatch, capsys):
+    def ran(case, method, folder, share=None):
+        calls.append(share)
+        return 1.0, 0.5 if share else 1.0, np.full((3, 3), float(share or 0.0))
+
+    calls = []
+    monkeypatch.setattr(local_touch, "run", ran)
+    assert local_touch.main(["--survey", "2"]) == 0
+    head, *worst = capsys.readouterr().out.splitlines()
+    assert calls == [None, "0.1", "0.02", "0.004"] * 2
+    assert head.startswith("6 runs") and len(worst) == 5
+    ratios = [float(line.split()[0]) for line in worst]
+    assert ratios == sorted(ratios, reverse=True)
+
+
+@pytest.mark.parametrize(
+    "option", [["--repetitions", "0"], ["--elements", "0", "4", "4"], ["--survey", "0"]]
+)
 def test_refuses_bad_usage(option):
     with pytest.raises(SystemExit) as end:
         local_touch.main(option)
