@@ -214,9 +214,11 @@ TEST(Sleep, wakes_where_a_force_pushes) {
   EXPECT_GT(local.elements, 0U);
 }
 
-TEST(Sleep, what_answers_at_once_has_nothing_to_leave_out) {
+TEST(Sleep, is_refused_where_it_has_no_sense) {
   const Touched scene({8, 8, 3}, 0.5e-3);
-  EXPECT_THROW(scene.awake("linear-condensed", 0.01), InputError);
+  EXPECT_THROW(scene.awake("linear-condensed", 0.01), InputError) << "it answers at once";
+  const Touched untouched({8, 8, 3}, 0.0);
+  EXPECT_THROW(untouched.awake("tl-perturbation", 0.01), InputError);
 }
 
 }  // namespace

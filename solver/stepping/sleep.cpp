@@ -193,6 +193,11 @@ class FirstMotion {
     return marked;
   }
 
+  /// How many elements the motion reaches.
+  std::size_t elements() const {
+    return static_cast<std::size_t>(std::count(awake_.begin(), awake_.end(), true));
+  }
+
   long evaluations() const { return evaluations_; }
 
  private:
@@ -209,13 +214,14 @@ class FirstMotion {
     for (std::size_t n = 0; n < u_.size(); ++n) {
       if (length(u_[n]) > by_more_than) margin[n] = from_pushed_[n] / 3 + least_margin;
     }
-    const auto before = std::count(awake_.begin(), awake_.end(), true);
+    const std::size_t before = elements();
     distances_.mark(std::move(margin), awake_);
-    return std::count(awake_.begin(), awake_.end(), true) > before;
+    return elements() > before;
   }
 
   /// Computes what is awake. What changed by waking some was the error before, and how fast it falls from
-  /// part to part tells what is left.
+  /// part to part tells what is left; the slower of the last two times, for motions of several kinds fall off
+  /// side by side, the fast ones first.
   void find() {
     const NodalField before = u_;
     const MeshPart part = part_of_mesh(scene_.mesh, awake_);
@@ -248,6 +254,9 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
     throw InputError(fmt::format(
         "sleep: '{}' computes no elements that could sleep; allowed: a method that steps", choice.method));
   }
+  if (pushed_nodes(scene).empty()) {
+    throw InputError("sleep: nothing pushes, so that all would sleep; impose a displacement or a force");
+  }
   const auto start = std::chrono::steady_clock::now();
   FirstMotion first(scene, choice);
   const NodalField& motion = first.within(share_of_motion * share);
@@ -257,7 +266,7 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
     const MeshPart part = part_of_mesh(scene.mesh, first.around_what_moves(held * unit));
     const Scene awake = scene_of(scene, part);
     const Model model(awake, choice);
-    if (part.element_of.size() < scene.mesh.cells.size()) {
+    if (part.element_of.size() < first.elements()) {
       NodalField neglecting(motion.size());
       for (const int node : part.node_of) neglecting[at(node)] = motion[at(node)];
       evaluations += FirstAnswer(model, part).find(neglecting);

@@ -23,7 +23,7 @@ struct LocalRelaxation {
 /// again for a share that is smaller by that factor.
 ///
 /// Observers hear of the whole mesh; such a run is not kept in checkpoints. Throws ComputationError as
-/// `relax` does, and InputError for a method that answers by condensation.
+/// `relax` does, and InputError for a method that answers by condensation and where nothing pushes.
 LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share, Observer& observer);
 
 }  // namespace sandglass
