@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "math/matrix.hpp"
+#include "math/symmetric_matrix.hpp"
 
 /// Upper bounds of the largest eigenvalue of sums of stiffnesses that act on different nodes of an element.
 /// Adding up the largest eigenvalue of each would cost a factor of three: seldom do they meet in one mode.
@@ -35,13 +35,7 @@ template <class T, std::size_t N>
 T gradients_bound(const std::array<T, N>& c, const std::array<NodalVectors<T>, N>& g) {
   Matrix<T, 8, 8> sum = (c[0] * g[0]) * transpose(g[0]);
   for (std::size_t n = 1; n < N; ++n) sum += (c[n] * g[n]) * transpose(g[n]);
-  T bound = T(0);
-  for (int I = 0; I < 8; ++I) {
-    T row = abs(sum(I, 0));
-    for (int J = 1; J < 8; ++J) row = row + abs(sum(I, J));
-    bound = max(bound, row);
-  }
-  return bound;
+  return row_sum_bound(sum);
 }
 
 }  // namespace sandglass

@@ -28,9 +28,7 @@ struct AssumedStrain {
   template <class Law>
   static Element<double> precompute(const NodalVectors<double>& /*X*/, const Law& law,
                                     const HourglassSettings& /*settings*/) {
-    const double mu = law.shear_modulus();
-    const double lambda = lame_lambda(law);
-    return {mu, plane_ratio(law), mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)};
+    return {law.shear_modulus(), plane_ratio(law), young_modulus(law)};
   }
 
   /// In d_ka = q_ka / l_k, normal strains are d and shears are ratios of lengths times d, so that no root is

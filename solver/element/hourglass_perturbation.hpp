@@ -26,10 +26,7 @@ struct PerturbationStiffness {
   /// fixed kappa on lambda + 2 mu locks as nu -> 1/2; on mu it may stay between .278 (nu = .25) and .333.
   template <class Law>
   static double auto_kappa(const Law& law, KappaModulus modulus = KappaModulus::p_wave) {
-    const double mu = law.shear_modulus();
-    const double lambda = lame_lambda(law);
-    const double E = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
-    return E / (9.0 * kappa_modulus(law, modulus));
+    return young_modulus(law) / (9.0 * kappa_modulus(law, modulus));
   }
 
   /// kappa rho c_D^2 in Pa (eqs 9 and 12), with either modulus.

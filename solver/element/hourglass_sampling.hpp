@@ -25,8 +25,17 @@ std::array<T, 4> sampled_stiffness(const Geometry& body, const Law& law) {
           T(1.0 / 3.0) * third * (square[0] + square[1] + square[2])};
 }
 
+/// Constants of a control from coordinates, where it takes them from the geometry of one point.
+template <class Control>
+struct FromGeometry {
+  template <class Law>
+  static auto precompute(const NodalVectors<double>& X, const Law& law, const HourglassSettings& settings) {
+    return Control::template constants<double>(OnePoint::precompute(X), law, settings);
+  }
+};
+
 /// Hourglass control without a number to choose and at the cost of the perturbation control's one.
-struct ModalSamplingControl {
+struct ModalSamplingControl : FromGeometry<ModalSamplingControl> {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
 
@@ -37,13 +46,7 @@ struct ModalSamplingControl {
   template <class T>
   using History = NoHistory<T>;
 
-  template <class Law>
-  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
-                                    const HourglassSettings& settings) {
-    return constants<double>(OnePoint::precompute(X), law, settings);
-  }
-
-  /// The same for any number type, from the element's geometry.
+  /// From the element's geometry, for any number type.
   template <class T, class Geometry, class Law>
   static Element<T> constants(const Geometry& body, const Law& law, const HourglassSettings& /*settings*/) {
     return {sampled_stiffness<T>(body, law)};
@@ -77,7 +80,7 @@ struct ModalSamplingControl {
 };
 
 /// The same for the mode xi eta zeta alone, for an element that sees the other three.
-struct LastModeControl {
+struct LastModeControl : FromGeometry<LastModeControl> {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
 
@@ -88,13 +91,7 @@ struct LastModeControl {
   template <class T>
   using History = NoHistory<T>;
 
-  template <class Law>
-  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
-                                    const HourglassSettings& settings) {
-    return constants<double>(OnePoint::precompute(X), law, settings);
-  }
-
-  /// The same for any number type, from the element's geometry.
+  /// From the element's geometry, for any number type.
   template <class T, class Geometry, class Law>
   static Element<T> constants(const Geometry& body, const Law& law, const HourglassSettings& /*settings*/) {
     return {sampled_stiffness<T>(body, law)[3]};

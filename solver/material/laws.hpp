@@ -51,4 +51,11 @@ constexpr double lame_lambda(const Law& law) {
   return law.bulk_modulus() - 2.0 / 3.0 * law.shear_modulus();
 }
 
+/// Young's modulus at rest, in Pa.
+template <class Law>
+constexpr double young_modulus(const Law& law) {
+  const double mu = law.shear_modulus(), lambda = lame_lambda(law);
+  return mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu);
+}
+
 }  // namespace sandglass

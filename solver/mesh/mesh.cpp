@@ -14,6 +14,16 @@ constexpr std::array<std::array<std::size_t, 4>, 6> local_faces{
 
 }  // namespace
 
+double largest_distance(const NodalField& a, const NodalField& b) {
+  double largest = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    const double d = distance(a[n], b[n]);
+    if (std::isnan(d)) return d;
+    largest = std::max(largest, d);
+  }
+  return largest;
+}
+
 std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) {
   struct Face {
     Quadrilateral nodes;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,6 +15,16 @@ using Vector = std::array<double, 3>;
 
 /// One vector per node.
 using NodalField = std::vector<Vector>;
+
+/// |v|.
+inline double length(const Vector& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+/// |a - b|.
+inline double distance(const Vector& a, const Vector& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
 
 /// The eight nodes of a hexahedron, VTK order.
 using Hexahedron = std::array<int, 8>;
@@ -39,6 +50,9 @@ inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& ce
   }
   return rows;
 }
+
+/// The largest distance between two nodal fields; not a number where one of them holds none.
+double largest_distance(const NodalField& a, const NodalField& b);
 
 /// The faces that belong to one hexahedron only, in the order of the cells.
 std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells);

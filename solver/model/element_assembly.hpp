@@ -14,6 +14,7 @@
 #include "model/element_block.hpp"
 #include "model/face_gather.hpp"
 #include "model/internal_force.hpp"
+#include "model/prefetch.hpp"
 
 namespace sandglass {
 
@@ -104,9 +105,6 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
  private:
   using Faces = FaceModes<Number>;
 
-  /// What a core may keep of the elements in its own caches.
-  static constexpr std::size_t cached_bytes = std::size_t{2} << 20U;
-
   /// A face's part of an `ElementMotion`.
   struct FaceMotion {
     Faces u;
@@ -176,7 +174,7 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
       for (std::size_t k = 0; k < group.levels; ++k) {
         const std::size_t level = group.first_level + k;
         const FaceMotion upper = gather_face(state, state.volumes, group.first_face + k + 1);
-        if (streams_) prefetch(state, level + levels_ahead);
+        if (streams_) prefetch_level(state, level + levels_ahead);
         HistoryBlock remembered = history(state, level);
         if (timeless) remembered.law = {};  // nothing of it counts, and a trial that failed may have left it
         const Modes<Number> f =
@@ -191,22 +189,12 @@ class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scala
     }
   }
 
-  /// Levels between the one that is computed and the one whose numbers are sent for: far enough for memory to
-  /// answer, near enough for the first cache.
-  static constexpr std::size_t levels_ahead = 3;
-
-  /// Asks for the constants and the history of a level, which come from memory once per step, ahead of time.
-  void prefetch(const State<Real>& state, std::size_t level) const {
-    constexpr std::size_t cache_line = 64;
-    const auto ask = [](const void* start, std::size_t size) {
-      for (std::size_t n = 0; n < size; n += cache_line) {
-        __builtin_prefetch(static_cast<const char*>(start) + n);
-      }
-    };
+  /// Asks for the constants and the history of a level.
+  void prefetch_level(const State<Real>& state, std::size_t level) const {
     if (level >= blocks_.size()) return;
-    ask(blocks_.data() + level, sizeof(ElementBlock));
+    prefetch(blocks_.data() + level, sizeof(ElementBlock));
     if constexpr (Kernel::remembers) {
-      ask(state.history.data() + level * history_numbers, sizeof(HistoryBlock));
+      prefetch(state.history.data() + level * history_numbers, sizeof(HistoryBlock));
     }
   }
 

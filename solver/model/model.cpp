@@ -134,7 +134,7 @@ double largest_length(const Scene& scene, const Turning& turning) {
   double largest = 0.0;
   for (const auto& displacement : scene.description.displacements) {
     const auto& d = displacement.value;
-    largest = std::max(largest, std::hypot(d[0], d[1], d[2]));
+    largest = std::max(largest, length(d));
   }
   const auto& constraints = scene.constraints;
   for (std::size_t k = 0; k < constraints.size();) {
@@ -282,7 +282,7 @@ double final_value(const Scene& scene, const Constraint& constraint) {
 double displacement_unit(const Scene& scene, const NodalField& reference) {
   double unit = largest_imposed(scene);
   if (unit > 0.0) return unit;
-  for (const auto& u : reference) unit = std::max(unit, std::hypot(u[0], u[1], u[2]));
+  for (const auto& u : reference) unit = std::max(unit, length(u));
   return unit;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "element/methods.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/equilibrium.hpp"
 
 namespace sandglass {
@@ -12,8 +12,7 @@ namespace sandglass {
 ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   constexpr double share_left = 0.01;
   const Scene& scene = model.scene();
-  const Model exact(scene,
-                    {.method = std::string(TlMeanDilatation::name), .threads = model.choice().threads});
+  const Model exact(scene, {.method = std::string(golden_method), .threads = model.choice().threads});
   const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(exact.internal_force());
   Equilibrium<double> search(exact, elements);
   search.body().state() = state_at(elements, u);
@@ -28,17 +27,12 @@ ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
       throw ComputationError("the mean-dilatation element found no way on from this answer: no estimate");
     }
   }
-  ErrorEstimate estimate{.evaluations = search.evaluations()};
   const NodalField better = search.body().field(search.body().state().u);
   double squares = 0.0;
-  for (std::size_t n = 0; n < u.size(); ++n) {
-    const double square = std::pow(better[n][0] - u[n][0], 2) + std::pow(better[n][1] - u[n][1], 2) +
-                          std::pow(better[n][2] - u[n][2], 2);
-    estimate.largest = std::max(estimate.largest, std::sqrt(square));
-    squares += square;
-  }
-  estimate.rms = std::sqrt(squares / static_cast<double>(u.size()));
-  return estimate;
+  for (std::size_t n = 0; n < u.size(); ++n) squares += std::pow(distance(better[n], u[n]), 2);
+  return {.largest = largest_distance(better, u),
+          .rms = std::sqrt(squares / static_cast<double>(u.size())),
+          .evaluations = search.evaluations()};
 }
 
 }  // namespace sandglass

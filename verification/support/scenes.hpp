@@ -61,17 +61,6 @@ inline std::vector<int> nodes_where(const NodalField& points,
   return nodes;
 }
 
-/// The largest distance between two nodal fields; not a number where one of them holds none.
-inline double largest_distance(const NodalField& a, const NodalField& b) {
-  double largest = 0.0;
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    const double distance = std::hypot(a[n][0] - b[n][0], a[n][1] - b[n][1], a[n][2] - b[n][2]);
-    if (std::isnan(distance)) return distance;
-    largest = std::max(largest, distance);
-  }
-  return largest;
-}
-
 /// Keeps everything that a stepper tells.
 class Recorder final : public Observer {
  public:
