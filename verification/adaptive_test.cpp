@@ -380,10 +380,12 @@ class FrameRecorder final : public Observer {
     work = std::max(work, std::abs(row.external_work));
     const double energy = row.kinetic + row.strain + row.hourglass;
     imbalance = std::max(imbalance, std::abs(energy - row.external_work));
+    unexplained = std::max(unexplained, std::abs(energy - row.external_work - row.adaption));
   }
   std::vector<Frame> frames;
-  double work = 0.0;       ///< J, largest
-  double imbalance = 0.0;  ///< J
+  double work = 0.0;         ///< J, largest
+  double imbalance = 0.0;    ///< J
+  double unexplained = 0.0;  ///< J, of the imbalance, by what changes of levels brought
 };
 
 /// The answer is balanced at the levels that it is told with, and they are those that it asks for.
@@ -425,6 +427,9 @@ TEST(Adaptive, motion_keeps_its_energy) {
     FrameRecorder told;
     integrate(Model(scene, {.method = "tl-adaptive", .accuracy = accuracy}), told);
     EXPECT_LT(told.imbalance / told.work, fixed.imbalance / fixed.work + 10.0 * accuracy) << accuracy;
+    EXPECT_LT(told.unexplained / told.work, 2.0 * fixed.imbalance / fixed.work) << accuracy;
+    RecordProperty("unexplained over work, accuracy " + std::to_string(accuracy),
+                   std::to_string(told.unexplained / told.work));
     RecordProperty("imbalance over work, accuracy " + std::to_string(accuracy),
                    std::to_string(told.imbalance / told.work));
     for (std::size_t n = 1; n < told.frames.size(); ++n) {

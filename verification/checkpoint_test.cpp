@@ -70,8 +70,8 @@ std::vector<std::uint64_t> bits_of(const RunSoFar& run, const NodalField& answer
     std::for_each(frame.hourglass_energy_densities.begin(), frame.hourglass_energy_densities.end(), add);
   }
   for (const auto& row : run.history) {
-    for (const double number :
-         {row.time, row.kinetic, row.strain, row.hourglass, row.external_work, row.residual, row.step_size}) {
+    for (const double number : {row.time, row.kinetic, row.strain, row.hourglass, row.external_work,
+                                row.residual, row.step_size, row.adaption}) {
       add(number);
     }
   }

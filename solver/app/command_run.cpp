@@ -12,9 +12,9 @@
 #include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "comparison/verdict.hpp"
-#include "element/methods.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/central_difference.hpp"
 #include "stepping/error_estimate.hpp"
 #include "stepping/relaxation.hpp"
@@ -83,7 +83,7 @@ class RunObserver final : public Observer {
 
 std::string kappa_text(const Model& model) {
   const auto& choice = model.choice();
-  if (!takes_kappa(choice.method)) return "";
+  if (!method_named(choice.method).takes_kappa) return "";
   const auto automatic = auto_kappa(choice.method, model.scene().description.law, choice.kappa_modulus);
   const double value = choice.kappa.value_or(automatic.value_or(0.0));
   return fmt::format("{:.6g}{}{}", value, choice.kappa ? "" : " (auto)",
@@ -103,6 +103,7 @@ void print_energies(const Scene& scene, const HistoryRow& row) {
   // In a relaxation part of the external work is damped away, so that there its sum tells nothing.
   if (!scene.description.quasi_static) {
     fmt::print(", kinetic {:.6g}, work of the imposed displacements {:.6g}", row.kinetic, row.external_work);
+    if (row.adaption != 0.0) fmt::print(", brought by changes of levels {:.3g}", row.adaption);
   }
   fmt::print("\n");
 }
@@ -130,21 +131,18 @@ void print_accuracy(const Scene& scene, const NodalField& u) {
   print("truth", references.truth);
 }
 
-/// How many elements of an adaptive method stand at each of its levels.
-void print_levels(const std::string& name, const std::vector<double>& levels) {
+/// How many elements of an adaptive method stand at each of its levels, and what share of the time it took to
+/// choose them.
+void print_levels(const std::string& name, const std::vector<double>& levels, double share_of_time) {
   if (levels.empty()) return;
   std::string text;
-  with_named_type(Methods{}, name, [&]<class Method>() {
-    if constexpr (is_adaptive<Method>) {
-      double level = 0.0;
-      for_each_type(typename Method::Levels{}, [&]<class Level>() {
-        const auto count = static_cast<double>(std::count(levels.begin(), levels.end(), level++));
-        text += fmt::format("{}{:.3g} % {}", text.empty() ? "" : ", ",
-                            100.0 * count / static_cast<double>(levels.size()), Level::name);
-      });
-    }
-  });
-  fmt::print("elements: {}\n", text);
+  double level = 0.0;
+  for (const auto& method : method_named(name).levels) {
+    const auto count = static_cast<double>(std::count(levels.begin(), levels.end(), level++));
+    text += fmt::format("{}{:.3g} % {}", text.empty() ? "" : ", ",
+                        100.0 * count / static_cast<double>(levels.size()), method);
+  }
+  fmt::print("elements: {}; chosen in {:.2g} % of the time\n", text, 100.0 * share_of_time);
 }
 
 void print_estimate(const Model& model, const NodalField& u) {
@@ -251,7 +249,7 @@ int run_case(const RunOptions& options) {
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
   std::string status;
   long steps = 0;
-  double seconds = 0.0;
+  double seconds = 0.0, adaption_seconds = 0.0;
   watch_for_interrupt();
   {
     RunObserver observer(scene.description.name, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr);
@@ -261,6 +259,7 @@ int run_case(const RunOptions& options) {
       u = std::move(relaxation.u);
       steps = relaxation.steps;
       seconds = relaxation.seconds;
+      adaption_seconds = relaxation.adaption_seconds;
       const std::string ending = outcome(relaxation, model.choice().precision);
       status = at_rest(relaxation, model.choice().precision) ? "complete" : ending;
       fmt::print("{} {} {}: {} after {} steps, residual {:.2e}\n", scene.description.name,
@@ -270,12 +269,13 @@ int run_case(const RunOptions& options) {
       u = std::move(motion.u);
       steps = motion.steps;
       seconds = motion.seconds;
+      adaption_seconds = motion.adaption_seconds;
       status = motion.interrupted ? fmt::format("interrupted at step {}", steps) : "complete";
       fmt::print("{} {} {}: {} s in {} steps of at least {:.4g} s, {}\n", scene.description.name,
                  model.choice().method, kappa_text(model), motion.time, steps, motion.smallest_step, status);
     }
     print_energies(scene, observer.last());
-    print_levels(model.choice().method, observer.levels());
+    print_levels(model.choice().method, observer.levels(), adaption_seconds / seconds);
     if (scene.description.quasi_static && status == "complete") {
       print_accuracy(scene, u);
       if (options.estimate) print_estimate(model, u);

@@ -13,8 +13,8 @@ namespace sandglass {
 namespace {
 
 constexpr std::array history_columns{
-    &HistoryRow::time,          &HistoryRow::kinetic,  &HistoryRow::strain,   &HistoryRow::hourglass,
-    &HistoryRow::external_work, &HistoryRow::residual, &HistoryRow::step_size};
+    &HistoryRow::time,          &HistoryRow::kinetic,  &HistoryRow::strain,    &HistoryRow::hourglass,
+    &HistoryRow::external_work, &HistoryRow::residual, &HistoryRow::step_size, &HistoryRow::adaption};
 static_assert(sizeof(HistoryRow) == history_columns.size() * sizeof(double), "a column is missing");
 
 void write_history(Hdf5File& file, const std::vector<HistoryRow>& history) {

@@ -85,6 +85,7 @@ void ResultWriter::write_history() {
   column("external_work", "J", &HistoryRow::external_work);
   column("residual", "-", &HistoryRow::residual);
   column("step_size", model_.scene().description.quasi_static ? "ramp" : "s", &HistoryRow::step_size);
+  column("adaption_energy", "J", &HistoryRow::adaption);
 }
 
 std::string ResultWriter::xdmf() const {

@@ -1,9 +1,10 @@
 #include "stepping/adaption.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 
 #include "element/hexahedron.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -33,26 +34,29 @@ std::vector<double> nodal_mobilities(const Scene& scene) {
 
 template <class Real>
 Adaption<Real>::Adaption(const Model& model, const Body<Real>& body)
-    : active_(adapts(model.choice().method)),
+    : active_(method_named(model.choice().method).adapts()),
       accuracy_(model.choice().accuracy),
       imposed_(largest_imposed(model.scene())) {
   if (active_) mobility_ = body.on_free_components(nodal_mobilities(model.scene()));
 }
 
 template <class Real>
-Adaptation Adaption<Real>::apply(Body<Real>& body, Demotion demotion) const {
+Adaptation Adaption<Real>::apply(Body<Real>& body, Demotion demotion) {
   if (!active_) return {};
+  const auto start = std::chrono::steady_clock::now();
   const double unit = imposed_ > 0.0 ? imposed_ : largest_displacement(body);
   const double length = 0.5 * accuracy_ * unit;
   const double share = demotion == Demotion::never ? 0.0 : demotion == Demotion::reluctant ? 0.5 : 1.0;
-  return body.adapt(mobility_, length, share * length);
+  const Adaptation changes = body.adapt(mobility_, length, share * length);
+  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return changes;
 }
 
 template <class Real>
 double Adaption<Real>::largest_displacement(const Body<Real>& body) const {
   double largest = 0.0;
   for (const auto& u : body.state().u) {
-    largest = std::max(largest, static_cast<double>(std::hypot(u[0], u[1], u[2])));
+    largest = std::max(largest, length(Vector{u[0], u[1], u[2]}));
   }
   return largest;
 }

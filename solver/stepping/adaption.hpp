@@ -24,7 +24,10 @@ class Adaption {
 
   /// New levels for the elements of the body as it stands; its forces are those of the old ones until they
   /// are evaluated again.
-  Adaptation apply(Body<Real>& body, Demotion demotion) const;
+  Adaptation apply(Body<Real>& body, Demotion demotion);
+
+  /// What that has taken so far.
+  double seconds() const { return seconds_; }
 
  private:
   double largest_displacement(const Body<Real>& body) const;
@@ -33,6 +36,7 @@ class Adaption {
   double accuracy_;
   double imposed_;       // m, largest
   Rows<Real> mobility_;  // m/N, zero on constrained components
+  double seconds_ = 0.0;
 };
 
 extern template class Adaption<double>;

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "element/methods.hpp"
 #include "model/loading.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/adaption.hpp"
 #include "stepping/explicit_step.hpp"
 #include "stepping/field.hpp"
@@ -38,6 +38,7 @@ class CentralDifference {
   long step() const { return step_; }
   double step_size() const { return step_size_; }
   double external_work() const { return work_; }
+  double adaption_energy() const { return adaption_energy_; }
 
   /// What the next step reads; see checkpoint.hpp.
   template <class Archive>
@@ -51,6 +52,7 @@ class CentralDifference {
     archive("next step", next_step_);
     archive("load path", load_path_);
     archive("work", work_);
+    archive("adaption energy", adaption_energy_);
   }
 
   /// Starts from the initial velocities: before the first step they are increments over 1 s.
@@ -102,7 +104,7 @@ class CentralDifference {
     const auto& constraints = model_.scene().constraints;
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const ImposedPath& path = constraints[k].path;
-      const double force = body_.reactions()[k] + inertia(constraints[k]);
+      const double force = constraint_force(k);
       for (std::size_t i = 0; i < 3; ++i) {
         work_ += 0.5 * (reactions_[k] + force) * moved_[path.angle][i] * path.share[i];
       }
@@ -111,6 +113,21 @@ class CentralDifference {
     const double path = body_.load_path();
     work_ += 0.5 * (before + now) * (path - load_path_);
     load_path_ = path;
+  }
+
+  /// New levels for the elements, which from now on pull with the forces of these: the energy that they store
+  /// more where they stand is none that anything did work for.
+  /// Returns whether there were any.
+  bool adapt(Adaption<Real>& adaption) {
+    const StrainEnergies before = body_.energies();
+    if (adaption.apply(body_, Demotion::never).promoted == 0) return false;
+    body_.evaluate_forces();
+    const StrainEnergies now = body_.energies();
+    adaption_energy_ += now.strain + now.hourglass - before.strain - before.hourglass;
+    for (std::size_t k = 0; k < reactions_.size(); ++k) {
+      reactions_[k] = constraint_force(k);
+    }
+    return true;
   }
 
   /// Velocities at the time of the displacements: the mean of the half steps before and after, damping
@@ -158,6 +175,11 @@ class CentralDifference {
     }
   }
 
+  /// Force (N) that a constraint exerts: it holds against the body and accelerates the lumped mass.
+  double constraint_force(std::size_t k) const {
+    return body_.reactions()[k] + inertia(model_.scene().constraints[k]);
+  }
+
   /// Force (N) that accelerates the lumped mass of a driven component.
   double inertia(const Constraint& constraint) const {
     const double mass = model_.masses()[static_cast<std::size_t>(constraint.node)], T = ramp_time();
@@ -192,12 +214,36 @@ class CentralDifference {
   double next_step_ = 0.0;
   double load_path_ = 0.0;
   double work_ = 0.0;
+  double adaption_energy_ = 0.0;
 };
 
-/// Levels follow a motion at a distance: to judge them costs about ten steps. Elements only go up: in every
-/// vibration one that goes down where its hourglass modes pass through zero, and up again where they are
-/// wide, would take energy from nowhere.
-constexpr long checks_between_adaptions = 10;
+/// When levels are chosen anew in a motion, counted in checks. To judge them costs about ten steps: as long
+/// as elements rise they are judged often, and ever more seldom while none does. Elements only go up: in
+/// every vibration one that goes down where its hourglass modes pass through zero, and up again where they
+/// are wide, would take energy from nowhere.
+class Judgements {
+ public:
+  bool due() { return ++checks_ >= next_; }
+
+  void done(bool rose) {
+    wait_ = rose ? shortest : std::min(2 * wait_, longest);
+    next_ = checks_ + wait_;
+  }
+
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("checks", checks_);
+    archive("wait for a judgement", wait_);
+    archive("next judgement", next_);
+  }
+
+ private:
+  static constexpr long shortest = 10, longest = 160;
+
+  long checks_ = 0;
+  long wait_ = shortest;
+  long next_ = shortest;
+};
 
 template <class Real>
 Motion integrate_body(const Model& model, const InternalForce<Real>& elements, Observer& observer,
@@ -205,10 +251,10 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   const DynamicsSettings& settings = model.scene().description.dynamics;
   CentralDifference<Real> scheme(model, elements);
   Body<Real>& body = scheme.body();
-  const Adaption<Real> adaption(model, body);
+  Adaption<Real> adaption(model, body);
+  Judgements judgements;
   Motion motion;
   int frames = 0;
-  long checks = 0;
 
   const auto frame_due = [&] {
     return scheme.finished() || scheme.time() >= frames * settings.duration / settings.frames;
@@ -217,7 +263,8 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     NodalField v = scheme.velocities();
     const StrainEnergies energies = body.energies();
     observer.history({scheme.time(), 0.5 * weighted_dot(model.masses(), v, v), energies.strain,
-                      energies.hourglass, scheme.external_work(), body.residual(), scheme.step_size()});
+                      energies.hourglass, scheme.external_work(), body.residual(), scheme.step_size(),
+                      scheme.adaption_energy()});
     if (frame_due()) {
       observer.frame(body.frame(scheme.time(), std::move(v)));
       ++frames;
@@ -228,7 +275,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   const auto keep = [&](auto archive) {
     scheme.keep(archive);
     archive("frames", frames);
-    archive("checks", checks);
+    judgements.keep(archive);
     archive("smallest step", motion.smallest_step);
   };
   const auto checkpoint = [&] {
@@ -255,7 +302,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {
       body.require_healthy(scheme.step());
       report();
-      if (++checks % checks_between_adaptions == 0) adaption.apply(body, Demotion::never);
+      if (adaption.active() && judgements.due()) judgements.done(scheme.adapt(adaption));
       scheme.choose_step();
       observer.resumable(checkpoint);
     }
@@ -264,6 +311,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   motion.v = scheme.velocities();
   motion.time = scheme.time();
   motion.steps = scheme.step();
+  motion.adaption_seconds = adaption.seconds();
   motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return motion;
 }
@@ -271,11 +319,11 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
 }  // namespace
 
 Motion integrate(const Model& model, Observer& observer, const Checkpoint* from) {
-  if (answers_by_condensation(model.choice().method)) {
+  if (method_named(model.choice().method).is_condensed) {
     throw InputError(fmt::format(
         "{}: method '{}' has no dynamics: it superposes static answers; use it on quasi-static cases, or "
         "method '{}'",
-        model.scene().description.file.string(), model.choice().method, LinearPerturbation::name));
+        model.scene().description.file.string(), model.choice().method, "linear"));
   }
   return std::visit([&](const auto& elements) { return integrate_body(model, *elements, observer, from); },
                     model.internal_force());

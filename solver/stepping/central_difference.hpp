@@ -13,7 +13,8 @@ struct Motion {
   long steps = 0;
   double smallest_step = 0.0;  ///< s
   bool interrupted = false;
-  double seconds = 0.0;  ///< wall time of the steps
+  double seconds = 0.0;           ///< wall time of the steps
+  double adaption_seconds = 0.0;  ///< of it, that an adaptive method's choice of levels took
 };
 
 /// Integrates the equations of motion with central differences, lumped unscaled masses and the case's

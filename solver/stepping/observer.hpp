@@ -9,13 +9,14 @@ namespace sandglass {
 
 /// One row of the dense history.
 struct HistoryRow {
-  double time;           ///< s; relative load in quasi-static runs, growing beyond 1 while relaxing
-  double kinetic;        ///< J; zero in quasi-static runs
-  double strain;         ///< J
-  double hourglass;      ///< J
-  double external_work;  ///< J, done by imposed displacements and forces
-  double residual;       ///< |force on free components| / |reactions and loads|, -
-  double step_size;      ///< s; in quasi-static runs the increment of the load
+  double time;            ///< s; relative load in quasi-static runs, growing beyond 1 while relaxing
+  double kinetic;         ///< J; zero in quasi-static runs
+  double strain;          ///< J
+  double hourglass;       ///< J
+  double external_work;   ///< J, done by imposed displacements and forces
+  double residual;        ///< |force on free components| / |reactions and loads|, -
+  double step_size;       ///< s; in quasi-static runs the increment of the load
+  double adaption = 0.0;  ///< J, that changes of levels brought in motion; see Adaption
 };
 
 /// A state worth keeping, in the numbering of the mesh.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/adaption.hpp"
 #include "stepping/condensed_answer.hpp"
 #include "stepping/equilibrium.hpp"
@@ -54,6 +55,7 @@ class Search {
     result_.energies = body().energies();
     result_.steps = equilibrium_.evaluations();
     result_.residual = equilibrium_.residual();
+    result_.adaption_seconds = adaption_.seconds();
     observer_.frame(body().frame(time(), no_velocity_));
     return std::move(result_);
   }
@@ -232,7 +234,7 @@ std::string outcome(const Relaxation& relaxation, Precision precision) {
 
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from) {
   const auto start = std::chrono::steady_clock::now();
-  Relaxation result = answers_by_condensation(model.choice().method)
+  Relaxation result = method_named(model.choice().method).is_condensed
                           ? condensed_answer(model, observer)
                           : std::visit(
                                 [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {

@@ -17,6 +17,7 @@ struct Relaxation {
   double seconds = 0.0;      ///< wall time from the model to the answer
   /// Wall time of a step; of a condensed answer that of its superposition, without what all answers share.
   double step_seconds = 0.0;
+  double adaption_seconds = 0.0;  ///< of the wall time, that an adaptive method's choice of levels took
 };
 
 /// Finds the displacements at which the internal forces balance. The imposed displacements and forces grow

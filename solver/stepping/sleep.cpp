@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "mesh/distances.hpp"
 #include "mesh/mesh_part.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/equilibrium.hpp"
 #include "stepping/load_levels.hpp"
 
@@ -24,10 +25,6 @@ std::size_t at(int n) {
 // Shares of what may be neglected: the error of the first motion, and what holding a part of it may change in
 // the rest of it. A tenth is left for what the whole load changes.
 constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
-
-double length(const Vector& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
 
 /// The nodes that are pushed: by an imposed displacement or a force.
 std::vector<int> pushed_nodes(const Scene& scene) {
@@ -151,15 +148,6 @@ class FirstAnswer {
   const MeshPart& part_;
 };
 
-/// The largest distance (m) between two fields.
-double largest_difference(const NodalField& a, const NodalField& b) {
-  double largest = 0.0;
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    largest = std::max(largest, std::hypot(a[n][0] - b[n][0], a[n][1] - b[n][1], a[n][2] - b[n][2]));
-  }
-  return largest;
-}
-
 /// The motion of a body as it begins, found no farther than it reaches.
 class FirstMotion {
  public:
@@ -227,7 +215,7 @@ class FirstMotion {
     const MeshPart part = part_of_mesh(scene_.mesh, awake_);
     const Scene scene = scene_of(scene_, part);
     evaluations_ += FirstAnswer(Model(scene, choice_), part).find(u_);
-    const double change = largest_difference(u_, before);
+    const double change = largest_distance(u_, before);
     const double falls = std::min(slowest, change / change_), factor = std::max(falls, falls_);
     left_ = change * factor / (1.0 - factor);
     change_ = change;
@@ -250,7 +238,7 @@ class FirstMotion {
 
 LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share,
                             Observer& observer) {
-  if (answers_by_condensation(choice.method)) {
+  if (method_named(choice.method).is_condensed) {
     throw InputError(fmt::format(
         "sleep: '{}' computes no elements that could sleep; allowed: a method that steps", choice.method));
   }
@@ -270,7 +258,7 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
       NodalField neglecting(motion.size());
       for (const int node : part.node_of) neglecting[at(node)] = motion[at(node)];
       evaluations += FirstAnswer(model, part).find(neglecting);
-      if (largest_difference(neglecting, motion) > share_of_holding * share * unit) continue;
+      if (largest_distance(neglecting, motion) > share_of_holding * share * unit) continue;
     }
     PartObserver told(observer, part, scene.mesh.cells.size());
     LocalRelaxation local{relax(model, told), part.element_of.size()};
