@@ -7,6 +7,7 @@
 #include "choice/candidates.hpp"
 #include "choice/choose.hpp"
 #include "io/case_file.hpp"
+#include "model/method_entry.hpp"
 #include "stability/answer.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
@@ -98,11 +99,12 @@ TEST(Choose, takes_the_first_that_suffices) {
       EXPECT_EQ(outcome, Outcome::refused) << name_of(rung);
       continue;
     }
-    const double rank = (adapts(rung.choice.method) ? 1.1 : 1.0) * cost->per_simulated_second();
+    const double rank =
+        (method_named(rung.choice.method).adapts() ? 1.1 : 1.0) * cost->per_simulated_second();
     EXPECT_GE(rank, before) << name_of(rung);
     before = rank;
     EXPECT_GT(cost->seconds, 0.0) << name_of(rung);
-    EXPECT_EQ(cost->step_size.has_value(), !answers_by_condensation(rung.choice.method));
+    EXPECT_EQ(cost->step_size.has_value(), !method_named(rung.choice.method).is_condensed);
     const auto expected = n < *choice.chosen   ? Outcome::refused
                           : n > *choice.chosen ? Outcome::not_tried
                                                : Outcome::chosen;

@@ -15,10 +15,10 @@
 #include "benchmark/bench_json.hpp"
 #include "benchmark/rest.hpp"
 #include "benchmark/stepped_model.hpp"
-#include "element/methods.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -48,12 +48,8 @@ std::vector<Value> without_repeats(const std::vector<Value>& values) {
 
 BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan;
-  const auto known = names_of(Methods{});
-  for (const auto& method : options.methods) {
-    if (std::find(known.begin(), known.end(), method) != known.end()) continue;
-    throw InputError(fmt::format("--methods: '{}' is not known; {}", method, suggestion(method, known)));
-  }
-  plan.methods = options.methods.empty() ? known : without_repeats(options.methods);
+  for (const auto& name : options.methods) method_named(name, "--methods");
+  plan.methods = options.methods.empty() ? method_names() : without_repeats(options.methods);
   for (const auto& precision : options.precisions) plan.precisions.push_back(parse_precision(precision));
   plan.precisions = without_repeats(plan.precisions);
   for (const int threads : options.threads) require_threads(threads);

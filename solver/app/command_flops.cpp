@@ -4,11 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
-#include "element/methods.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "material/laws.hpp"
-#include "model/operations.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -28,32 +27,33 @@ struct Row {
 std::vector<Row> count_methods() {
   using Law = NeoHookean;
   std::vector<Row> rows;
-  for_each_type(Methods{}, [&]<class Method>() {
+  for (const MethodEntry& method : methods()) {
     const auto add = [&](std::string_view form, std::string_view part, const Operations& operations,
                          long bytes = 0) {
-      rows.push_back({Method::name, Law::name, form, part, operations, bytes});
+      rows.push_back({method.name, Law::name, form, part, operations, bytes});
     };
-    if constexpr (is_condensed<Method>) {
+    if (method.is_condensed) {
       // Three columns for each handle, a product and a sum with each for every component of a node.
       add("update", "node", {.add = 9, .mul = 9}, 9 * sizeof(double));
     } else {
-      const OperationCount count = operation_count(Method::name, Law{});
+      const OperationCount count = method.operations(Law{});
       add("kernel", "gradient", count.gradient);
       add("kernel", "law", count.law);
       add("kernel", "force", count.force);
-      if (Method::Hourglass::active) add("kernel", "hourglass", count.hourglass);
+      if (count.hourglass.total() > 0) add("kernel", "hourglass", count.hourglass);
       add("kernel", "element", count.total, count.bytes);
     }
-  });
-  rows.push_back({TlPerturbation::name, Law::name, "paper", "hourglass", count_paper_hourglass_force()});
+  }
+  rows.push_back({"tl-perturbation", Law::name, "paper", "hourglass", count_paper_hourglass_force()});
   return rows;
 }
 
 /// Every law at the one point of an element; counts do not depend on the values of its parameters.
 std::vector<Row> count_laws() {
+  const MethodEntry& plain = method_named("tl-none");
   std::vector<Row> rows;
   for_each_type(Laws{}, [&]<class Law>() {
-    rows.push_back({TlNone::name, Law::name, "kernel", "law", operation_count(TlNone::name, Law{}).law});
+    rows.push_back({plain.name, Law::name, "kernel", "law", plain.operations(Law{}).law});
   });
   return rows;
 }

@@ -12,9 +12,9 @@
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "comparison/verdict.hpp"
-#include "element/methods.hpp"
 #include "io/case_file.hpp"
 #include "io/text_file.hpp"
+#include "model/method_entry.hpp"
 #include "stability/cell_files.hpp"
 
 namespace sandglass {
@@ -52,12 +52,8 @@ std::vector<Map> make_maps(const StabilityOptions& options, const Case& descript
 }
 
 std::vector<std::string> make_methods(const StabilityOptions& options) {
-  const auto known = names_of(Methods{});
-  for (const auto& method : options.methods) {
-    if (std::find(known.begin(), known.end(), method) != known.end()) continue;
-    throw InputError(fmt::format("--methods: '{}' is not known; {}", method, suggestion(method, known)));
-  }
-  return options.methods.empty() ? known : options.methods;
+  for (const auto& name : options.methods) method_named(name, "--methods");
+  return options.methods.empty() ? method_names() : options.methods;
 }
 
 std::vector<Task> make_tasks(const std::vector<Map>& maps, const std::vector<std::string>& methods,

@@ -16,10 +16,10 @@
 #include "comparison/published_table.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
-#include "element/methods.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/body.hpp"
 
 namespace sandglass {
@@ -60,14 +60,14 @@ std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
 std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision) {
   std::vector<Task> tasks;
   for (const auto& subject : subjects) {
-    for_each_type(Methods{}, [&]<class Method>() {
-      tasks.push_back({&subject, {std::string(Method::name), {}, precision}});
+    for (const MethodEntry& method : methods()) {
+      tasks.push_back({&subject, {std::string(method.name), {}, precision}});
       // A condensed method's curve is that of the method it condenses.
-      if (!kappa_matters_at_rest<Method> || is_condensed<Method>) return;
+      if (!method.kappa_matters_at_rest || method.is_condensed) continue;
       for (const double kappa : subject.scene.description.kappas) {
-        tasks.push_back({&subject, {std::string(Method::name), kappa, precision}});
+        tasks.push_back({&subject, {std::string(method.name), kappa, precision}});
       }
-    });
+    }
   }
   return tasks;
 }

@@ -9,7 +9,7 @@
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
-#include "element/methods.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -77,7 +77,7 @@ std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>
   std::vector<BenchRecord> records;
   if (nodes <= most_condensed_nodes) return records;
   std::erase_if(variants, [&](const MethodChoice& choice) {
-    if (!answers_by_condensation(choice.method)) return false;
+    if (!method_named(choice.method).is_condensed) return false;
     const std::string why = fmt::format("left out: to factorise for {} nodes takes too long; at most {} here",
                                         nodes, most_condensed_nodes);
     records.push_back({scene.description.name, elements, nodes, choice, why, 0.0, 0.0, {}, {}, {}, {}});
@@ -166,7 +166,7 @@ void compare_among_each_other(std::vector<BenchRecord>& records) {
     for (const auto& other : records) {
       if (!other.speed || other.case_name != record.case_name || other.elements != record.elements) continue;
       const double ratio = record.speed->ns.median / other.speed->ns.median;
-      if (other.choice.method == TlPerturbation::name && same_numbers(record.choice, other.choice)) {
+      if (other.choice.method == "tl-perturbation" && same_numbers(record.choice, other.choice)) {
         record.speed->to_tl_perturbation = ratio;
       }
       if (other.choice.kernel == KernelWidth::scalar && same_method(record.choice, other.choice)) {

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/work.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/adaption.hpp"
 #include "stepping/explicit_step.hpp"
 #include "stepping/stable_step.hpp"
@@ -163,7 +164,7 @@ NodalField wavy_field(const Scene& scene) {
 
 std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
                                                  const NodalField* start) {
-  if (answers_by_condensation(choice.method)) return make_condensed_model(scene, choice);
+  if (method_named(choice.method).is_condensed) return make_condensed_model(scene, choice);
   if (choice.precision == Precision::double_precision) {
     return std::make_unique<SteppedModelOf<double>>(scene, choice, start);
   }

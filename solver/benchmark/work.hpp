@@ -4,18 +4,9 @@
 
 #include "benchmark/roofline.hpp"
 #include "mesh/layout.hpp"
-#include "model/internal_force.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
-
-/// What a step reads and writes, counted once in each pass through the elements: a row that two strips meet
-/// is taken to come from a cache the second time. In numbers of the precision unless said otherwise.
-struct Traffic {
-  std::size_t constants;       ///< per element
-  std::size_t history;         ///< per element, read and written
-  std::size_t rows_of_motion;  ///< rows gathered: displacements, and increments or coordinates where needed
-  std::size_t passes = 1;      ///< through the elements, each of which reads their constants and places
-};
 
 /// The other rows of a step: force written by the elements, which clear it while it is in a cache, and read
 /// by the update; inverse mass read; displacement and increment read and written.

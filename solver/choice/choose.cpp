@@ -8,9 +8,9 @@
 
 #include "base/error.hpp"
 #include "base/names.hpp"
-#include "element/methods.hpp"
 #include "mesh/interpolation.hpp"
 #include "mesh/variations.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -26,11 +26,7 @@ void require_possible(const Scene& scene, const Demand& demand) {
                     "choose for the state of rest that the motion goes to",
                     scene.description.file.string()));
   }
-  const auto known = names_of(Methods{});
-  for (const auto& method : demand.methods) {
-    if (std::find(known.begin(), known.end(), method) != known.end()) continue;
-    throw InputError(fmt::format("--methods: '{}' is not known; {}", method, suggestion(method, known)));
-  }
+  for (const auto& name : demand.methods) method_named(name, "--methods");
 }
 
 /// The user's mesh, and those coarser ones that the golden's own element can still answer on. What was looked
@@ -66,7 +62,7 @@ double rank(const Attempt& attempt) {
   constexpr double price_of_change = 1.1;
   if (!attempt.cost) return std::numeric_limits<double>::infinity();
   const double cost = attempt.cost->per_simulated_second();
-  return adapts(attempt.rung.choice.method) ? price_of_change * cost : cost;
+  return method_named(attempt.rung.choice.method).adapts() ? price_of_change * cost : cost;
 }
 
 /// Why a rung is too dear; empty when it is not.
@@ -198,7 +194,7 @@ std::vector<std::string> remarks(const Choice& choice) {
   }
   for (const auto& attempt : choice.attempts) {
     const auto& [rung, cost, judgement, outcome] = attempt;
-    const bool is_golden = rung.choice.method == TlMeanDilatation::name && !rung.mesh->coarser &&
+    const bool is_golden = rung.choice.method == golden_method && !rung.mesh->coarser &&
                            rung.choice.precision == Precision::double_precision;
     if (!is_golden || !judgement.error || !(*judgement.error > tolerance)) continue;
     said.push_back(

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/variations.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -17,20 +18,21 @@ Json or_null(const std::optional<Value>& value) {
 
 Json to_record(const Attempt& attempt) {
   const auto& [rung, cost, judgement, outcome] = attempt;
-  return {{"rung", name_of(rung)},
-          {"method", rung.choice.method},
-          {"kappa", or_null(rung.choice.kappa)},
-          {"accuracy", adapts(rung.choice.method) ? Json(rung.choice.accuracy) : Json(nullptr)},
-          {"precision", name_of(rung.choice.precision)},
-          {"mesh", rung.mesh->name()},
-          {"elements", rung.mesh->scene.mesh.cells.size()},
-          {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
-          {"step_size", cost ? or_null(cost->step_size) : Json(nullptr)},
-          {"seconds_per_simulated_second", cost ? Json(cost->per_simulated_second()) : Json(nullptr)},
-          {"error", or_null(judgement.error)},
-          {"smallest_jacobian", or_null(judgement.smallest_jacobian)},
-          {"outcome", name_of(outcome)},
-          {"reason", judgement.reason}};
+  return {
+      {"rung", name_of(rung)},
+      {"method", rung.choice.method},
+      {"kappa", or_null(rung.choice.kappa)},
+      {"accuracy", method_named(rung.choice.method).adapts() ? Json(rung.choice.accuracy) : Json(nullptr)},
+      {"precision", name_of(rung.choice.precision)},
+      {"mesh", rung.mesh->name()},
+      {"elements", rung.mesh->scene.mesh.cells.size()},
+      {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
+      {"step_size", cost ? or_null(cost->step_size) : Json(nullptr)},
+      {"seconds_per_simulated_second", cost ? Json(cost->per_simulated_second()) : Json(nullptr)},
+      {"error", or_null(judgement.error)},
+      {"smallest_jacobian", or_null(judgement.smallest_jacobian)},
+      {"outcome", name_of(outcome)},
+      {"reason", judgement.reason}};
 }
 
 }  // namespace

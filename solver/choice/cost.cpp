@@ -9,6 +9,7 @@
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/machine_speed.hpp"
 #include "benchmark/statistics.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/stable_step.hpp"
 
 namespace sandglass {
@@ -34,7 +35,7 @@ std::string first_line(const std::string& text) {
 /// method cannot stand there, from waves. Throws InputError or ComputationError.
 Timed make_timed(const Rung& rung, std::size_t number, const Proceed& proceed) {
   const Scene& scene = rung.mesh->scene;
-  if (answers_by_condensation(rung.choice.method) && scene.mesh.points.size() > most_condensed_nodes) {
+  if (method_named(rung.choice.method).is_condensed && scene.mesh.points.size() > most_condensed_nodes) {
     throw InputError(fmt::format("to factorise for {} nodes takes too long; at most {} here",
                                  scene.mesh.points.size(), most_condensed_nodes));
   }

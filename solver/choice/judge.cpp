@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "comparison/accuracy.hpp"
 #include "element/hexahedron.hpp"
-#include "element/methods.hpp"
 #include "mesh/interpolation.hpp"
+#include "model/method_entry.hpp"
 #include "stability/answer.hpp"
 
 namespace sandglass {
@@ -42,7 +42,7 @@ Answer find_answer(const Scene& scene, const MethodChoice& choice, const Proceed
 }
 
 MethodChoice golden_element(int threads) {
-  return {.method = std::string(TlMeanDilatation::name), .threads = threads};
+  return {.method = std::string(golden_method), .threads = threads};
 }
 
 /// The same scene with a tenth more load.
@@ -73,7 +73,7 @@ double largest_gradient(const Mesh& mesh, const NodalField& u) {
 
 /// How an answer that is too far from the reference goes wrong.
 std::string error_reason(const Rung& rung, const Symptoms& symptoms, double tolerance, double gradient) {
-  if (has_small_strains(rung.choice.method) && gradient > 0.1) {
+  if (method_named(rung.choice.method).is_linear && gradient > 0.1) {
     return fmt::format("small-strain theory, but displacement gradients reach {:.2g}", gradient);
   }
   switch (diagnose(symptoms, tolerance)) {
@@ -115,7 +115,7 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
     reference.u = read_reference(path, scene);
     reference.own = read_own_error(path);
   } else {
-    reference.name = TlMeanDilatation::name;
+    reference.name = golden_method;
     Answer answer = find_answer(scene, golden_element(1), proceed);
     if (answer.refused || answer.failure) {
       throw ComputationError(

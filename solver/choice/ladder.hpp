@@ -42,9 +42,6 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
 /// What is on a rung, for people: "tl-perturbation kappa 0.00325 float".
 std::string name_of(const Rung& rung);
 
-/// Whether a method's theory is that of small strains. False for a name that is not known.
-bool has_small_strains(std::string_view method);
-
 /// Whether two rungs do the same work in a step, so that one time stands for both.
 bool same_work(const Rung& a, const Rung& b);
 

@@ -5,7 +5,7 @@
 
 #include "comparison/accuracy.hpp"
 #include "element/hexahedron.hpp"
-#include "element/methods.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -67,7 +67,7 @@ HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u) {
 Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const NodalField& golden,
                   double unit) {
   const HourglassContent error = hourglass_content(scene.mesh, difference(u, golden));
-  const Model element_of_golden(scene, {std::string(TlMeanDilatation::name)});
+  const Model element_of_golden(scene, {std::string(golden_method)});
   const double energy_of_golden = strain_energies(element_of_golden, golden).strain;
   const double share = ratio(error.hourglass, error.total);
   const bool moved = largest_imposed(scene) > 0.0;

@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 #include "io/reference_file.hpp"
-#include "model/operations.hpp"
+#include "model/method_entry.hpp"
 #include "stepping/stable_step.hpp"
 
 namespace sandglass {
@@ -57,9 +57,9 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
   Verdict verdict{.case_name = scene.description.name,
                   .method = choice.method,
                   .kappa = choice.kappa ? choice.kappa : auto_kappa(choice.method, scene.description.law),
-                  .kappa_is_auto = takes_kappa(choice.method) && !choice.kappa,
+                  .kappa_is_auto = method_named(choice.method).takes_kappa && !choice.kappa,
                   .precision = std::string(name_of(choice.precision)),
-                  .operations = operations_of(choice.method, scene.description.law).total(),
+                  .operations = method_named(choice.method).operations(scene.description.law).total.total(),
                   .family = scene.description.family,
                   .variants = scene.description.variants,
                   .published = published_results(scene, references.truth)};

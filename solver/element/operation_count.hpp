@@ -3,26 +3,16 @@
 #include <array>
 #include <bit>
 
+#include "element/element_work.hpp"
 #include "element/formulation.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/hourglass_perturbation.hpp"
 #include "material/memory.hpp"
 #include "material/small_strain.hpp"
-#include "math/counted.hpp"
 #include "math/rows.hpp"
 
 /// Operations per element and step, counted by running the kernels themselves on counting numbers.
 namespace sandglass {
-
-/// What an element costs per step, by part.
-struct OperationCount {
-  Operations gradient;   ///< from nodal displacements to displacement gradients and volume changes
-  Operations law;        ///< from displacement gradients to stresses
-  Operations force;      ///< from stresses to nodal forces
-  Operations hourglass;  ///< what the hourglass control adds to an element without it
-  Operations total;
-  long bytes = 0;  ///< in double: constants and four places of nodes read, history read and written
-};
 
 namespace detail {
 

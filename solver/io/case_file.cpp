@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "base/error.hpp"
-#include "element/methods.hpp"
 #include "io/case_variants.hpp"
 #include "io/mesh_file.hpp"
 #include "io/table_reader.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -192,7 +192,7 @@ std::optional<double> read_strength(TableReader& table, const std::string& metho
   }
   const auto kappa = table.required<double>("kappa");
   table.require_in_range("kappa", kappa, Range::at_least(0.0));
-  if (!takes_kappa(method)) {
+  if (!method_named(method).takes_kappa) {
     table.fail("kappa", fmt::format("= {} was given, but method '{}' has no such parameter", kappa, method));
   }
   return kappa;
@@ -200,7 +200,7 @@ std::optional<double> read_strength(TableReader& table, const std::string& metho
 
 MethodChoice read_method(TableReader table) {
   MethodChoice choice;
-  choice.method = table.required_choice("name", names_of(Methods{}));
+  choice.method = table.required_choice("name", method_names());
   choice.kappa = read_strength(table, choice.method);
   const auto is = [&](const std::string& key, const std::vector<std::string>& words, std::string_view word) {
     return table.optional<std::string>(key) && table.required_choice(key, words) == word;
@@ -208,7 +208,8 @@ MethodChoice read_method(TableReader table) {
   if (is("kappa_modulus", {"p-wave", "shear"}, "shear")) choice.kappa_modulus = KappaModulus::shear;
   if (is("precision", {"double", "float"}, "float")) choice.precision = Precision::single_precision;
   if (const auto accuracy = table.optional<double>("accuracy")) {
-    if (!adapts(choice.method)) table.fail("accuracy", "is for an adaptive method alone; leave it out");
+    if (!method_named(choice.method).adapts())
+      table.fail("accuracy", "is for an adaptive method alone; leave it out");
     if (!(*accuracy > 0.0)) table.fail("accuracy", "must be positive");
     choice.accuracy = *accuracy;
   }
@@ -218,7 +219,7 @@ MethodChoice read_method(TableReader table) {
 
 Expectation read_expectation(TableReader table) {
   Expectation expected;
-  expected.method = table.required_choice("method", names_of(Methods{}));
+  expected.method = table.required_choice("method", method_names());
   expected.kappa = read_kappa(table);
   expected.reference = table.required_choice("reference", {"golden", "truth", "published"});
   expected.figure = table.required_choice(

@@ -8,6 +8,7 @@
 #include "io/case_variants.hpp"
 #include "io/toml_text.hpp"
 #include "mesh/variations.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -36,8 +37,8 @@ toml::table& table_of(toml::table& root, std::string_view key) {
 
 toml::table method_table(const MethodChoice& choice) {
   toml::table method{{"name", choice.method}, {"precision", std::string(name_of(choice.precision))}};
-  if (adapts(choice.method)) method.insert("accuracy", choice.accuracy);
-  if (!takes_kappa(choice.method)) return method;
+  if (method_named(choice.method).adapts()) method.insert("accuracy", choice.accuracy);
+  if (!method_named(choice.method).takes_kappa) return method;
   if (choice.kappa) {
     method.insert("kappa", *choice.kappa);
   } else {

@@ -8,12 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "element/methods.hpp"
+#include "base/type_list.hpp"
+#include "element/method_traits.hpp"
 #include "mesh/strips.hpp"
 #include "model/chunk_sum.hpp"
 #include "model/element_block.hpp"
 #include "model/face_gather.hpp"
 #include "model/internal_force.hpp"
+#include "model/prefetch.hpp"
 
 namespace sandglass {
 
@@ -60,7 +62,7 @@ class AdaptiveAssembly<TypeList<Methods...>, Law, Number> final
     rest_.increment.resize(layout_.rows());
     rest_.levels.resize(mesh.cells.size());
     regroup(rest_);
-    streams_ = layout_.levels() * sizeof(std::get<0>(Parts{}).blocks[0]) > std::size_t{2} << 20U;
+    streams_ = layout_.levels() * sizeof(std::get<0>(Parts{}).blocks[0]) > cached_bytes;
   }
 
   const Layout& layout() const override { return layout_; }
@@ -222,8 +224,9 @@ class AdaptiveAssembly<TypeList<Methods...>, Law, Number> final
       Faces carried{};
       for (std::size_t k = 0; k < group.levels; ++k) {
         const auto& element = part.blocks[group.first_level + k];
-        if (streams_)
-          prefetch(part.blocks.data() + std::min(group.first_level + k + 3, part.blocks.size() - 1));
+        if (streams_ && group.first_level + k + levels_ahead < part.blocks.size()) {
+          prefetch(part.blocks.data() + group.first_level + k + levels_ahead, sizeof(element));
+        }
         const Faces upper = gather_face_modes<Number>(u, part, group.first_face + k + 1);
         const Modes<Number> f =
             Kernel::force(Kernel::deformation(motion_between(lower, upper), element), element, none, law);
@@ -232,15 +235,6 @@ class AdaptiveAssembly<TypeList<Methods...>, Law, Number> final
         lower = upper;
       }
       scatter_face_modes(carried, force, part, group.first_face + group.levels);
-    }
-  }
-
-  /// Asks for constants that come from memory once per step, ahead of time.
-  template <class Element>
-  static void prefetch(const Element* element) {
-    constexpr std::size_t cache_line = 64;
-    for (std::size_t n = 0; n < sizeof(Element); n += cache_line) {
-      __builtin_prefetch(reinterpret_cast<const char*>(element) + n);
     }
   }
 

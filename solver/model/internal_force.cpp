@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "model/method_dispatch.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
 namespace {
 
-void require_sensible(const MethodChoice& choice) {
-  const bool takes = takes_kappa(choice.method);
-  if (choice.kappa && !takes) {
+void require_sensible(const MethodChoice& choice, const MethodEntry& method) {
+  if (choice.kappa && !method.takes_kappa) {
     throw InputError(fmt::format("kappa: {} was given, but method '{}' has no such parameter; leave it out",
                                  *choice.kappa, choice.method));
   }
@@ -33,42 +32,16 @@ void require_sensible(const MethodChoice& choice) {
 
 AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
                                      double density) {
-  require_sensible(choice);
+  const MethodEntry& method = method_named(choice.method);
+  require_sensible(choice, method);
   const HourglassSettings settings{choice.kappa, density, choice.kappa_modulus};
-  if (choice.kernel == KernelWidth::scalar) return assemble<double>(mesh, law, choice, settings);
-  if (choice.precision == Precision::double_precision) {
-    return assemble<Pack<double>>(mesh, law, choice, settings);
+  if (choice.kernel == KernelWidth::scalar) {
+    return method.assemble_scalar_double(mesh, law, settings, choice.threads);
   }
-  return assemble<Pack<float>>(mesh, law, choice, settings);
-}
-
-bool takes_kappa(std::string_view method) {
-  bool takes = false;
-  with_method(method, [&]<class Method>() { takes = Method::Hourglass::takes_kappa; });
-  return takes;
-}
-
-bool answers_by_condensation(std::string_view method) {
-  bool condensed = false;
-  with_method(method, [&]<class Method>() { condensed = is_condensed<Method>; });
-  return condensed;
-}
-
-bool adapts(std::string_view method) {
-  bool adaptive = false;
-  with_method(method, [&]<class Method>() { adaptive = is_adaptive<Method>; });
-  return adaptive;
-}
-
-std::optional<double> auto_kappa(std::string_view method, const AnyLaw& any_law, KappaModulus modulus) {
-  std::optional<double> kappa;
-  with_method(method, [&]<class Method>() {
-    if constexpr (Method::Hourglass::takes_kappa) {
-      kappa =
-          std::visit([&](const auto& law) { return Method::Hourglass::auto_kappa(law, modulus); }, any_law);
-    }
-  });
-  return kappa;
+  if (choice.precision == Precision::double_precision) {
+    return method.assemble_packed_double(mesh, law, settings, choice.threads);
+  }
+  return method.assemble_packed_float(mesh, law, settings, choice.threads);
 }
 
 template <class Real>

@@ -139,20 +139,6 @@ using AnyInternalForce =
 AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
                                      double density = 0.0);
 
-/// Whether the method of that name takes the hourglass parameter kappa. Throws InputError when
-/// unknown.
-bool takes_kappa(std::string_view method);
-
-/// Whether the method of that name answers by condensation instead of steps. Throws InputError when unknown.
-bool answers_by_condensation(std::string_view method);
-
-/// Whether the method of that name chooses the level of each element. Throws InputError when unknown.
-bool adapts(std::string_view method);
-
-/// The number that `auto` stands for, or none when the method takes no kappa.
-std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law,
-                                 KappaModulus modulus = KappaModulus::p_wave);
-
 /// The state in which a body finds itself when nodes go from rest to `u` (m) in one step.
 template <class Real>
 State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u);

@@ -1,6 +1,7 @@
 #include "model/linear_stiffness.hpp"
 
-#include "model/method_dispatch.hpp"
+#include "base/error.hpp"
+#include "element/methods.hpp"
 
 namespace sandglass {
 
@@ -24,7 +25,7 @@ void for_each_stiffness(const Model& model,
                         const std::function<void(const Hexahedron&, const ElementStiffness&)>& visit) {
   const MethodChoice& choice = model.choice();
   const Mesh& mesh = model.scene().mesh;
-  with_method(choice.method, [&]<class Method>() {
+  with_named_type(Methods{}, choice.method, [&]<class Method>() {
     if constexpr (is_linear<Method>) {
       std::visit(
           [&]<class Law>(const Law& law) {

@@ -9,8 +9,8 @@
 
 #include "base/error.hpp"
 #include "base/names.hpp"
-#include "element/methods.hpp"
 #include "mesh/variations.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -39,18 +39,13 @@ bool has_poisson_ratio(const Case& description) {
 }
 
 bool can_move(const Trial& trial) {
-  return !answers_by_condensation(trial.choice.method);
+  return !method_named(trial.choice.method).is_condensed;
 }
 
 /// Where a damping control resists velocities alone, its strength is nothing to a body at rest.
 bool takes_strength(const Trial& trial) {
-  bool takes = false;
-  for_each_type(Methods{}, [&]<class Method>() {
-    if (Method::name != trial.choice.method) return;
-    takes = trial.is_dynamic() ? Method::Hourglass::takes_kappa : kappa_matters_at_rest<Method>;
-    takes = takes && !is_condensed<Method>;
-  });
-  return takes;
+  const MethodEntry& method = method_named(trial.choice.method);
+  return !method.is_condensed && (trial.is_dynamic() ? method.takes_kappa : method.kappa_matters_at_rest);
 }
 
 void set_kappa(Trial& trial, double value) {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "element/methods.hpp"
 #include "mesh/variations.hpp"
+#include "model/method_entry.hpp"
 
 namespace sandglass {
 
@@ -89,7 +89,7 @@ Trial careful(Trial trial) {
 }
 
 Trial golden_of(Trial trial) {
-  trial.choice = {std::string(TlMeanDilatation::name)};
+  trial.choice = {std::string(golden_method)};
   trial.description.relaxation.cycles = 0;
   return careful(std::move(trial));
 }

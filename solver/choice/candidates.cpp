@@ -1,0 +1,36 @@
+#include "choice/candidates.hpp"
+
+namespace sandglass {
+
+std::string_view unfit(const MethodEntry& method) {
+  if (method.damps_only) return "its hourglass control resists velocities alone: it has no answer at rest";
+  if (!method.controls_hourglass) {
+    return "nothing resists its hourglass modes: a disturbance stays where it was put";
+  }
+  return "";
+}
+
+std::vector<MethodChoice> choices_of(const MethodEntry& method, const MethodChoice& plain, const AnyLaw& law,
+                                     double tolerance) {
+  std::vector<MethodChoice> choices;
+  const auto add = [&](auto&& change) {
+    choices.push_back(plain);
+    change(choices.back());
+  };
+  if (method.adapts()) {
+    for (const double share : accuracy_shares) {
+      add([&](MethodChoice& choice) { choice.accuracy = share * tolerance; });
+    }
+    return choices;
+  }
+  choices.push_back(plain);
+  if (method.kappa_matters_at_rest) {
+    const double usual = method.auto_kappa(law, plain.kappa_modulus).value();
+    for (const double strength : other_strengths) {
+      add([&](MethodChoice& choice) { choice.kappa = strength * usual; });
+    }
+  }
+  return choices;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/hourglass_none.hpp"
+#include "element/tetrahedra.hpp"
+
+namespace sandglass {
+
+struct T4Anp {
+  static constexpr std::string_view name = "t4-anp";
+  static constexpr std::string_view summary = "the same tetrahedra with pressures averaged at the nodes";
+  static constexpr int integration_points = 10;
+  using Kinematics = Tetrahedra<NodalPressure>;
+  using Hourglass = NoHourglassControl;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string_view>
+
+#include "base/type_list.hpp"
+#include "element/hourglass_sampling.hpp"
+#include "element/methods/tl_four_point.hpp"
+#include "element/methods/tl_mean_dilatation.hpp"
+#include "element/methods/tl_modal_sampling.hpp"
+#include "element/one_point.hpp"
+
+namespace sandglass {
+
+/// An adaptive method names its `Levels`, methods from the cheapest to the one that it stands for. What it
+/// says of itself beside that is what an element at rest is.
+struct TlAdaptive {
+  static constexpr std::string_view name = "tl-adaptive";
+  static constexpr std::string_view summary =
+      "one, four or eight points, each element as many as the accuracy asked for needs";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = ModalSamplingControl;
+  using Levels = TypeList<TlModalSampling, TlFourPoint, TlMeanDilatation>;
+};
+
+}  // namespace sandglass

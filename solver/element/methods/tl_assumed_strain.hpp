@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/hourglass_assumed_strain.hpp"
+#include "element/hourglass_form.hpp"
+#include "element/one_point.hpp"
+
+namespace sandglass {
+
+struct TlAssumedStrain {
+  static constexpr std::string_view name = "tl-assumed-strain";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), computed at rest";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = RestHourglassControl<AssumedStrain>;
+};
+
+}  // namespace sandglass

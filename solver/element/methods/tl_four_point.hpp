@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/four_point.hpp"
+#include "element/hourglass_sampling.hpp"
+
+namespace sandglass {
+
+struct TlFourPoint {
+  static constexpr std::string_view name = "tl-four-point";
+  static constexpr std::string_view summary =
+      "four points on the element's mean parallelepiped, one pressure: nearly eight, from one point's memory";
+  static constexpr int integration_points = 4;
+  using Kinematics = FourPoint;
+  using Hourglass = LastModeControl;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/eight_point.hpp"
+#include "element/hourglass_none.hpp"
+
+namespace sandglass {
+
+struct TlFull {
+  static constexpr std::string_view name = "tl-full";
+  static constexpr std::string_view summary = "eight points, displacement element: locks as nu -> 1/2";
+  static constexpr int integration_points = 8;
+  using Kinematics = EightPoint<PointPressure>;
+  using Hourglass = NoHourglassControl;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/eight_point.hpp"
+#include "element/hourglass_none.hpp"
+
+namespace sandglass {
+
+struct TlMeanDilatation {
+  static constexpr std::string_view name = "tl-mean-dilatation";
+  static constexpr std::string_view summary =
+      "eight points, one pressure per element: the golden's own element";
+  static constexpr int integration_points = 8;
+  using Kinematics = EightPoint<MeanPressure>;
+  using Hourglass = NoHourglassControl;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/compact_one_point.hpp"
+#include "element/hourglass_perturbation.hpp"
+
+namespace sandglass {
+
+struct TlPerturbationCompact {
+  static constexpr std::string_view name = "tl-perturbation-compact";
+  static constexpr std::string_view summary =
+      "tl-perturbation with its geometry computed anew each step instead of loaded";
+  static constexpr int integration_points = 1;
+  using Kinematics = CompactOnePoint;
+  using Hourglass = PerturbationHourglassControl;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/one_point.hpp"
+#include "element/stabilization_matrix.hpp"
+
+namespace sandglass {
+
+struct TlStabilizationMatrix {
+  static constexpr std::string_view name = "tl-stabilization-matrix";
+  static constexpr std::string_view summary =
+      "one point, Total Lagrangian, what the mean-dilatation element has more at rest as a constant matrix";
+  static constexpr int integration_points = 1;
+  using Kinematics = OnePoint;
+  using Hourglass = HourglassMatrixControl<StabilizationMatrix>;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/hourglass_assumed_strain.hpp"
+#include "element/hourglass_rate.hpp"
+#include "element/methods/tl_assumed_strain.hpp"
+#include "element/updated_one_point.hpp"
+
+namespace sandglass {
+
+struct UlAssumedStrain {
+  static constexpr std::string_view name = "ul-assumed-strain";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, assumed strain (ASQBI) of the current shape: LS-DYNA's type 6";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RateHourglassControl<AssumedStrain>;
+  using AtSmallStrain = TlAssumedStrain;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/hourglass_enhanced.hpp"
+#include "element/hourglass_rate.hpp"
+#include "element/methods/tl_enhanced.hpp"
+#include "element/updated_one_point.hpp"
+
+namespace sandglass {
+
+struct UlEnhanced {
+  static constexpr std::string_view name = "ul-enhanced";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, enhanced assumed strain after Puso: ABAQUS's costlier control";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RateHourglassControl<EnhancedStrain>;
+  using AtSmallStrain = TlEnhanced;
+};
+
+}  // namespace sandglass

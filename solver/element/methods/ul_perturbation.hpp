@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+#include "element/hourglass_rate_perturbation.hpp"
+#include "element/methods/tl_perturbation.hpp"
+#include "element/updated_one_point.hpp"
+
+namespace sandglass {
+
+struct UlPerturbation {
+  static constexpr std::string_view name = "ul-perturbation";
+  static constexpr std::string_view summary =
+      "one point, Updated Lagrangian, the same control integrated in time and turned: what ABAQUS does";
+  static constexpr int integration_points = 1;
+  using Kinematics = UpdatedOnePoint;
+  using Hourglass = RatePerturbationControl;
+  using AtSmallStrain = TlPerturbation;
+};
+
+}  // namespace sandglass
