@@ -1,8 +1,8 @@
 """Follows the steps of a README literally: new files and changes of lines, as its code blocks say.
 
-A step names its file, "New file `PATH`:" or "..., in `PATH`:", and code blocks follow: the whole text
-of a new file, or changes (diff): lines with "-" or " " before them are found as they stand, and those
-with "+" or " " take their place.
+A step names its file, "New file `PATH`:" or "..., in `PATH`:", and code blocks follow: the whole
+text of a new file, or changes (diff): lines with "-" or " " before them are found as they stand,
+and those with "+" or " " take their place.
 
     /usr/bin/python3 verification/follow.py DOCUMENT HEADING TREE
 """

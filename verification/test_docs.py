@@ -1,7 +1,7 @@
-"""READMEs are true: their steps are followed literally in a copy of the tree, and what they name is there.
+"""READMEs are true: their steps are followed literally in a copy, and what they name is there.
 
-A law and a control are compiled alone, into the tests that need no kernels: half a minute each. `ci/docs`
-follows the same steps and builds the whole solver, for an hour.
+A law and a control are compiled alone, into the tests that need no kernels: half a minute each.
+`ci/docs` follows the same steps and builds the whole solver.
 """
 
 import os
@@ -38,7 +38,7 @@ def build(command, tree, environment):
 
 
 def run_test(tree, name, tests):
-    """Compiles a test of the copy and runs those of it that a filter names. Returns how many passed."""
+    """Compiles a test of the copy, runs those of it that a filter names, tells how many passed."""
     environment = os.environ | {"CCACHE_BASEDIR": str(tree), "CCACHE_NOHASHDIR": "1"}
     launcher = ["ccache"] if shutil.which("ccache") else []
     flags = "-std=c++20 -O0 -fno-math-errno -Isolver -Iverification -isystem /usr/include/eigen3"

@@ -8,6 +8,11 @@ namespace sandglass {
 /// way), or, so that a motion does not send them up and down, where half as much would do.
 enum class Demotion { never, where_enough, reluctant };
 
+/// Levels follow a motion at a distance: to judge them costs about ten steps. Elements only go up there: in
+/// every vibration one that goes down where its hourglass modes pass through zero, and up again where they
+/// are wide, would take energy from nowhere.
+inline constexpr long checks_between_adaptions = 10;
+
 /// How an adaptive method chooses the levels of its elements while a body moves: an element may displace its
 /// nodes by no more than a share of the accuracy asked for. A node yields to a force as if its neighbours
 /// stood still, by the force over mu times the integral of |grad N|^2; neighbours that err, too, and the rest
