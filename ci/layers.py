@@ -17,6 +17,7 @@ LAYERS = [
     "model",
     "stepping",
     "io",
+    "sandglass",
     "comparison",
     "stability",
     "benchmark",

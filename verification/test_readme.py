@@ -1,10 +1,12 @@
 """The case and the commands that the README shows are run as they stand there."""
 
+import os
 import pathlib
 import re
+import subprocess
 
 import h5py
-from command_line import ROOT, sandglass
+from command_line import BINARY, ROOT, sandglass
 
 README = (ROOT / "README.md").read_text()
 
@@ -36,9 +38,33 @@ def test_the_choice_runs_as_written(tmp_path):
     assert "[method]" in (tmp_path / "chosen.toml").read_text()
 
 
+def test_own_program_runs_as_written(tmp_path):
+    """In a folder that looks like the clone, with a home of its own."""
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build" / "release").symlink_to(pathlib.Path(BINARY).resolve().parent)
+    for folder in ("examples", "python"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
+    case = re.search(r"```toml\n(.*?)```", README, re.DOTALL)[1]
+    (tmp_path / "my-beam.toml").write_text(case)
+    section = README.partition("## Your own program")[2].partition("\n## ")[0]
+    commands = re.findall(r"^    (\S.*)$", section, re.MULTILINE)
+    assert len(commands) == 5
+    for command in commands:
+        done = subprocess.run(
+            command,
+            shell=True,
+            cwd=tmp_path,
+            env=os.environ | {"HOME": str(tmp_path)},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, command + done.stdout + done.stderr
+    assert "1.00 s: largest displacement" in done.stdout
+
+
 def test_files_and_folders_that_the_readme_names_are_there():
     named = re.findall(
-        r"`((?:solver|cases|verification|reference)/[\w./-]*|\w+\.(?:md|cff))`", README
+        r"`((?:solver|cases|verification|reference|examples)/[\w./-]*|\w+\.(?:md|cff))`", README
     )
     assert len(named) >= 6
     for name in named:

@@ -187,10 +187,7 @@ Given parse(const RunOptions& options) {
 /// What the case says of its method, and before it what the options say. What the case says of kappa is about
 /// its own method, not about one that an option names.
 MethodChoice choose_method(const RunOptions& options, const Given& given, const Case& description) {
-  MethodChoice choice = description.method.value_or(MethodChoice{.method = "tl-perturbation"});
-  if (options.method && *options.method != choice.method) {
-    choice = {.method = *options.method, .precision = choice.precision};
-  }
+  MethodChoice choice = method_of(description, options.method);
   choice.kappa = given.kappa.value_or(choice.kappa);
   choice.kappa_modulus = given.kappa_modulus.value_or(choice.kappa_modulus);
   choice.precision = given.precision.value_or(choice.precision);

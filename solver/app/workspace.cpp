@@ -18,7 +18,10 @@ namespace fs = std::filesystem;
 fs::path case_folder() {
   if (const char* folder = std::getenv("SANDGLASS_CASES")) return folder;
   std::error_code ignored;
-  return fs::is_directory("cases", ignored) ? fs::path("cases") : fs::path(SANDGLASS_CASES);
+  if (fs::is_directory("cases", ignored)) return "cases";
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path installed = (program.parent_path() / SANDGLASS_INSTALLED_CASES).lexically_normal();
+  return fs::is_directory(installed, ignored) ? installed : fs::path(SANDGLASS_CASES);
 }
 
 namespace {

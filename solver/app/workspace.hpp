@@ -9,8 +9,8 @@
 
 namespace sandglass {
 
-/// The folder of the canonical cases: the environment variable SANDGLASS_CASES, else ./cases, else that of
-/// the source.
+/// The folder of the canonical cases: the environment variable SANDGLASS_CASES, else ./cases, else that which
+/// is installed beside the program, else that of the source.
 std::filesystem::path case_folder();
 
 /// All case files of that folder, in alphabetical order.

@@ -54,7 +54,9 @@ class SteppedModelOf final : public SteppedModel {
     step_.body().evaluate_forces();
   }
 
-  void step() override { step_.take(step_size_, keep_, gain_, loading_); }
+  void step() override {
+    step_.take(step_size_, keep_, gain_, [this](Body<Real>& body) { body.impose(loading_); });
+  }
 
   void require_healthy() override {
     try {

@@ -26,7 +26,8 @@ VariantOf<List> read_listed(TableReader& table, const std::string& key) {
   return chosen;
 }
 
-void read_mesh(TableReader table, Case& scene) {
+void read_mesh(TableReader& reader, Case& scene) {
+  TableReader table = reader.required_table("mesh");
   if (const auto file = table.optional<std::string>("file")) {
     scene.mesh = MeshFile{scene.file.parent_path() / *file};
   } else {
@@ -295,7 +296,9 @@ std::string described_list(TypeList<Types...> /*list*/, const std::string& table
   return text;
 }
 
-Case read_case(const CaseTables& tables, const std::filesystem::path& path) {
+/// `read_mesh(reader, case)` says where its mesh is from.
+template <class ReadMesh>
+Case read_case(const CaseTables& tables, const std::filesystem::path& path, const ReadMesh& read_mesh) {
   Case scene;
   scene.file = path;
   scene.variants = tables.variants;
@@ -303,7 +306,7 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path) {
   read_header(reader.required_table("case"), scene);
   scene.golden = path.parent_path() / ".." / "reference" / "golden" / (scene.name + ".h5");
   scene.truth = path.parent_path() / ".." / "reference" / "truth" / (scene.name + ".h5");
-  read_mesh(reader.required_table("mesh"), scene);
+  read_mesh(reader, scene);
   read_material(reader.required_table("material"), scene);
   if (auto sets = reader.table("sets")) {
     for (const auto& name : sets->keys()) scene.sets.push_back(read_set(sets->required_table(name), name));
@@ -339,7 +342,7 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path) {
 
 std::vector<Case> read_cases(const std::filesystem::path& path) {
   std::vector<Case> cases;
-  for (const auto& tables : read_case_tables(path)) cases.push_back(read_case(tables, path));
+  for (const auto& tables : read_case_tables(path)) cases.push_back(read_case(tables, path, read_mesh));
   return cases;
 }
 
@@ -363,6 +366,19 @@ Scene read_scene(Case scene) {
 
 Scene read_scene(const std::filesystem::path& path) {
   return read_scene(read_case_file(path));
+}
+
+Scene read_scene(const std::string& text, MeshWithSets mesh) {
+  const std::string name = "case text";
+  const auto in_memory = [&](TableReader& /*reader*/, Case& scene) { scene.mesh = MeshFile{"in memory"}; };
+  return make_scene(read_case(parse_case_text(text, name), name, in_memory), std::move(mesh.mesh),
+                    std::move(mesh.sets));
+}
+
+MethodChoice method_of(const Case& description, const std::optional<std::string>& named) {
+  MethodChoice choice = description.method.value_or(MethodChoice{.method = "tl-perturbation"});
+  if (named && *named != choice.method) choice = {.method = *named, .precision = choice.precision};
+  return choice;
 }
 
 std::string describe_case_keys() {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "io/mesh_file.hpp"
 #include "model/model.hpp"
 
 namespace sandglass {
@@ -21,6 +22,14 @@ Scene read_scene(Case description);
 
 /// The scene of a case file without variants.
 Scene read_scene(const std::filesystem::path& path);
+
+/// The scene of a case that is a text, the text of a file without [mesh] and variants, with a mesh of its
+/// own.
+Scene read_scene(const std::string& text, MeshWithSets mesh);
+
+/// What a case says of its method, or tl-perturbation where it says nothing. Of another method, where one is
+/// named, it says no more than the precision.
+MethodChoice method_of(const Case& description, const std::optional<std::string>& named = {});
 
 /// Every key that a case file may have, with type, unit, range, default and meaning.
 std::string describe_case_keys();

@@ -15,17 +15,23 @@ struct Axis {
   toml::source_position position;
 };
 
+/// What `parse()` reads of a file, or of a text of that name.
+template <class Parse>
+toml::table parsed(const std::string& name, const Parse& parse) {
+  try {
+    return parse();
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}:{}: is not TOML: {}", name, error.source().begin.line, error.description()));
+  }
+}
+
 toml::table parse(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: no such case file", path.string()));
   }
-  try {
-    return toml::parse_file(path.string());
-  } catch (const toml::parse_error& error) {
-    throw InputError(
-        fmt::format("{}:{}: is not TOML: {}", path.string(), error.source().begin.line, error.description()));
-  }
+  return parsed(path.string(), [&] { return toml::parse_file(path.string()); });
 }
 
 bool fits_a_file_name(const std::string& name) {
@@ -113,6 +119,17 @@ std::vector<CaseTables> read_case_tables(const std::filesystem::path& path) {
     cases.push_back({std::move(root), std::move(names)});
   }
   return cases;
+}
+
+CaseTables parse_case_text(const std::string& text, const std::string& name) {
+  CaseTables tables{parsed(name, [&] { return toml::parse(text, name); }), {}};
+  for (const char* key : {"mesh", "variants"}) {
+    if (tables.root.contains(key)) {
+      TableReader(tables.root, name, "")
+          .fail(key, "must not be here: the mesh comes beside the text, one case");
+    }
+  }
+  return tables;
 }
 
 }  // namespace sandglass

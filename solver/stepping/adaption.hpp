@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "stepping/body.hpp"
 
 namespace sandglass {
@@ -7,6 +9,34 @@ namespace sandglass {
 /// Elements go up at once. They may go down never, or where they need no more (at rest, at the end of the
 /// way), or, so that a motion does not send them up and down, where half as much would do.
 enum class Demotion { never, where_enough, reluctant };
+
+/// When levels are chosen anew in a motion, counted in checks. To judge them costs about ten steps: as long
+/// as elements rise they are judged often, and ever more seldom while none does. Elements only go up: in
+/// every vibration one that goes down where its hourglass modes pass through zero, and up again where they
+/// are wide, would take energy from nowhere.
+class Judgements {
+ public:
+  bool due() { return ++checks_ >= next_; }
+
+  void done(bool rose) {
+    wait_ = rose ? shortest : std::min(2 * wait_, longest);
+    next_ = checks_ + wait_;
+  }
+
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("checks", checks_);
+    archive("wait for a judgement", wait_);
+    archive("next judgement", next_);
+  }
+
+ private:
+  static constexpr long shortest = 10, longest = 160;
+
+  long checks_ = 0;
+  long wait_ = shortest;
+  long next_ = shortest;
+};
 
 /// How an adaptive method chooses the levels of its elements while a body moves: an element may displace its
 /// nodes by no more than a share of the accuracy asked for. A node yields to a force as if its neighbours

@@ -73,11 +73,17 @@ template <class Real>
 void Body<Real>::impose(double factor) {
   load_factor_ = factor;
   for (std::size_t m = 0; m < terms_.size(); ++m) terms_[m] = rounded<Real>(path_terms(angles_[m], factor));
-  for (const auto& [row, component, share, angle] : constraints_) {
-    const std::array<Real, 3>& terms = terms_[angle];
-    const Real imposed = share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2];
-    state_.increment[row][component] += imposed - state_.u[row][component];
-    state_.u[row][component] = imposed;
+  for (const auto& constraint : constraints_) {
+    const std::array<Real, 3>&share = constraint.share, &terms = terms_[constraint.angle];
+    impose(constraint, share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2]);
+  }
+}
+
+template <class Real>
+void Body<Real>::impose(std::span<const double> displacements, double factor) {
+  load_factor_ = factor;
+  for (std::size_t k = 0; k < constraints_.size(); ++k) {
+    impose(constraints_[k], static_cast<Real>(displacements[k]));
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "model/model.hpp"
 #include "stepping/observer.hpp"
 
@@ -40,6 +42,10 @@ class Body {
   /// change; from now on loads are `factor` times their final value.
   void impose(double factor);
 
+  /// Sets constrained components, in the order of the scene's constraints, to `displacements` (m) and their
+  /// increments to the change; from now on loads are `factor` times their final value.
+  void impose(std::span<const double> displacements, double factor);
+
   /// The present factor of the loads.
   double load_factor() const { return load_factor_; }
 
@@ -51,8 +57,11 @@ class Body {
   /// a component moves where it may, without a branch.
   Rows<Real> on_free_components(const std::vector<double>& nodal) const;
 
+  /// The order of its rows.
+  const Layout& layout() const { return elements_.layout(); }
+
   /// Rows in the numbering of the mesh.
-  NodalField field(const Rows<Real>& rows) const { return to_field(rows, elements_.layout()); }
+  NodalField field(const Rows<Real>& rows) const { return to_field(rows, layout()); }
 
   StrainEnergies energies() const { return elements_.energies(state_); }
   Frame frame(double time, NodalField v) const;
@@ -99,6 +108,12 @@ class Body {
     std::size_t row;
     std::array<Real, 3> force;  // final, N
   };
+
+  void impose(const RowConstraint& constraint, Real displacement) {
+    Real& u = state_.u[constraint.row][constraint.component];
+    state_.increment[constraint.row][constraint.component] += displacement - u;
+    u = displacement;
+  }
 
   const InternalForce<Real>& elements_;
   int threads_;

@@ -18,7 +18,7 @@ ExplicitStep<Real>::ExplicitStep(const Model& model, const InternalForce<Real>& 
     : body_(model, elements), inverse_masses_(body_.on_free_components(inverses(model.masses()))) {}
 
 template <class Real>
-void ExplicitStep<Real>::take(double step, double keep, double gain, double loading) {
+void ExplicitStep<Real>::move(double step, double keep, double gain) {
   body_.state().step = step;
   const auto kept = static_cast<Real>(keep), gained = static_cast<Real>(-gain);
   Real* u = numbers_of(body_.state().u);
@@ -32,8 +32,6 @@ void ExplicitStep<Real>::take(double step, double keep, double gain, double load
       u[k] += increment[k];
     }
   });
-  body_.impose(loading);
-  body_.evaluate_forces();
 }
 
 template class ExplicitStep<double>;

@@ -18,11 +18,18 @@ class ExplicitStep {
   const Rows<Real>& inverse_masses() const { return inverse_masses_; }
 
   /// One step of `step` s: increment := keep * increment - gain * force / mass, with gain in s^2, and u := u
-  /// + increment; then constrained components go to `loading` times their final values, and the forces are
-  /// evaluated there. Allocates nothing.
-  void take(double step, double keep, double gain, double loading);
+  /// + increment; then `impose(body)` sets constrained components and loads, and the forces are evaluated
+  /// there. Allocates nothing.
+  template <class Impose>
+  void take(double step, double keep, double gain, const Impose& impose) {
+    move(step, keep, gain);
+    impose(body_);
+    body_.evaluate_forces();
+  }
 
  private:
+  void move(double step, double keep, double gain);
+
   Body<Real> body_;
   Rows<Real> inverse_masses_;
 };

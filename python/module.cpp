@@ -1,0 +1,265 @@
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <atomic>
+#include <limits>
+#include <variant>
+
+#include "sandglass/simulation.hpp"
+
+namespace py = pybind11;
+
+namespace sandglass {
+namespace {
+
+using Vector = std::array<double, 3>;
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Integers = py::array_t<std::int64_t, py::array::c_style>;  // numbers with a fraction are refused
+
+/// A simulation in either precision, in one thread at a time.
+class AnySimulation {
+ public:
+  /// From what a simulation is made of, in numbers of "double" or "float".
+  template <class... Arguments>
+  explicit AnySimulation(const std::string& precision, const Arguments&... arguments)
+      : simulation_(make(precision, arguments...)) {}
+
+  /// What `use(simulation)` returns. Throws while another thread is in here.
+  template <class Use>
+  auto with(const Use& use) {
+    if (busy_.test_and_set()) throw std::runtime_error("the simulation is busy in another thread");
+    const Release release{busy_};
+    return std::visit(use, simulation_);
+  }
+
+  std::unique_ptr<AnySimulation> copy() {
+    return with([](const auto& simulation) { return std::make_unique<AnySimulation>(simulation); });
+  }
+
+  template <class Real>
+  explicit AnySimulation(const Simulation<Real>& simulation) : simulation_(simulation) {}
+
+ private:
+  using Simulations = std::variant<Simulation<double>, Simulation<float>>;
+
+  struct Release {
+    std::atomic_flag& flag;
+    ~Release() { flag.clear(); }
+  };
+
+  template <class... Arguments>
+  static Simulations make(const std::string& precision, const Arguments&... arguments) {
+    if (precision == "double") return Simulation<double>(arguments...);
+    if (precision == "float") return Simulation<float>(arguments...);
+    throw InputError("precision = '" + precision + "' must be 'double' or 'float'");
+  }
+
+  Simulations simulation_;
+  std::atomic_flag busy_;
+};
+
+py::ssize_t signed_size(std::size_t size) {
+  return static_cast<py::ssize_t>(size);
+}
+
+/// Numbers of a simulation as a read-only array of so many rows, `stride` numbers apart, that keeps it alive;
+/// of one dimension where the width is one.
+template <class Number>
+py::array view(const py::object& owner, const Number* data, std::size_t rows, std::size_t width,
+               std::size_t stride) {
+  std::vector<py::ssize_t> shape{signed_size(rows), signed_size(width)};
+  std::vector<py::ssize_t> strides{signed_size(stride * sizeof(Number)), sizeof(Number)};
+  if (width == 1) {
+    shape.pop_back();
+    strides.pop_back();
+  }
+  py::array array(py::dtype::of<Number>(), std::move(shape), std::move(strides), data, owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+/// A view of what `get(simulation)` tells, a span of rows or of numbers.
+template <class Number, std::size_t width, class Get>
+py::array view_of(const py::object& self, const Get& get) {
+  return self.cast<AnySimulation&>().with([&](const auto& simulation) {
+    const auto rows = get(simulation);
+    return view(self, reinterpret_cast<const Number*>(rows.data()), rows.size(), width, width);
+  });
+}
+
+py::array displacements(const py::object& self) {
+  return self.cast<AnySimulation&>().with([&](const auto& simulation) {
+    const auto u = simulation.displacements();
+    return view(self, u.data, u.rows, 3, u.stride);
+  });
+}
+
+void require_shape(bool right, const std::string& name, const char* shape) {
+  if (!right) throw InputError(name + " must have the shape " + shape);
+}
+
+double number_of(const std::string& /*name*/, double number) {
+  return number;
+}
+int number_of(const std::string& name, std::int64_t node) {
+  if (node >= 0 && node <= std::numeric_limits<int>::max()) return static_cast<int>(node);
+  throw InputError(name + ": " + std::to_string(node) + " is no number of a node");
+}
+
+/// The rows of an array of shape (n, width).
+template <class Row, class T, int flags>
+std::vector<Row> rows_of(const std::string& name, const py::array_t<T, flags>& array, const char* shape) {
+  require_shape(array.ndim() == 2 && array.shape(1) == signed_size(std::tuple_size_v<Row>), name, shape);
+  std::vector<Row> rows(static_cast<std::size_t>(array.shape(0)));
+  const T* entry = array.data();
+  for (Row& row : rows) {
+    for (auto& number : row) number = number_of(name, *entry++);
+  }
+  return rows;
+}
+
+MeshArrays mesh_of(const Doubles& points, const Integers& cells,
+                   const std::map<std::string, Integers>& sets) {
+  MeshArrays mesh{
+      rows_of<Vector>("points", points, "(n, 3)"), rows_of<std::array<int, 8>>("cells", cells, "(m, 8)"), {}};
+  for (const auto& [name, nodes] : sets) {
+    const std::string title = "set '" + name + "'";
+    require_shape(nodes.ndim() == 1, title, "(n,)");
+    auto& set = mesh.sets[name];
+    for (py::ssize_t k = 0; k < nodes.size(); ++k) set.push_back(number_of(title, nodes.at(k)));
+  }
+  return mesh;
+}
+
+void move(AnySimulation& self, const std::string& set, const Doubles& displacement) {
+  self.with([&](auto& simulation) {
+    if (displacement.ndim() == 1 && displacement.size() == 3) {
+      simulation.move(set, Vector{displacement.at(0), displacement.at(1), displacement.at(2)});
+    } else {
+      simulation.move(set, rows_of<Vector>("displacement", displacement, "(3,) or (nodes of the set, 3)"));
+    }
+  });
+}
+
+SimulationSettings settings(std::optional<std::string> method, std::optional<double> kappa,
+                            std::optional<double> damping, double step_fraction, int threads) {
+  return {std::move(method), kappa, damping, step_fraction, threads};
+}
+
+using Path = std::filesystem::path;
+using Text = std::optional<std::string>;
+using Number = std::optional<double>;
+
+std::unique_ptr<AnySimulation> of_file(const Path& case_file, const std::string& precision,
+                                       const Text& method, Number kappa, Number damping, double step_fraction,
+                                       int threads) {
+  return std::make_unique<AnySimulation>(precision, case_file,
+                                         settings(method, kappa, damping, step_fraction, threads));
+}
+
+std::unique_ptr<AnySimulation> of_mesh(const Doubles& points, const Integers& cells,
+                                       const std::map<std::string, Integers>& sets,
+                                       const std::string& case_text, const std::string& precision,
+                                       const Text& method, Number kappa, Number damping, double step_fraction,
+                                       int threads) {
+  return std::make_unique<AnySimulation>(precision, mesh_of(points, cells, sets), case_text,
+                                         settings(method, kappa, damping, step_fraction, threads));
+}
+
+constexpr const char* about_simulation =
+    R"(A body in motion that you move, step and look at while it runs.
+
+    simulation = sandglass.Simulation("my-beam.toml", precision="float", damping=20.0)
+    u = simulation.displacements
+    simulation.move("moved", (0.03, 0, 0))
+    simulation.advance(1 / 60)
+
+The case is that of a file as `sandglass run` takes it, at rest or with its initial velocities. `method`, `kappa` and
+`damping` (1/s) are the case's unless given; no step is longer than `step_fraction` of the stable one. Arrays are
+read-only views of what the simulation computes with: they show its present state and keep it alive. One thread may
+use it at a time; `advance` lets others run.)";
+
+constexpr const char* about_mesh =
+    R"(The same with a mesh of yours.
+
+`points` (n, 3) in m, `cells` (m, 8) in VTK order, `sets` a dict of names and nodes; `case_text` is the text of a
+case file without [mesh].)";
+
+}  // namespace
+}  // namespace sandglass
+
+PYBIND11_MODULE(sandglass, m) {
+  using namespace sandglass;
+  using namespace pybind11::literals;
+  m.doc() = "Sandglass, an explicit solver for soft solids, in steps that you take.";
+
+  py::register_exception<InputError>(m, "InputError", PyExc_ValueError);
+  py::register_exception<ComputationError>(m, "ComputationError", PyExc_RuntimeError);
+
+  py::class_<AnySimulation>(m, "Simulation", about_simulation)
+      .def(py::init(&of_file), "case"_a, py::kw_only(), "precision"_a = "double", "method"_a = py::none(),
+           "kappa"_a = py::none(), "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1)
+      .def_static("of_mesh", &of_mesh, about_mesh, "points"_a, "cells"_a, "sets"_a, "case_text"_a,
+                  py::kw_only(), "precision"_a = "double", "method"_a = py::none(), "kappa"_a = py::none(),
+                  "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1)
+      .def("move", &move, "set"_a, "displacement"_a,
+           "Where the driven nodes of a set shall be when the next `advance` ends: one displacement (m) for "
+           "all of them, or one row for each node of `nodes(set)`. Components that the case leaves free stay "
+           "free.")
+      .def(
+          "impose", [](AnySimulation& self, double factor) { self.with([&](auto& s) { s.impose(factor); }); },
+          "factor"_a,
+          "The same for all driven nodes at once: where the case has them at a factor of its loads, 1 at the "
+          "end of its loading curve. Its forces grow to that factor.")
+      .def(
+          "advance",
+          [](AnySimulation& self, double seconds) { self.with([&](auto& s) { s.advance(seconds); }); },
+          "seconds"_a, py::call_guard<py::gil_scoped_release>(),
+          "Goes on for so long, in equal steps of at most `step_size`; driven nodes and forces go straight "
+          "to "
+          "where they shall be. Raises ComputationError when the body fails.")
+      .def(
+          "reaction",
+          [](AnySimulation& self, const std::string& set) {
+            return py::array_t<double>(py::cast(self.with([&](const auto& s) { return s.reaction(set); })));
+          },
+          "set"_a, "The force (N) that holds or drives a set of nodes.")
+      .def(
+          "nodes",
+          [](const py::object& self, const std::string& set) {
+            return view_of<int, 1>(self, [&](const auto& s) { return s.nodes(set); });
+          },
+          "set"_a, "The nodes of a set, sorted.")
+      .def("copy", &AnySimulation::copy, "A snapshot that goes its own way.")
+      .def_property_readonly(
+          "displacements", &displacements,
+          "Displacements (m), one row per node in the order of the time loop: that of node "
+          "n is at `rows[n]`, so that displacements[rows] is a copy by nodes.")
+      .def_property_readonly(
+          "rows",
+          [](const py::object& self) {
+            return view_of<int, 1>(self, [](const auto& s) { return s.row_of_node(); });
+          },
+          "The row of each node in `displacements`.")
+      .def_property_readonly(
+          "points",
+          [](const py::object& self) {
+            return view_of<double, 3>(self, [](const auto& s) { return s.points(); });
+          },
+          "The nodes of the mesh at rest (m), in its own numbering.")
+      .def_property_readonly(
+          "cells",
+          [](const py::object& self) {
+            return view_of<int, 8>(self, [](const auto& s) { return s.cells(); });
+          },
+          "The nodes of each hexahedron, in VTK order.")
+      .def_property_readonly(
+          "time", [](AnySimulation& self) { return self.with([](const auto& s) { return s.time(); }); },
+          "Seconds since the start.")
+      .def_property_readonly(
+          "step_size",
+          [](AnySimulation& self) { return self.with([](const auto& s) { return s.step_size(); }); },
+          "The longest step at present, s.");
+}

@@ -1,0 +1,225 @@
+"""The Python module: the same motion as the program's, views that live, errors as exceptions."""
+
+import gc
+import os
+import subprocess
+import sys
+import threading
+import weakref
+
+import h5py
+import numpy as np
+import pytest
+from command_line import BLOCK, sandglass as program
+from module_folder import FOLDER, ROOT
+
+import sandglass
+
+DYNAMIC = (
+    BLOCK.replace('"quasi-static"', '"dynamic"').partition("[comparison]")[0]
+    + """
+[dynamics]
+duration = 0.2
+time_step = 1e-3
+damping = 3.0
+frames = 1
+"""
+)
+END = np.array([0.02, 0.0, 0.01])  # where BLOCK's head goes
+
+
+def smooth(t):
+    return t**3 * (10 - 15 * t + 6 * t**2)
+
+
+@pytest.fixture
+def case(tmp_path):
+    file = tmp_path / "block.toml"
+    file.write_text(DYNAMIC)
+    return file
+
+
+@pytest.fixture
+def body(case):
+    return sandglass.Simulation(case)
+
+
+@pytest.mark.parametrize(
+    "precision, limit", [("double", 200 * 200 * 1.8e-18), ("float", 200 * 1e-9)]
+)
+def test_moved_by_hand_it_goes_as_the_program(case, tmp_path, precision, limit):
+    """Limits: half a unit in the last place of 0.02 m at driven nodes in each of 200 steps, carried
+    on by two sums over as many; in float roundings have either sign, and one sum is enough."""
+    result = tmp_path / "result.h5"
+    done = program("run", case, "--precision", precision, "-o", result)
+    assert done.returncode == 0, done.stderr
+    with h5py.File(result) as file:
+        expected = file["frames/0001/displacement"][:]
+        points = file["mesh/points"][:]
+    body = sandglass.Simulation(case, precision=precision)
+    for step in range(1, 201):
+        body.move("head", END * smooth(step / 200))
+        body.advance(1e-3)
+    assert np.array_equal(body.points, points)
+    assert body.time == pytest.approx(0.2, rel=1e-13)
+    assert np.abs(body.displacements[body.rows] - expected).max() < limit
+    assert np.abs(expected).max() > 0.02
+
+
+def test_displacements_are_a_view_of_the_present(body):
+    u = body.displacements
+    address = u.__array_interface__["data"][0]
+    assert u.shape == (45, 3) and u.strides == (32, 8) and u.dtype == np.float64
+    body.move("head", END)
+    body.advance(0.05)
+    head = body.rows[body.nodes("head")]
+    assert np.array_equal(u[head], np.tile(END, (9, 1)))
+    assert body.displacements.__array_interface__["data"][0] == address
+
+
+def test_views_keep_their_simulation_alive(case):
+    body = sandglass.Simulation(case)
+    body.move("head", END)
+    body.advance(0.05)
+    gone = weakref.ref(body) if hasattr(body, "__weakref__") else None
+    u, rows, points = body.displacements, body.rows, body.points
+    before = u.copy()
+    assert u.base is body and points.base is body
+    del body
+    gc.collect()
+    others = [sandglass.Simulation(case) for _ in range(20)]  # would take freed memory
+    assert np.array_equal(u, before) and sorted(rows) == list(range(45))
+    assert gone is None or gone() is not None
+    assert len(others) == 20
+
+
+@pytest.mark.parametrize("name", ["displacements", "rows", "points", "cells"])
+def test_views_are_read_only(body, name):
+    view = getattr(body, name)
+    with pytest.raises(ValueError, match="read-only"):
+        view[0] = 1
+    with pytest.raises(ValueError):
+        view.setflags(write=True)
+    with pytest.raises(ValueError, match="read-only"):
+        body.nodes("head")[0] = 1
+    with pytest.raises(AttributeError):
+        setattr(body, name, view)
+
+
+def test_a_mesh_of_arrays_is_the_same_body(body):
+    text = DYNAMIC.replace(DYNAMIC[DYNAMIC.index("[mesh]") : DYNAMIC.index("[material]")], "")
+    text = text.replace("head = { z = [0.2, 0.2] }\n", "")
+    sets = {"head": body.nodes("head")[::-1].copy()}  # any order
+    same = sandglass.Simulation.of_mesh(body.points, body.cells, sets, text)
+    for each in (body, same):
+        each.move("head", END)
+        each.advance(0.1)
+    assert np.array_equal(same.displacements, body.displacements)
+    assert np.array_equal(same.cells, body.cells)
+    with pytest.raises(TypeError):
+        sandglass.Simulation.of_mesh(body.points, body.cells + 0.5, sets, text)
+    with pytest.raises(ValueError, match=r"cells must have the shape \(m, 8\)"):
+        sandglass.Simulation.of_mesh(body.points, body.cells[:, :4], sets, text)
+    with pytest.raises(ValueError, match="-1 is no number of a node"):
+        sandglass.Simulation.of_mesh(body.points, body.cells, {"head": np.array([-1])}, text)
+    with pytest.raises(ValueError, match="names node 45"):
+        sandglass.Simulation.of_mesh(body.points, body.cells, {"head": np.array([45])}, text)
+
+
+def test_each_node_may_go_its_own_way(body):
+    own = END * np.linspace(0.5, 1.0, 9)[:, None]
+    body.move("head", own)
+    body.advance(0.05)
+    assert np.array_equal(body.displacements[body.rows[body.nodes("head")]], own)
+    body.move("head", [0, 0, 0])  # a list of integers will do
+    body.advance(0.05)
+    assert not body.displacements[body.rows[body.nodes("head")]].any()
+
+
+def test_a_copy_is_a_snapshot(body):
+    body.move("head", END)
+    body.advance(0.05)
+    snapshot = body.copy()
+    body.advance(0.05)
+    assert snapshot.time < body.time
+    snapshot.advance(0.05)
+    assert np.array_equal(snapshot.displacements, body.displacements)
+    assert snapshot.displacements.base is snapshot
+
+
+def test_impose_follows_the_case(body):
+    other = body.copy()
+    body.move("head", 0.5 * END)
+    other.impose(0.5)
+    for each in (body, other):
+        each.advance(0.05)
+    assert np.array_equal(other.displacements, body.displacements)
+    assert other.reaction("head")[2] > 0
+    assert np.allclose(other.reaction("head"), body.reaction("head"), rtol=1e-12)
+
+
+def test_errors_are_exceptions_with_the_solvers_words(case, body):
+    assert issubclass(sandglass.InputError, ValueError)
+    assert issubclass(sandglass.ComputationError, RuntimeError)
+    with pytest.raises(sandglass.InputError, match="did you mean 'head'"):
+        body.move("haed", END)
+    with pytest.raises(sandglass.InputError, match="seconds = -1"):
+        body.advance(-1)
+    with pytest.raises(sandglass.InputError, match="no such case file"):
+        sandglass.Simulation("nowhere.toml")
+    with pytest.raises(sandglass.InputError, match="'half' must be 'double' or 'float'"):
+        sandglass.Simulation(case, precision="half")
+    with pytest.raises(sandglass.InputError, match="has no such parameter"):
+        sandglass.Simulation(case, method="tl-full", kappa=0.1)
+    with pytest.raises(sandglass.InputError, match="displacement must have the shape"):
+        body.move("head", [1.0, 2.0])
+    with pytest.raises(TypeError):
+        body.move("head", "far")
+    body.move("head", [0, 0, -0.25])
+    with pytest.raises(sandglass.ComputationError, match="inverted"):
+        body.advance(0.25)
+
+
+def test_other_threads_run_while_it_steps_and_cannot_step_it_too(body):
+    """The other thread counts while `advance` holds the main one: with the lock it could not."""
+    counted, refused, done = [], [], threading.Event()
+
+    def look():
+        while not done.is_set():
+            counted.append(1)
+            try:
+                body.time
+            except RuntimeError as error:
+                refused.append(str(error))
+                return
+
+    thread = threading.Thread(target=look)
+    body.advance(1e-3)
+    thread.start()
+    try:
+        body.advance(50.0)  # thousands of steps
+    finally:
+        done.set()
+        thread.join()
+    assert refused == ["the simulation is busy in another thread"]
+    body.advance(1e-3)  # and it is free again
+
+
+def test_everything_is_documented():
+    assert sandglass.__doc__
+    for name in dir(sandglass.Simulation):
+        if not name.startswith("_"):
+            assert getattr(sandglass.Simulation, name).__doc__, name
+
+
+def test_example_runs(case):
+    done = subprocess.run(
+        [sys.executable, ROOT / "python" / "example.py", case, "head", "0.02", "0", "0.01"],
+        env=os.environ | {"PYTHONPATH": FOLDER},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) == 6
+    assert lines[-1].startswith("1.00 s: largest displacement 0.02")

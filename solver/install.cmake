@@ -1,0 +1,21 @@
+# What `cmake --install` puts where, and how other projects find it: find_package(sandglass), installed or in the build folder.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS sandglass_library sandglass_solver EXPORT sandglassTargets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
+install(TARGETS sandglass_cli RUNTIME DESTINATION bin)
+install(FILES sandglass/simulation.hpp DESTINATION include/sandglass)
+install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION include/sandglass FILES_MATCHING PATTERN "*.hpp"
+  PATTERN app EXCLUDE PATTERN sandglass EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/cases DESTINATION ${SANDGLASS_SHARE} FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/reference/golden ${PROJECT_SOURCE_DIR}/reference/truth
+  DESTINATION ${SANDGLASS_SHARE}/reference FILES_MATCHING PATTERN "*.h5")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${SANDGLASS_SHARE})
+
+set(SANDGLASS_PACKAGE lib/cmake/sandglass)
+install(EXPORT sandglassTargets NAMESPACE sandglass:: DESTINATION ${SANDGLASS_PACKAGE})
+export(EXPORT sandglassTargets NAMESPACE sandglass:: FILE ${CMAKE_BINARY_DIR}/sandglassTargets.cmake)
+configure_package_config_file(sandglassConfig.cmake.in ${CMAKE_BINARY_DIR}/sandglassConfig.cmake
+  INSTALL_DESTINATION ${SANDGLASS_PACKAGE} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/sandglassConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/sandglassConfig.cmake ${CMAKE_BINARY_DIR}/sandglassConfigVersion.cmake
+  DESTINATION ${SANDGLASS_PACKAGE})

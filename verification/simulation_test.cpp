@@ -1,0 +1,305 @@
+/// The library as a program uses it: the same motion as `integrate`, views, snapshots, refusals.
+
+#include <gtest/gtest.h>
+
+#include "io/case_file.hpp"
+#include "sandglass/mesh_arrays.hpp"
+#include "stepping/central_difference.hpp"
+#include "stepping/relaxation.hpp"
+#include "support/allocations.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double step = 1e-3;  // s; stable for the blocks below
+constexpr int steps = 200;
+
+/// A case without mesh; `driven` says what is imposed.
+std::string text_of(const std::string& driven, const std::string& answer = "dynamic") {
+  const std::string dynamics = "[dynamics]\nduration = 0.2\ntime_step = 1e-3\ndamping = 3.0\nframes = 1\n";
+  return "[case]\nname = \"block\"\nrequirement = \"A block is moved.\"\nanswer = \"" + answer +
+         "\"\n"
+         "[material]\nlaw = \"neo-hookean\"\nyoung_modulus = 3000.0\npoisson_ratio = 0.45\ndensity = 1000.0\n"
+         "[sets]\nfoot = { z = [0.0, 0.0] }\n[[displacement]]\nset = \"foot\"\nvalue = [0.0, 0.0, 0.0]\n" +
+         driven + (answer == "dynamic" ? dynamics : "");
+}
+
+const std::string pulled = "[[displacement]]\nset = \"head\"\nvalue = [0.02, 0.01, 0.03]\n";
+
+MeshArrays block() {
+  const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
+  return {mesh.points,
+          mesh.cells,
+          {{"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}}};
+}
+
+/// The motion of a dynamic run.
+Motion motion_of(const std::string& text, const MethodChoice& choice) {
+  const Scene scene = read_scene(text, checked(block()));
+  const Model model(scene, choice);
+  Observer nobody;
+  return integrate(model, nobody);
+}
+
+/// Displacements by nodes, from the view.
+template <class Real>
+NodalField field_of(const Simulation<Real>& simulation) {
+  const NodalView<Real> u = simulation.displacements();
+  NodalField field;
+  for (const int row : simulation.row_of_node()) {
+    const Real* components = u[index(row)];
+    field.push_back({components[0], components[1], components[2]});
+  }
+  return field;
+}
+
+double smooth(double t) {
+  return t * t * t * (10.0 + t * (6.0 * t - 15.0));
+}
+
+/// Beside `integrate` the curve is rounded in another place: each of 200 steps moves driven nodes elsewhere,
+/// by 3.5e-18 m at most, half a unit in the last place of 0.03 m, and two sums over as many stable steps
+/// carry that on. Another mistake shows in the first digits.
+constexpr double roundoff = 200.0 * 200.0 * 3.5e-18;  // m
+
+class MotionTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(MotionTest, moved_by_hand_it_goes_as_the_dynamic_run) {
+  const MethodChoice choice{.method = GetParam()};
+  const Motion motion = motion_of(text_of(pulled), choice);
+  Simulation<double> simulation(block(), text_of(pulled), {.method = GetParam()});
+  ASSERT_LT(step, simulation.step_size());
+  for (int n = 1; n <= steps; ++n) {
+    const double share = smooth(n * step / 0.2);
+    simulation.move("head", {0.02 * share, 0.01 * share, 0.03 * share});
+    simulation.advance(step);
+  }
+  EXPECT_NEAR(simulation.time(), motion.time, 1e-14);
+  EXPECT_LT(largest_distance(field_of(simulation), motion.u), roundoff);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MotionTest,
+                         ::testing::Values("tl-perturbation", "tl-adaptive", "ul-perturbation"),
+                         [](const auto& method) {
+                           std::string name = method.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(Simulation, follows_what_the_case_imposes_turning_sets_and_forces_too) {
+  const std::string turned =
+      "[[rotation]]\nset = \"head\"\naxis = \"z\"\nangle = 60.0\ndisplacement = [0.0, 0.0, 0.01]\n"
+      "[sets.side]\nx = [0.1, 0.1]\n[[force]]\nset = \"side\"\ntotal = [0.05, 0.0, 0.0]\n";
+  const Motion motion = motion_of(text_of(turned), {.method = "tl-perturbation"});
+  Simulation<double> simulation(block(), text_of(turned));
+  for (int n = 1; n <= steps; ++n) {
+    simulation.impose(smooth(n * step / 0.2));
+    simulation.advance(step);
+  }
+  EXPECT_LT(largest_distance(field_of(simulation), motion.u), roundoff);
+}
+
+TEST(Simulation, starts_with_the_initial_velocities_of_a_file) {
+  const std::string thrown = text_of("[[velocity]]\nvalue = [0.0, 0.2, 0.0]\n");
+  TemporaryFolder folder;
+  const auto file = folder / "thrown.toml";
+  std::ofstream(file) << thrown +
+                             "[mesh]\ngenerator = \"box\"\nsize = [0.1, 0.1, 0.2]\nelements = [2, 2, 4]\n";
+  const Motion motion = motion_of(thrown, {.method = "tl-energy-sampling"});
+  Simulation<double> simulation(file, {.method = "tl-energy-sampling"});
+  for (int n = 1; n <= steps; ++n) simulation.advance(step);
+  EXPECT_GT(largest_distance(motion.u, NodalField(motion.u.size())), 1e-3);
+  EXPECT_LT(largest_distance(field_of(simulation), motion.u), roundoff);
+}
+
+TEST(Simulation, a_frame_of_many_steps_moves_driven_nodes_straight) {
+  Simulation<double> frame(block(), text_of(pulled)), by_steps(frame);
+  constexpr int n = 16;  // a share of 1 / 16 has no roundoff
+  const double size = frame.step_size();
+  frame.move("head", {0.0, 0.0, 0.016});
+  frame.advance(n * size);
+  for (int k = 1; k <= n; ++k) {
+    by_steps.move("head", {0.0, 0.0, 0.001 * k});
+    by_steps.advance(size);
+  }
+  EXPECT_NEAR(frame.time(), by_steps.time(), 1e-15);
+  EXPECT_LT(largest_distance(field_of(frame), field_of(by_steps)), roundoff);
+  const auto head = frame.nodes("head");
+  EXPECT_EQ(field_of(frame)[index(head[0])], (Vector{0.0, 0.0, 0.016}));
+}
+
+TEST(Simulation, no_frame_is_too_long_for_a_stable_motion) {
+  const Scene scene = read_scene(text_of(pulled, "quasi-static"), checked(block()));
+  Observer nobody;
+  const Relaxation rest = relax(Model(scene, {.method = "tl-perturbation"}), nobody);
+  Simulation<double> simulation(block(), text_of(pulled, "quasi-static"), {.damping = 15.0});
+  simulation.move("head", {0.02, 0.01, 0.03});
+  simulation.advance(0.5);
+  simulation.advance(4.0);
+  // Every mode is faster than 7.5 rad/s, so that it fades by exp(-15 / 2 * 4) = 1e-13; the answer at rest is
+  // near by its tolerance, 1e-8 of 0.03 m.
+  EXPECT_LT(largest_distance(field_of(simulation), rest.u), 1e-9);
+}
+
+TEST(Simulation, each_node_of_a_set_goes_its_own_way) {
+  Simulation<double> simulation(block(), text_of(pulled));
+  const auto head = simulation.nodes("head");
+  std::vector<Vector> own;
+  for (std::size_t n = 0; n < head.size(); ++n) own.push_back({1e-4 * static_cast<double>(n), 0.0, -2e-4});
+  simulation.move("head", own);
+  simulation.advance(0.01);
+  for (std::size_t n = 0; n < head.size(); ++n) EXPECT_EQ(field_of(simulation)[index(head[n])], own[n]);
+  simulation.advance(0.01);  // not told: they stay
+  for (std::size_t n = 0; n < head.size(); ++n) EXPECT_EQ(field_of(simulation)[index(head[n])], own[n]);
+}
+
+TEST(Simulation, components_that_the_case_leaves_free_stay_free) {
+  const std::string lifted =
+      "[[displacement]]\nset = \"head\"\nvalue = [0.0, 0.0, 0.01]\ncomponents = \"z\"\n";
+  Simulation<double> simulation(block(), text_of(lifted));
+  simulation.move("head", {0.5, 0.5, 0.02});
+  simulation.advance(0.1);
+  for (const int n : simulation.nodes("head")) {
+    const Vector u = field_of(simulation)[index(n)];
+    EXPECT_EQ(u[2], 0.02);
+    EXPECT_LT(std::abs(u[0]), 0.02);  // it thins a little
+  }
+}
+
+TEST(Simulation, views_show_the_present_in_one_place_and_steps_allocate_nothing) {
+  Simulation<float> simulation(block(), text_of(pulled));
+  const auto u = simulation.displacements();
+  const auto row = index(simulation.row_of_node()[index(simulation.nodes("head")[3])]);
+  EXPECT_EQ(u[row][2], 0.0F);
+  simulation.move("head", {0.0, 0.0, 0.01});
+  const long before = allocations();
+  simulation.advance(0.1);
+  EXPECT_EQ(allocations(), before);
+  EXPECT_EQ(u[row][2], 0.01F);
+  EXPECT_EQ(simulation.displacements().data, u.data);
+  Simulation<float> moved(std::move(simulation));
+  EXPECT_EQ(moved.displacements().data, u.data);
+}
+
+TEST(Simulation, a_copy_is_a_snapshot_to_the_bit) {
+  for (const char* method : {"tl-perturbation", "tl-adaptive", "ul-viscous"}) {
+    Simulation<double> simulation(block(), text_of(pulled), {.method = method});
+    simulation.move("head", {0.02, 0.01, 0.03});
+    simulation.advance(0.1);
+    Simulation<double> snapshot(simulation);
+    simulation.move("head", {0.0, 0.0, 0.01});
+    simulation.advance(0.1);
+    const NodalField once = field_of(simulation);
+    simulation = snapshot;
+    EXPECT_NE(largest_distance(field_of(simulation), once), 0.0);
+    simulation.move("head", {0.0, 0.0, 0.01});
+    simulation.advance(0.1);
+    EXPECT_EQ(largest_distance(field_of(simulation), once), 0.0) << method;
+    EXPECT_EQ(simulation.time(), snapshot.time() + (simulation.time() - snapshot.time()));
+  }
+}
+
+TEST(Simulation, reactions_are_the_internal_forces_on_driven_nodes) {
+  Simulation<double> simulation(block(), text_of(pulled));
+  simulation.move("head", {0.02, 0.01, 0.03});
+  simulation.advance(0.05);
+  const Scene scene = read_scene(text_of(pulled), checked(block()));
+  const NodalField force = internal_forces(Model(scene, {.method = "tl-perturbation"}), field_of(simulation));
+  Vector expected{};
+  for (const int n : simulation.nodes("head")) {
+    for (std::size_t i = 0; i < 3; ++i) expected[i] += force[index(n)][i];
+  }
+  EXPECT_GT(expected[2], 0.1);  // it is pulled
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(simulation.reaction("head")[i], expected[i], 1e-12);
+}
+
+TEST(Simulation, single_precision_follows_double) {
+  Simulation<double> exact(block(), text_of(pulled));
+  Simulation<float> rounded(block(), text_of(pulled));
+  for (int n = 1; n <= steps; ++n) {
+    for (const auto share = smooth(n * step / 0.2); auto* both : {&exact}) {
+      both->move("head", {0.02 * share, 0.01 * share, 0.03 * share});
+      rounded.move("head", {0.02 * share, 0.01 * share, 0.03 * share});
+    }
+    exact.advance(step);
+    rounded.advance(step);
+  }
+  // 200 steps, each rounding displacements of 0.03 m by 2e-9 m at most.
+  EXPECT_LT(largest_distance(field_of(rounded), field_of(exact)), 200 * 2e-9);
+}
+
+TEST(Simulation, tells_when_an_element_turns_inside_out) {
+  Simulation<double> simulation(block(), text_of(pulled));
+  simulation.move("head", {0.0, 0.0, -0.25});
+  EXPECT_THROW(simulation.advance(0.25), ComputationError);  // 31 steps: looked at after the 20th
+}
+
+/// The message of the InputError that `act` throws.
+template <class Act>
+std::string refusal(const Act& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(Simulation, refuses_what_makes_no_sense) {
+  using ::testing::IsSubstring;
+  Simulation<double> simulation(block(), text_of(pulled + "[sets.side]\nx = [0.1, 0.1]\ny = [0.05, 0.05]\n"
+                                                          "z = [0.05, 0.15]\n"));
+  const auto says = [](const std::string& part, const std::string& text) {
+    EXPECT_PRED_FORMAT2(IsSubstring, part, text);
+  };
+  const Vector up{0.0, 0.0, 0.01};
+  says("did you mean 'head'", refusal([&] { simulation.move("haed", up); }));
+  says("imposes no displacement", refusal([&] { simulation.move("side", up); }));
+  says("imposes no displacement", refusal([&] { simulation.reaction("side"); }));
+  says("is not known", refusal([&] { simulation.nodes("haed"); }));
+  says("one for each of its 9 nodes", refusal([&] { simulation.move("head", std::vector<Vector>(8)); }));
+  says("must be in", refusal([&] { simulation.move("head", {0.0, std::nan(""), 0.0}); }));
+  says("must be in", refusal([&] { simulation.impose(std::nan("")); }));
+  for (const double seconds : {0.0, -1.0, std::nan("")}) {
+    says("seconds", refusal([&] { simulation.advance(seconds); }));
+  }
+  const auto made = [](const SimulationSettings& settings) {
+    return refusal([&] { Simulation<double>(block(), text_of(pulled), settings); });
+  };
+  says("step_fraction", made({.step_fraction = 1.5}));
+  says("damping", made({.damping = -1.0}));
+  says("threads", made({.threads = 0}));
+  says("'tl-nothing' is not known", made({.method = "tl-nothing"}));
+  says("no dynamics", made({.method = "linear-condensed"}));
+}
+
+TEST(Simulation, refuses_meshes_that_are_none) {
+  using ::testing::IsSubstring;
+  const auto refused = [](const std::string& part, const auto& spoil, const std::string& text) {
+    MeshArrays mesh = block();
+    spoil(mesh);
+    EXPECT_PRED_FORMAT2(IsSubstring, part, refusal([&] { Simulation<double>(mesh, text); }));
+  };
+  const std::string text = text_of(pulled);
+  refused(
+      "cell 3 names node 45; it must be in [0, 45)", [](auto& mesh) { mesh.cells[3][2] = 45; }, text);
+  refused(
+      "set 'head' names node -1", [](auto& mesh) { mesh.sets["head"][0] = -1; }, text);
+  refused(
+      "node 45 of 46 belongs to no cell", [](auto& mesh) { mesh.points.push_back({}); }, text);
+  refused(
+      "belongs to no cell", [](auto& mesh) { mesh = {}; }, text);
+  refused(
+      "inverted", [](auto& mesh) { std::swap(mesh.cells[0][0], mesh.cells[0][1]); }, text);
+  refused(
+      "node 0 is at nan", [](auto& mesh) { mesh.points[0][0] = std::nan(""); }, text);
+  const auto same = [](auto&) {};
+  refused("mesh must not be here", same, text + "[mesh]\ngenerator = \"box\"\n");
+  refused("case text:", same, text + "[meterial]\n");
+  refused("is not TOML", same, "[case");
+}
+
+}  // namespace
+}  // namespace sandglass::verification

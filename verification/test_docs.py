@@ -1,0 +1,149 @@
+"""READMEs are true: their steps are followed literally in a copy, and what they name is there.
+
+A law and a control are compiled alone, into the tests that need no kernels: half a minute each.
+`ci/docs` follows the same steps and builds the whole solver.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+
+import pytest
+from command_line import BINARY, PATIENCE, ROOT
+from follow import changed, commands, follow, section
+
+THEORY = ["solver/element/README.md", "solver/material/README.md", "solver/stepping/README.md"]
+
+
+def followed(document, heading, tree, *folders):
+    """A copy of some folders in which the steps of a section were taken; its commands and files."""
+    for folder in folders:
+        shutil.copytree(ROOT / folder, tree / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    text = section((ROOT / document).read_text(), heading)
+    return commands(text), follow(text, tree)
+
+
+def only_last(file, name):
+    """Leaves the last entry in a list of types: what was added."""
+    text = file.read_text()
+    found = re.search(rf"using {name} =\s+TypeList<[^>]*?(\w+)>;", text)
+    file.write_text(text.replace(found[0], f"using {name} = TypeList<{found[1]}>;"))
+    return found[1]
+
+
+def build(command, tree, environment):
+    done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def run_test(tree, name, tests):
+    """Compiles a test of the copy, runs those of it that a filter names, tells how many passed."""
+    environment = os.environ | {"CCACHE_BASEDIR": str(tree), "CCACHE_NOHASHDIR": "1"}
+    launcher = ["ccache"] if shutil.which("ccache") else []
+    flags = "-std=c++20 -O0 -fno-math-errno -Isolver -Iverification -isystem /usr/include/eigen3"
+    sources = [f"verification/{name}.cpp", "verification/support/eigenvalues.cpp"]
+    objects = [source.replace("/", "-") + ".o" for source in sources]
+    for source, object in zip(sources, objects):
+        build([*launcher, "c++", *flags.split(), "-c", source, "-o", object], tree, environment)
+    build(["c++", *objects, "-lgtest_main", "-lgtest", "-lfmt", "-o", name], tree, environment)
+    done = subprocess.run(
+        [tree / name, f"--gtest_filter={tests}"],
+        capture_output=True,
+        text=True,
+        timeout=300 * PATIENCE,
+    )
+    assert done.returncode == 0, done.stdout
+    return int(re.search(r"PASSED\s+\] (\d+) test", done.stdout)[1])
+
+
+def sandglass(tree, command):
+    assert command.startswith("build/release/sandglass ")
+    return subprocess.run(
+        [BINARY, *command.split()[1:]],
+        cwd=tree,
+        env={name: value for name, value in os.environ.items() if name != "SANDGLASS_CASES"},
+        capture_output=True,
+        text=True,
+        timeout=120 * PATIENCE,
+    )
+
+
+def test_a_new_case(tmp_path):
+    shown, (file,) = followed("cases/README.md", "A new case", tmp_path, "cases")
+    assert [command.split()[1] for command in shown] == ["run", "verify"]
+    for command in shown:
+        done = sandglass(tmp_path, command)
+        assert done.returncode == 0, done.stdout + done.stderr
+    case = tmp_path / file
+    case.write_text(changed(case.read_text(), "-value = -0.0179269019\n+value = -0.0179269\n"))
+    assert sandglass(tmp_path, shown[1]).returncode == 0
+    case.write_text(changed(case.read_text(), "-value = -0.0179269\n+value = -0.0180\n"))
+    assert sandglass(tmp_path, shown[1]).returncode == 1
+
+
+def test_a_new_law(tmp_path):
+    shown, touched = followed(
+        "solver/material/README.md", "A new law", tmp_path, "solver", "verification", "reference"
+    )
+    assert [file.split("/")[-1] for file in touched] == ["demiray.hpp", "laws.hpp", "laws.py"]
+    assert shown == ["ci/build release law_test && build/release/verification/law_test"]
+    assert only_last(tmp_path / "solver/material/laws.hpp", "ElasticLaws") == "Demiray"
+    assert run_test(tmp_path, "law_test", "LawTest/demiray.*") >= 14
+    script = "import laws; print(sorted(laws.parameters('viscoelastic-demiray')))"
+    done = subprocess.run(
+        ["/usr/bin/python3", "-c", script],
+        cwd=tmp_path / "reference",
+        capture_output=True,
+        text=True,
+    )
+    assert "'b', 'bulk_modulus', 'relaxation_1'" in done.stdout, done.stderr
+
+
+def test_a_new_hourglass_control(tmp_path):
+    shown, touched = followed(
+        "solver/element/README.md", "A new hourglass control", tmp_path, "solver", "verification"
+    )
+    assert [file.split("/")[-1] for file in touched] == [
+        "hourglass_mean_sampling.hpp",
+        "methods.hpp",
+    ]
+    assert shown == [
+        "ci/build release formulation_test && build/release/verification/formulation_test"
+    ]
+    assert only_last(tmp_path / "solver/element/methods.hpp", "Methods") == "TlMeanSampling"
+    only_last(tmp_path / "solver/material/laws.hpp", "ElasticLaws")
+    assert run_test(tmp_path, "formulation_test", "*tl_mean_sampling*") >= 7
+
+
+def test_a_step_that_does_not_fit_is_an_error(tmp_path):
+    (tmp_path / "there").write_text("a\nb\n")
+    with pytest.raises(ValueError, match="not once"):
+        follow("1. Change, in `there`:\n\n```diff\n-c\n+d\n```\n", tmp_path)
+    with pytest.raises(ValueError, match="there already"):
+        follow("New file `there`:\n\n```toml\n```\n", tmp_path)
+    with pytest.raises(ValueError, match="no heading"):
+        section("## A\n", "B")
+    follow("1. Change, in `there`:\n\n```diff\n a\n-b\n+c\n```\n", tmp_path)
+    assert (tmp_path / "there").read_text() == "a\nc\n"
+
+
+@pytest.mark.parametrize("document", THEORY + ["cases/README.md"])
+def test_files_and_functions_that_a_readme_names_are_there(document):
+    """Names in tables stand in the file of their row, or in one of the README's folder."""
+    folder = (ROOT / document).parent
+    text = (ROOT / document).read_text()
+    named = set(re.findall(r"`((?:\.\./)?[\w/]+\.(?:hpp|cpp|md|py|toml))`", text))
+    for name in named - set(re.findall(r"New file\s+`([^`]+)`", text)):
+        places = [folder / name, ROOT / name, ROOT / "solver" / name, ROOT / "verification" / name]
+        assert any(place.exists() for place in places), name
+    code = "".join(file.read_text() for file in sorted((ROOT / "solver").rglob("*.[ch]pp")))
+    for row in re.findall(r"^\|.*\| ([^|]*) \|$", text, re.MULTILINE):
+        for name in re.findall(r"`(\w+(?:::\w+)*)`", row):
+            assert re.search(rf"\b{name.split('::')[-1]}\b[^;]*[({{]", code), name
+
+
+def test_every_equation_of_the_paper_is_in_the_theory():
+    text = "".join((ROOT / document).read_text() for document in THEORY)
+    rows = "".join(re.findall(r"^\| (\(.*?)[a-z]", text, re.MULTILINE))
+    assert [int(number) for number in re.findall(r"\((\d+)\)", rows)] == list(range(1, 16))

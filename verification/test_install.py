@@ -1,0 +1,136 @@
+"""What is installed serves other projects: they find it, build without flags, step as the program.
+
+Takes the build folder in which the program under test stands.
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+
+import h5py
+import numpy as np
+import pytest
+from command_line import BINARY, BLOCK, PATIENCE, ROOT, sandglass
+
+BUILD = pathlib.Path(BINARY).resolve().parent
+DYNAMIC = (
+    BLOCK.replace('"quasi-static"', '"dynamic"').partition("[comparison]")[0]
+    + """
+[dynamics]
+duration = 1.0
+time_step = 1e-3
+frames = 10
+"""
+)
+BY_KERNELS = """
+#include "element/methods.hpp"
+#include "io/case_file.hpp"
+#include "math/lanes.hpp"
+
+int main(int, char** argv) {
+  const sandglass::Scene scene = sandglass::read_scene(argv[1]);
+  const sandglass::Model model(scene, {.method = "tl-perturbation"});
+  const auto force = sandglass::internal_forces(model, scene.mesh.points);  // twice as large
+  fmt::print("{} {}\\n", sandglass::Pack<double>::width, force.size());
+}
+"""
+
+
+def run(*command, **options):
+    done = subprocess.run(
+        list(map(str, command)), capture_output=True, text=True, timeout=300 * PATIENCE, **options
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory):
+    """A folder into which all has been installed."""
+    folder = tmp_path_factory.mktemp("prefix")
+    run("cmake", "--install", BUILD, "--prefix", folder)
+    return folder
+
+
+def built(source, folder, *options):
+    run("cmake", "-S", source, "-B", folder, "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", *options)
+    run("cmake", "--build", folder)
+    return (folder / "compile_commands.json").read_text()
+
+
+@pytest.mark.parametrize("found", ["installed", "in the build folder"])
+def test_the_example_steps_as_the_program(found, prefix, tmp_path):
+    """Limit: half a unit in the last place of 0.02 m, carried on by two sums over 1000 steps."""
+    case = tmp_path / "block.toml"
+    case.write_text(DYNAMIC)
+    where = {"installed": f"-DCMAKE_PREFIX_PATH={prefix}"}.get(found, f"-Dsandglass_DIR={BUILD}")
+    commands = built(ROOT / "examples" / "cpp", tmp_path / "build", where)
+    assert "-march" not in commands and "fmt" not in commands and "-Werror" not in commands
+
+    out = run(tmp_path / "build" / "step_a_scene", case, "head", 0.02, 0.0, 0.01)
+    nodes = [line.split() for line in out.splitlines() if line.startswith("  ")]
+    assert sandglass("run", case, "-o", tmp_path / "result.h5").returncode == 0
+    with h5py.File(tmp_path / "result.h5") as result:
+        n_nodes = len(result["mesh/points"])
+        shown = range(0, n_nodes, 10)
+        expected = [
+            result[f"frames/{n:04d}/displacement"][node] for n in range(1, 11) for node in shown
+        ]
+    assert np.abs(np.array(nodes, dtype=float) - expected).max() < 1000 * 1000 * 1.8e-18
+    assert np.abs(expected).max() > 0.02
+
+
+def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):
+    """Other flags would make other packs of the same name; a program must hold none of its own."""
+    (tmp_path / "only.cpp").write_text(
+        "#include <sandglass/simulation.hpp>\n"
+        "double time(const char* file) { return sandglass::Simulation<float>(file).time(); }\n"
+    )
+    flags = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
+    run("c++", *flags, "-isystem", prefix / "include", "-c", "only.cpp", cwd=tmp_path)
+    defined = run("nm", "--demangle", "--defined-only", tmp_path / "only.o")
+    own = [line for line in defined.splitlines() if "sandglass::" in line]
+    assert all("Simulation" in line for line in own), own
+
+
+def test_all_headers_come_with_the_flags_of_the_library(prefix, tmp_path):
+    (tmp_path / "main.cpp").write_text(BY_KERNELS)
+    (tmp_path / "block.toml").write_text(DYNAMIC)
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.25)\nproject(by_kernels LANGUAGES CXX)\n"
+        "find_package(sandglass REQUIRED)\nadd_executable(by_kernels main.cpp)\n"
+        "target_link_libraries(by_kernels PRIVATE sandglass::solver)\n"
+    )
+    commands = built(tmp_path, tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
+    cache = (BUILD / "CMakeCache.txt").read_text()
+    arch = cache.partition("SANDGLASS_ARCH:STRING=")[2].splitlines()[0]
+    assert f"-march={arch}" in commands and str(ROOT) not in commands
+    width, nodes = run(tmp_path / "build" / "by_kernels", tmp_path / "block.toml").split()
+    assert int(width) in (2, 4, 8) and int(nodes) == 45
+
+
+def test_the_installed_program_has_its_cases(prefix, tmp_path):
+    """Also where neither the source nor a folder `cases` is at hand."""
+    environment = {name: value for name, value in os.environ.items() if name != "SANDGLASS_CASES"}
+    moved = shutil.copytree(prefix, tmp_path / "elsewhere")
+    listed = run(moved / "bin" / "sandglass", "cases", cwd=tmp_path, env=environment)
+    assert sorted(line.split()[0] for line in listed.splitlines() if line[:1].isalpha())
+    strings = (moved / "share" / "sandglass" / "cases").glob("*.toml")
+    names = {file.stem for file in strings}
+    assert names == {file.stem for file in (ROOT / "cases").glob("*.toml")}
+    assert all(name in listed for name in names)
+    assert (moved / "share/sandglass/reference/golden/column.h5").exists()
+
+
+def test_other_versions_are_refused(tmp_path):
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.25)\nproject(later LANGUAGES CXX)\n"
+        "find_package(sandglass 9.0 REQUIRED)\n"
+    )
+    done = subprocess.run(
+        ["cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-Dsandglass_DIR={BUILD}"],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode != 0 and "9.0" in done.stderr
