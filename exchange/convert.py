@@ -13,12 +13,17 @@ from pathlib import Path
 
 sys.path[0] = str(Path(__file__).resolve().parent.parent)
 
-import numpy as np  # noqa: E402  (the path above must come first)
+PACKAGES = "python3-numpy, python3-h5py, python3-scipy and python3-meshio (ci/setup build)"
+try:
+    import numpy as np
 
-from exchange import abaqus_file, csv_file, frd_file, gmsh_file, hdf5_file, vtu_file  # noqa: E402
-from exchange.calculix_deck import deck  # noqa: E402
-from exchange.errors import InputError  # noqa: E402
-from exchange.foreign_mesh import to_hexahedra  # noqa: E402
+    from exchange import abaqus_file, csv_file, frd_file, gmsh_file, hdf5_file, vtu_file
+    from exchange.calculix_deck import deck
+    from exchange.errors import InputError
+    from exchange.foreign_mesh import to_hexahedra
+except ImportError as error:
+    print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")
+    sys.exit(2)
 
 MESHES = {".msh": gmsh_file.read, ".inp": abaqus_file.read, ".vtu": vtu_file.read}
 DISPLACEMENTS = (".h5", ".hdf5", ".vtu", ".csv", ".frd")
@@ -121,6 +126,9 @@ def main(arguments=None):
             match_displacement(options.source, options.mesh, options.output, options)
     except InputError as error:
         print(" ".join(str(error).splitlines()))
+        return 2
+    except ImportError as error:
+        print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")
         return 2
     except MemoryError:
         print("not enough memory")

@@ -26,24 +26,24 @@ def write_mesh(path, mesh):
 
 def read_problem(path):
     """What a deck says beside the mesh, as keywords of calculix_deck.deck: title, law, material,
-    prescribed, values, forces."""
+    prescribed, values, forces. It is written by solver/io/foreign_file.cpp."""
     with h5py.File(path, "r") as file:
-        shape = file["mesh/points"].shape
-        problem = file["problem"]
-        prescribed, values, forces = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
-        for nodes, axes, amounts in [problem["imposed"][...].reshape(-1, 3).T]:
-            at = nodes.astype(int), axes.astype(int)
-            prescribed[at], values[at] = True, amounts
-        for node, *force in problem["forces"][...].reshape(-1, 4):
-            forces[int(node)] = force
-        return {
-            "title": f"{_text(file.attrs['case'])}, mesh {_text(file.attrs['mesh_hash'])}",
-            "law": _text(problem.attrs["law"]),
-            "material": dict(problem["material"].attrs),
-            "prescribed": prescribed,
-            "values": values,
-            "forces": forces,
-        }
+        shape, attributes = file["mesh/points"].shape, dict(file.attrs)
+        imposed = file["problem/imposed"][...] if "problem/imposed" in file else np.empty((0, 3))
+        loads = file["problem/forces"][...] if "problem/forces" in file else np.empty((0, 4))
+    prescribed, values, forces = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
+    at = imposed[:, 0].astype(int), imposed[:, 1].astype(int)
+    prescribed[at], values[at] = True, imposed[:, 2]
+    forces[loads[:, 0].astype(int)] = loads[:, 1:]
+    prefix = "material."
+    return {
+        "title": f"{_text(attributes['case'])}, mesh {_text(attributes['mesh_hash'])}",
+        "law": _text(attributes["law"]),
+        "material": {k.removeprefix(prefix): v for k, v in attributes.items() if prefix in k},
+        "prescribed": prescribed,
+        "values": values,
+        "forces": forces,
+    }
 
 
 def read_displacement(path, warn):

@@ -7,7 +7,6 @@ import numpy as np
 from exchange.errors import InputError
 from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
 
-PACKAGE = "python3-meshio"
 VOXEL = [0, 1, 3, 2, 4, 5, 7, 6]  # an image's hexahedron is numbered with x fastest
 DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
 
@@ -55,7 +54,8 @@ def read_displacement(path, field):
 
 def write(path, mesh, kind):
     """Writes a HexMesh as "vtu" or "xdmf", each of its sets as a point array of 0 and 1."""
-    meshio = _meshio()
+    import meshio  # by those alone who need it: it takes long to load
+
     inside = {}
     for name, nodes in mesh.sets.items():
         inside[name] = np.zeros(len(mesh.points), dtype=np.int8)
@@ -67,18 +67,10 @@ def write(path, mesh, kind):
         meshio.xdmf.write(path, grid, data_format="XML")
 
 
-def _meshio():
-    """The library, asked for only by those who need it. Raises InputError."""
-    try:
-        import meshio
-    except ImportError:
-        raise InputError(f"meshio is not installed; package {PACKAGE} (ci/setup)") from None
-    return meshio
-
-
 def _read(path):
     """meshio's grid of a file. Raises InputError for what it cannot read or would read wrongly."""
-    meshio = _meshio()
+    import meshio
+
     try:
         with open(path, "rb") as file:
             pieces = len(re.findall(rb"<Piece[\s>]", file.read()))

@@ -28,23 +28,25 @@ Json to_record(const std::optional<Symptoms>& symptoms) {
 }
 
 Json to_record(const Verdict& verdict) {
-  return {{"case", verdict.case_name},
-          {"method", verdict.method},
-          {"kappa", or_null(verdict.kappa)},
-          {"kappa_is_auto", verdict.kappa_is_auto},
-          {"precision", verdict.precision},
-          {"status", verdict.status},
-          {"finding", verdict.finding ? Json(name_of(*verdict.finding)) : Json(nullptr)},
-          {"symptoms", to_record(verdict.symptoms)},
-          {"golden", to_record(verdict.golden)},
-          {"truth", to_record(verdict.truth)},
-          {"operations", verdict.operations},
-          {"stable_step", verdict.stable_step},
-          {"steps", verdict.steps},
-          {"residual", verdict.residual},
-          {"hourglass_energy_ratio", verdict.hourglass_energy_ratio},
-          {"ns_per_element_step", verdict.ns_per_element_step},
-          {"wall_seconds", verdict.wall_seconds}};
+  Json record{{"case", verdict.case_name},
+              {"method", verdict.method},
+              {"kappa", or_null(verdict.kappa)},
+              {"kappa_is_auto", verdict.kappa_is_auto},
+              {"precision", verdict.precision},
+              {"status", verdict.status},
+              {"finding", verdict.finding ? Json(name_of(*verdict.finding)) : Json(nullptr)},
+              {"symptoms", to_record(verdict.symptoms)},
+              {"golden", to_record(verdict.golden)},
+              {"truth", to_record(verdict.truth)},
+              {"operations", verdict.operations},
+              {"stable_step", verdict.stable_step},
+              {"steps", verdict.steps},
+              {"residual", verdict.residual},
+              {"hourglass_energy_ratio", verdict.hourglass_energy_ratio},
+              {"ns_per_element_step", verdict.ns_per_element_step},
+              {"wall_seconds", verdict.wall_seconds}};
+  if (verdict.twin) record["twin"] = to_record(verdict.twin);
+  return record;
 }
 
 Json to_record(const PublishedResult& result) {
