@@ -11,7 +11,8 @@ import argparse
 import sys
 from pathlib import Path
 
-sys.path[0] = str(Path(__file__).resolve().parent.parent)
+if __name__ == "__main__":
+    sys.path[0] = str(Path(__file__).resolve().parent.parent)
 
 PACKAGES = "python3-numpy, python3-h5py, python3-scipy and python3-meshio (ci/setup build)"
 try:

@@ -1,13 +1,15 @@
 """VTK's unstructured grids (.vtu) and XDMF, by meshio."""
 
+import contextlib
+import io
 import re
+import warnings
 
 import numpy as np
 
 from exchange.errors import InputError
-from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
+from exchange.foreign_mesh import Block, ForeignMesh
 
-VOXEL = [0, 1, 3, 2, 4, 5, 7, 6]  # an image's hexahedron is numbered with x fastest
 DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
 
 
@@ -22,10 +24,8 @@ def read(path):
     for block in grid.cells:
         numbers = np.arange(first, first + len(block.data))
         first += len(block.data)
-        kind, nodes = block.type, np.asarray(block.data, dtype=np.int64)
-        if kind == "voxel":
-            kind, nodes = HEXAHEDRON, nodes[:, VOXEL]
-        blocks.append(Block(kind, block.dim, numbers, nodes))
+        nodes = np.asarray(block.data, dtype=np.int64)
+        blocks.append(Block(block.type, block.dim, numbers, nodes))
     sets = {
         name: np.flatnonzero(data)
         for name, data in grid.point_data.items()
@@ -58,7 +58,7 @@ def write(path, mesh, kind):
 
     inside = {}
     for name, nodes in mesh.sets.items():
-        inside[name] = np.zeros(len(mesh.points), dtype=np.int8)
+        inside[name] = np.zeros(len(mesh.points), dtype=np.int32)
         inside[name][nodes] = 1
     grid = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells)], point_data=inside)
     if kind == "vtu":
@@ -71,17 +71,26 @@ def _read(path):
     """meshio's grid of a file. Raises InputError for what it cannot read or would read wrongly."""
     import meshio
 
+    said = io.StringIO()
     try:
         with open(path, "rb") as file:
             pieces = len(re.findall(rb"<Piece[\s>]", file.read()))
         if pieces > 1:  # meshio would keep the cells of the last one only
-            raise InputError(f"{path}: has {pieces} pieces; one is required (ParaView: Clean)")
-        grid = meshio.vtu.read(path)
+            raise InputError(f"{path}: has {pieces} pieces; one is required")
+        with contextlib.redirect_stderr(said), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            grid = meshio.vtu.read(path)
     except (InputError, MemoryError):
         raise
     except BaseException as error:  # a library may fail in any way on a damaged file
-        words = " ".join(str(error).split())[:200] or type(error).__name__
-        raise InputError(f"{path}: cannot be read as a .vtu grid: {words}") from error
+        raise _refusal(path, str(error) or type(error).__name__) from error
+    if said.getvalue():  # it goes on where it has left something out
+        raise _refusal(path, said.getvalue())
     if grid.points.ndim != 2 or grid.points.shape[1] != 3:
         raise InputError(f"{path}: points have {grid.points.shape[1:]} components; 3 are required")
     return grid
+
+
+def _refusal(path, reason):
+    words = " ".join(reason.split()).removeprefix("Warning: ")
+    return InputError(f"{path}: cannot be read as a .vtu grid: {words[:200]}")
