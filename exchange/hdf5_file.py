@@ -63,7 +63,9 @@ def read_displacement(path, warn):
             if status != "complete":
                 warn(f"its run ended so: {status}")
             found = [_nodal(path, file, at) if at else None, _nodal(path, file, name)]
-    except (OSError, KeyError, TypeError, AttributeError) as error:
+    except InputError:
+        raise
+    except Exception as error:  # a library may fail in any way on a damaged file
         raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
     if found[0] is not None and len(found[0]) != len(found[1]):
         raise InputError(
