@@ -15,8 +15,10 @@
 #include "io/case_file.hpp"
 #include "io/foreign_file.hpp"
 #include "io/new_file.hpp"
+#include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "stability/answer.hpp"
+#include "stepping/body.hpp"
 
 namespace sandglass {
 
@@ -27,6 +29,8 @@ struct ScoreOptions {
   std::string case_name;
   std::string name;
   std::string json;
+  std::string chart;
+  std::string results;
   NodeMatching matching;
   double seconds = 0.0;
   long steps = 0;
@@ -52,9 +56,10 @@ Finding finding_of(const Scene& scene, const References& references, const Nodal
   return diagnose(found, good_limit(golden_to_truth(scene, references)));
 }
 
-Verdict score(const Scene& scene, const ScoreOptions& options) {
+/// `u` receives the displacements.
+Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
   const References references = read_references(scene);
-  const NodalField u = read_foreign_displacement(options.file, scene, options.matching);
+  u = read_foreign_displacement(options.file, scene, options.matching);
   const auto work = static_cast<double>(options.steps) * static_cast<double>(scene.mesh.cells.size());
   Verdict verdict{
       .case_name = scene.description.name,
@@ -74,6 +79,17 @@ Verdict score(const Scene& scene, const ScoreOptions& options) {
     verdict.twin = accuracy_of(scene, u, twin_of(scene));
   }
   return verdict;
+}
+
+/// The displacements as a result file, named as `verify --results` does it, for pictures.
+void write_result(const Scene& scene, const Verdict& verdict, const NodalField& u,
+                  const std::filesystem::path& folder) {
+  const Model model(scene, {.method = std::string(TlMeanDilatation::name)});
+  ResultWriter writer(model, folder / fmt::format("{}.{}.h5", verdict.case_name, verdict.method),
+                      build_provenance());
+  writer.frame(static_frame(model, 0.0, NodalField(u.size())));
+  writer.frame(static_frame(model, 1.0, u));
+  writer.commit("complete");
 }
 
 void print(const Verdict& verdict) {
@@ -96,15 +112,25 @@ void run(const ScoreOptions& options) {
   if (!(options.seconds >= 0.0 && std::isfinite(options.seconds)) || options.steps < 0) {
     throw InputError("--seconds and --steps must not be negative");
   }
+  if (!options.chart.empty() && (options.seconds == 0.0 || options.steps == 0)) {
+    throw InputError("--add-to: needs --seconds and --steps, the place on the chart's other axis");
+  }
+  if (options.name.find('/') != std::string::npos) throw InputError("--name must have no '/'");
   const Scene scene = read_scene(find_case(options.case_name));
   if (!scene.description.quasi_static) {
     throw InputError(
         fmt::format("{}: a dynamic case has no answer to score", scene.description.file.string()));
   }
-  if (!options.json.empty()) require_place(options.json);
-  const Verdict verdict = score(scene, options);
+  for (const auto& place : {options.json, options.chart}) {
+    if (!place.empty()) require_place(place);
+  }
+  if (!options.results.empty()) make_folder(options.results);
+  NodalField u;
+  const Verdict verdict = score(scene, options, u);
   print(verdict);
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), {verdict}, {}));
+  if (!options.results.empty()) write_result(scene, verdict, u, options.results);
+  if (!options.chart.empty()) write_text_file(options.chart, with_record(options.chart, verdict));
 }
 
 }  // namespace
@@ -124,6 +150,9 @@ void add_score_command(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "what the computation took, for its place on the chart");
   command->add_option("--steps", options->steps, "in so many steps, or iterations of an implicit program");
   command->add_option("--json", options->json, "write the figures to this file, as `verify --json` does");
+  command->add_option("--add-to", options->chart, "add the figures to this file of `verify --json`");
+  command->add_option("--results", options->results,
+                      "write the displacements to this folder, as `verify --results` does");
   command->callback([options] { run(*options); });
 }
 
