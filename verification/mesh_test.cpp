@@ -326,6 +326,33 @@ TEST(MeshQuality, names_the_first_ten_inverted_elements) {
   }
 }
 
+/// Cubes that lean: their scaled Jacobians are the cosines, at all corners. The last is inside out.
+TEST(MeshQuality, table_counts_all_and_shows_the_ten_worst) {
+  const std::vector<double> cosines{1.0,  0.95, 0.91, 0.85, 0.75, 0.75, 0.65,
+                                    0.55, 0.35, 0.25, 0.15, 0.05, -0.5};
+  Mesh mesh;
+  for (const double c : cosines) {
+    const auto first = static_cast<int>(mesh.points.size());
+    for (auto [x, y, z] : box({1.0, 1.0, 1.0}, {1, 1, 1}).points) {
+      mesh.points.push_back({x + z * std::sqrt(1.0 - c * c), y + 3.0 * static_cast<double>(first), z * c});
+    }
+    mesh.cells.push_back(box({1.0, 1.0, 1.0}, {1, 1, 1}).cells[0]);
+    for (int& node : mesh.cells.back()) node += first;
+  }
+  const QualityTable table = quality_table(mesh);
+  EXPECT_NEAR(table.smallest, -0.5, 1e-15);
+  EXPECT_NEAR(table.largest, 1.0, 1e-15);
+  EXPECT_EQ(table.counts, (std::array<int, 11>{1, 1, 1, 1, 1, 0, 1, 1, 2, 1, 3}));
+  ASSERT_EQ(table.worst.size(), 10U);
+  const std::array<std::size_t, 10> order{12, 11, 10, 9, 8, 7, 6, 4, 5, 3};  // equals by number
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_NEAR(table.worst[i].scaled_jacobian, cosines[order[i]], 1e-15);
+    if (order[i] != 4 && order[i] != 5) EXPECT_EQ(table.worst[i].number, order[i]);
+  }
+  EXPECT_NEAR(table.worst[0].centre[1], 0.5 + 3.0 * 8 * 12, 1e-12);
+  EXPECT_NEAR(table.worst[0].centre[2], -0.25, 1e-15);
+}
+
 /// Lumped masses: an eighth of rho V at each node, nothing lost.
 TEST(Masses, sum_to_density_times_volume) {
   for (const char* name : {"column", "ellipsoid-touch", "cylinder-stretch"}) {

@@ -17,7 +17,7 @@ import pytest
 from command_line import BINARY, BLOCK, ROOT, catches_interrupts, methods, sandglass, text_of
 
 CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
-COMMANDS = ["cases", "methods", "mesh", "run", "verify", "bench"]
+COMMANDS = ["cases", "methods", "mesh", "run", "score", "verify", "bench"]
 
 
 # Help, lists, usage.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "app/accuracy_text.hpp"
 #include "app/commands.hpp"
 #include "app/execution_options.hpp"
 #include "app/machine.hpp"
@@ -101,16 +102,6 @@ Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
   });
   if (!complete) throw ComputationError("verify: interrupted; nothing was written");
   return outcome;
-}
-
-std::string percent(const std::optional<double>& fraction) {
-  return fraction ? fmt::format("{:.3g}", 100.0 * *fraction) : "-";
-}
-
-std::string percents(const std::optional<Accuracy>& accuracy) {
-  if (!accuracy) return fmt::format("{:>9}{:>9}{:>9}", "-", "-", "-");
-  return fmt::format("{:>9}{:>9}{:>9}", percent(accuracy->max_relative_error),
-                     percent(accuracy->profile_relative_error), percent(accuracy->rms_relative_error));
 }
 
 /// Whether `a` is nearer to its reference than `b`: to the golden where there is one.

@@ -13,6 +13,7 @@ void add_flops_command(CLI::App& app);
 void add_run_command(CLI::App& app, int& exit_code);
 void add_verify_command(CLI::App& app, int& exit_code);
 void add_stability_command(CLI::App& app, int& exit_code);
+void add_score_command(CLI::App& app);
 void add_bench_command(CLI::App& app, int& exit_code);
 
 }  // namespace sandglass

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   sandglass::add_verify_command(app, exit_code);
   sandglass::add_stability_command(app, exit_code);
   sandglass::add_choose_command(app, exit_code);
+  sandglass::add_score_command(app);
   sandglass::add_mesh_command(app);
   sandglass::add_flops_command(app);
   sandglass::add_bench_command(app, exit_code);

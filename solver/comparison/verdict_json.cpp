@@ -1,6 +1,11 @@
 #include "comparison/verdict_json.hpp"
 
+#include <fmt/format.h>
+
+#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
 
 namespace sandglass {
 
@@ -28,23 +33,25 @@ Json to_record(const std::optional<Symptoms>& symptoms) {
 }
 
 Json to_record(const Verdict& verdict) {
-  return {{"case", verdict.case_name},
-          {"method", verdict.method},
-          {"kappa", or_null(verdict.kappa)},
-          {"kappa_is_auto", verdict.kappa_is_auto},
-          {"precision", verdict.precision},
-          {"status", verdict.status},
-          {"finding", verdict.finding ? Json(name_of(*verdict.finding)) : Json(nullptr)},
-          {"symptoms", to_record(verdict.symptoms)},
-          {"golden", to_record(verdict.golden)},
-          {"truth", to_record(verdict.truth)},
-          {"operations", verdict.operations},
-          {"stable_step", verdict.stable_step},
-          {"steps", verdict.steps},
-          {"residual", verdict.residual},
-          {"hourglass_energy_ratio", verdict.hourglass_energy_ratio},
-          {"ns_per_element_step", verdict.ns_per_element_step},
-          {"wall_seconds", verdict.wall_seconds}};
+  Json record{{"case", verdict.case_name},
+              {"method", verdict.method},
+              {"kappa", or_null(verdict.kappa)},
+              {"kappa_is_auto", verdict.kappa_is_auto},
+              {"precision", verdict.precision},
+              {"status", verdict.status},
+              {"finding", verdict.finding ? Json(name_of(*verdict.finding)) : Json(nullptr)},
+              {"symptoms", to_record(verdict.symptoms)},
+              {"golden", to_record(verdict.golden)},
+              {"truth", to_record(verdict.truth)},
+              {"operations", verdict.operations},
+              {"stable_step", verdict.stable_step},
+              {"steps", verdict.steps},
+              {"residual", verdict.residual},
+              {"hourglass_energy_ratio", verdict.hourglass_energy_ratio},
+              {"ns_per_element_step", verdict.ns_per_element_step},
+              {"wall_seconds", verdict.wall_seconds}};
+  if (verdict.twin) record["twin"] = to_record(verdict.twin);
+  return record;
 }
 
 Json to_record(const PublishedResult& result) {
@@ -104,6 +111,25 @@ std::string to_json(const Provenance& provenance, const std::vector<Verdict>& ve
     }
   }
   document["limits"] = to_records(limits);
+  return document.dump(1) + "\n";
+}
+
+std::string with_record(const std::filesystem::path& file, const Verdict& verdict) {
+  std::ifstream stream(file);
+  Json document = Json::parse(stream, nullptr, false);
+  if (!document.is_object() || !document.contains("records") || !document["records"].is_array()) {
+    throw InputError(fmt::format("{}: is no file of `sandglass verify --json`", file.string()));
+  }
+  const Json added = to_record(verdict);
+  Json records = Json::array();
+  for (const auto& record : document["records"]) {
+    const auto same = [&](const char* key) {
+      return record.is_object() && record.value(key, Json()) == added[key];
+    };
+    if (!(same("case") && same("method") && same("precision"))) records.push_back(record);
+  }
+  records.push_back(added);
+  document["records"] = std::move(records);
   return document.dump(1) + "\n";
 }
 

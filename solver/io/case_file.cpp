@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "io/case_variants.hpp"
+#include "io/foreign_file.hpp"
 #include "io/mesh_file.hpp"
 #include "io/table_reader.hpp"
 #include "model/method_entry.hpp"
@@ -258,7 +259,7 @@ void read_header(TableReader table, Case& scene) {
 
 MeshWithSets read_mesh_of(const Case& scene, const MeshFile& file) {
   try {
-    return read_mesh_file(file.path);
+    return is_foreign_mesh(file.path) ? read_foreign_mesh(file.path) : read_mesh_file(file.path);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: mesh.file: {}", scene.file.string(), error.what()));
   }
@@ -387,8 +388,10 @@ std::string describe_case_keys() {
       "\n[case] name, requirement: texts; answer: \"quasi-static\" or \"dynamic\"\n";
   text += described_list(Generators{}, "mesh", "generator");
   text +=
-      "\nmesh.file = \"FILE.h5\": instead of a generator, a mesh as `sandglass mesh` writes it, with its "
-      "node sets\n";
+      "\nmesh.file = \"FILE\": instead of a generator, a mesh of hexahedra, in m: .h5 as `sandglass mesh` "
+      "writes it, .msh of\n  Gmsh (2.2, 4.1), .inp of Abaqus or CalculiX (C3D8...), .vtu. Its physical "
+      "groups, its NSETs and ELSETs, its point\n  arrays of 0 and 1 are node sets by their names; rules of "
+      "[sets] add others, and replace those of the same name\n";
   text += described_list(Laws{}, "material", "law");
   text += fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", "material.density", "[kg/m^3]",
                       Range::positive().text(), "required", "mass density at rest");

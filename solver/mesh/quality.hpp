@@ -10,6 +10,20 @@ double scaled_jacobian(const NodalVectors<double>& X);
 /// The smallest det(dX/dxi) at the eight Gauss points, m^3.
 double smallest_measure(const NodalVectors<double>& X);
 
+/// How good the elements of a mesh are, by their scaled Jacobians.
+struct QualityTable {
+  struct Element {
+    std::size_t number;      ///< in the mesh, from 0 on
+    double scaled_jacobian;  ///< of its worst corner
+    Vector centre;           ///< mean of its nodes, m
+  };
+  double smallest = 1.0;
+  double largest = 0.0;
+  std::array<int, 11> counts{};  ///< of elements at or below zero, and in each tenth of (0, 1]
+  std::vector<Element> worst;    ///< at most ten, the worst first
+};
+QualityTable quality_table(const Mesh& mesh);
+
 /// Throws InputError when an element has det(dX/dxi) <= 0 at a Gauss point; names the first ten with id,
 /// centre, det J.
 void require_positive_jacobians(const Mesh& mesh);

@@ -1,0 +1,144 @@
+"""Converts between the files of other programs and Sandglass's own; the solver calls it.
+
+Usage: convert.py mesh FOREIGN MESH.h5                        read a mesh
+       convert.py write MESH.h5 FILE --format vtu|xdmf|inp [--deck --element C3D8]
+       convert.py displacement FOREIGN MESH.h5 OUT.h5 --tolerance T [--field NAME]
+Exit codes: 0 done, 2 bad input, told in one line of standard output, 3 the disk or the memory is
+full. Warnings go to standard error.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path[0] = str(Path(__file__).resolve().parent.parent)
+
+PACKAGES = "python3-numpy, python3-h5py, python3-scipy and python3-meshio (ci/setup build)"
+try:
+    import numpy as np
+
+    from exchange import abaqus_file, csv_file, frd_file, gmsh_file, hdf5_file, vtu_file
+    from exchange.calculix_deck import deck
+    from exchange.errors import InputError
+    from exchange.foreign_mesh import to_hexahedra
+except ImportError as error:
+    print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")
+    sys.exit(2)
+
+MESHES = {".msh": gmsh_file.read, ".inp": abaqus_file.read, ".vtu": vtu_file.read}
+DISPLACEMENTS = (".h5", ".hdf5", ".vtu", ".csv", ".frd")
+
+
+def read_mesh(source, output):
+    """Reads a mesh of another program and writes it as HDF5. Raises InputError."""
+    read = MESHES[_ending(source, MESHES)]
+    mesh = to_hexahedra(read(source), source, lambda text: _warn(source, text))
+    hdf5_file.write_mesh(output, mesh)
+
+
+def write_mesh(source, output, options):
+    """Writes a mesh for another program, or a deck. Raises InputError."""
+    mesh = hdf5_file.read_mesh(source)
+    if options.deck:
+        problem = hdf5_file.read_problem(source)
+        text = deck(mesh=mesh, element=options.element, **problem)
+    elif options.format == "inp":
+        text = "\n".join(["*HEADING", "sandglass", *abaqus_file.mesh_lines(mesh)]) + "\n"
+    else:
+        vtu_file.write(output, mesh, options.format)
+        return
+    output.write_text(text, encoding="utf-8")
+
+
+def match_displacement(source, mesh_path, output, options):
+    """Brings displacements into the order of a mesh. Raises InputError."""
+    from exchange import matching  # its library takes long to load
+
+    ending, ids = _ending(source, DISPLACEMENTS), None
+    if ending == ".csv":
+        points, ids, displacement = csv_file.read(source, options.field)
+    elif ending == ".frd":
+        points, displacement = frd_file.read(source)
+    elif ending == ".vtu":
+        points, displacement = vtu_file.read_displacement(source, options.field)
+    else:
+        points, displacement = hdf5_file.read_displacement(source, lambda t: _warn(source, t))
+    nodes = hdf5_file.read_mesh(mesh_path).points
+    for name, values in (("coordinates", points), ("displacements", displacement)):
+        if values is not None and not np.isfinite(values).all():
+            row = int(np.flatnonzero(~np.isfinite(values).all(axis=1))[0])
+            raise InputError(
+                f"{source}: {name} must be finite; those of node {row} (from 0) are not"
+            )
+    if not len(displacement):
+        raise InputError(f"{source}: has no nodes")
+    if points is not None:
+        rows = matching.by_coordinates(nodes, points, options.tolerance, source)
+    else:
+        rows = matching.by_ids(
+            np.arange(len(displacement)) if ids is None else ids, len(nodes), source
+        )
+    hdf5_file.write_displacement(output, displacement[rows])
+
+
+def _ending(path, allowed):
+    """The ending of a file that is there. Raises InputError."""
+    if path.suffix.lower() not in allowed:
+        raise InputError(f"{path}: ending '{path.suffix}'; allowed are {', '.join(allowed)}")
+    try:
+        with open(path, "rb"):
+            pass
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    return path.suffix.lower()
+
+
+def _warn(path, text):
+    print(f"warning: {path}: {text}", file=sys.stderr)
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    commands = parser.add_subparsers(dest="command", required=True)
+    command = commands.add_parser("mesh")
+    command.add_argument("source", type=Path)
+    command.add_argument("output", type=Path)
+    command = commands.add_parser("write")
+    command.add_argument("source", type=Path)
+    command.add_argument("output", type=Path)
+    command.add_argument("--format", choices=("vtu", "xdmf", "inp"), required=True)
+    command.add_argument("--deck", action="store_true")
+    command.add_argument("--element", default="C3D8")
+    command = commands.add_parser("displacement")
+    command.add_argument("source", type=Path)
+    command.add_argument("mesh", type=Path)
+    command.add_argument("output", type=Path)
+    command.add_argument("--tolerance", type=float, required=True)
+    command.add_argument("--field")
+    options = parser.parse_args(arguments)
+    try:
+        if options.command == "mesh":
+            read_mesh(options.source, options.output)
+        elif options.command == "write":
+            write_mesh(options.source, options.output, options)
+        else:
+            match_displacement(options.source, options.mesh, options.output, options)
+    except InputError as error:
+        print(" ".join(str(error).splitlines()))
+        return 2
+    except ImportError as error:
+        print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")
+        return 2
+    except MemoryError:
+        print("not enough memory")
+        return 3
+    except OSError as error:
+        print(error.strerror or error)
+        return 3
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,249 @@
+"""Reading Gmsh's .msh, versions 2.2 and 4.1, text and binary: physical groups become node sets.
+
+Not by meshio: it loses groups of surfaces that are named with a minus sign, groups of the same name
+and groups without one, and takes a node that is not there for the last one.
+"""
+
+import re
+
+import numpy as np
+
+from exchange.errors import InputError
+from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
+
+# Gmsh's number of an element type: name, dimension, nodes.
+KINDS = {
+    15: ("point", 0, 1),
+    1: ("line", 1, 2),
+    8: ("line of 3 nodes", 1, 3),
+    2: ("triangle", 2, 3),
+    9: ("triangle of 6 nodes", 2, 6),
+    3: ("quadrilateral", 2, 4),
+    16: ("quadrilateral of 8 nodes", 2, 8),
+    10: ("quadrilateral of 9 nodes", 2, 9),
+    4: ("tetrahedron", 3, 4),
+    11: ("tetrahedron of 10 nodes", 3, 10),
+    5: (HEXAHEDRON, 3, 8),
+    17: ("hexahedron of 20 nodes", 3, 20),
+    12: ("hexahedron of 27 nodes", 3, 27),
+    6: ("wedge", 3, 6),
+    18: ("wedge of 15 nodes", 3, 15),
+    13: ("wedge of 18 nodes", 3, 18),
+    7: ("pyramid", 3, 5),
+    19: ("pyramid of 13 nodes", 3, 13),
+    14: ("pyramid of 14 nodes", 3, 14),
+}
+DIMENSIONS = ("point", "curve", "surface", "volume")
+
+
+def read(path):
+    """The ForeignMesh of a .msh file. Raises InputError."""
+    sections = _sections(path, path.read_bytes())
+    for name in ("MeshFormat", "Nodes", "Elements"):
+        if name not in sections:
+            raise InputError(f"{path}: section ${name} is missing; no mesh of Gmsh, or cut off")
+    if "PartitionedEntities" in sections:
+        raise InputError(f"{path}: is partitioned; save it whole (Mesh.PartitionSplitMeshFiles)")
+    words = sections["MeshFormat"].split(None, 3)[:3]
+    if len(words) < 3 or words[1] not in (b"0", b"1"):
+        raise InputError(f"{path}: $MeshFormat must be a version, 0 or 1, and a size")
+    version, binary = words[0].decode("ascii", "replace"), words[1] == b"1"
+    if not (version == "4.1" or re.fullmatch(r"2(\.\d)?", version)):
+        raise InputError(
+            f"{path}: version {version} of .msh; allowed are 2.2 and 4.1: "
+            "gmsh OLD.msh -save -format msh41 -o NEW.msh"
+        )
+    names = _names(path, sections.get("PhysicalNames", b""))
+    order = _byte_order(path, sections["MeshFormat"]) if binary else None
+
+    def numbers(section):
+        return _Numbers(path, section, sections[section], order, words[2])
+
+    if version == "4.1":
+        return _read_4(numbers, names, "Entities" in sections)
+    return _read_2(numbers, names)
+
+
+class _Numbers:
+    """The numbers of a section, one after the other, of text or bytes."""
+
+    def __init__(self, path, section, data, order, size):
+        self.where = f"{path}: ${section}"
+        self.order, self.position = order, 0
+        self.data = data if order else data.split()
+        self.size = "i8" if size == b"8" else "i4"
+
+    def take(self, count, kind="i4"):
+        """The next numbers: of an int, of "size" or of "f8"."""
+        kind = self.size if kind == "size" else kind
+        if not 0 <= count <= len(self.data):
+            raise InputError(f"{self.where} speaks of {count} numbers, more than it holds")
+        if self.order:
+            end = self.position + count * int(kind[1])
+            found = self.data[self.position : end]
+        else:
+            end = self.position + count
+            found = self.data[self.position : end]
+        if end > len(self.data):
+            raise InputError(f"{self.where} ends too early: it is cut off or damaged")
+        self.position = end
+        if self.order:
+            return np.frombuffer(found, self.order + kind).astype(kind)
+        try:
+            return np.array(found, dtype="S").astype("i8" if kind[0] == "i" else kind)
+        except (ValueError, OverflowError) as error:
+            raise InputError(f"{self.where} has what is no number: {error}") from error
+
+    def kind(self, number):
+        """The entry of KINDS for Gmsh's number. Raises InputError."""
+        if number not in KINDS:
+            raise InputError(f"{self.where} has elements of Gmsh's type {number}: unknown here")
+        return KINDS[number]
+
+
+def _sections(path, data):
+    """The content of the sections of a file by name. Raises InputError where one has no end."""
+    sections, position = {}, 0
+    while begin := re.compile(rb"^\$(\w+)[ \t]*\r?\n", re.MULTILINE).search(data, position):
+        end = data.find(b"$End" + begin[1], begin.end())
+        name = begin[1].decode("ascii", "replace")
+        if end < 0:
+            raise InputError(f"{path}: ${name} has no $End{name}: the file is cut off or damaged")
+        sections[name] = data[begin.end() : end]
+        position = end + 4 + len(begin[1])
+    return sections
+
+
+def _byte_order(path, header):
+    """The byte order of a binary file, by the number one in its header."""
+    one = header.split(b"\n", 1)[-1][:4]
+    if one not in (b"\1\0\0\0", b"\0\0\0\1"):
+        raise InputError(f"{path}: $MeshFormat is damaged: a binary file has the number 1 there")
+    return "<" if one[0] else ">"
+
+
+def _names(path, section):
+    """(dimension, tag) -> name of the physical groups. Raises InputError where names clash."""
+    names = {}
+    for line in section.decode("utf-8", "replace").splitlines()[1:]:
+        entry = re.fullmatch(r'\s*([0-3])\s+(-?\d+)\s+"(.+)"\s*', line)
+        if not entry:
+            raise InputError(f"{path}: $PhysicalNames: {line!r}: dimension, tag, name are required")
+        group = int(entry[1]), int(entry[2])
+        for other, name in names.items():
+            if name == entry[3]:
+                raise InputError(
+                    f"{path}: {DIMENSIONS[other[0]]} {other[1]} and {DIMENSIONS[group[0]]} "
+                    f"{group[1]} are both called '{name}'; names of physical groups must differ"
+                )
+        names[group] = entry[3]
+    return names
+
+
+class _Elements:
+    """Collects blocks of elements and the nodes of the groups that they belong to."""
+
+    def __init__(self, names):
+        self.names, self.blocks, self.groups = names, [], {name: [] for name in names.values()}
+
+    def add(self, kind, ids, nodes, groups):
+        """Elements of one kind (of KINDS), all in the physical groups of these tags."""
+        name, dimension, _ = kind
+        self.blocks.append(Block(name, dimension, ids, nodes))
+        for tag in {abs(int(tag)) for tag in groups} - {0}:
+            group = self.names.get((dimension, tag), f"{DIMENSIONS[dimension]}-{tag}")
+            self.groups.setdefault(group, []).append(nodes.ravel())
+
+    def mesh(self, node_ids, points):
+        """The ForeignMesh."""
+        none = np.empty(0, dtype=np.int64)
+        sets = {name: np.unique(np.concatenate([none, *n])) for name, n in self.groups.items()}
+        return ForeignMesh(node_ids.astype(np.int64), points, self.blocks, sets)
+
+
+def _read_2(numbers, names):
+    """Of version 2.2, where an element is said once for each of its groups."""
+    nodes, elements = numbers("Nodes"), _Elements(names)
+    binary = nodes.order is not None
+    if binary:
+        count = _line(nodes)
+        record = np.dtype([("id", nodes.order + "i4"), ("x", nodes.order + "f8", 3)])
+        if nodes.position + count * record.itemsize > len(nodes.data):
+            raise InputError(f"{nodes.where} ends too early: it is cut off or damaged")
+        table = np.frombuffer(nodes.data, record, count, nodes.position)
+        ids, points = table["id"], table["x"].astype(float)
+    else:
+        count = int(nodes.take(1)[0])
+        table = nodes.take(4 * count, "f8").reshape(-1, 4)
+        ids, points = table[:, 0], table[:, 1:]
+        if not (ids == np.round(ids)).all():
+            raise InputError(f"{nodes.where} has a node whose id is no whole number")
+    source = numbers("Elements")
+    left = _line(source) if binary else int(source.take(1)[0])
+    found = {}  # (kind, tag of the group) -> rows of id and nodes; ids of repetitions are not kept
+    known = {}
+    while left > 0:
+        if binary:
+            number, several, n_tags = source.take(3)
+            kind = source.kind(int(number))
+            rows = source.take(several * (1 + n_tags + kind[2])).reshape(several, -1)
+        else:
+            element, number, n_tags = source.take(3)
+            kind, several = source.kind(int(number)), 1
+            rest = source.take(int(n_tags) + kind[2])
+            rows = np.concatenate([[element], rest])[None, :]
+        if several < 1:
+            raise InputError(f"{source.where} has a block of {several} elements")
+        left -= int(several)
+        for row in rows.tolist():
+            corners = tuple(row[1 + n_tags :])
+            first = known.setdefault((kind, corners), row[0])
+            found.setdefault((kind, row[1] if n_tags else 0), []).append((first, *corners))
+    for (kind, tag), rows in found.items():
+        table = np.array(rows, dtype=np.int64)
+        elements.add(kind, table[:, 0], table[:, 1:], [tag])
+    return elements.mesh(ids, points)
+
+
+def _line(numbers):
+    """The number on the line of text before binary data."""
+    text, _, _ = numbers.data[:32].partition(b"\n")
+    if not text.strip().isdigit():
+        raise InputError(f"{numbers.where} must begin with a number: {text!r}")
+    numbers.position = len(text) + 1
+    return int(text)
+
+
+def _read_4(numbers, names, has_entities):
+    """Of version 4.1, where the entity of an element tells its groups."""
+    groups = _groups_of_entities(numbers("Entities")) if has_entities else {}
+    source, elements = numbers("Nodes"), _Elements(names)
+    ids, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
+    for _ in range(source.take(4, "size")[0]):
+        dimension, _, parametric = source.take(3)
+        (count,) = source.take(1, "size")
+        ids.append(source.take(count, "size"))
+        width = 3 + (dimension if parametric else 0)
+        points.append(source.take(width * count, "f8").reshape(count, -1)[:, :3])
+    source = numbers("Elements")
+    for _ in range(source.take(4, "size")[0]):
+        dimension, entity, number = source.take(3)
+        (count,) = source.take(1, "size")
+        kind = source.kind(int(number))
+        table = source.take(count * (1 + kind[2]), "size").reshape(count, 1 + kind[2])
+        tags = groups.get((int(dimension), int(entity)), ())
+        elements.add(kind, table[:, 0], table[:, 1:], tags)
+    return elements.mesh(np.concatenate(ids), np.concatenate(points))
+
+
+def _groups_of_entities(source):
+    """(dimension, entity) -> tags of its physical groups; negative for those turned round."""
+    groups = {}
+    for dimension, count in enumerate(source.take(4, "size")):
+        for _ in range(count):
+            (entity,) = source.take(1)
+            source.take(6 if dimension else 3, "f8")
+            groups[dimension, int(entity)] = source.take(source.take(1, "size")[0])
+            if dimension:
+                source.take(source.take(1, "size")[0])
+    return groups

@@ -1,0 +1,92 @@
+"""Sandglass's own HDF5 files: mesh, displacement, and what a deck needs."""
+
+import h5py
+import numpy as np
+
+from exchange.errors import InputError
+from exchange.foreign_mesh import HexMesh
+
+
+def read_mesh(path):
+    """The HexMesh of a file that `sandglass` wrote."""
+    with h5py.File(path, "r") as file:
+        mesh = file["mesh"]
+        sets = {name: nodes[...] for name, nodes in mesh.get("sets", {}).items()}
+        return HexMesh(mesh["points"][...], mesh["cells"][...], sets)
+
+
+def write_mesh(path, mesh):
+    """Writes a HexMesh where `sandglass` reads it."""
+    with h5py.File(path, "w") as file:
+        file["mesh/points"] = mesh.points
+        file["mesh/cells"] = mesh.cells.astype(np.int64)
+        for name, nodes in mesh.sets.items():
+            file[f"mesh/sets/{name}"] = nodes.astype(np.int64)
+
+
+def read_problem(path):
+    """What a deck says beside the mesh, as keywords of calculix_deck.deck: title, law, material,
+    prescribed, values, forces. It is written by solver/io/foreign_file.cpp."""
+    with h5py.File(path, "r") as file:
+        shape, attributes = file["mesh/points"].shape, dict(file.attrs)
+        imposed = file["problem/imposed"][...] if "problem/imposed" in file else np.empty((0, 3))
+        loads = file["problem/forces"][...] if "problem/forces" in file else np.empty((0, 4))
+    prescribed, values, forces = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
+    at = imposed[:, 0].astype(int), imposed[:, 1].astype(int)
+    prescribed[at], values[at] = True, imposed[:, 2]
+    forces[loads[:, 0].astype(int)] = loads[:, 1:]
+    prefix = "material."
+    return {
+        "title": f"{_text(attributes['case'])}, mesh {_text(attributes['mesh_hash'])}",
+        "law": _text(attributes["law"]),
+        "material": {k.removeprefix(prefix): v for k, v in attributes.items() if prefix in k},
+        "prescribed": prescribed,
+        "values": values,
+        "forces": forces,
+    }
+
+
+def read_displacement(path, warn):
+    """(points (n, 3) or None, displacement (n, 3)), m: of a result of `sandglass run` the last
+    frame, else the dataset displacement with points, mesh/points or neither. Raises InputError.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            frames = sorted(file["frames"]) if "frames" in file else []
+            name = f"frames/{frames[-1]}/displacement" if frames else "displacement"
+            at = next((n for n in ("points", "mesh/points") if n in file), None)
+            if name not in file:
+                raise InputError(
+                    f"{path}: dataset 'displacement' (n, 3) is required, or the frames of a result"
+                )
+            status = _text(file.attrs.get("status", "complete"))
+            if status != "complete":
+                warn(f"its run ended so: {status}")
+            found = [_nodal(path, file, at) if at else None, _nodal(path, file, name)]
+    except InputError:
+        raise
+    except Exception as error:  # a library may fail in any way on a damaged file
+        raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
+    if found[0] is not None and len(found[0]) != len(found[1]):
+        raise InputError(
+            f"{path}: {at} has {len(found[0])} rows and {name} {len(found[1])}; as many of each"
+        )
+    return tuple(found)
+
+
+def write_displacement(path, displacement):
+    """Writes (n, 3) where `sandglass score` reads it."""
+    with h5py.File(path, "w") as file:
+        file["displacement"] = displacement
+
+
+def _nodal(path, file, name):
+    """A dataset (n, 3) of numbers. Raises InputError."""
+    data = file[name]
+    if data.ndim != 2 or data.shape[1] != 3 or data.dtype.kind not in "fiu":
+        raise InputError(f"{path}: {name} has shape {data.shape}, {data.dtype}; (n, 3) is required")
+    return data[...].astype(float)
+
+
+def _text(value):
+    return value.decode() if isinstance(value, bytes) else str(value)

@@ -1,0 +1,164 @@
+"""Input files of Abaqus and CalculiX: nodes, bricks and sets in all the ways to write them."""
+
+import numpy as np
+import pytest
+from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, read, run
+
+from exchange import abaqus_file
+from exchange.errors import InputError
+from exchange.foreign_mesh import HexMesh
+
+FIRST, SECOND = list(range(8)), list(range(4, 12))
+
+
+def read_text(tmp_path, capsys, text):
+    (tmp_path / "cubes.inp").write_text(text, encoding="utf-8")
+    return read(capsys, tmp_path / "cubes.inp")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        CUBES,
+        CUBES.lower(),
+        CUBES.replace("\n", "\r\n"),
+        CUBES.replace("\n3, ", "\n** a comment\n\n3, "),
+        CUBES.replace("\n7, 1.", "\n*NODE, NSET=upper\n7, 1."),
+        CUBES.replace("1., ", "1.0D+00, "),
+        CUBES.replace("TYPE=C3D8R, ELSET=tissue", "TYPE=C3D8R,\n ELSET=tissue"),
+        CUBES.replace(" 5, 6, 7, 8\n", " 5,\n 6, 7, 8\n"),
+        CUBES.replace("\n2, 5, 6", "\n*ELEMENT, ELSET=tissue, TYPE=C3D8I\n2, 5, 6"),
+        "*HEADING\nany, words\n*PART, NAME=p\n" + CUBES + "*END PART\n*INSTANCE, NAME=a, PART=p\n",
+        CUBES + "*ELEMENT, TYPE=S4R\n7, 1, 2, 3, 4\n*STEP\n*STATIC\n0.1, 1.\n*END STEP\n",
+    ],
+)
+def test_the_same_mesh_however_written(tmp_path, capsys, text):
+    points, cells, sets, warnings = read_text(tmp_path, capsys, text)
+    assert (points == POINTS).all() and (cells == CELLS).all() and not warnings
+    assert sets["tissue"] == list(range(12))
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("*NSET, NSET=Foot\n1, 2, 3,\n4\n", {"Foot": [0, 1, 2, 3]}),
+        ("*Nset, nset=Foot, Generate\n1, 4\n", {"Foot": [0, 1, 2, 3]}),
+        ("*NSET, GENERATE, NSET=Foot\n1, 3, 2\n9, 12, 3\n", {"Foot": [0, 2, 8, 11]}),
+        ("*NSET, NSET=Foot\n1\n*NSET, NSET=FOOT\n2\n", {"Foot": [0, 1]}),
+        ("*NSET, NSET=a\n1\n*NSET, NSET=Foot\nA, 2\n", {"a": [0], "Foot": [0, 1]}),
+        ('*NSET, NSET="left, Fuß"\n3\n', {"left, Fuß": [2]}),
+        ("*ELSET, ELSET=upper\n2\n", {"upper": SECOND}),
+        (
+            "*ELSET, ELSET=up, GENERATE\n2, 2\n*ELSET, ELSET=same\nup\n",
+            {"up": SECOND, "same": SECOND},
+        ),
+        ("*ELSET, ELSET=low\n1\n*NSET, NSET=Foot, ELSET=low\n", {"low": FIRST, "Foot": FIRST}),
+        ("*ELSET, ELSET=both\n1\n*NSET, NSET=both\n12\n", {"both": [11]}),
+        ("*ELEMENT, TYPE=S4, ELSET=skin\n9, 1, 2, 3, 4\n", {"skin": [0, 1, 2, 3]}),
+        ("*ELEMENT, TYPE=S8R, ELSET=skin\n9, 1, 2, 3, 4,\n5, 6, 7, 8\n", {"skin": FIRST}),
+        ("*NSET, NSET=Foot, INSTANCE=a\n1\n*SURFACE, NAME=s\nFoot, S1\n", {"Foot": [0]}),
+    ],
+)
+def test_sets(tmp_path, capsys, text, expected):
+    _, _, sets, warnings = read_text(tmp_path, capsys, CUBES + text)
+    del sets["tissue"]
+    assert sets == expected and not warnings
+
+
+def test_what_gmsh_writes(tmp_path, capsys):
+    (tmp_path / "block.inp").write_bytes((DATA / "block.inp").read_bytes())
+    points, cells, sets, warnings = read(capsys, tmp_path / "block.inp")
+    assert cells.shape == (12, 8) and not warnings
+    assert sets["foot"] == np.flatnonzero(points[:, 2] == 0).tolist() and len(sets["edge"]) == 3
+
+
+def test_included_files(tmp_path, capsys):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "nodes.inc").write_text(NODES)
+    text = "*INCLUDE, INPUT=parts/nodes.inc\n" + ELEMENTS
+    points, cells, _, _ = read_text(tmp_path, capsys, text)
+    assert (points == POINTS).all() and (cells == CELLS).all()
+
+
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("", "has no nodes"),
+        ("1, 2\n", "cubes.inp:1: '1, 2' stands before the first"),
+        (NODES, "has no elements; hexahedra of eight nodes are required"),
+        (NODES + "*ELEMENT, TYPE=S4\n1, 1, 2, 3, 4\n", "has only S4; hexahedra"),
+        (
+            CUBES + "*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 5\n8, 1, 2, 3, 6\n",
+            "2 of type 'C3D4', beside 2 hex",
+        ),
+        (CUBES + "*ELEMENT, TYPE=C3D20R\n7, 1, 2, 3, 5\n", "1 of type 'C3D20R'"),
+        (CUBES.replace("TYPE=C3D8R, ", ""), ":14: .ELEMENT needs TYPE="),
+        (CUBES.replace("2, 5, 6, 7,", "2, 5, 6,"), ":14: C3D8R needs an id and eight nodes"),
+        (CUBES.replace("2, 5, 6, 7,", "2, 5, 6, x,"), ":16: 'x': a whole number is required"),
+        (CUBES.replace("12, 0., 1.", "12, 0., l."), ":13: 'l.': a number is required"),
+        (CUBES.replace("12, 0., 1., 2.", "12"), ":13: a node is an id and three coordinates"),
+        (CUBES.replace("12, 0., 1.", "12, 0., inf"), "finite; those of node 12 are not"),
+        (CUBES.replace("12, 0., 1.", "-12, 0., 1."), "node -12: ids of nodes must not be negative"),
+        (CUBES.replace("12, 0., 1.", "9223372036854775808, 0., 1."), "a whole number is required"),
+        (CUBES.replace("12, 0., 1.", "9223372036854775807, 0., 1."), "element 2 names node 12"),
+        (
+            CUBES.replace("\n2, 5, 6", "\n1, 5, 6"),
+            "1 of 2 elements have an id that others have; ids must differ: 1",
+        ),
+        (CUBES + "*NSET, NSET=Foot\n1, 13\n", "set 'Foot' names node 13, which is not there"),
+        (CUBES + "*NSET, NSET=Foot\nToes\n", ":18: 'Toes': a whole number is required"),
+        (CUBES + "*NSET\n1\n", ":17: .NSET needs a name"),
+        (CUBES + "*NSET, NSET=Foot, GENERATE\n4, 1\n", ":18: GENERATE needs first, last"),
+        (CUBES + "*NSET, NSET=Foot, GENERATE\n1, 4, 0\n", ":18: GENERATE needs first, last"),
+        (CUBES + "*NSET, NSET=Foot, GENERATE\n1, 999999999999\n", "more than 100 million"),
+        (CUBES + "*ELSET, ELSET=up\n5\n", "set 'up' names element 5: not there"),
+        (CUBES + "*NSET, NSET=a, ELSET=b\n", ":17: set 'b' is not there"),
+        (CUBES + "*INSTANCE, NAME=a\n1., 0., 0.\n", ":17: .INSTANCE: one instance, neither moved"),
+        (CUBES + "*INSTANCE, NAME=a\n*INSTANCE, NAME=b\n", ":18: .INSTANCE"),
+        (CUBES + "*NGEN\n1, 5\n", ":17: .NGEN: not read here"),
+        (CUBES.replace("*NODE", "*NODE, SYSTEM=C"), ":1: .NODE, SYSTEM: rectangular"),
+        ("*INCLUDE, INPUT=none.inc\n", "none.inc: cannot be read"),
+        ("*INCLUDE, INPUT=cubes.inp\n", "ten deep at most"),
+    ],
+)
+def test_wrong_files(tmp_path, capsys, text, told):
+    with pytest.raises(Refused, match=told):
+        read_text(tmp_path, capsys, text)
+
+
+def test_empty_set_is_left_out(tmp_path, capsys):
+    _, _, sets, warnings = read_text(tmp_path, capsys, CUBES + "*NSET, NSET=none\n")
+    assert set(sets) == {"tissue"} and "set 'none' has no node" in warnings
+
+
+def test_what_is_written_is_read_again(tmp_path, capsys):
+    """To the bit: these coordinates need no more than the characters that there are."""
+    points = POINTS / 3
+    names = {"foot": [0, 1], "Fuß, left": [3], "2nd": list(range(12))}
+    mesh = HexMesh(points, CELLS, {name: np.array(nodes) for name, nodes in names.items()})
+    lines = abaqus_file.mesh_lines(mesh)
+    found, cells, sets, warnings = read_text(tmp_path, capsys, "\n".join(lines))
+    assert (found == points).all() and (cells == CELLS).all() and sets == names and not warnings
+    assert max(map(len, lines)) <= 80
+
+
+@pytest.mark.parametrize("names", [['a"b'], ["a\nb"], ["x" * 81], ["foot", "Foot"]])
+def test_names_that_cannot_be_written(names):
+    mesh = HexMesh(POINTS, CELLS, {name: np.array([0]) for name in names})
+    with pytest.raises(InputError, match="names? in .inp"):
+        abaqus_file.mesh_lines(mesh)
+
+
+def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys):
+    text = CUBES + "*NSET, NSET=Foot, GENERATE\n1, 4, 1\n*ELSET, ELSET=up\n2\n"
+    random = np.random.default_rng(3)
+    path = tmp_path / "cubes.inp"
+    for _ in range(400):
+        changed = bytearray(text[: random.integers(1, len(text) + 1)], "ascii")
+        for at in random.integers(0, len(changed), 2):
+            changed[at] = random.integers(0, 256)
+        path.write_bytes(changed)
+        try:
+            run(capsys, "mesh", path, tmp_path / "out.h5")
+        except Refused as told:
+            assert "cubes.inp" in str(told)

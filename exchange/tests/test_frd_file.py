@@ -1,0 +1,86 @@
+"""What CalculiX writes is read to the digit; damage is named with its line."""
+
+import numpy as np
+import pytest
+
+from exchange import frd_file
+from exchange.errors import InputError
+
+# Fields touch where a number has a sign; the first block is of an earlier increment; node 3 belongs
+# to no element.
+FRD = """\
+    1C
+    2C                             3                                     1
+ -1         1 9.00000E+00-9.00000E+00 9.00000E+00
+ -1         2 9.00000E+00 9.00000E+00 8.00000E+00
+ -1         3 0.00000E+00 0.00000E+00 0.00000E+00
+ -3
+  100CL  101 0.500000000           2                     0    1           1
+ -4  DISP        4    1
+ -5  D1          1    2    1    0
+ -1         1 7.00000E+00 7.00000E+00 7.00000E+00
+ -1         2 7.00000E+00 7.00000E+00 7.00000E+00
+ -3
+  100CL  102 1.000000000           2                     0    2           1
+ -4  DISP        4    1
+ -5  D1          1    2    1    0
+ -1         2-1.25000E-01-2.00000E-03-4.00000E-105
+ -1         1 0.00000E+00 5.00000E-01-1.00000E+02
+ -3
+ -4  STRESS      6    1
+ -1         1 8.00000E+00 8.00000E+00 8.00000E+00
+ -1         2 8.00000E+00 8.00000E+00 8.00000E+00
+ -3
+ 9999
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    (tmp_path / "case.frd").write_text(FRD)
+    return tmp_path / "case.frd"
+
+
+def test_last_displacements_are_read(file):
+    u = [[0, 0.5, -100], [-0.125, -0.002, -4e-105]]
+    points, displacement = frd_file.read(file)
+    assert (points == [[9, -9, 9], [9, 9, 8]]).all()
+    assert (displacement == u).all()
+    assert (frd_file.read_displacement(file, 2) == u).all()
+
+
+@pytest.mark.parametrize(
+    "old, new, told",
+    [
+        ("-4  DISP", "-4  DUMMY", "a block ' -4  DISP' is required"),
+        ("-2.00000E-03", "-2.000*0E-03", ":16: .*three numbers"),
+        ("-2.00000E-03", "", ":16: .*three numbers"),
+        ("-2.00000E-03", "         NaN", ":16: .*three numbers"),
+        (" -1         2-1.25", " -1         1-1.25", ":17: node 1 is given twice"),
+        (" -1         2-1.25", " -1         ?-1.25", ":16: .*a node number"),
+        (" -1         2 9.00", " -1         4 9.00", "node 2 of the block DISP has no coord"),
+        ("    2C    ", "    3C    ", "no nodes: a block '    2C'"),
+        (FRD[FRD.index(" -3\n -4  STRESS") :], "", ":14: the block DISP has no end"),
+        (FRD[20:], "", "no displacements"),
+        (FRD, "", "no displacements"),
+    ],
+)
+def test_damaged_file(file, old, new, told):
+    assert old in FRD
+    file.write_text(FRD.replace(old, new))
+    with pytest.raises(InputError, match=told):
+        frd_file.read(file)
+
+
+@pytest.mark.parametrize("n_nodes, told", [(3, "lacks node 3 of 1..3"), (1, "node 2: every node")])
+def test_nodes_that_are_not_those_of_the_deck(file, n_nodes, told):
+    with pytest.raises(InputError, match=told):
+        frd_file.read_displacement(file, n_nodes)
+
+
+def test_no_file_and_no_text(tmp_path):
+    for content in (None, np.arange(200, dtype=np.uint8).tobytes()):
+        if content:
+            (tmp_path / "none.frd").write_bytes(content)
+        with pytest.raises(InputError, match="none.frd: cannot be read as an ASCII .frd file"):
+            frd_file.read(tmp_path / "none.frd")

@@ -1,0 +1,121 @@
+"""Meshes that Gmsh made: every version and form gives the same mesh and all of its groups."""
+
+import numpy as np
+import pytest
+from meshes import DATA, Refused, read, run
+
+FORMS = ("2.2", "2.2-binary", "4.1", "4.1-binary")
+SIDES = np.array([0.1, 0.1, 0.2])
+
+# Which nodes of block.geo a group has, by their places; "head plate" is named with a minus sign,
+# "all" is a second group of the same volume, and surface 77 has no name.
+GROUPS = {
+    "foot": lambda x: x[:, 2] == 0,
+    "head plate": lambda x: x[:, 2] == 0.2,
+    "edge": lambda x: (x[:, 1] == 0) & (x[:, 2] == 0),
+    "corner": lambda x: (x == [0.1, 0.1, 0]).all(axis=1),
+    "tissue": lambda x: x[:, 0] >= 0,
+    "all": lambda x: x[:, 0] >= 0,
+    "surface-77": lambda x: x[:, 1] == 0,
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_mesh_and_groups(tmp_path, capsys, form):
+    path = tmp_path / "block.msh"
+    path.write_bytes((DATA / f"block-{form}.msh").read_bytes())
+    points, cells, sets, warnings = read(capsys, path)
+    assert not warnings
+    assert cells.shape == (12, 8) and len(np.unique(cells)) == len(points) == 36
+    # 2 x 2 x 3 boxes: edges along the axes, and vertex 6 opposite to vertex 0; of 16 digits.
+    edges = points[cells[:, [1, 3, 4]]] - points[cells[:, [0]]]
+    assert np.allclose(np.linalg.det(edges), SIDES.prod() / 12, rtol=1e-12)
+    assert np.allclose(points[cells[:, 6]] - points[cells[:, 0]], edges.sum(axis=1), atol=1e-15)
+    rounded = points.round(12)
+    expected = {name: np.flatnonzero(rule(rounded)).tolist() for name, rule in GROUPS.items()}
+    assert sets == expected
+    assert [len(sets[name]) for name in GROUPS] == [9, 9, 3, 1, 36, 36, 12]
+
+
+def edited(tmp_path, form, *changes):
+    """A fixture with texts replaced."""
+    data = (DATA / f"block-{form}.msh").read_bytes()
+    for old, new in changes:
+        assert old in data, old
+        data = data.replace(old, new)
+    (tmp_path / "block.msh").write_bytes(data)
+    return tmp_path / "block.msh"
+
+
+@pytest.mark.parametrize(
+    "form, old, new, told",
+    [
+        ("4.1", b"4.1 0 8", b"4.0 0 8", "version 4.0 of .msh; allowed are 2.2 and 4.1"),
+        ("4.1", b"4.1 0 8", b"4.1 7 8", r"\$MeshFormat must be"),
+        ("4.1-binary", b"4.1 1 8\n\1", b"4.1 1 8\n\2", r"\$MeshFormat is damaged"),
+        ("2.2", b"$EndNodes", b"$Ennodes", r"\$Nodes has no \$EndNodes: the file is cut off"),
+        ("2.2", b"Nodes", b"Nodos", r"section \$Nodes is missing"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n2 nan 0 0\n", "finite; those of node 2 are not"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n2 0.1 x 0\n", "no number"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n1 0.1 0 0\n", "node 1 given twice"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n-2 0.1 0 0\n", "node -2: ids of nodes must not be negative"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n2.5 0.1 0 0\n", "no whole number"),
+        ("2.2", b" 9 2 10 25 ", b" 9 99 10 25 ", "element .* names node 99, which is not there"),
+        ("2.2", b" 9 2 10 25 ", b" 9 9 10 25 ", "1 of 12 elements name a node twice"),
+        ("2.2", b"\n36\n", b"\n37\n", "Nodes"),
+        ("2.2", b"\n36\n", b"\n-36\n", "Nodes"),
+        ("2.2", b'2 1 "foot"', b'2 1 "edge"', "curve 3 and surface 1 are both called 'edge'"),
+        ("4.1", b'2 1 "foot"', b"2 1", r"\$PhysicalNames: '2 1': dimension, tag, name"),
+        ("4.1", b"\n27 36 1 36\n", b"\n28 36 1 36\n", r"\$Nodes"),
+        ("4.1", b"\n27 36 1 36\n", b"\n99999999999999999999 36 1 36\n", r"\$Nodes"),
+        ("4.1", b"3 1 5 12", b"3 1 4 12", r"\$Elements|tetrahedron"),
+        ("4.1", b"3 1 5 12", b"3 1 99 12", "Gmsh's type 99"),
+    ],
+)
+def test_damage_is_named(tmp_path, capsys, form, old, new, told):
+    with pytest.raises(Refused, match=told):
+        read(capsys, edited(tmp_path, form, (old, new)))
+
+
+def test_node_without_element_is_left_out(tmp_path, capsys):
+    path = edited(tmp_path, "2.2", (b"$Nodes\n36\n", b"$Nodes\n37\n4000000000 7 7 7\n"))
+    points, _, sets, warnings = read(capsys, path)
+    assert len(points) == 36 and len(sets["all"]) == 36
+    assert "1 node of no hexahedron left out, as they have no mass: 4000000000" in warnings
+
+
+def test_group_without_nodes_of_hexahedra_is_left_out(tmp_path, capsys):
+    old, new = b'\n2 1 "foot"', b'\n2 9 "nothing"\n2 1 "foot"'
+    path = edited(tmp_path, "4.1", (b"$PhysicalNames\n6", b"$PhysicalNames\n7"), (old, new))
+    _, _, sets, warnings = read(capsys, path)
+    assert set(sets) == set(GROUPS)
+    assert "set 'nothing' has no node of a hexahedron: left out" in warnings
+
+
+def test_names_keep_spaces_and_letters_but_no_slashes(tmp_path, capsys):
+    path = edited(tmp_path, "4.1", (b'"foot"', "\"Fuß/left 'a'\"".encode()))
+    _, _, sets, warnings = read(capsys, path)
+    assert len(sets["Fuß_left 'a'"]) == 9
+    assert "is called 'Fuß_left 'a''" in warnings
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys, form):
+    """Cut at every 37th byte, and with bytes changed: an exit code of 0 or 2 and one line."""
+    data = (DATA / f"block-{form}.msh").read_bytes()
+    random = np.random.default_rng(2)
+    end = data.index(b"$EndElements")
+    damaged = [data[:length] for length in range(0, end + 9, 37)]
+    for _ in range(150):
+        changed = bytearray(data)
+        for at in random.integers(0, len(data), 3):
+            changed[at] = random.integers(0, 256)
+        damaged.append(bytes(changed))
+    path = tmp_path / "block.msh"
+    for i, content in enumerate(damaged):
+        path.write_bytes(content)
+        try:
+            run(capsys, "mesh", path, tmp_path / "out.h5")
+            assert len(content) == len(data), f"cut off at {len(content)}, and not seen"
+        except Refused as told:
+            assert str(told).startswith(str(path)), (i, told)

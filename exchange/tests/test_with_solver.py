@@ -1,0 +1,369 @@
+"""The solver with files of other programs: exit codes, messages, the same answers to the bit."""
+
+import json
+import os
+import resource
+import shutil
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import pytest
+from command_line import BLOCK, ROOT, sandglass, text_of, write_golden
+from meshes import CELLS, DATA, POINTS, write
+
+sys.path.append(str(ROOT / "reference"))
+from accuracy import relative_errors  # noqa: E402  (an account of its own; the path comes first)
+
+FILE_MESH = '[mesh]\nfile = "{}"\n'
+GENERATED = BLOCK[BLOCK.index("[mesh]") : BLOCK.index("[material]")]
+SETS = BLOCK[BLOCK.index("[sets]") : BLOCK.index("[[displacement]]")]
+LARGEST = np.hypot(0.02, 0.01)  # of the displacements that BLOCK imposes, m
+
+
+def case_of(folder, mesh, name="own.toml"):
+    """The case BLOCK on a mesh file, which brings the sets."""
+    text = BLOCK.replace(GENERATED, FILE_MESH.format(mesh)).replace(SETS, "")
+    (folder / name).write_text(text, encoding="utf-8")
+    return folder / name
+
+
+def succeeds(*arguments, **options):
+    done = sandglass(*arguments, **options)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+def refused(*arguments, told, **options):
+    """One line of error, an exit code of 2."""
+    done = sandglass(*arguments, **options)
+    assert done.returncode == 2, done.stdout + done.stderr
+    lines = done.stderr.splitlines()
+    assert len(lines) == 1 and lines[0].startswith("error: ") and told in lines[0], done.stderr
+    assert "sandglass-" not in done.stderr, "a temporary file is nobody's business"
+
+
+def last_displacement(path):
+    with h5py.File(path) as file:
+        return file["frames"][max(file["frames"])]["displacement"][...]
+
+
+@pytest.mark.parametrize("ending", ["vtu", "inp"])
+def test_a_mesh_that_goes_round_gives_the_same_answer(block, ending):
+    folder = block.parent
+    succeeds("mesh", block, "-o", folder / f"own.{ending}")
+    own = case_of(folder, f"own.{ending}")
+    hashes = []
+    for case, result in ((block, "a.h5"), (own, "b.h5")):
+        succeeds("run", case, "-o", folder / result)
+        with h5py.File(folder / result) as file:
+            hashes.append(text_of(file.attrs["mesh_hash"]))
+    assert hashes[0] == hashes[1], "nodes, elements and sets are the same to the bit"
+    assert (last_displacement(folder / "a.h5") == last_displacement(folder / "b.h5")).all()
+
+
+@pytest.mark.parametrize(
+    "mesh", ["block-2.2.msh", "block-4.1.msh", "block-4.1-binary.msh", "block.inp"]
+)
+def test_meshes_of_gmsh_run(tmp_path, mesh):
+    shutil.copy(DATA / mesh, tmp_path)
+    case = case_of(tmp_path, mesh)
+    head = "head_plate" if mesh.endswith("inp") else "head plate"
+    case.write_text(case.read_text().replace('set = "head"', f'set = "{head}"'))
+    assert "at rest" in succeeds("run", case, "-o", tmp_path / "a.h5").stdout
+    with h5py.File(tmp_path / "a.h5") as file:
+        points = file["mesh/points"][...]
+    u = last_displacement(tmp_path / "a.h5")
+    assert (u[points[:, 2] == 0.2] == [0.02, 0, 0.01]).all() and (u[points[:, 2] == 0] == 0).all()
+    assert "surface-77" in sandglass("mesh", case, "-o", tmp_path / "m.h5").stdout or "inp" in mesh
+
+
+def test_rules_of_the_case_add_sets_to_those_of_the_file(block):
+    folder = block.parent
+    succeeds("mesh", block, "-o", folder / "own.vtu")
+    own = case_of(folder, "own.vtu")
+    own.write_text(
+        own.read_text() + "[sets]\nmiddle = { z = [0.1, 0.1] }\nfoot = { z = [0, 0.05] }\n"
+    )
+    said = succeeds("mesh", own, "-o", folder / "m.h5").stdout
+    for line in ("set middle: 9 nodes", "set head: 9 nodes", "set foot: 18 nodes"):
+        assert line in said
+
+
+def test_what_is_put_right_is_told_and_the_run_goes_on(tmp_path):
+    mirrored = CELLS[:, [4, 5, 6, 7, 0, 1, 2, 3]]
+    masks = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
+    write(tmp_path / "own.vtu", POINTS / 20, mirrored, point_data=masks)
+    done = succeeds("run", case_of(tmp_path, "own.vtu"))
+    assert done.stderr.startswith(
+        f"warning: {tmp_path}/own.vtu: 2 of 2 elements were numbered mirr"
+    )
+    assert "at rest" in done.stdout
+
+
+def test_files_that_are_no_mesh(tmp_path):
+    case = case_of(tmp_path, "own.msh")
+    output = ["-o", tmp_path / "out.h5"]
+    refused(
+        "run", case, *output, told=f"{case}: mesh.file: {tmp_path}/own.msh: cannot be read: No such"
+    )
+    (tmp_path / "own.msh").write_bytes((DATA / "block-4.1.msh").read_bytes()[:1500])
+    for command in ("run", "mesh"):
+        refused(
+            command, case, *output, told="own.msh: $Nodes has no $EndNodes: the file is cut off"
+        )
+    refused("verify", case, told="own.msh: $Nodes has no $EndNodes")
+    tetrahedra = write(tmp_path / "own.vtu", cells=[[0, 1, 2, 4]], kind="tetra")
+    refused(
+        "run", case_of(tmp_path, tetrahedra.name), *output, told="1 of type 'tetra', beside 0 hex"
+    )
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["own.msh", "own.toml", "own.vtu"]
+
+
+def test_a_set_that_the_file_lacks(tmp_path):
+    shutil.copy(DATA / "block-4.1.msh", tmp_path)
+    refused(
+        "run", case_of(tmp_path, "block-4.1.msh"), told="'head' is not a node set of this case; "
+    )
+
+
+@pytest.mark.parametrize(
+    "variable, value, told",
+    [
+        (
+            "SANDGLASS_PYTHON",
+            "/no/python3",
+            "/no/python3: cannot be run: No such file or directory;",
+        ),
+        ("SANDGLASS_EXCHANGE", "/no/exchange", "/no/exchange/convert.py: is missing"),
+        (
+            "PYTHONPATH",
+            "meshio",
+            "meshio is not installed; files of other programs need packages pyt",
+        ),
+        (
+            "PYTHONPATH",
+            "h5py",
+            "h5py is not installed; files of other programs need packages python",
+        ),
+    ],
+)
+def test_what_is_not_installed_is_named(tmp_path, variable, value, told):
+    write(tmp_path / "own.vtu")
+    if variable == "PYTHONPATH":
+        (tmp_path / f"{value}.py").write_text(f"raise ImportError(name={value!r})\n")
+        value = str(tmp_path)
+    environment = dict(os.environ, **{variable: value})
+    refused("run", case_of(tmp_path, "own.vtu"), told=told, env=environment)
+
+
+def test_a_converter_that_dies(tmp_path):
+    write(tmp_path / "own.vtu")
+    (tmp_path / "convert.py").write_text("import os\nos.abort()\n")
+    environment = dict(os.environ, SANDGLASS_EXCHANGE=str(tmp_path))
+    done = sandglass("run", case_of(tmp_path, "own.vtu"), env=environment)
+    assert (
+        done.returncode == 3
+        and "own.vtu: cannot be completed: convert.py was ended by" in done.stderr
+    )
+
+
+@pytest.mark.parametrize("ending", ["vtu", "xdmf", "inp"])
+@pytest.mark.parametrize("size", [0, 4096 * 5])
+def test_a_full_disk_leaves_the_old_file(block, ending, size):
+    """The second has room for the mesh on its way to the converter, not for what that writes."""
+    block.write_text(BLOCK.replace("[2, 2, 4]", "[6, 6, 12]"))
+    folder = block.parent
+    (folder / f"own.{ending}").write_text("good")
+    limit = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))}
+    done = sandglass("mesh", block, "-o", f"own.{ending}", cwd=folder, **limit)
+    assert done.returncode == 3 and "File too large" in done.stderr, done.stderr
+    assert sorted(file.name for file in folder.iterdir()) == ["block.toml", f"own.{ending}"]
+    assert (folder / f"own.{ending}").read_text() == "good"
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["-o", "a.stl"], "a.stl: format 'stl'; allowed are h5, vtu, xdmf and inp"),
+        (["-o", "a.vtu", "--deck"], "--deck: for format inp alone; a.vtu is vtu"),
+        (["-o", "none/a.vtu"], "none/a.vtu: cannot be written"),
+        (["-o", "a.h5", "--format", "msh"], "a.h5: format 'msh'"),
+    ],
+)
+def test_wrong_ways_to_write_a_mesh(block, words, told):
+    refused("mesh", "block.toml", *words, told=told, cwd=block.parent)
+    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
+
+
+def test_decks_that_cannot_be(block):
+    folder, words = block.parent, ["-o", "a.inp", "--deck"]
+    block.write_text(BLOCK.replace('law = "neo-hookean"', 'law = "st-venant-kirchhoff"'))
+    refused(
+        "mesh", block, *words, told="law = 'st-venant-kirchhoff': CalculiX has no such", cwd=folder
+    )
+    block.write_text(BLOCK.replace('"quasi-static"', '"dynamic"') + "[dynamics]\nduration = 0.05\n")
+    refused("mesh", block, *words, told="a dynamic case has no deck", cwd=folder)
+    refused(
+        "score", "a.csv", "--case", block, told="a dynamic case has no answer to score", cwd=folder
+    )
+    assert [file.name for file in folder.iterdir()] == ["block.toml"]
+
+
+def test_a_deck_says_what_the_case_says(block):
+    block.write_text(BLOCK + '[[force]]\nset = "side"\ntotal = [0.0, 0.5, 0.0]\n')
+    block.write_text(block.read_text().replace("[sets]", "[sets]\nside = { x = [0.1, 0.1] }"))
+    deck = block.parent / "deck"
+    succeeds("mesh", block, "--format", "inp", "--deck", "--element", "C3D8R", "-o", deck)
+    text = deck.read_text()
+    assert text.startswith("*HEADING\nblock, mesh ") and "*ELEMENT, TYPE=C3D8R, ELSET=ALL" in text
+    assert "*NSET, NSET=foot\n1, 2, 3, 4, 5, 6, 7, 8, 9\n" in text
+    lines = text[text.index("*BOUNDARY") : text.index("*NODE FILE")].splitlines()
+    cut = lines.index("*CLOAD")
+    imposed = {tuple(line.split(", ")[:2]): line.split(", ")[3] for line in lines[1:cut]}
+    assert len(imposed) == 2 * 9 * 3
+    assert {imposed[node, "1"] for node in ("37", "45")} == {"0.02"}
+    assert {imposed[node, "3"] for node in ("37", "45")} == {"0.01"}
+    forces = [line.split(", ") for line in lines[cut + 1 :]]
+    # Of a load that is the same everywhere: a sixteenth and an eighth of it at the nodes of an end.
+    assert {axis for _, axis, _ in forces} == {"2"} and len(forces) == 15
+    assert abs(sum(float(force) for _, _, force in forces) - 0.5) < 1e-15
+
+
+# Scores.
+
+
+@pytest.fixture
+def answered(block):
+    """BLOCK with a golden, and the answer of tl-perturbation in answer.h5."""
+    write_golden(block)
+    succeeds("run", block, "-o", block.parent / "answer.h5")
+    return block
+
+
+def scored(case, answer, *options):
+    """The record that a score leaves."""
+    file = case.parent / "score.json"
+    succeeds("score", answer, "--case", case, "--json", file, *options)
+    document = json.loads(file.read_text())
+    assert document["limits"] == [] and "revision" in document
+    (record,) = document["records"]
+    return record
+
+
+def test_a_score_has_the_figures_of_verify(answered):
+    record = scored(answered, answered.parent / "answer.h5", "--name", "mine")
+    succeeds("verify", answered, "--json", answered.parent / "verdicts.json")
+    runs = json.loads((answered.parent / "verdicts.json").read_text())["records"]
+    (run,) = [r for r in runs if r["method"] == "tl-perturbation" and r["kappa_is_auto"]]
+    assert record["golden"] == run["golden"] and record["golden"]["max_relative_error"] > 1e-3
+    assert record["truth"] is None and record["finding"] == run["finding"]
+    assert (record["case"], record["method"], record["status"]) == ("block", "mine", "ok")
+    assert set(record) == set(run), "it is a record of verify"
+
+
+def test_a_score_is_that_of_another_account(answered):
+    """Nodes shuffled, in a table; the reference's own figures of the same displacements."""
+    folder, random = answered.parent, np.random.default_rng(1)
+    with h5py.File(folder / "answer.h5") as file:
+        points = file["mesh/points"][...]
+    with h5py.File(folder / "golden.h5") as file:
+        golden = file["displacement"][...]
+    u = random.normal(scale=1e-3, size=points.shape)
+    order = random.permutation(len(points))
+    rows = np.column_stack([points, u])[order].tolist()
+    lines = ["x,y,z,ux,uy,uz"] + [",".join(map(repr, row)) for row in rows]
+    (folder / "table.csv").write_text("\n".join(lines))
+    figures = scored(answered, folder / "table.csv")["golden"]
+    expected = relative_errors(u, golden, LARGEST)
+    found = figures["max_relative_error"], figures["rms_relative_error"]
+    assert np.allclose(found, expected, rtol=1e-12)  # sums of squares in another order
+    assert figures["profile_relative_error"] is None
+
+
+def test_the_golden_is_its_own_best_answer(answered):
+    with h5py.File(answered.parent / "golden.h5") as golden:
+        with h5py.File(answered.parent / "mine.h5", "w") as mine:
+            mine["displacement"] = golden["displacement"][...]  # by row, with nothing else
+    record = scored(answered, answered.parent / "mine.h5")
+    assert record["golden"]["max_relative_error"] == 0 and record["finding"] == "good"
+    assert record["method"] == "mine"
+
+
+def test_without_a_golden_its_twin_is_computed(answered):
+    """As another run of the twin has it; both are at rest to the same residual, so to the bit."""
+    folder = answered.parent
+    with h5py.File(folder / "golden.h5") as file:
+        twin = file["displacement"][...]
+    (folder / "golden.h5").unlink()
+    record = scored(answered, folder / "answer.h5")
+    assert record["golden"] is None and record["finding"] is None
+    expected = relative_errors(last_displacement(folder / "answer.h5"), twin, LARGEST)
+    assert np.isclose(record["twin"]["max_relative_error"], expected[0], rtol=1e-12)
+    said = succeeds("score", folder / "answer.h5", "--case", answered).stdout
+    assert "against the golden's twin (computed)" in said and "against the truth" not in said
+
+
+def test_a_score_comes_to_the_verdicts_and_on_the_page(answered):
+    folder = answered.parent
+    (folder / "cases").mkdir()
+    case = folder / "cases" / "block.toml"
+    case.write_text(answered.read_text().replace('"golden.h5"', '"../golden.h5"'))
+    verdicts, results = folder / "verdicts.json", folder / "results"
+    succeeds("verify", case, "--json", verdicts, "--results", results)
+    before = json.loads(verdicts.read_text())
+    words = ["--name", "ccx C3D8R", "--add-to", verdicts, "--results", results]
+    refused("score", folder / "answer.h5", "--case", case, *words, told="--seconds and --steps")
+    for seconds in (9, 2):  # the second takes the place of the first
+        cost = ["--seconds", seconds, "--steps", 20]
+        succeeds("score", folder / "answer.h5", "--case", case, *words, *cost)
+    after = json.loads(verdicts.read_text())
+    added = after["records"].pop()
+    assert after == before
+    # 16 elements; 2 s over 20 steps of all of them.
+    assert added["ns_per_element_step"] == 2e9 / 20 / 16 and added["wall_seconds"] == 2
+    page = folder / "page.html"
+    command = ["/usr/bin/python3", ROOT / "reports/make_report.py", "--verdicts", verdicts]
+    command += ["--results", results, "--cases", folder / "cases", "-o", page]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 0, done.stderr
+    assert "ccx C3D8R" in page.read_text()
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["none.vtu"], "none.vtu: cannot be read: No such file"),
+        (["block.toml"], "block.toml: ending '.toml'; allowed are .h5, .hdf5, .vtu, .csv, .frd"),
+        (["answer.h5", "--tolerance", "0"], "--tolerance = 0 must be in (0, 1)"),
+        (["answer.h5", "--steps", "-1"], "--seconds and --steps must not be negative"),
+        (["answer.h5", "--name", "a/b"], "--name must have no '/'"),
+        (["answer.h5", "--json", "none/a.json"], "none/a.json: cannot be written"),
+        (["answer.h5", "--seconds", "1", "--steps", "1", "--add-to", "answer.h5"], "is no file of"),
+        (["golden.h5", "--case", "column"], "45 rows; required are 0 to 495, or 1 to 496"),
+        (
+            ["answer.h5", "--case", "column"],
+            "nodes of the case are in the file at no distance below",
+        ),
+    ],
+)
+def test_wrong_ways_to_score(answered, words, told):
+    case = [] if "--case" in words else ["--case", "block.toml"]
+    refused("score", *words, *case, told=told, cwd=answered.parent)
+    assert (answered.parent / "answer.h5").stat().st_size > 1000
+
+
+def test_quality_table(tmp_path):
+    """Two cubes, the upper one leaning by 60 degrees: its scaled Jacobian is that cosine."""
+    points = POINTS + np.sqrt(3) * np.maximum(POINTS[:, 2:] - 1, 0) * [1, 0, 0]
+    masks = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
+    write(tmp_path / "own.vtu", points, point_data=masks)
+    said = succeeds("mesh", case_of(tmp_path, "own.vtu"), "-o", tmp_path / "m.h5").stdout
+    assert "smallest scaled Jacobian 0.500" in said
+    lines = [line.strip() for line in said.splitlines()]
+    assert "scaled Jacobian: 0.500 to 1.000" in lines
+    assert "0.9 to 1.0: 1 elements" in lines
+    worst = lines.index("worst elements, numbered from 0 as in what is written") + 1
+    assert lines[worst] == "element 1: 0.500 at (1.36603, 0.5, 1.5)"
+    assert lines[worst + 1].startswith("element 0: 1.000 at (0.5, 0.5, 0.5)")

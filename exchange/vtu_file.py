@@ -1,0 +1,96 @@
+"""VTK's unstructured grids (.vtu) and XDMF, by meshio."""
+
+import contextlib
+import io
+import re
+import warnings
+
+import numpy as np
+
+from exchange.errors import InputError
+from exchange.foreign_mesh import Block, ForeignMesh
+
+DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
+
+
+def read(path):
+    """The ForeignMesh of a .vtu file; ids count from 0. Raises InputError.
+
+    Point arrays of integers that are 0 or 1 are node sets by their names: 1 for nodes of the set.
+    """
+    grid = _read(path)
+    ids, first = np.arange(len(grid.points)), 0
+    blocks = []
+    for block in grid.cells:
+        numbers = np.arange(first, first + len(block.data))
+        first += len(block.data)
+        nodes = np.asarray(block.data, dtype=np.int64)
+        blocks.append(Block(block.type, block.dim, numbers, nodes))
+    sets = {
+        name: np.flatnonzero(data)
+        for name, data in grid.point_data.items()
+        if data.ndim == 1 and data.dtype.kind in "biu" and np.isin(data, (0, 1)).all()
+    }
+    return ForeignMesh(ids, np.asarray(grid.points, dtype=float), blocks, sets)
+
+
+def read_displacement(path, field):
+    """(points (n, 3), displacement (n, 3)), m, of a .vtu file.
+
+    field: name of the point array; None takes one of DISPLACEMENTS, in any case of letters.
+    Raises InputError.
+    """
+    grid = _read(path)
+    vectors = {n: d for n, d in grid.point_data.items() if d.ndim == 2 and d.shape[1] == 3}
+    wanted = [field] if field else [n for n in vectors if n.lower() in DISPLACEMENTS]
+    if len(wanted) != 1 or wanted[0] not in vectors:
+        told = ", ".join(f"'{name}'" for name in vectors) or "none"
+        raise InputError(
+            f"{path}: which point array has the displacements? Say --field NAME; its arrays of "
+            f"three components: {told}"
+        )
+    return np.asarray(grid.points, dtype=float), np.asarray(vectors[wanted[0]], dtype=float)
+
+
+def write(path, mesh, kind):
+    """Writes a HexMesh as "vtu" or "xdmf", each of its sets as a point array of 0 and 1."""
+    import meshio  # by those alone who need it: it takes long to load
+
+    inside = {}
+    for name, nodes in mesh.sets.items():
+        inside[name] = np.zeros(len(mesh.points), dtype=np.int32)
+        inside[name][nodes] = 1
+    grid = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells)], point_data=inside)
+    if kind == "vtu":
+        meshio.vtu.write(path, grid)
+    else:
+        meshio.xdmf.write(path, grid, data_format="XML")
+
+
+def _read(path):
+    """meshio's grid of a file. Raises InputError for what it cannot read or would read wrongly."""
+    import meshio
+
+    said = io.StringIO()
+    try:
+        with open(path, "rb") as file:
+            pieces = len(re.findall(rb"<Piece[\s>]", file.read()))
+        if pieces > 1:  # meshio would keep the cells of the last one only
+            raise InputError(f"{path}: has {pieces} pieces; one is required")
+        with contextlib.redirect_stderr(said), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            grid = meshio.vtu.read(path)
+    except (InputError, MemoryError):
+        raise
+    except BaseException as error:  # a library may fail in any way on a damaged file
+        raise _refusal(path, str(error) or type(error).__name__) from error
+    if said.getvalue():  # it goes on where it has left something out
+        raise _refusal(path, said.getvalue())
+    if grid.points.ndim != 2 or grid.points.shape[1] != 3:
+        raise InputError(f"{path}: points have {grid.points.shape[1:]} components; 3 are required")
+    return grid
+
+
+def _refusal(path, reason):
+    words = " ".join(reason.split()).removeprefix("Warning: ")
+    return InputError(f"{path}: cannot be read as a .vtu grid: {words[:200]}")
