@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
-#include "element/methods.hpp"
+#include "model/method_entry.hpp"
 #include "io/case_file.hpp"
 #include "io/foreign_file.hpp"
 #include "io/new_file.hpp"
@@ -40,10 +40,10 @@ struct ScoreOptions {
 /// it finds none.
 NodalField twin_of(const Scene& scene) {
   Observer silent;
-  Answer answer = answer_at_rest(scene, {.method = std::string(TlMeanDilatation::name)}, silent);
+  Answer answer = answer_at_rest(scene, {.method = std::string(golden_method)}, silent);
   if (answer.refused || answer.failure) {
     throw ComputationError(fmt::format("{}: {} finds no answer to compare with: {}", scene.description.name,
-                                       TlMeanDilatation::name, answer.status));
+                                       golden_method, answer.status));
   }
   return std::move(answer.u);
 }
@@ -84,7 +84,7 @@ Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
 /// The displacements as a result file, named as `verify --results` does it, for pictures.
 void write_result(const Scene& scene, const Verdict& verdict, const NodalField& u,
                   const std::filesystem::path& folder) {
-  const Model model(scene, {.method = std::string(TlMeanDilatation::name)});
+  const Model model(scene, {.method = std::string(golden_method)});
   ResultWriter writer(model, folder / fmt::format("{}.{}.h5", verdict.case_name, verdict.method),
                       build_provenance());
   writer.frame(static_frame(model, 0.0, NodalField(u.size())));
