@@ -106,6 +106,7 @@ def test_a_new_hourglass_control(tmp_path):
     )
     assert [file.split("/")[-1] for file in touched] == [
         "hourglass_mean_sampling.hpp",
+        "tl_mean_sampling.hpp",
         "methods.hpp",
     ]
     assert shown == [
