@@ -1,0 +1,115 @@
+"""Runs the program and leaves what it found as JSON files in a folder."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import h5py
+
+from .files import ComputationError, InputError, write_whole
+
+REPETITIONS = 30
+# A quasi-static and a dynamic run; methods that answer by condensation have no motion.
+BIT_CASES = {"column": (), "bar-wave": ("linear-condensed",)}
+
+
+def program():
+    """The program under test: what SANDGLASS_BINARY names, else the release build. Raises InputError."""
+    path = Path(os.environ.get("SANDGLASS_BINARY", "build/release/sandglass"))
+    if not os.access(path, os.X_OK) or path.is_dir():
+        raise InputError(
+            f"{path}: no program there; `bash ci/build release sandglass_cli` makes it"
+        )
+    return str(path)
+
+
+def call(*arguments, allowed=(0,)):
+    """Runs the program; what it printed. Raises ComputationError."""
+    command = [program(), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in allowed:
+        told = done.stderr.strip().splitlines()[-1:] or ["no message"]
+        raise ComputationError(f"{' '.join(command)}: exit code {done.returncode}: {told[0]}")
+    return done.stdout
+
+
+def verdicts(folder):
+    """The file of `sandglass verify`, in double. Limits that are broken are the business of ci/verify."""
+    file = folder / "verdicts.json"
+    call("verify", "--json", file, allowed=(0, 1))
+    return file
+
+
+def flops(folder):
+    """The file of `sandglass flops`."""
+    file = folder / "flops.json"
+    call("flops", "--json", file)
+    return file
+
+
+def bench(folder, number):
+    """The file of one process of `sandglass bench`, one thread. Wrong forces are told in the file."""
+    file = folder / f"bench-{number}.json"
+    call("bench", "--threads", 1, "--repetitions", REPETITIONS, "--json", file, allowed=(0, 1))
+    return file
+
+
+def _run(case, method, precision, threads, file):
+    """Runs a case; its exit code."""
+    file.unlink(missing_ok=True)
+    options = [
+        "--method",
+        method,
+        "--precision",
+        precision,
+        "--threads",
+        str(threads),
+        "-o",
+        str(file),
+    ]
+    # Threads that wait busily would take the processor of those they wait for.
+    environment = os.environ | {"OMP_WAIT_POLICY": "passive"}
+    command = [program(), "run", case, *options]
+    return subprocess.run(command, capture_output=True, env=environment).returncode
+
+
+def _difference(one, two):
+    """What differs between two result files, or an empty text."""
+    if one.exists() != two.exists():
+        return "only one of them has a result"
+    if not one.exists() or one.read_bytes() == two.read_bytes():
+        return ""
+    with h5py.File(one) as a, h5py.File(two) as b:
+        names = []
+        a.visit(names.append)
+        for name in names:
+            if name not in b:
+                return f"only one of them has /{name}"
+            if isinstance(a[name], h5py.Dataset) and a[name][()].tobytes() != b[name][()].tobytes():
+                return f"/{name} differs"
+    return "the files differ"
+
+
+def bits(folder):
+    """A file that tells of every method whether 1 and 2 threads give the same bits."""
+    records = []
+    methods = [line.split()[0] for line in call("methods").splitlines() if line.strip()]
+    files = [folder / "1-thread.h5", folder / "2-threads.h5"]
+    for case, without in BIT_CASES.items():
+        for method in methods:
+            if method in without:
+                continue
+            for precision in ("double", "float"):
+                codes = {
+                    _run(case, method, precision, threads + 1, file)
+                    for threads, file in enumerate(files)
+                }
+                differs = _difference(*files) if len(codes) == 1 else f"exit codes {codes}"
+                name = f"{case}, {method}, {precision}, 1 and 2 threads"
+                records.append({"name": name, "differs": differs})
+    for file in files:
+        file.unlink(missing_ok=True)
+    file = folder / "bits.json"
+    write_whole(file, json.dumps({"records": records}, indent=1) + "\n")
+    return file
