@@ -1,4 +1,4 @@
-"""Compares the solver with its baseline: accuracy, operations, bits, forces, memory, and ratios of times.
+"""Compares the solver with its baseline: accuracy, operations, bits, memory, ratios of times.
 
 Sources not given as files are run: SANDGLASS_BINARY, else build/release/sandglass.
 Exit codes: 0 no regression, 1 a regression, 2 bad usage or input, 3 the solver failed.
@@ -6,7 +6,6 @@ Exit codes: 0 no regression, 1 a regression, 2 bad usage or input, 3 the solver 
 
 import argparse
 import datetime
-import os
 import sys
 from pathlib import Path
 
@@ -15,7 +14,6 @@ from . import collect, tell
 from .bench import read_bench
 from .compare import compare, undecided
 from .files import ComputationError, InputError
-from .interval import FEWEST
 from .records import Run, read_bits, read_flops, read_verdicts
 
 # What a source tells of.
@@ -33,9 +31,11 @@ def arguments(given):
     add = parser.add_argument
     add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")
     add("--baseline", type=Path, default="ci/baseline.json", help="default: %(default)s")
-    add("--verdicts", metavar="FILE", help="of sandglass verify --json, instead of a run")
-    add("--flops", metavar="FILE", help="of sandglass flops --json")
-    add("--bits", metavar="FILE", help="bits.json of an earlier run")
+    add(
+        "--verdicts", metavar="FILE", nargs="+", help="of sandglass verify --json, instead of a run"
+    )
+    add("--flops", metavar="FILE", nargs="+", help="of sandglass flops --json")
+    add("--bits", metavar="FILE", nargs="+", help="bits.json of an earlier run")
     add("--bench", metavar="FILE", nargs="+", help="of processes of sandglass bench --json")
     add(
         "--most", type=int, default=32, help="processes of bench when few cannot tell (%(default)s)"
@@ -51,8 +51,8 @@ def arguments(given):
         raise InputError("--accept: --reason TEXT is required: why is this the new baseline?")
     if options.reason and not options.accept:
         raise InputError("--reason: goes with --accept")
-    if options.most < FEWEST:
-        raise InputError(f"--most: {options.most}: {FEWEST} or more are required")
+    if options.most < collect.PROCESSES:
+        raise InputError(f"--most: {options.most}: {collect.PROCESSES} or more are required")
     options.sources = options.sources or list(SOURCES)
     options.areas = [area for source in options.sources for area in SOURCES[source]]
     return options
@@ -73,33 +73,33 @@ def find(options, baseline):
         "operations": (options.flops, collect.flops, read_flops),
         "bits": (options.bits, collect.bits, read_bits),
     }
-    for source, (file, collected, read) in readers.items():
+    for source, (files, collected, read) in readers.items():
         if source not in options.sources:
             continue
-        if not file:
+        if not files:
             say(f"running for {source}")
-        run.add(*read(file or collected(folder)))
+            files = [collected(folder)]
+        for file in files:
+            run.add(file, *read(file))
     if "speed" in options.sources:
-        find_speed(options, baseline, run, folder)
+        files = options.bench or bench_files(options, baseline, folder)
+        records, run.machine, document = read_bench(files)
+        run.add(files[0], records, document)
     return run
 
 
-def find_speed(options, baseline, run, folder):
-    """Adds what processes of bench tell: as many as it takes to tell, or `most`."""
-    files = list(options.bench or [])
+def bench_files(options, baseline, folder):
+    """Files of as many processes of bench as it takes to tell, or `most`."""
+    files = []
     while True:
-        while not options.bench and len(files) < FEWEST:
-            say(f"running for speed, process {len(files) + 1}")
-            files.append(collect.bench(folder, len(files) + 1))
-        records, machine, document = read_bench(files)
-        trial = Run(records, machine=machine)
-        settled = not undecided(compare(baseline, trial, ["speed"])) and not options.accept
-        if options.bench or settled or len(files) >= options.most:
-            run.add(records, document)
-            run.machine = machine
-            return
         say(f"running for speed, process {len(files) + 1}")
-        files.append(collect.bench(folder, len(files) + 1))
+        files.append(collect.bench(folder, f"bench-{len(files) + 1}"))
+        if len(files) < collect.PROCESSES:
+            continue
+        records, machine, _ = read_bench(files)
+        outcomes = compare(baseline, Run(records, machine=machine), ["speed"])
+        if len(files) >= options.most or not (options.accept or undecided(outcomes)):
+            return files
 
 
 def gate(options):
@@ -107,11 +107,11 @@ def gate(options):
     known = options.baseline.exists() or not options.accept
     baseline = baselines.read(options.baseline) if known else baselines.Baseline()
     run = find(options, baseline)
-    date = os.environ.get("SOURCE_DATE", str(datetime.date.today()))
+    date = str(datetime.date.today())
     outcomes = compare(baseline, run, options.areas)
     tell.write_all(options.output, outcomes, baseline, run, date)
-    print(tell.table(outcomes))
     if not options.accept:
+        print(tell.table(outcomes))
         return 1 if any(outcome.fails for outcome in outcomes) else 0
     changed = baselines.accept(baseline, run, options.areas, options.reason, date)
     baselines.write(options.baseline, baseline)

@@ -1,4 +1,7 @@
-"""The baseline: what was accepted, when and why. One JSON file, one record a line, so that diffs are read."""
+"""The baseline: what was accepted, when and why.
+
+One JSON file, one record a line, so that its diffs can be read.
+"""
 
 import json
 from dataclasses import dataclass, field
@@ -43,19 +46,16 @@ def _record(path, number, entry):
     if not isinstance(entry, dict):
         raise InputError(f"{path}: record {number} = {entry!r}: an object is required")
     if entry.get("area") not in AREAS or not isinstance(entry.get("name"), str):
-        allowed = ", ".join(AREAS)
-        raise InputError(
-            f"{path}: record {number} = {entry!r}: a name and an area are required; areas: {allowed}"
-        )
+        rule = f"a name and an area are required; areas: {', '.join(AREAS)}"
+        raise InputError(f"{path}: record {number} = {entry!r}: {rule}")
     figures = {}
     for key, value in entry.items():
         if key in ("area", "name"):
             continue
         if isinstance(value, list):
             if len(value) != 3 or not all(isinstance(part, (int, float)) for part in value):
-                raise InputError(
-                    f"{path}: record {number}: {key} = {value}: low, median, high are required"
-                )
+                rule = "low, median, high are required"
+                raise InputError(f"{path}: record {number}: {key} = {value}: {rule}")
             value = Interval(*value)
         elif isinstance(value, bool) or not isinstance(value, (int, float, str)):
             raise InputError(
@@ -147,9 +147,10 @@ def _accepted(area, outcomes, figures):
 
 
 def accept(baseline, run, areas, reason, date):
-    """Makes what a run found the baseline's records of `areas`, and writes down why. Returns the changes, by area.
+    """Makes what a run found the baseline's records of `areas`, and writes down why.
 
-    Raises InputError without a reason, or when a ratio has no interval.
+    Returns the changes by area. Raises InputError without a reason, or where a ratio has no
+    interval.
     """
     if not reason.strip():
         raise InputError("--reason: a text is required: why is this the new baseline?")
@@ -164,10 +165,11 @@ def accept(baseline, run, areas, reason, date):
     for area in areas:
         before = baseline.of(area, run.machine)
         found = {record.name: record.figures for record in run.records if record.area == area}
-        after = {
-            name: _accepted(area, outcomes.get((area, name), {}), figures)
-            for name, figures in found.items()
-        }
+        after = {}
+        for name, figures in found.items():
+            after[name] = _accepted(area, outcomes.get((area, name), {}), figures)
+            if name in before and not _differ(before[name], after[name]):
+                after[name] = before[name]  # with its time, so that a diff shows what changed
         counts = {
             "new": len(after.keys() - before.keys()),
             "changed": sum(

@@ -3,14 +3,14 @@
 import math
 from dataclasses import dataclass
 
-from .interval import FEWEST, Interval
+from .interval import FEWEST
 from .records import OF_MACHINE
 
-# One build repeats its errors to the bit; another compiler or instruction set rounds otherwise, and the
-# search for rest ends elsewhere. See README.md for how far that was seen to move errors.
+# One build repeats its errors to the bit; another compiler or instruction set rounds otherwise, and
+# the search for rest ends elsewhere. README.md tells how far that was seen to move errors.
 RELATIVE = 1e-3
 FLOOR = {"double": 2e-6, "float": 1e-4}  # fractions of the largest imposed displacement
-SPEED_LIMIT = 0.02  # more than this slower is a regression
+SPEED_LIMIT = 0.015  # more than this slower is a regression
 
 SAME, BETTER, WORSE, BROKEN, VANISHED, NEW, NOISY, UNGATED = (
     "same",
@@ -103,7 +103,7 @@ def judge(area, name, figure, baseline, found):
 
 
 def compare_records(area, name, baseline, found, known_machine):
-    """Outcomes of the figures of one record; `baseline` and `found` are dicts, either may be None."""
+    """Outcomes of the figures of one record; either of two dicts may be None."""
     outcomes = []
     for figure in dict.fromkeys([*(baseline or {}), *(found or {})]):
         if figure.startswith("trend"):

@@ -23,18 +23,18 @@ class Run:
     """What one run of the gate found."""
 
     records: list = field(default_factory=list)
-    revision: str = "unknown"
+    revision: str | None = None
     machine: str | None = None  # processor, compiler and flags; None where nothing was timed
 
-    @property
-    def areas(self):
-        """The areas in which something was looked for."""
-        return {record.area for record in self.records}
-
-    def add(self, records, document):
-        """Takes records and the origin that their document tells."""
-        self.records += records
-        self.revision = document.get("revision", self.revision)
+    def add(self, path, records, document):
+        """Takes the records of a file. Raises InputError when another revision made it."""
+        revision = document.get("revision")
+        if revision and self.revision not in (revision, None):
+            raise InputError(
+                f"{path}: revision = {revision}: {self.revision} as before is required"
+            )
+        self.revision = revision or self.revision
+        self.records = unique(path, self.records + records)
 
 
 def entries_of(path, document, key, required):

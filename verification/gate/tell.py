@@ -7,9 +7,8 @@ from collections import Counter
 from itertools import groupby
 from pathlib import Path
 
-from .compare import BETTER, BROKEN, NEW, NOISY, SAME, UNGATED, VANISHED, WORSE
+from .compare import BETTER, BROKEN, FAILING, NEW, NOISY, SAME, UNGATED, VANISHED, WORSE
 from .files import write_whole
-from .interval import Interval
 
 VERDICTS = (WORSE, BROKEN, VANISHED, NOISY, NEW, UNGATED, BETTER, SAME)
 HEADINGS = ("verdict", "area", "what", "figure", "baseline", "found", "")
@@ -30,12 +29,13 @@ def _cells(outcome):
 
 
 def _listed(outcomes, most):
-    """The rows worth a line, the worst first, at most so many of each verdict; and how many are left out."""
+    """Rows worth a line, the worst first, at most so many of each verdict; how many more there are."""
     rows, left_out = [], Counter()
     for verdict in VERDICTS:
         of_verdict = [o for o in outcomes if o.verdict == verdict and verdict not in SILENT]
-        rows += [_cells(outcome) for outcome in of_verdict[:most]]
-        left_out[verdict] = max(0, len(of_verdict) - most)
+        shown = most if verdict in FAILING else most // 4
+        rows += [_cells(outcome) for outcome in of_verdict[:shown]]
+        left_out[verdict] = max(0, len(of_verdict) - shown)
     return rows, [f"{count} more: {verdict}" for verdict, count in left_out.items() if count]
 
 
@@ -86,17 +86,19 @@ def _markdown_table(rows):
     return "\n".join(lines)
 
 
+def _times(run):
+    """Names of what was timed, and best ns per element and step."""
+    timed = [record for record in run.records if "trend ns" in record.figures]
+    return {record.name: record.figures["trend ns"] for record in timed}
+
+
 def _trend(baseline, run):
     """Rows of times, never judged: variant, ns of the baseline, ns found."""
     before = baseline.of("speed", run.machine)
-    rows = []
-    for record in run.records:
-        if record.area == "speed":
-            old = before.get(record.name, {}).get("trend ns")
-            rows.append(
-                (record.name, _shown(old and f"{old:.2f}"), f"{record.figures['trend ns']:.2f}")
-            )
-    return rows
+    return [
+        (name, f"{before[name]['trend ns']:.2f}" if name in before else "-", f"{ns:.2f}")
+        for name, ns in _times(run).items()
+    ]
 
 
 def markdown(outcomes, baseline, run):
@@ -105,7 +107,7 @@ def markdown(outcomes, baseline, run):
     heading, counts = _counts(outcomes)
     parts = [
         f"# {verdict_line(outcomes)}",
-        f"Revision {run.revision}; machine: {run.machine or '-'}.",
+        f"Revision {run.revision or '-'}; machine: {run.machine or '-'}.",
     ]
     parts += [_markdown_table([heading, *counts])]
     parts += [_markdown_table([HEADINGS, *rows])] if rows else []
@@ -113,7 +115,7 @@ def markdown(outcomes, baseline, run):
     trend = _trend(baseline, run)
     if trend:
         parts += [
-            "## Times\n\nBest ns per element and step: a trend, not judged; other work on the machine is in them.",
+            "## Times\n\nBest ns per element and step: a trend, not judged.",
             _markdown_table([("variant", "baseline", "found"), *trend]),
         ]
     return "\n\n".join(parts) + "\n"
@@ -134,7 +136,7 @@ def junit(outcomes, run):
         for key in ("failures", "skipped"):
             suite.set(key, str(tally[key]))
         properties = ElementTree.Element("properties")
-        for key, value in (("revision", run.revision), ("machine", run.machine or "-")):
+        for key, value in (("revision", run.revision or "-"), ("machine", run.machine or "-")):
             ElementTree.SubElement(properties, "property", name=key, value=value)
         suite.insert(0, properties)
     ElementTree.indent(root)
@@ -153,7 +155,7 @@ def _junit_case(suite, area, name, outcomes):
         )
 
     for tag, counted, verdicts in (
-        ("failure", "failures", (WORSE, BROKEN, VANISHED)),
+        ("failure", "failures", FAILING),
         ("skipped", "skipped", (NOISY, NEW, UNGATED)),
         ("system-out", "passed", (BETTER,)),
     ):
@@ -170,9 +172,7 @@ def _junit_case(suite, area, name, outcomes):
 def append_trend(path, run, date):
     """Adds the times of a run to a CSV file."""
     rows = [
-        (date, run.revision, run.machine, record.name, f"{record.figures['trend ns']:.4g}")
-        for record in run.records
-        if record.area == "speed"
+        (date, run.revision, run.machine, name, f"{ns:.4g}") for name, ns in _times(run).items()
     ]
     if not rows:
         return
