@@ -10,7 +10,7 @@ from .records import OF_MACHINE
 # the search for rest ends elsewhere. README.md tells how far that was seen to move errors.
 RELATIVE = 1e-3
 FLOOR = {"double": 2e-6, "float": 1e-4}  # fractions of the largest imposed displacement
-SPEED_LIMIT = 0.015  # more than this slower is a regression
+SPEED_LIMIT = 0.01  # so far an interval may lie above that of the baseline
 
 SAME, BETTER, WORSE, BROKEN, VANISHED, NEW, NOISY, UNGATED = (
     "same",
@@ -67,18 +67,20 @@ def judge_error(baseline, found, precision):
 
 
 def judge_ratio(baseline, found):
-    """Of two Intervals of a ratio of times."""
-    line = baseline.median * (1.0 + SPEED_LIMIT)
-    change = f"{100 * (found.median / baseline.median - 1):+.1f} %"
-    if found.low > line:
-        return WORSE, f"{change}, {100 * (found.low / baseline.median - 1):+.1f} % at least"
+    """Of two Intervals of a ratio of times: worse lies wholly above, SPEED_LIMIT between."""
+    line = baseline.high * (1.0 + SPEED_LIMIT)
+
+    def change(value):
+        return f"{100 * (value / baseline.median - 1):+.1f} %"
+
     if math.isinf(found.high):
-        return NOISY, f"{change}, from fewer than {FEWEST} processes"
+        return NOISY, f"{change(found.median)}, from fewer than {FEWEST} processes"
+    if found.low > line:
+        return WORSE, f"{change(found.median)}; {change(found.low)} at least"
     if found.high > line:
-        high = 100 * (found.high / baseline.median - 1)
-        return NOISY, f"{change}, but up to {high:+.1f} % cannot be excluded"
-    if found.high < baseline.median / (1.0 + SPEED_LIMIT):
-        return BETTER, change
+        return NOISY, f"{change(found.median)}; up to {change(found.high)} cannot be excluded"
+    if found.high < baseline.low / (1.0 + SPEED_LIMIT):
+        return BETTER, change(found.median)
     return SAME, ""
 
 

@@ -29,7 +29,7 @@ def _cells(outcome):
 
 
 def _listed(outcomes, most):
-    """Rows worth a line, the worst first, at most so many of each verdict; how many more there are."""
+    """Rows worth a line, the worst first, so many of each verdict at most; how many more."""
     rows, left_out = [], Counter()
     for verdict in VERDICTS:
         of_verdict = [o for o in outcomes if o.verdict == verdict and verdict not in SILENT]

@@ -19,8 +19,8 @@ def test_what_was_accepted_passes(accepted):
     code, text = accepted.call()
     assert code == 0
     last = text.strip().splitlines()[-1]
-    # 1 status and 2 errors, status and tip; 5 counts; bits; forces, memory and ratios of 27 variants,
-    # the twin ratio of 3, and what the 3 paces have: the peak, and over plain numbers if of packs.
+    # Status and 2 errors, status and tip; 5 counts; bits; forces, memory and ratios of 27 variants,
+    # the twin ratio of 3, and what the 3 paces have: peak, and over plain numbers if of packs.
     assert last == f"gate: passed: {3 + 2 + 5 + 1 + 27 * 4 + 3 + 3 + 2} figures, 0 regressions"
 
 

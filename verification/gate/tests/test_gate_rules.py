@@ -37,14 +37,15 @@ def test_error_may_move_by_share_and_floor(error, precision):
 
 
 def test_ratio_is_judged_by_its_whole_interval():
-    old, line = Interval(0.9, 2.0, 2.2), 2.0 * (1.0 + SPEED_LIMIT)
+    old, line = Interval(1.8, 1.9, 2.0), 2.0 * (1.0 + SPEED_LIMIT)
+    floor = 1.8 / (1.0 + SPEED_LIMIT)
     assert judge_ratio(old, Interval(1.99, 2.0, 0.999 * line))[0] == SAME
     assert judge_ratio(old, Interval(0.999 * line, 1.01 * line, 1.02 * line))[0] == NOISY
-    assert judge_ratio(old, Interval(1.0, 2.0, 1.001 * line))[0] == NOISY
+    assert judge_ratio(old, Interval(1.0, 1.9, 1.001 * line))[0] == NOISY
     assert judge_ratio(old, Interval(1.001 * line, 1.01 * line, 1.02 * line))[0] == WORSE
-    assert judge_ratio(old, Interval(1.0, 1.5, 1.999 / (1.0 + SPEED_LIMIT)))[0] == BETTER
-    assert judge_ratio(old, Interval(1.0, 1.99, 2.001 / (1.0 + SPEED_LIMIT)))[0] == SAME
-    assert judge_ratio(old, Interval(0.0, 2.0, float("inf")))[0] == NOISY
+    assert judge_ratio(old, Interval(1.0, 1.5, 0.999 * floor))[0] == BETTER
+    assert judge_ratio(old, Interval(1.0, 1.7, 1.001 * floor))[0] == SAME
+    assert judge_ratio(old, Interval(0.0, 3.0, float("inf")))[0] == NOISY
 
 
 def test_ratios_are_of_one_process(folder):
