@@ -67,6 +67,14 @@ def test_new_records_are_told_and_pass_but_promises_hold_for_them(accepted):
     assert accepted.call()[0] == 1
 
 
+def test_new_method_on_a_known_machine_is_new(accepted):
+    for document in accepted.bench:
+        document["records"] += [r | {"method": "ul-new"} for r in document["records"][:1]]
+    text = accepted.call()[1]
+    # Bytes and the ratio; that forces are right and nothing is allocated is promised.
+    assert f"2 {NEW}" in text.strip().splitlines()[-1] and UNGATED not in text
+
+
 def test_comes_to_rest_again(folder):
     fail_to_rest(folder)
     folder.accept()
