@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import tempfile
 from pathlib import Path
 
 import h5py
@@ -61,7 +62,6 @@ def bench(folder, name):
 
 def _run(case, method, precision, threads, file):
     """Runs a case; its exit code."""
-    file.unlink(missing_ok=True)
     options = [
         "--method",
         method,
@@ -95,25 +95,30 @@ def _difference(one, two):
     return "the files differ"
 
 
+def _bits(case, method, precision):
+    """What differs between the runs of a case with 1 and with 2 threads, or an empty text."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [Path(folder) / "1-thread.h5", Path(folder) / "2-threads.h5"]
+        codes = [
+            _run(case, method, precision, threads, file)
+            for threads, file in enumerate(files, start=1)
+        ]
+        return _difference(*files) if codes[0] == codes[1] else f"exit codes {codes}"
+
+
 def bits(folder):
     """A file that tells of every method whether 1 and 2 threads give the same bits."""
-    records = []
     methods = [line.split()[0] for line in call("methods").splitlines() if line.strip()]
-    files = [folder / "1-thread.h5", folder / "2-threads.h5"]
-    for case, without in BIT_CASES.items():
-        for method in methods:
-            if method in without:
-                continue
-            for precision in ("double", "float"):
-                codes = {
-                    _run(case, method, precision, threads + 1, file)
-                    for threads, file in enumerate(files)
-                }
-                differs = _difference(*files) if len(codes) == 1 else f"exit codes {codes}"
-                name = f"{case}, {method}, {precision}, 1 and 2 threads"
-                records.append({"name": name, "differs": differs})
-    for file in files:
-        file.unlink(missing_ok=True)
+    records = [
+        {
+            "name": f"{case}, {method}, {precision}, 1 and 2 threads",
+            "differs": _bits(case, method, precision),
+        }
+        for case, without in BIT_CASES.items()
+        for method in methods
+        if method not in without
+        for precision in ("double", "float")
+    ]
     file = folder / "bits.json"
     write_whole(file, json.dumps({"records": records}, indent=1) + "\n")
     return file
