@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/allocations.hpp"
 #include "base/error.hpp"
 #include "benchmark/bench.hpp"
 #include "benchmark/force_check.hpp"
@@ -112,6 +113,39 @@ TEST(Measure, wrong_forces_get_no_time) {
   EXPECT_EQ(timings[1].seconds_of_a_step.size() % 3, 0U);
   EXPECT_GT(right.steps, 0);
   EXPECT_EQ(right.checks, 1);
+}
+
+/// Asks for memory twice in every step, once of a stronger alignment, and when it goes back.
+class Greedy final : public Candidate {
+ public:
+  NodalField forces() override { return {{1.0, 0.0, 0.0}}; }
+  void restart() override { kept_ = std::make_unique<int>(0); }
+  void step() override {
+    kept_ = std::make_unique<int>(1);
+    aligned_ = std::make_unique<Aligned>();
+  }
+  void require_healthy() override {}
+
+ private:
+  struct alignas(128) Aligned {
+    int value = 0;
+  };
+  std::unique_ptr<int> kept_;
+  std::unique_ptr<Aligned> aligned_;
+};
+
+TEST(Measure, counts_allocations_of_steps_where_told_how) {
+  const NodalField reference{{1.0, 0.0, 0.0}};
+  Greedy greedy;
+  Fake thrifty(1.0);
+  const std::vector<Entry> entries{{&greedy, &reference, 1e-12}, {&thrifty, &reference, 1e-12}};
+  const auto proceed = [](double) { return true; };
+  auto timings = measure(
+      entries, {.repetitions = 1, .batch_seconds = 1e-6, .allocations = sandglass::allocations}, proceed);
+  EXPECT_EQ(timings[0].allocations_per_step, 2.0);
+  EXPECT_EQ(timings[1].allocations_per_step, 0.0);
+  timings = measure(entries, {.repetitions = 1, .batch_seconds = 1e-6}, proceed);
+  EXPECT_FALSE(timings[0].allocations_per_step);
 }
 
 TEST(Measure, ends_when_told) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/machine.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "material/laws.hpp"
@@ -77,7 +78,10 @@ void write_json(const std::vector<Row>& rows, const std::string& path) {
                        {"total", row.operations.total()},
                        {"bytes", row.bytes}});
   }
-  write_text_file(path, nlohmann::ordered_json{{"records", records}}.dump(1) + "\n");
+  nlohmann::ordered_json document;
+  for (const auto& [name, value] : build_provenance()) document[name] = value;
+  document["records"] = std::move(records);
+  write_text_file(path, document.dump(1) + "\n");
 }
 
 }  // namespace

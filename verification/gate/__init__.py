@@ -1,0 +1,1 @@
+"""Compares what the solver does now with what it did when its baseline was accepted."""

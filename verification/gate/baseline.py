@@ -1,0 +1,197 @@
+"""The baseline: what was accepted, when and why.
+
+One JSON file, one record a line, so that its diffs can be read.
+"""
+
+import json
+from dataclasses import dataclass, field
+
+from .compare import NOISY, SAME, compare
+from .files import InputError, read_json, write_whole
+from .interval import Interval
+from .records import AREAS, OF_MACHINE, Record
+
+FORMAT = 1
+DIGITS = 6  # of errors and ratios: a thousandth of what the rules tell apart
+
+
+@dataclass
+class Baseline:
+    """Accepted records, those of OF_MACHINE by machine, and the history of their acceptance."""
+
+    history: list = field(default_factory=list)
+    records: list = field(default_factory=list)
+    machines: dict = field(default_factory=dict)
+
+    def of(self, area, machine):
+        """All records of an area on a machine; a machine that is not known has none."""
+        source = self.machines.get(machine, []) if area in OF_MACHINE else self.records
+        return {record.name: record.figures for record in source if record.area == area}
+
+    def replace(self, area, machine, figures_by_name):
+        """Puts other records in the place of those of an area."""
+        of_machine = area in OF_MACHINE
+        source = self.machines.get(machine, []) if of_machine else self.records
+        kept = [record for record in source if record.area != area]
+        kept += [Record(area, name, figures) for name, figures in figures_by_name.items()]
+        kept.sort(key=lambda record: (AREAS.index(record.area), record.name))
+        if of_machine:
+            self.machines[machine] = kept
+        else:
+            self.records = kept
+
+
+def _record(path, number, entry):
+    """One line of the file as a Record."""
+    if not isinstance(entry, dict):
+        raise InputError(f"{path}: record {number} = {entry!r}: an object is required")
+    if entry.get("area") not in AREAS or not isinstance(entry.get("name"), str):
+        rule = f"a name and an area are required; areas: {', '.join(AREAS)}"
+        raise InputError(f"{path}: record {number} = {entry!r}: {rule}")
+    figures = {}
+    for key, value in entry.items():
+        if key in ("area", "name"):
+            continue
+        if isinstance(value, list):
+            if len(value) != 3 or not all(isinstance(part, (int, float)) for part in value):
+                rule = "low, median, high are required"
+                raise InputError(f"{path}: record {number}: {key} = {value}: {rule}")
+            value = Interval(*value)
+        elif isinstance(value, bool) or not isinstance(value, (int, float, str)):
+            raise InputError(
+                f"{path}: record {number}: {key} = {value!r}: a number or text is required"
+            )
+        figures[key] = value
+    return Record(entry["area"], entry["name"], figures)
+
+
+def read(path):
+    """The Baseline of a file. Raises InputError."""
+    document = read_json(path)
+    if document.get("format") != FORMAT:
+        raise InputError(f"{path}: format = {document.get('format')!r}: {FORMAT} is required")
+    for key, kind in (("history", list), ("records", list), ("machines", dict)):
+        if not isinstance(document.get(key), kind):
+            kinds = "a list" if kind is list else "an object"
+            raise InputError(f"{path}: {key} = {document.get(key)!r}: {kinds} is required")
+
+    def records(entries):
+        return [_record(path, number, entry) for number, entry in enumerate(entries)]
+
+    machines = {name: records(entries) for name, entries in document["machines"].items()}
+    return Baseline(document["history"], records(document["records"]), machines)
+
+
+def _line(entry):
+    """One line of the file."""
+    return json.dumps(entry, ensure_ascii=False, allow_nan=False)
+
+
+def _entry(record):
+    """A Record as it is written."""
+    figures = {
+        key: [value.low, value.median, value.high] if isinstance(value, Interval) else value
+        for key, value in record.figures.items()
+    }
+    return {"area": record.area, "name": record.name} | figures
+
+
+def _list(lines, indent):
+    """A JSON list, an entry a line."""
+    if not lines:
+        return "[]"
+    inner = ",\n".join(" " * (indent + 1) + line for line in lines)
+    return f"[\n{inner}\n{' ' * indent}]"
+
+
+def text_of(baseline):
+    """The text of the file."""
+    machines = [
+        f"{_line(name)}: {_list([_line(_entry(record)) for record in records], 2)}"
+        for name, records in sorted(baseline.machines.items())
+    ]
+    inner = (
+        "{\n" + ",\n".join("  " + machine for machine in machines) + "\n }" if machines else "{}"
+    )
+    return (
+        f'{{\n "format": {FORMAT},\n'
+        f' "history": {_list([_line(entry) for entry in baseline.history], 1)},\n'
+        f' "records": {_list([_line(_entry(record)) for record in baseline.records], 1)},\n'
+        f' "machines": {inner}\n}}\n'
+    )
+
+
+def write(path, baseline):
+    """Writes the file whole or not at all."""
+    write_whole(path, text_of(baseline))
+
+
+def _rounded(value):
+    """An error or ratio as it is kept; counts as they are."""
+    if isinstance(value, Interval):
+        return Interval(*(_rounded(part) for part in (value.low, value.median, value.high)))
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
+
+
+def _accepted(area, outcomes, figures):
+    """What the baseline keeps of a record: figures that are the same stay what they were.
+
+    So errors cannot creep by less than their margin each time, and a diff shows what changed.
+    """
+    kept = {}
+    for figure, value in figures.items():
+        outcome = outcomes.get(figure)
+        stays = outcome and outcome.verdict in (SAME, NOISY) and outcome.baseline is not None
+        kept[figure] = outcome.baseline if stays else value if area == "memory" else _rounded(value)
+    return kept
+
+
+def accept(baseline, run, areas, reason, date):
+    """Makes what a run found the baseline's records of `areas`, and writes down why.
+
+    Returns the changes by area. Raises InputError without a reason, or where a ratio has no
+    interval.
+    """
+    if not reason.strip():
+        raise InputError("--reason: a text is required: why is this the new baseline?")
+    for record in run.records:
+        for figure, value in record.figures.items():
+            if isinstance(value, Interval) and value.low == 0.0:
+                raise InputError(f"{record.name}: {figure}: too few processes to accept; use more")
+    outcomes = {}
+    for outcome in compare(baseline, run, areas):
+        outcomes.setdefault((outcome.area, outcome.name), {})[outcome.figure] = outcome
+    changed = {}
+    for area in areas:
+        before = baseline.of(area, run.machine)
+        found = {record.name: record.figures for record in run.records if record.area == area}
+        after = {}
+        for name, figures in found.items():
+            after[name] = _accepted(area, outcomes.get((area, name), {}), figures)
+            if name in before and not _differ(before[name], after[name]):
+                after[name] = before[name]  # with its time, so that a diff shows what changed
+        counts = {
+            "new": len(after.keys() - before.keys()),
+            "changed": sum(
+                _differ(before[name], after[name]) for name in after.keys() & before.keys()
+            ),
+            "gone": len(before.keys() - after.keys()),
+        }
+        told = ", ".join(f"{count} {what}" for what, count in counts.items() if count)
+        if told:
+            changed[area] = told
+        baseline.replace(area, run.machine, after)
+    entry = {"date": date, "revision": run.revision, "reason": reason.strip(), "changed": changed}
+    if run.machine and set(areas) & set(OF_MACHINE):
+        entry["machine"] = run.machine
+    baseline.history.append(entry)
+    return changed
+
+
+def _differ(before, after):
+    """Whether two versions of a record differ in more than their times."""
+
+    def gated(figures):
+        return {key: value for key, value in figures.items() if not key.startswith("trend")}
+
+    return gated(before) != gated(after)

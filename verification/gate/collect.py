@@ -1,0 +1,124 @@
+"""Runs the program and leaves what it found as JSON files in a folder."""
+
+import json
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+import h5py
+
+from .files import ComputationError, InputError, write_whole
+
+# A mesh that stays in a cache: what is compared is arithmetic, not the traffic of neighbours. Many
+# short processes tell more than few long ones: where a program lies in memory moves its best times
+# by 1 %.
+BENCH = ("--elements", 600, "--threads", 1, "--repetitions", 20)
+PROCESSES = 12
+# A quasi-static and a dynamic run; methods that answer by condensation have no motion.
+BIT_CASES = {"column": (), "bar-wave": ("linear-condensed",)}
+
+
+def program():
+    """The program under test: SANDGLASS_BINARY, else the release build. Raises InputError."""
+    path = Path(os.environ.get("SANDGLASS_BINARY", "build/release/sandglass"))
+    if not os.access(path, os.X_OK) or path.is_dir():
+        raise InputError(
+            f"{path}: no program there; `bash ci/build release sandglass_cli` makes it"
+        )
+    return str(path)
+
+
+def call(*arguments, allowed=(0,)):
+    """Runs the program; what it printed. Raises ComputationError."""
+    command = [program(), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in allowed:
+        told = done.stderr.strip().splitlines()[-1:] or ["no message"]
+        raise ComputationError(f"{' '.join(command)}: exit code {done.returncode}: {told[0]}")
+    return done.stdout
+
+
+def verdicts(folder):
+    """The file of `sandglass verify`, in double. Broken limits are the business of ci/verify."""
+    file = folder / "verdicts.json"
+    call("verify", "--json", file, allowed=(0, 1))
+    return file
+
+
+def flops(folder):
+    """The file of `sandglass flops`."""
+    file = folder / "flops.json"
+    call("flops", "--json", file)
+    return file
+
+
+def bench(folder, name):
+    """The file of one process of `sandglass bench`. Wrong forces are told in the file."""
+    file = folder / f"{name}.json"
+    call("bench", *BENCH, "--json", file, allowed=(0, 1))
+    return file
+
+
+def _run(case, method, precision, threads, file):
+    """Runs a case; its exit code."""
+    options = [
+        "--method",
+        method,
+        "--precision",
+        precision,
+        "--threads",
+        str(threads),
+        "-o",
+        str(file),
+    ]
+    # Threads that wait busily would take the processor of those they wait for.
+    environment = os.environ | {"OMP_WAIT_POLICY": "passive"}
+    command = [program(), "run", case, *options]
+    return subprocess.run(command, capture_output=True, env=environment).returncode
+
+
+def _difference(one, two):
+    """What differs between two result files, or an empty text."""
+    if one.exists() != two.exists():
+        return "only one of them has a result"
+    if not one.exists() or one.read_bytes() == two.read_bytes():
+        return ""
+    with h5py.File(one) as a, h5py.File(two) as b:
+        names = []
+        a.visit(names.append)
+        for name in names:
+            if name not in b:
+                return f"only one of them has /{name}"
+            if isinstance(a[name], h5py.Dataset) and a[name][()].tobytes() != b[name][()].tobytes():
+                return f"/{name} differs"
+    return "the files differ"
+
+
+def _bits(case, method, precision):
+    """What differs between the runs of a case with 1 and with 2 threads, or an empty text."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [Path(folder) / "1-thread.h5", Path(folder) / "2-threads.h5"]
+        codes = [
+            _run(case, method, precision, threads, file)
+            for threads, file in enumerate(files, start=1)
+        ]
+        return _difference(*files) if codes[0] == codes[1] else f"exit codes {codes}"
+
+
+def bits(folder):
+    """A file that tells of every method whether 1 and 2 threads give the same bits."""
+    methods = [line.split()[0] for line in call("methods").splitlines() if line.strip()]
+    records = [
+        {
+            "name": f"{case}, {method}, {precision}, 1 and 2 threads",
+            "differs": _bits(case, method, precision),
+        }
+        for case, without in BIT_CASES.items()
+        for method in methods
+        if method not in without
+        for precision in ("double", "float")
+    ]
+    file = folder / "bits.json"
+    write_whole(file, json.dumps({"records": records}, indent=1) + "\n")
+    return file

@@ -1,0 +1,145 @@
+"""The rules: what is found, against what the baseline holds. Pure functions."""
+
+import math
+from dataclasses import dataclass
+
+from .interval import FEWEST
+from .records import OF_MACHINE
+
+# One build repeats its errors to the bit; another compiler or instruction set rounds otherwise, and
+# the search for rest ends elsewhere. README.md tells how far that was seen to move errors.
+RELATIVE = 1e-3
+FLOOR = {"double": 2e-6, "float": 1e-4}  # fractions of the largest imposed displacement
+SPEED_LIMIT = 0.01  # so far an interval may lie above that of the baseline
+
+SAME, BETTER, WORSE, BROKEN, VANISHED, NEW, NOISY, UNGATED = (
+    "same",
+    "better",
+    "WORSE",
+    "BROKEN",
+    "VANISHED",
+    "new",
+    "too noisy to tell",
+    "not gated",
+)
+FAILING = (WORSE, BROKEN, VANISHED)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one figure."""
+
+    area: str
+    name: str
+    figure: str
+    verdict: str
+    baseline: object = None
+    found: object = None
+    reason: str = ""
+
+    @property
+    def fails(self):
+        """Whether it is a regression."""
+        return self.verdict in FAILING
+
+
+def judge_status(baseline, found):
+    """Of a run: 'ok' or 'failed'."""
+    if baseline == found:
+        return SAME, ""
+    return (WORSE, "no longer comes to rest") if found == "failed" else (BETTER, "comes to rest")
+
+
+def judge_exact(baseline, found):
+    """Of a count that no machine changes: fewer is better."""
+    if found == baseline:
+        return SAME, ""
+    return (WORSE if found > baseline else BETTER), f"{found - baseline:+g}; must be equal"
+
+
+def judge_error(baseline, found, precision):
+    """Of an error: a fraction of the largest imposed displacement."""
+    margin = RELATIVE * baseline + FLOOR[precision]
+    if abs(found - baseline) <= margin:
+        return SAME, ""
+    reason = f"{found - baseline:+.2e}; may rise by {margin:.1e}"
+    return (WORSE if found > baseline else BETTER), reason
+
+
+def judge_ratio(baseline, found):
+    """Of two Intervals of a ratio of times: worse lies wholly above, SPEED_LIMIT between."""
+    line = baseline.high * (1.0 + SPEED_LIMIT)
+
+    def change(value):
+        return f"{100 * (value / baseline.median - 1):+.1f} %"
+
+    if math.isinf(found.high):
+        return NOISY, f"{change(found.median)}, from fewer than {FEWEST} processes"
+    if found.low > line:
+        return WORSE, f"{change(found.median)}; {change(found.low)} at least"
+    if found.high > line:
+        return NOISY, f"{change(found.median)}; up to {change(found.high)} cannot be excluded"
+    if found.high < baseline.low / (1.0 + SPEED_LIMIT):
+        return BETTER, change(found.median)
+    return SAME, ""
+
+
+def judge_promise(figure, found):
+    """Of what is promised whatever the baseline says: None where nothing is."""
+    if figure == "differs":
+        return (BROKEN, found) if found else (SAME, "")
+    if figure == "allocations":
+        return (BROKEN, "a step must not allocate") if found > 0 else (SAME, "")
+    return None
+
+
+def judge(area, name, figure, baseline, found):
+    """Verdict and reason of a figure that both have."""
+    if figure == "status":
+        return judge_status(baseline, found)
+    if area == "accuracy":
+        return judge_error(baseline, found, name.rsplit(", ", 1)[1])
+    if area == "speed":
+        return judge_ratio(baseline, found)
+    return judge_exact(baseline, found)
+
+
+def compare_records(area, name, baseline, found, known_machine):
+    """Outcomes of the figures of one record; either of two dicts may be None."""
+    outcomes = []
+    for figure in dict.fromkeys([*(baseline or {}), *(found or {})]):
+        if figure.startswith("trend"):
+            continue
+        old, new = (baseline or {}).get(figure), (found or {}).get(figure)
+        promise = None if new is None else judge_promise(figure, new)
+        if promise:
+            verdict, reason = promise
+        elif old is None and area in OF_MACHINE and not known_machine:
+            verdict, reason = UNGATED, "the baseline does not know this machine"
+        elif old is None:
+            verdict, reason = NEW, "not in the baseline: accept it"
+        elif new is None and (found or {}).get("status") == "failed":
+            continue  # its status says so
+        elif new is None:
+            verdict, reason = VANISHED, "was in the baseline"
+        else:
+            verdict, reason = judge(area, name, figure, old, new)
+        outcomes.append(Outcome(area, name, figure, verdict, old, new, reason))
+    return outcomes
+
+
+def compare(baseline, run, areas):
+    """Outcomes of all figures of `areas`, regressions first. A Baseline and a Run."""
+    known = run.machine in baseline.machines
+    outcomes = []
+    for area in areas:
+        old = baseline.of(area, run.machine)
+        new = {record.name: record.figures for record in run.records if record.area == area}
+        for name in dict.fromkeys([*old, *new]):
+            outcomes += compare_records(area, name, old.get(name), new.get(name), known)
+    return sorted(outcomes, key=lambda outcome: not outcome.fails)
+
+
+def undecided(outcomes):
+    """Whether more processes could change what is said of speed."""
+    return any(o.area == "speed" and o.verdict in (NOISY, WORSE) for o in outcomes)

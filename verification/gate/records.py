@@ -1,0 +1,120 @@
+"""What was found: figures by area and name, read from the JSON files of the program's commands."""
+
+from dataclasses import dataclass, field
+
+from .files import InputError, read_json
+
+# Where figures come from; those of the last two hold for one machine only.
+AREAS = ("accuracy", "operations", "bits", "forces", "memory", "speed")
+OF_MACHINE = ("memory", "speed")
+
+
+@dataclass(frozen=True)
+class Record:
+    """Figures of one thing. A figure is a number, a text, or of speed an Interval."""
+
+    area: str
+    name: str
+    figures: dict
+
+
+@dataclass
+class Run:
+    """What one run of the gate found."""
+
+    records: list = field(default_factory=list)
+    revision: str | None = None
+    machine: str | None = None  # processor, compiler and flags; None where nothing was timed
+
+    def add(self, path, records, document):
+        """Takes the records of a file. Raises InputError when another revision made it."""
+        revision = document.get("revision")
+        if revision and self.revision not in (revision, None):
+            raise InputError(
+                f"{path}: revision = {revision}: {self.revision} as before is required"
+            )
+        self.revision = revision or self.revision
+        self.records = unique(path, self.records + records)
+
+
+def entries_of(path, document, key, required):
+    """The objects of a list of a document, each with the required keys and kinds."""
+    entries = document.get(key)
+    if not isinstance(entries, list):
+        raise InputError(f"{path}: {key} = {entries!r}: a list is required")
+    for number, entry in enumerate(entries):
+        if not isinstance(entry, dict):
+            raise InputError(f"{path}: {key} {number} = {entry!r}: an object is required")
+        for name, kind in required.items():
+            if name not in entry:
+                raise InputError(f"{path}: {key} {number}: {name} is missing")
+            value = entry[name]
+            if not isinstance(value, kind) or isinstance(value, bool):
+                kinds = "a text" if kind is str else "a number"
+                raise InputError(f"{path}: {key} {number}: {name} = {value!r}: {kinds} is required")
+    return entries
+
+
+def unique(path, records):
+    """The records, of which no two may have one name."""
+    seen = set()
+    for record in records:
+        if (record.area, record.name) in seen:
+            raise InputError(
+                f"{path}: {record.area}: '{record.name}' is there twice; once is allowed"
+            )
+        seen.add((record.area, record.name))
+    return records
+
+
+def _errors(entry):
+    """The accuracy figures of a verdict by name: fractions of the largest imposed displacement."""
+    figures = {}
+    for reference in ("golden", "truth"):
+        for key, value in (entry.get(reference) or {}).items():
+            if value is not None:
+                figures[f"{reference} {key.removesuffix('_relative_error')}"] = value
+    for value in entry.get("values", []):
+        if value.get("ratio") is not None:
+            figures[f"published {value['set']} {value['component']}"] = abs(value["ratio"] - 1.0)
+    return figures
+
+
+def read_verdicts(path):
+    """Records of accuracy and their document, of `sandglass verify --json`. Raises InputError."""
+    document = read_json(path)
+    required = {"case": str, "method": str, "precision": str, "status": str}
+    records = []
+    for key in ("records", "published"):
+        for entry in entries_of(path, document, key, required):
+            kappa = entry.get("kappa")
+            if kappa is not None:
+                kappa = "auto" if entry.get("kappa_is_auto") else f"{kappa:g}"
+            parts = (entry["case"], entry["method"], kappa and f"kappa {kappa}", entry["precision"])
+            # Where a run that failed stopped is chance.
+            ok = entry["status"] == "ok"
+            figures = {"status": "ok", **_errors(entry)} if ok else {"status": "failed"}
+            records.append(Record("accuracy", ", ".join(filter(None, parts)), figures))
+    return unique(path, records), document
+
+
+def read_flops(path):
+    """Records of operations and their document, of `sandglass flops --json`. Raises InputError."""
+    document = read_json(path)
+    counts = ("add", "mul", "div", "special", "bytes")
+    required = {"method": str, "law": str, "form": str, "part": str} | dict.fromkeys(counts, int)
+    records = []
+    for entry in entries_of(path, document, "records", required):
+        name = ", ".join(entry[key] for key in ("method", "law", "form", "part"))
+        records.append(Record("operations", name, {count: entry[count] for count in counts}))
+    # A law's table repeats a part of the method at whose point it is counted.
+    return unique(path, list({(r.area, r.name): r for r in records}.values())), document
+
+
+def read_bits(path):
+    """Records of bits and their document, as collect.py writes them. Raises InputError."""
+    document = read_json(path)
+    records = []
+    for entry in entries_of(path, document, "records", {"name": str, "differs": str}):
+        records.append(Record("bits", entry["name"], {"differs": entry["differs"]}))
+    return unique(path, records), document
