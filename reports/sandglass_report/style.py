@@ -19,6 +19,9 @@ METHOD_COLOURS = (
     ("#4b5563", "#a9b6c6"),  # slate
 )
 METHOD_MARKS = ("X", "o", "s", "D", "^", "v", "P", "h")
+PLOTLY_MARKS = dict(
+    zip(METHOD_MARKS, "x circle square diamond triangle-up triangle-down cross hexagon".split())
+)
 GLYPHS = dict(zip(METHOD_MARKS, "✖●■◆▲▼✚⬢"))  # the marks in running text
 
 GOLDEN = ("#d99200", "#f5bd41")
