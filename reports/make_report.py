@@ -1,7 +1,8 @@
 """Makes the page of the report from verdicts, results, references and what else was measured.
 
-Usage: /usr/bin/python3 reports/make_report.py [OPTIONS] [-o FILE]; --help lists the inputs. Verdicts,
-results, cases and references must be there; without any other the page says which command makes it.
+Usage: /usr/bin/python3 reports/make_report.py [OPTIONS] [-o FILE]; --help lists the inputs.
+Verdicts, results, cases and references must be there; where another is missing, the page says which
+command makes it.
 Exit codes: 0 done, 2 an input is missing, broken or does not belong to the others.
 """
 

@@ -1,4 +1,4 @@
-"""Bending and locking: the deflection of cantilevers over Poisson's ratio and elements through them."""
+"""Bending and locking: deflections of cantilevers over Poisson's ratio and fineness."""
 
 import re
 
@@ -7,7 +7,6 @@ from sandglass_report.plates import MUTED, Panel, Plate
 
 VARIANT = re.compile(r"(?P<elements>\d+) nu(?P<nu>0?\.\d+)")
 CEILING = 1.45  # what is farther off stands at the edge
-COLUMNS = 3
 
 
 def bending_plates(tips, palette):
@@ -48,12 +47,12 @@ def bending_plates(tips, palette):
             {m: [found.get((m, e, nu)) for e in elements] for m in methods},
             palette,
         )
-        for nu in (ratios[0], ratios[-1])
+        for nu in dict.fromkeys((ratios[0], *ratios[-2:]))
     )
     note = "Deflection of the tip over that of the truth; 1 is right, less is too stiff."
     return (
         Plate("locking", "Locking: as the body becomes incompressible", locking, 3, note, legend),
-        Plate("bending", "Bending: as elements become finer", bending, 2, note, legend),
+        Plate("bending", "Bending: as elements become finer", bending, 3, note, legend),
     )
 
 

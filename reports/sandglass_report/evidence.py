@@ -1,4 +1,4 @@
-"""What the project claims, what tests it, by which oracle, and which planted mistakes are noticed."""
+"""What the project claims, what tests it, by which oracle; which planted mistakes are noticed."""
 
 import re
 import tomllib
@@ -37,7 +37,7 @@ class Mutant:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Everything of the section; `made` is the line of the mutants' table that says when and how."""
+    """All of the section; `made` is the line of the mutants' table that says when and how."""
 
     claims: tuple = ()
     mutants: tuple = ()
@@ -96,7 +96,7 @@ def _known_tests(path, root, says, tests):
 
 
 def _limit(path, says, words, limits):
-    """The limit of the verdicts with "CASE METHOD KAPPA FIGURE"; None where the case was not run."""
+    """The limit "CASE METHOD KAPPA FIGURE" of the verdicts; None where the case was not run."""
     case, method, kappa, figure = (words.split() + [""] * 4)[:4]
     of_case = [limit for limit in limits if limit.case == case]
     for limit in of_case:

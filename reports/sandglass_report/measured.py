@@ -1,4 +1,4 @@
-"""What other commands than verify leave: counts, times, ladders and failure maps. All may be absent."""
+"""What other commands than verify leave: counts, times, ladders, maps. All may be absent."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -138,7 +138,7 @@ def _of_measured(inputs, palette):
     return {
         "chart": interactive.chart_data([p for p in points if palette.knows(p.method)], palette),
         "chart_cases": names,
-        "first_case": paper.TIMED_CASE if paper.TIMED_CASE in names else names[0],
+        "first_case": paper.FIRST_CASE if paper.FIRST_CASE in names else names[0],
         "ladder_cases": ladders,
         "missing_ladders": [name for name in names if name not in ladders],
         "plotly": interactive.packed_plotly(),

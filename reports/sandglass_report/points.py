@@ -1,11 +1,12 @@
 """The points of the main chart: every method, mesh and precision with all errors and costs.
 
-Runs of `verify` bring the errors to both references; `choose` brings other precisions, coarser meshes,
-the adaptive family and costs that were measured with nothing else running; `bench` costs where `choose`
-has none. What belongs to the same choice becomes one point.
+Runs of `verify` bring the errors to both references; `choose` brings other precisions, coarser
+meshes, the adaptive family, and costs that were measured one after another with nothing beside.
+What belongs to the same choice becomes one point.
 """
 
 import itertools
+import statistics
 from dataclasses import asdict, dataclass, field
 
 from sandglass_report import style
@@ -16,6 +17,9 @@ FIGURES = ("max", "profile", "rms")
 COSTS = ("step", "simulated", "rest")
 MESHES = ("all", "own")
 PRECISIONS = ("all", "double")
+VERIFY = "verify, other runs beside it"
+CHOOSE = "choose"
+SCALED = "verify, scaled to what choose measures"
 
 
 @dataclass
@@ -37,7 +41,7 @@ class Point:
     step: float | None = None
     simulated: float | None = None
     rest: float | None = None
-    measured_by: str = "verify"
+    measured_by: str = VERIFY
 
     def error(self, reference, figure):
         """One error, or None."""
@@ -61,21 +65,37 @@ def make_points(runs, elements, measured):
         points[run.case, run.method, kappa, run.precision, OWN_MESH, None] = _of_run(
             run, elements.get(run.case)
         )
+    loaded = {key: point.step for key, point in points.items() if point.step is not None}
     for rung in measured.rungs:
         if rung.case in elements and rung.reference in REFERENCES:
             key = rung.case, rung.method, rung.kappa, rung.precision, rung.mesh, rung.accuracy
             _add_rung(points.setdefault(key, _of_rung(rung)), rung)
-    for step in measured.steps:
-        point = points.get((step.case, step.method, None, step.precision, OWN_MESH, None))
-        if point and point.measured_by == "verify" and step.elements == point.elements:
-            point.step, point.measured_by = 1e-9 * step.ns * step.elements, "bench"
-            point.simulated = point.step / step.stable_step if step.stable_step else None
+    _bring_to_one_scale(points, loaded)
     for rest in measured.rests:
         point = points.get((rest.case, rest.method, None, rest.precision, OWN_MESH, None))
         if point and rest.seconds is not None:
             point.rest = rest.seconds
     order = {case: i for i, case in enumerate(elements)}
     return sorted(points.values(), key=lambda point: order[point.case])
+
+
+def _bring_to_one_scale(points, loaded):
+    """Scales the costs that only verify knows to those of choose, where both know a case.
+
+    loaded: key of a point -> s, what verify measured. Its runs share the machine, so that their
+    times are too long, all by about the same factor: the median of those that both have.
+    """
+    factors = {}
+    for key, step in loaded.items():
+        if points[key].measured_by == CHOOSE:
+            factors.setdefault(points[key].case, []).append(points[key].step / step)
+    for key in loaded:
+        point = points[key]
+        if point.measured_by == VERIFY and point.case in factors:
+            factor = statistics.median(factors[point.case])
+            point.step *= factor
+            point.simulated = None if point.simulated is None else point.simulated * factor
+            point.measured_by = SCALED
 
 
 def _of_run(run, elements):
@@ -120,8 +140,8 @@ def _add_rung(point, rung):
     """Takes what a rung knows into a point. The first measured cost stays."""
     if rung.error is not None:
         getattr(point, rung.reference).setdefault("max", rung.error)
-    if rung.step is not None and point.measured_by != "choose":
-        point.step, point.simulated, point.measured_by = rung.step, rung.simulated, "choose"
+    if rung.step is not None and point.measured_by != CHOOSE:
+        point.step, point.simulated, point.measured_by = rung.step, rung.simulated, CHOOSE
 
 
 def _errors(accuracy):
@@ -154,7 +174,7 @@ def pareto_front(costs, errors):
 
 
 def fronts(points):
-    """The front of every view of the chart: 'case|reference|figure|cost|mesh|precision' -> positions.
+    """The front of every view: 'case|reference|figure|cost|mesh|precision' -> positions.
 
     On a front stand methods as they come that have an answer at rest.
     """

@@ -1,7 +1,7 @@
 """Where every figure of the page comes from: machine, program, cases, meshes and references."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sandglass_report.measured import Source
 
@@ -31,8 +31,17 @@ def program(verdicts):
 
 
 def sources(verdicts, path, measured):
-    """All files that the page reads, verdicts first."""
-    return (Source(str(path), VERIFY, verdicts.provenance), *measured.sources)
+    """All files that the page reads, verdicts first; those of one folder and one making as one."""
+    groups = {}
+    for source in measured.sources:
+        key = source.command, str(sorted((source.facts or {}).items()))
+        groups.setdefault(key, []).append(source)
+    rows = [Source(str(path), VERIFY, verdicts.provenance)]
+    for group in groups.values():
+        first = group[0]
+        where = f"{first.path.rpartition('/')[0]}/: {len(group)} files"
+        rows.append(first if len(group) == 1 else replace(first, path=where))
+    return tuple(rows)
 
 
 def of_another_revision(source, verdicts):

@@ -7,7 +7,7 @@ from sandglass_report import paper
 
 @dataclass(frozen=True)
 class Counted:
-    """One framework of Table I: operations per element and step, None where they are not counted."""
+    """One framework of Table I: operations per element and step, None where not counted."""
 
     words: str
     method: str

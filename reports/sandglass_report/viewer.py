@@ -17,7 +17,7 @@ STOPS = 32  # of a colour scale; the page draws the nearest one
 LEAST_ERROR = 1e-5  # fractions; the logarithmic scale of errors begins here
 GOLDEN = "golden"
 
-# How a face may be coloured: words, unit, scale and colour map (told apart by colour-blind readers).
+# How a face may be coloured: words, unit, scale and colour map that colour-blind readers can read.
 COLOURS = {
     "error": ("distance from the golden", "% of the imposed displacement", "log", "viridis"),
     "volume": ("volume over volume at rest (det F)", "", "linear", "PuOr"),
@@ -112,7 +112,7 @@ def _fields(subject, name, u, at_rest):
 
 
 def _limits(fields):
-    """Ends of the colour scales of a case, the same for all its answers; a field that none has: none.
+    """Ends of the colour scales of a case, the same for all its answers; none for what none has.
 
     Answers that fail would stretch them: a scale ends at twice what the middle answer reaches.
     """
@@ -153,6 +153,6 @@ def _packed(values, kind):
 
 
 def _stops(name):
-    """A colour map as hexadecimal colours; from its second shade on, so that ends keep contrast."""
-    shades = (255 * colormaps[name](np.linspace(0.02, 0.98, STOPS))[:, :3]).round().astype(int)
+    """A colour map as hexadecimal colours, without its darkest shades, which hide edges."""
+    shades = (255 * colormaps[name](np.linspace(0.08, 0.98, STOPS))[:, :3]).round().astype(int)
     return ["#%02x%02x%02x" % tuple(int(c) for c in shade) for shade in shades]

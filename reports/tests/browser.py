@@ -1,4 +1,4 @@
-"""A headless Chromium, driven over a pipe with its DevTools protocol; nothing but the browser is needed."""
+"""A headless Chromium, driven over a pipe by its DevTools protocol; it needs nothing else."""
 
 import base64
 import json

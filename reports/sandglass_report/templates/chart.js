@@ -92,16 +92,19 @@ function startChart(Plotly) {
     const points = positions.map((i) => data.points[i]);
     const [ink, muted, grid] = ["--ink", "--muted", "--grid"].map(colour);
     const narrow = plot.clientWidth < 560;
-    const costs = [...points.map((p) => p[view.cost]), ...(view.cost === "step" ? [] : [view.budget])];
+    const times = points.map((p) => p[view.cost]);
+    const [fastest, slowest] = [Math.min(...times), Math.max(...times)];
+    const costs = [...times, Math.max(fastest / 3, Math.min(view.budget, 3 * slowest))];
+    const beyond = view.budget > 3 * slowest;
     const errors = [...points.map((p) => Math.max(errorOf(p, view), LEAST)), view.tolerance];
     const axis = { type: "log", gridcolor: grid, zeroline: false, linecolor: muted, tickfont: { color: muted, size: 12 } };
     const costWords = `wall time of ${words[view.cost]}`;
     const limit = (line) => ({ type: "line", line: { color: ink, width: 1.5, dash: "dash" }, ...line });
     const note = (more) => ({ showarrow: false, font: { color: ink, size: 12 }, bgcolor: colour("--panel"), ...more });
     return {
-      height: narrow ? 430 : 480, margin: { l: narrow ? 58 : 74, r: 14, t: 14, b: 52 }, dragmode: narrow ? false : "zoom",
+      margin: { l: narrow ? 58 : 74, r: 14, t: 14, b: 52 }, dragmode: narrow ? false : "zoom",
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { family: "system-ui, sans-serif", color: ink },
-      hoverlabel: { bgcolor: colour("--panel"), bordercolor: muted, font: { color: ink, size: narrow ? 10 : 12 }, align: "left" },
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: muted, activecolor: ink }, hoverlabel: { bgcolor: colour("--panel"), bordercolor: muted, font: { color: ink, size: narrow ? 10 : 12 }, align: "left" },
       xaxis: { ...axis, ...ticks(costs, seconds), range: range(costs, 0.12), title: { text: costWords, font: { color: muted, size: 13 } } },
       yaxis: {
         ...axis, ...ticks(errors, percent), range: range(errors, 0.18),
@@ -113,7 +116,8 @@ function startChart(Plotly) {
       ],
       annotations: [
         note({ xref: "paper", x: 1, xanchor: "right", yanchor: "bottom", y: Math.log10(view.tolerance), text: `tolerance ${percent(view.tolerance)}` }),
-        note({ yref: "paper", y: 0.02, yanchor: "bottom", xanchor: "right", x: Math.log10(view.budget), text: `budget ${seconds(view.budget)}`, textangle: -90 }),
+        note({ yref: "paper", y: 0.02, yanchor: "bottom", xanchor: "right", textangle: -90,
+          ...(beyond ? { xref: "paper", x: 1 } : { x: Math.log10(view.budget) }), text: `budget ${seconds(view.budget)}${beyond ? ", farther right" : ""}` }),
       ],
     };
   }
@@ -122,7 +126,8 @@ function startChart(Plotly) {
   function tell(view, positions) {
     const enough = positions.filter((i) => keeps(data.points[i], view)).sort((a, b) => data.points[a][view.cost] - data.points[b][view.cost]);
     const best = data.points[enough[0]];
-    const name = (p) => [p.method, p.precision, p.mesh, p.accuracy && `asked for ${percent(p.accuracy)}`].filter(Boolean).join(", ");
+    const mesh = (p) => (p.mesh === data.own_mesh ? p.mesh : `coarser mesh of ${p.elements} elements`);
+    const name = (p) => [p.method, p.precision, mesh(p), p.accuracy && `asked for ${percent(p.accuracy)}`].filter(Boolean).join(", ");
     tools.querySelector(".answer").textContent = best
       ? `Cheapest within ${percent(view.tolerance)} and ${seconds(view.budget)}: ${name(best)}: ${percent(errorOf(best, view))} at ${seconds(best[view.cost])} for ${words[view.cost]}. ${enough.length} of ${positions.length} keep both.`
       : `None of the ${positions.length} shown keeps ${percent(view.tolerance)} and ${seconds(view.budget)}.`;
@@ -136,7 +141,7 @@ function startChart(Plotly) {
       return row;
     }));
     const silent = data.points.filter((p) => p.case === view.case && !p.ok && p.mesh === data.own_mesh && p.as_it_comes);
-    tools.querySelector(".silent").textContent = silent.length ? `No answer at rest: ${silent.map((p) => `${p.method} (${p.finding})`).join("; ")}.` : "";
+    tools.querySelector(".silent").textContent = silent.length ? `No answer at rest: ${silent.map((p) => `${p.method} (${p.finding.split(";")[0]})`).join("; ")}.` : "";
   }
 
   function draw() {
@@ -150,7 +155,7 @@ function startChart(Plotly) {
     const lines = data.families.filter((f) => f.every((i) => inView.has(i)));
     const traces = [
       lineTrace(data.fronts[key] ?? [], view, { shape: "hv", color: colour("--ink"), width: 1.2, dash: "dot" }),
-      ...lines.map((f) => lineTrace(f, view, { color: colour(data.methods[data.points[f[0]].method].css), width: 1.8 })),
+      ...lines.map((f) => lineTrace(f, view, { color: colour(data.methods[data.points[f[0]].method].css), width: data.points[f[0]].mesh === data.own_mesh ? 1.8 : 0.8 })),
       pointTrace(positions.filter((i) => !keeps(data.points[i], view)), view, colour("--muted")),
       pointTrace(positions.filter((i) => keeps(data.points[i], view)), view),
     ];
@@ -213,4 +218,5 @@ function startChart(Plotly) {
   document.head.append(script);
   document.documentElement.classList.add("live");
   await startChart(window.Plotly);
+  document.querySelector("details.static").open = false;
 })();

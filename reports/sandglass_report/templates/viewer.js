@@ -38,8 +38,8 @@
   }
 
   // Rows: right, up, towards the viewer; as sandglass_report/shapes.py has them.
-  function axes() {
-    const [a, e] = [camera.azimuth, camera.elevation].map((d) => (d * Math.PI) / 180);
+  function axes(azimuth = camera.azimuth, elevation = camera.elevation) {
+    const [a, e] = [azimuth, elevation].map((d) => (d * Math.PI) / 180);
     const [ca, sa, ce, se] = [Math.cos(a), Math.sin(a), Math.cos(e), Math.sin(e)];
     return [[ca, sa, 0], [-sa * se, ca * se, ce], [sa * ce, -ca * ce, se]];
   }
@@ -51,18 +51,25 @@
     return out;
   };
 
-  // The middle and the reach of what sets the scale: the body at rest and the golden, or the answer shown.
+  // The middle and the width and height, from the case's own side, of what sets the scale: the body at rest and
+  // the golden, or the answer shown where there is none.
   function bounds(body) {
     const known = [body.rest, answer(body, body.answers.golden ? "golden" : get("left").value).points];
-    const low = [Infinity, Infinity, Infinity];
-    const high = low.map(() => -Infinity);
-    for (const points of known)
-      points.forEach((v, i) => {
-        low[i % 3] = Math.min(low[i % 3], v);
-        high[i % 3] = Math.max(high[i % 3], v);
-      });
-    const reach = Math.hypot(...high.map((h, i) => h - low[i]));
-    return { middle: low.map((l, i) => (l + high[i]) / 2), reach };
+    const spans = (points) => {
+      const span = [0, 1, 2].map(() => [Infinity, -Infinity]);
+      for (const array of points)
+        array.forEach((v, i) => {
+          const one = span[i % 3];
+          if (v < one[0]) one[0] = v;
+          if (v > one[1]) one[1] = v;
+        });
+      return span;
+    };
+    const home = axes(...body.view);
+    return {
+      middle: spans(known).map(([low, high]) => (low + high) / 2),
+      reach: spans(known.map((points) => turned(points, home))).map(([low, high]) => high - low),
+    };
   }
 
   const shade = (hex, light) => {
@@ -80,7 +87,7 @@
     const rows = axes();
     const flat = turned(shown.points, rows);
     const centre = turned(Float64Array.from(middle), rows);
-    const scale = (camera.zoom * Math.min(width, height) * 1.0) / reach;
+    const scale = 0.92 * camera.zoom * Math.min(width / reach[0], height / reach[1]);
     const x = (n) => width / 2 + (flat[3 * n] - centre[0]) * scale;
     const y = (n) => height / 2 - (flat[3 * n + 1] - centre[1]) * scale;
     const faces = body.faces;
