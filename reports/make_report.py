@@ -34,6 +34,7 @@ def main(arguments=None):
     add("--rest", type=Path, default="build/rest.json", help="of sandglass bench --rest --json")
     add("--curves", type=Path, default="build/curves", help="folder of sandglass choose --json")
     add("--maps", type=Path, default="build/stability", help="folder of sandglass stability --json")
+    add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")
     add("--pictures", type=Path, default="reports/figures", help="folder of drawn failure maps")
     add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
     add("--mutants", type=Path, default="verification/mutants/RESULTS.md", help="of ci/mutants")
@@ -44,9 +45,8 @@ def main(arguments=None):
     try:
         verdicts = read_verdicts(options.verdicts)
         subjects = read_subjects(verdicts, options.cases, options.reference, options.results)
-        found = read_measured(
-            options.bench, options.flops, options.rest, options.curves, options.maps
-        )
+        files = options.bench, options.flops, options.rest
+        found = read_measured(*files, options.curves, options.maps, options.kept_maps)
         evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
         pictures = tuple(sorted(options.pictures.glob("stability.*.png")))
         inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures)

@@ -1,6 +1,7 @@
 """The data of the page's scripts: the main chart's points and Plotly itself, packed."""
 
 import base64
+import functools
 import gzip
 
 from sandglass_report import style
@@ -26,6 +27,7 @@ def chart_data(points, palette):
     }
 
 
+@functools.cache
 def packed_plotly():
     """Plotly's script, compressed, as base64: a quarter of its size. Raises ReportError."""
     try:

@@ -160,3 +160,16 @@ def _whole(cell):
     """All of a cell in words."""
     error = (cell["symptoms"] or {}).get("error")
     return outcome(cell) + ("" if error is None else f", {style.percent(error)}")
+
+
+def kept(document):
+    """The document with what the page shows of each cell, errors to three digits."""
+    cells = {one["name"]: [_kept(cell) for cell in one["cells"]] for one in document["maps"]}
+    return document | {"maps": [one | {"cells": cells[one["name"]]} for one in document["maps"]]}
+
+
+def _kept(cell):
+    names = ("method", "x", "y", "finding", "golden_failed", "refused")
+    error = (cell["symptoms"] or {}).get("error")
+    symptoms = None if error is None else {"error": float(f"{error:.3g}")}
+    return {name: cell[name] for name in names} | {"symptoms": symptoms}

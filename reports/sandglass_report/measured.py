@@ -92,9 +92,10 @@ class Measured:
     sources: tuple = ()
 
 
-def read_measured(bench, flops, rest, curves, maps):
-    """Measured from three files and two folders of JSON files, each of which may be absent.
+def read_measured(bench, flops, rest, curves, maps, kept_maps):
+    """Measured from three files and three folders of JSON files, each of which may be absent.
 
+    kept_maps: earlier maps, which stand in for cases that have none in maps.
     Raises ReportError when one is there and broken.
     """
     sources = []
@@ -106,12 +107,12 @@ def read_measured(bench, flops, rest, curves, maps):
         for path in _files(curves, CURVES, sources)
         for rung in _read(path, CURVES, _rungs, sources)
     ]
-    found = []
-    for path in _files(maps, MAPS, sources):
+    found = {}
+    for path in (*sorted(Path(maps).glob("*.json")), *_files(kept_maps, MAPS, sources)):
         document = read_maps(path)
-        sources.append(Source(str(path), MAPS, facts(document)))
-        found.append(document)
-    return Measured(*map(tuple, (rungs, steps, rests, counts, found, sources)))
+        if found.setdefault(document["case"], document) is document:
+            sources.append(Source(str(path), MAPS, facts(document)))
+    return Measured(*map(tuple, (rungs, steps, rests, counts, found.values(), sources)))
 
 
 def _files(folder, command, sources):

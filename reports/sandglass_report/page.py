@@ -73,7 +73,7 @@ def write_report(inputs, page):
         folder.mkdir(parents=True, exist_ok=True)
         for plate in (*_static_plates(inputs, palette, sections), *bent):
             plates.save_plate(plate, folder)
-        _write_whole(page, html)
+        write_whole(page, html)
     except OSError as error:
         raise ReportError(
             f"{error.filename or page}: cannot write the report: {error.strerror}"
@@ -194,7 +194,7 @@ def _static_plates(inputs, palette, sections):
     return found
 
 
-def _write_whole(path, text):
+def write_whole(path, text):
     """Writes to a temporary file beside the path and renames it."""
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:

@@ -2,6 +2,7 @@
 
 import hashlib
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from sandglass_report.measured import Source
 
@@ -34,14 +35,22 @@ def sources(verdicts, path, measured):
     """All files that the page reads, verdicts first; those of one folder and one making as one."""
     groups = {}
     for source in measured.sources:
-        key = source.command, str(sorted((source.facts or {}).items()))
+        made = [(source.facts or {}).get(name) for name in ("revision", "processor")]
+        key = source.command, source.facts is None, *made
         groups.setdefault(key, []).append(source)
-    rows = [Source(str(path), VERIFY, verdicts.provenance)]
+    rows = [Source(_short(path), VERIFY, verdicts.provenance)]
     for group in groups.values():
-        first = group[0]
-        where = f"{first.path.rpartition('/')[0]}/: {len(group)} files"
-        rows.append(first if len(group) == 1 else replace(first, path=where))
+        where = _short(group[0].path)
+        if len(group) > 1:
+            where = f"{where.rpartition('/')[0]}/: {len(group)} files"
+        rows.append(replace(group[0], path=where))
     return tuple(rows)
+
+
+def _short(path):
+    """A path without the place of the tree on this machine."""
+    path = Path(path)
+    return "/".join(path.parts[-2:]) if path.is_absolute() else path.as_posix()
 
 
 def of_another_revision(source, verdicts):

@@ -50,8 +50,7 @@ function startChart(Plotly) {
     ].join("<br>");
   }
 
-  const fades = { opacity: 0.4 };
-  function pointTrace(positions, view, ink) {
+    function pointTrace(positions, view, ink) {
     const points = positions.map((i) => data.points[i]);
     const size = (p) => (!p.as_it_comes ? 5 : p.mesh === data.own_mesh ? 12 : 8);
     return {
@@ -59,7 +58,7 @@ function startChart(Plotly) {
       x: points.map((p) => p[view.cost]), y: points.map((p) => Math.max(errorOf(p, view), LEAST)),
       text: points.map(describe), customdata: positions,
       marker: {
-        color: points.map((p) => ink ?? colour(data.methods[p.method].css)), size: points.map(size), opacity: ink ? fades.opacity : 1,
+        color: points.map((p) => ink ?? colour(data.methods[p.method].css)), size: points.map(size), opacity: ink ? 0.55 : 1,
         symbol: points.map((p) => data.methods[p.method].symbol + (p.precision === "double" ? "" : "-open")),
         line: {
           width: points.map((p) => (p.fails ? 2 : p.precision === "double" ? 0.8 : 1.6)),
