@@ -5,7 +5,6 @@ from pathlib import Path
 
 from sandglass_report.checks import NUMBER, entries, entry, facts, read_document
 from sandglass_report.maps import read_maps
-from sandglass_report.style import exact_percent
 
 BENCH = "sandglass bench --threads 1 --json build/bench.json"
 FLOPS = "sandglass flops --json build/flops.json"
@@ -33,7 +32,8 @@ class Rung:
     step: float | None  # s
     simulated: float | None  # s of wall time for a simulated second
     error: float | None  # largest of all nodes, a fraction of the imposed displacement
-    finding: str  # whether it is enough for the tolerance that was asked for, or why not
+    tolerance: float  # that was asked for, a fraction
+    reason: str  # why it is not enough for that; empty where it is
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ def _rungs(path, document):
     case = entry(path, document, "case", str)
     name = entry(f"{path}: reference", entry(path, document, "reference", dict), "name", str)
     reference = REFERENCE_NAMES.get(name, name)
-    asked = exact_percent(entry(path, document, "tolerance", NUMBER))
+    tolerance = entry(path, document, "tolerance", NUMBER)
     return [
         Rung(
             case,
@@ -152,15 +152,11 @@ def _rungs(path, document):
             step=entry(where, r, "seconds", NUMBER, True),
             simulated=entry(where, r, "seconds_per_simulated_second", NUMBER, True),
             error=entry(where, r, "error", NUMBER, True),
-            finding=_finding(entry(where, r, "reason", str), asked),
+            tolerance=tolerance,
+            reason=entry(where, r, "reason", str),
         )
         for where, r in entries(path, document, "rungs")
     ]
-
-
-def _finding(reason, asked):
-    """What `choose` says of a rung for the tolerance that was asked for."""
-    return f"not for {asked}: {reason}" if reason else f"enough for {asked}"
 
 
 def _steps(path, document):

@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, field
 from sandglass_report import style
 from sandglass_report.load import REFERENCES
 from sandglass_report.measured import OWN_MESH
+from sandglass_report.style import exact_percent
 
 FIGURES = ("max", "profile", "rms")
 COSTS = ("step", "simulated", "rest")
@@ -42,14 +43,29 @@ class Point:
     simulated: float | None = None
     rest: float | None = None
     measured_by: str = VERIFY
+    judged: dict = field(default_factory=dict)  # (reference, tolerance) -> why it is not enough
 
     def error(self, reference, figure):
         """One error, or None."""
         return getattr(self, reference).get(figure)
 
+    def found(self):
+        """The finding of verify; without one what choose said, against the golden if it did."""
+        if self.finding or not self.judged:
+            return self.finding
+        name = min(reference for reference, _ in self.judged)
+        told = {t: why for (reference, t), why in self.judged.items() if reference == name}
+        enough = [t for t, why in told.items() if not why]
+        words = [f"enough for {exact_percent(min(enough))}"] if enough else []
+        beyond = max((t for t in told if told[t]), default=None)
+        if beyond is not None:
+            words.append(f"not for {exact_percent(beyond)}: {told[beyond]}")
+        return ", ".join(words) + f" ({name})"
+
     def as_record(self):
         """The point as the page's script reads it: without what is not known, rounded."""
-        rounded = {k: _rounded(v) for k, v in asdict(self).items()}
+        rounded = {k: _rounded(v) for k, v in asdict(self).items() if k != "judged"}
+        rounded["finding"] = self.found()
         return {k: v for k, v in rounded.items() if v not in (None, {})}
 
 
@@ -131,13 +147,14 @@ def _of_rung(rung):
         rung.precision,
         rung.mesh,
         rung.elements,
-        finding=rung.finding,
+        finding="",
         ok=rung.error is not None,
     )
 
 
 def _add_rung(point, rung):
     """Takes what a rung knows into a point. The first measured cost stays."""
+    point.judged.setdefault((rung.reference, rung.tolerance), rung.reason)
     if rung.error is not None:
         getattr(point, rung.reference).setdefault("max", rung.error)
     if rung.step is not None and point.measured_by != CHOOSE:

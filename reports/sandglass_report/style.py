@@ -1,6 +1,10 @@
 """Colours, marks and words that every chart shares, in a light and a dark form."""
 
 import math
+import re
+from pathlib import Path
+
+METHODS_HEADER = Path(__file__).resolve().parents[2] / "solver/element/methods.hpp"
 
 # Okabe and Ito's colours, told apart by colour-blind readers, and a brighter form for dark pages;
 # the last ones need their marks to be told apart.
@@ -56,6 +60,14 @@ def why_empty(subject, reference):
     if getattr(subject, reference) is None:
         return f"no {reference} is stored for this case yet"
     return f"no run has a figure against the {reference}"
+
+
+def solver_methods(header=METHODS_HEADER):
+    """Names of the solver's methods in the order of its list, as the verdicts have them."""
+    text = Path(header).read_text(encoding="utf-8")
+    names = dict(re.findall(r'struct (\w+) \{[^}]*?\bname = "([^"]+)"', text))
+    listed = re.search(r"using Methods = TypeList<([^>]*)>", text)[1]
+    return tuple(names[word] for word in re.findall(r"\w+", listed))
 
 
 class Palette:

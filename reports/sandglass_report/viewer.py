@@ -20,7 +20,7 @@ GOLDEN = "golden"
 # How a face may be coloured: words, unit, scale and colour map that colour-blind readers can read.
 COLOURS = {
     "error": ("distance from the golden", "% of the imposed displacement", "log", "viridis"),
-    "volume": ("volume over volume at rest (det F)", "", "linear", "PuOr"),
+    "volume": ("volume ratio, det F", "deformed over undeformed", "linear", "PuOr"),
     "hourglass": ("hourglass energy", "J/m³", "linear", "viridis"),
 }
 

@@ -137,7 +137,7 @@ def test_a_mark_tells_everything(browser):
     text = next(one for one in texts if "max 0.2 %" in one)
     for words in ("tl-perturbation", "column", "κ 0.0065 (auto)", "double", "12 elements"):
         assert words in text
-    for words in ("max 0.2 %", "max 8 %", "one step 4 µs", "until at rest 500 ms", "finding"):
+    for words in ("max 0.2 %", "max 8 %", "one step 4 µs", "coming to rest 500 ms", "finding"):
         assert words in text
 
 

@@ -72,10 +72,14 @@ def test_the_golden_elements_answer_counts_as_the_golden(data):
 
 
 def test_a_refusal_names_the_tolerance_that_it_is_for(data):
-    rungs = [data.rung("t4", 1e-6, 0.5, reason="it locks"), data.rung("linear", 1e-6, 0.5)]
-    found, _ = points_of(data, data.ladder(rungs, tolerance=0.002))
-    assert found["t4"].finding == "not for 0.2 %: it locks"
-    assert found["linear"].finding == "enough for 0.2 %"
+    locks = data.rung("t4", 1e-6, 0.5, reason="it locks")
+    strict = data.ladder([locks, data.rung("linear", 1e-6, 0.5)], tolerance=0.002)
+    loose = data.ladder([locks | {"reason": ""}], tolerance=0.04)
+    truth = data.ladder([locks | {"reason": "it is far"}], "truth", tolerance=0.04)
+    found, _ = points_of(data, strict, loose, truth)
+    assert found["t4"].found() == "enough for 4 %, not for 0.2 %: it locks (golden)"
+    assert found["linear"].found() == "enough for 0.2 % (golden)"
+    assert found["tl-none"].found() == "good"  # verify's
 
 
 def test_costs_of_verify_alone_are_scaled_by_the_median_of_what_both_measured(data):

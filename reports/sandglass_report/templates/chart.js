@@ -1,7 +1,7 @@
 // The main chart: error against cost, with a tolerance and a budget that grey out what fails.
 const words = {
   max: "largest of all nodes", profile: "largest on the profile line", rms: "root mean square",
-  step: "one step", simulated: "a simulated second", rest: "until at rest",
+  step: "one step", simulated: "a simulated second", rest: "coming to rest",
 };
 const LEAST = 1e-5; // errors below are drawn here
 const digits = (v) => (v >= 1000 || v === 0 ? String(Math.round(v)) : String(+v.toPrecision(3)));
@@ -114,7 +114,7 @@ function startChart(Plotly) {
         limit({ yref: "paper", y0: 0, y1: 1, x0: view.budget, x1: view.budget }),
       ],
       annotations: [
-        note({ xref: "paper", x: 1, xanchor: "right", yanchor: "bottom", y: Math.log10(view.tolerance), text: `tolerance ${percent(view.tolerance)}` }),
+        note({ xref: "paper", x: 0, xanchor: "left", yanchor: "bottom", y: Math.log10(view.tolerance), text: `tolerance ${percent(view.tolerance)}` }),
         note({ yref: "paper", y: 0.02, yanchor: "bottom", xanchor: "right", textangle: -90,
           ...(beyond ? { xref: "paper", x: 1 } : { x: Math.log10(view.budget) }), text: `budget ${seconds(view.budget)}${beyond ? ", farther right" : ""}` }),
       ],
