@@ -96,10 +96,10 @@ def test_the_script_draws_and_refuses(tmp_path):
 
 
 def test_colours_follow_the_solvers_list_and_are_those_of_the_page():
-    """`sandglass methods` prints the list; the page takes it from the verdicts in the same order."""
+    """The page takes the same list from the verdicts."""
     methods = solver_methods()
     assert methods[:3] == ("tl-none", "tl-perturbation", "tl-perturbation-compact")
-    assert methods[-1] == "tl-adaptive" and len(set(methods)) == len(methods) == 20
+    assert len(set(methods)) == len(methods)
     rungs = {"block": [rung("tl-adaptive", 1.0), rung("tl-perturbation", 1.0)]}
     for cases in (rungs, {"block": rungs["block"][::-1]}):
         colours = {words: colour for words, colour, _ in curve_plate(cases).legend}
