@@ -56,7 +56,7 @@ def words_in(cell):
     percent = 100 * cell["symptoms"]["error"]
     if percent < 0.001:
         return "0"
-    return f"{percent:.0f}" if percent >= 10 else f"{percent:.1g}"
+    return f"{percent:.0f}" if percent >= 9.5 else f"{percent:.1g}"
 
 
 def map_plates(document):

@@ -133,7 +133,7 @@ def _of_measured(inputs, palette):
     elements = {s.name: None if s.cells is None else len(s.cells) for s in inputs.subjects}
     points = make_points(inputs.verdicts.runs, elements, found)
     ladders = [name for name in names if any(rung.case == name for rung in found.rungs)]
-    map_texts = maps.map_texts(found.maps)
+    map_texts = maps.map_texts(sorted(found.maps, key=lambda m: m["case"] != paper.FIRST_CASE))
     pictures = [p for p in inputs.pictures if p.stem not in {m.name for m in map_texts}]
     return {
         "chart": interactive.chart_data([p for p in points if palette.knows(p.method)], palette),

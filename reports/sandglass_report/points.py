@@ -148,7 +148,7 @@ def _of_rung(rung):
         rung.mesh,
         rung.elements,
         finding="",
-        ok=rung.error is not None,
+        ok=False,  # until a rung brings an answer
     )
 
 
@@ -157,6 +157,7 @@ def _add_rung(point, rung):
     point.judged.setdefault((rung.reference, rung.tolerance), rung.reason)
     if rung.error is not None:
         getattr(point, rung.reference).setdefault("max", rung.error)
+        point.ok = point.ok or not point.finding
     if rung.step is not None and point.measured_by != CHOOSE:
         point.step, point.simulated, point.measured_by = rung.step, rung.simulated, CHOOSE
 

@@ -43,7 +43,16 @@ def test_every_outcome_has_a_colour_and_a_letter_of_its_own():
 
 
 @pytest.mark.parametrize(
-    "error, words", [(0.0, "0"), (9e-6, "0"), (0.00123, "0.1"), (0.034, "3"), (0.256, "26")]
+    "error, words",
+    [
+        (0.0, "0"),
+        (9e-6, "0"),
+        (0.00123, "0.1"),
+        (0.034, "3"),
+        (0.256, "26"),
+        (0.094, "9"),
+        (0.096, "10"),
+    ],
 )
 def test_working_methods_show_their_error_in_percent(error, words):
     assert words_in(cell(error=error)) == words

@@ -95,6 +95,17 @@ def test_costs_of_verify_alone_are_scaled_by_the_median_of_what_both_measured(da
     assert point.simulated == pytest.approx(0.25 * verify / 1e-4)
 
 
+def test_a_choice_has_an_answer_when_any_rung_has_one_but_a_failed_run_stays_failed(data):
+    lost = data.ladder([data.rung("t4", 1e-6, None), data.rung("linear", 1e-6, None)])
+    rungs = [data.rung("t4", 1e-6, 0.5), data.rung("tl-full", 1e-6, 0.5)]
+    found, _ = points_of(data, lost, data.ladder(rungs, "truth"))
+    assert {m: found[m].ok for m in ("t4", "linear", "tl-full")} == {
+        "t4": True,
+        "linear": False,
+        "tl-full": False,
+    }
+
+
 def test_a_ladder_of_a_case_that_was_not_run_is_left_out(data):
     _, points = points_of(data, data.ladder([data.rung("t4", 1e-6, 0.5)], case="elsewhere"))
     assert len(points) == 4

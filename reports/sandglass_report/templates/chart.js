@@ -125,10 +125,10 @@ function startChart(Plotly) {
   function tell(view, positions) {
     const enough = positions.filter((i) => keeps(data.points[i], view)).sort((a, b) => data.points[a][view.cost] - data.points[b][view.cost]);
     const best = data.points[enough[0]];
-    const mesh = (p) => (p.mesh === data.own_mesh ? p.mesh : `coarser mesh of ${p.elements} elements`);
-    const name = (p) => [p.method, p.precision, mesh(p), p.accuracy && `asked for ${percent(p.accuracy)}`].filter(Boolean).join(", ");
+    const mesh = (p) => (p.mesh === data.own_mesh ? p.mesh : `mesh of ${p.elements} elements`);
+    const name = (p) => [p.method + (p.accuracy ? ` asked for ${percent(p.accuracy)}` : ""), p.precision, mesh(p)].join(", ");
     tools.querySelector(".answer").textContent = best
-      ? `Cheapest within ${percent(view.tolerance)} and ${seconds(view.budget)}: ${name(best)}: ${percent(errorOf(best, view))} at ${seconds(best[view.cost])} for ${words[view.cost]}. ${enough.length} of ${positions.length} keep both.`
+      ? `Cheapest within ${percent(view.tolerance)} and ${seconds(view.budget)}: ${name(best)}: ${percent(errorOf(best, view))} at ${seconds(best[view.cost])}. ${enough.length} of ${positions.length} keep both.`
       : `None of the ${positions.length} shown keeps ${percent(view.tolerance)} and ${seconds(view.budget)}.`;
     const cell = (text, kind) => Object.assign(document.createElement("td"), { textContent: text, className: kind ?? "" });
     tools.querySelector("tbody").replaceChildren(...enough.slice(0, 8).map((i) => {
