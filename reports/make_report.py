@@ -1,7 +1,8 @@
-"""Makes the page of the report from verdicts, results and references.
+"""Makes the page of the report from verdicts, results, references and what else was measured.
 
-Usage: /usr/bin/python3 reports/make_report.py [--verdicts FILE] [--results FOLDER] [--cases FOLDER]
-       [--reference FOLDER] [-o FILE]
+Usage: /usr/bin/python3 reports/make_report.py [OPTIONS] [-o FILE]; --help lists the inputs.
+Verdicts, results, cases and references must be there; where another is missing, the page says which
+command makes it.
 Exit codes: 0 done, 2 an input is missing, broken or does not belong to the others.
 """
 
@@ -13,8 +14,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from sandglass_report.errors import ReportError  # noqa: E402 (the path must be set first)
+from sandglass_report.evidence import read_evidence  # noqa: E402
 from sandglass_report.load import read_verdicts  # noqa: E402
-from sandglass_report.page import write_report  # noqa: E402
+from sandglass_report.measured import read_measured  # noqa: E402
+from sandglass_report.page import Inputs, write_report  # noqa: E402
 from sandglass_report.subject import read_subjects  # noqa: E402
 
 
@@ -26,13 +29,28 @@ def main(arguments=None):
     add("--results", type=Path, default="build/verify", help="of sandglass verify --results")
     add("--cases", type=Path, default="cases", help="folder of case files")
     add("--reference", type=Path, default="reference", help="folder with golden/ and truth/")
+    add("--bench", type=Path, default="build/bench.json", help="of sandglass bench --json")
+    add("--flops", type=Path, default="build/flops.json", help="of sandglass flops --json")
+    add("--rest", type=Path, default="build/rest.json", help="of sandglass bench --rest --json")
+    add("--curves", type=Path, default="build/curves", help="folder of sandglass choose --json")
+    add("--maps", type=Path, default="build/stability", help="folder of sandglass stability --json")
+    add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")
+    add("--pictures", type=Path, default="reports/figures", help="folder of drawn failure maps")
+    add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
+    add("--mutants", type=Path, default="verification/mutants/RESULTS.md", help="of ci/mutants")
+    add("--root", type=Path, default=".", help="of the tree that the claims' tests are in")
     add("-o", "--output", type=Path, default="build/report/index.html", help="the page to write")
     options = parser.parse_args(arguments)
     start = time.monotonic()
     try:
         verdicts = read_verdicts(options.verdicts)
         subjects = read_subjects(verdicts, options.cases, options.reference, options.results)
-        size = write_report(verdicts, subjects, options.output)
+        files = options.bench, options.flops, options.rest
+        found = read_measured(*files, options.curves, options.maps, options.kept_maps)
+        evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
+        pictures = tuple(sorted(options.pictures.glob("stability.*.png")))
+        inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures)
+        size = write_report(inputs, options.output)
     except ReportError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

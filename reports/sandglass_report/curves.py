@@ -39,7 +39,7 @@ def _is_shown(rung):
 def curve_plate(cases):
     """A plate with one panel for each case."""
     methods = dict.fromkeys(rung["method"] for rungs in cases.values() for rung in rungs)
-    palette = style.Palette(methods)
+    palette = style.Palette(dict.fromkeys((*style.solver_methods(), *methods)))
     panels = tuple(_panel(case, rungs, palette) for case, rungs in cases.items())
     legend = tuple((m, palette.colour(m), palette.mark(m)) for m in methods)
     note = (

@@ -1,6 +1,7 @@
 """Failure maps: what becomes of every method along two axes, one small map per method."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.patches import Rectangle
@@ -55,7 +56,7 @@ def words_in(cell):
     percent = 100 * cell["symptoms"]["error"]
     if percent < 0.001:
         return "0"
-    return f"{percent:.0f}" if percent >= 10 else f"{percent:.1g}"
+    return f"{percent:.0f}" if percent >= 9.5 else f"{percent:.1g}"
 
 
 def map_plates(document):
@@ -111,3 +112,64 @@ def _panel(case, one, method):
     alt = f"{case}, {method}: of {len(cells)} cells {words}"
     width, height = max(190, 62 + CELL * len(xs)), 62 + CELL * len(ys)
     return Panel(f"stability.{case}.{one['name']}.{method}", method, alt, draw, width, height)
+
+
+@dataclass(frozen=True)
+class MapTable:
+    """One method's map as rows of cells from the largest y to the smallest: (word, text, title)."""
+
+    method: str
+    rows: tuple  # (y or None, cells)
+
+
+@dataclass(frozen=True)
+class MapText:
+    """A map of a case in words: one table per method."""
+
+    name: str  # of the figure that has the same map
+    title: str
+    note: str
+    x: dict
+    y: dict | None
+    tables: tuple
+    outcomes: tuple  # words that occur, in the order of the legend
+
+
+def map_texts(documents):
+    """The maps of all cases as tables."""
+    return tuple(_text(d, one) for d in documents for one in d["maps"] if one["cells"])
+
+
+def _text(document, one):
+    plate = _plate(document, one)
+    by_place = {(c["method"], c["x"], c["y"]): c for c in one["cells"]}
+    methods = dict.fromkeys(c["method"] for c in one["cells"])
+    ys = reversed(one["y"]["values"]) if one["y"] else [None]
+    rows = {m: [] for m in methods}
+    for y in ys:
+        for m in methods:
+            at = [by_place[m, x, 0.0 if y is None else y] for x in one["x"]["values"]]
+            rows[m].append((y, tuple((outcome(c), words_in(c), _whole(c)) for c in at)))
+    tables = tuple(MapTable(m, tuple(found)) for m, found in rows.items())
+    seen = {outcome(cell) for cell in one["cells"]}
+    shown = tuple(word for word in OUTCOMES if word in seen)
+    return MapText(plate.name, plate.title, plate.note, one["x"], one["y"], tables, shown)
+
+
+def _whole(cell):
+    """All of a cell in words."""
+    error = (cell["symptoms"] or {}).get("error")
+    return outcome(cell) + ("" if error is None else f", {style.percent(error)}")
+
+
+def kept(document):
+    """The document with what the page shows of each cell, errors to three digits."""
+    cells = {one["name"]: [_kept(cell) for cell in one["cells"]] for one in document["maps"]}
+    return document | {"maps": [one | {"cells": cells[one["name"]]} for one in document["maps"]]}
+
+
+def _kept(cell):
+    names = ("method", "x", "y", "finding", "golden_failed", "refused")
+    error = (cell["symptoms"] or {}).get("error")
+    symptoms = None if error is None else {"error": float(f"{error:.3g}")}
+    return {name: cell[name] for name in names} | {"symptoms": symptoms}

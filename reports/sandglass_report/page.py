@@ -1,5 +1,6 @@
 """The page: what the template needs, and how it and the figures are written."""
 
+import base64
 import os
 import tempfile
 from dataclasses import dataclass
@@ -8,17 +9,30 @@ from pathlib import Path
 import jinja2
 import markupsafe
 
-from sandglass_report import bodies, kappa, lines, paper, plates, speed, style, tips
+from sandglass_report import bending, bodies, interactive, kappa, lines, maps, measured, paper
+from sandglass_report import plates, provenance, replication, speed, style, tips, viewer
 from sandglass_report.errors import ReportError
+from sandglass_report.points import make_points
 
 TEMPLATES = Path(__file__).parent / "templates"
-PROVENANCE_NAMES = {
-    "processor": "Processor",
-    "compiler": "Compiler",
-    "build_flags": "Build",
-    "version": "Version",
-    "revision": "Revision",
+
+# What a claim calls a section -> the id of its heading.
+ANCHORS = {"chart": "chart-head"} | {
+    name: name
+    for name in ("paper", "shapes", "bending", "maps", "kappa", "golden", "limits", "runs")
 }
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """All that the page is made of."""
+
+    verdicts: object  # Verdicts
+    verdicts_path: Path
+    subjects: tuple
+    measured: object  # Measured
+    evidence: object  # Evidence
+    pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not computed anew
 
 
 @dataclass(frozen=True)
@@ -33,21 +47,33 @@ class PaperSection:
     best: object  # Run of the kappa curve with the smallest error on the line, or None
 
 
-def write_report(verdicts, subjects, page):
+def write_report(inputs, page):
     """Writes the page, and its static figures to the folder figures/ beside it.
 
     page: path of the HTML file. The page is written whole or not at all. Returns its size in bytes.
     Raises ReportError when a file cannot be written.
     """
-    palette = style.Palette(verdicts.methods)
-    sections = tuple(_paper_section(e, subjects, palette) for e in paper.EXPERIMENTS)
-    html = render(verdicts, subjects, palette, sections)
+    palette = style.Palette(inputs.verdicts.methods)
+    sections = tuple(_paper_section(e, inputs.subjects, palette) for e in paper.EXPERIMENTS)
+    bent = bending.bending_plates(inputs.verdicts.tips, palette)
+    html = (
+        _environment()
+        .get_template("page.html.j2")
+        .render(
+            **_of_verdicts(inputs, palette),
+            **_of_measured(inputs, palette),
+            sections=sections,
+            bending=bent,
+            evidence=inputs.evidence,
+            anchors=ANCHORS,
+        )
+    )
     try:
         folder = page.parent / "figures"
         folder.mkdir(parents=True, exist_ok=True)
-        for plate in _static_plates(verdicts, subjects, palette, sections):
+        for plate in (*_static_plates(inputs, palette, sections), *bent):
             plates.save_plate(plate, folder)
-        _write_whole(page, html)
+        write_whole(page, html)
     except OSError as error:
         raise ReportError(
             f"{error.filename or page}: cannot write the report: {error.strerror}"
@@ -55,8 +81,8 @@ def write_report(verdicts, subjects, page):
     return len(html.encode())
 
 
-def render(verdicts, subjects, palette, sections):
-    """The page as one string of HTML that loads nothing."""
+def _environment():
+    """Templates with the filters that they use."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
@@ -64,6 +90,7 @@ def render(verdicts, subjects, palette, sections):
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "sort_keys": False}
     environment.filters |= {
         "percent": style.percent,
         "exact_percent": style.exact_percent,
@@ -72,27 +99,64 @@ def render(verdicts, subjects, palette, sections):
         "scientific": _scientific,
         "significant": style.plain,
     }
+    return environment
+
+
+def _of_verdicts(inputs, palette):
+    """What the templates need of runs, cases and limits."""
+    verdicts, subjects = inputs.verdicts, inputs.subjects
     costs = speed.cost_limits(verdicts.runs)
-    return environment.get_template("page.html.j2").render(
-        provenance=[
-            (PROVENANCE_NAMES.get(name, name), value) for name, value in verdicts.provenance.items()
-        ],
-        limits=sorted(verdicts.limits, key=lambda limit: limit.holds),
-        runs=verdicts.runs,
-        failed=[run for run in verdicts.runs if not run.ok],
-        broken=[limit for limit in verdicts.limits if not limit.holds],
-        subjects=subjects,
-        by_name={subject.name: subject for subject in subjects},
-        palette=palette,
-        colours=style.THEMED,
-        gallery={subject.name: bodies.gallery_panel(subject) for subject in subjects},
-        speed={s.name: speed.speed_panels(s, palette, costs) for s in subjects},
-        kappa={s.name: kappa.kappa_panels(s, palette) for s in subjects},
-        sections=sections,
-        tip_tables=tips.tip_tables(verdicts.tips),
-        paper_method=paper.METHOD,
-        line_methods=paper.LINE_METHODS,
-    )
+    return {
+        "provenance": provenance.program(verdicts),
+        "origins": provenance.origins(subjects),
+        "limits": sorted(verdicts.limits, key=lambda limit: limit.holds),
+        "runs": verdicts.runs,
+        "failed": [run for run in verdicts.runs if not run.ok],
+        "broken": [limit for limit in verdicts.limits if not limit.holds],
+        "subjects": subjects,
+        "palette": palette,
+        "colours": style.THEMED,
+        "gallery": {subject.name: bodies.gallery_panel(subject) for subject in subjects},
+        "speed": {s.name: speed.speed_panels(s, palette, costs) for s in subjects},
+        "kappa": {s.name: kappa.kappa_panels(s, palette) for s in subjects},
+        "tip_tables": tips.tip_tables(verdicts.tips),
+        "viewer": viewer.viewer_data(subjects),
+        "paper_method": paper.METHOD,
+        "paper_figures": paper.FIGURES,
+        "line_methods": paper.LINE_METHODS,
+    }
+
+
+def _of_measured(inputs, palette):
+    """What the templates need of what other commands left, and of the main chart."""
+    found, names = inputs.measured, [subject.name for subject in inputs.subjects]
+    elements = {s.name: None if s.cells is None else len(s.cells) for s in inputs.subjects}
+    points = make_points(inputs.verdicts.runs, elements, found)
+    ladders = [name for name in names if any(rung.case == name for rung in found.rungs)]
+    map_texts = maps.map_texts(sorted(found.maps, key=lambda m: m["case"] != paper.FIRST_CASE))
+    pictures = [p for p in inputs.pictures if p.stem not in {m.name for m in map_texts}]
+    return {
+        "chart": interactive.chart_data([p for p in points if palette.knows(p.method)], palette),
+        "chart_cases": names,
+        "first_case": paper.FIRST_CASE if paper.FIRST_CASE in names else names[0],
+        "ladder_cases": ladders,
+        "missing_ladders": [name for name in names if name not in ladders],
+        "plotly": interactive.packed_plotly(),
+        "table_1": replication.table_1(found.counts),
+        "table_2": replication.table_2(found.steps),
+        "flops_command": measured.FLOPS,
+        "bench_command": measured.BENCH,
+        "maps": map_texts,
+        "outcomes": maps.OUTCOMES,
+        "maps_command": measured.MAPS,
+        "map_pictures": [(p.stem.removeprefix("stability."), _base64(p)) for p in pictures],
+        "sources": provenance.sources(inputs.verdicts, inputs.verdicts_path, found),
+        "other_revision": lambda s: provenance.of_another_revision(s, inputs.verdicts),
+    }
+
+
+def _base64(path):
+    return base64.b64encode(path.read_bytes()).decode("ascii")
 
 
 def _paper_section(experiment, subjects, palette):
@@ -114,8 +178,9 @@ def _paper_section(experiment, subjects, palette):
     )
 
 
-def _static_plates(verdicts, subjects, palette, sections):
+def _static_plates(inputs, palette, sections):
     """All figures that are also saved as files."""
+    verdicts, subjects = inputs.verdicts, inputs.subjects
     costs = speed.cost_limits(verdicts.runs)
     found = [speed.speed_plate(subjects, palette, costs)]
     found += kappa.kappa_plates(subjects, palette)
@@ -129,7 +194,7 @@ def _static_plates(verdicts, subjects, palette, sections):
     return found
 
 
-def _write_whole(path, text):
+def write_whole(path, text):
     """Writes to a temporary file beside the path and renames it."""
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:

@@ -1,6 +1,10 @@
 """Colours, marks and words that every chart shares, in a light and a dark form."""
 
 import math
+import re
+from pathlib import Path
+
+METHODS_HEADER = Path(__file__).resolve().parents[2] / "solver/element/methods.hpp"
 
 # Okabe and Ito's colours, told apart by colour-blind readers, and a brighter form for dark pages;
 # the last ones need their marks to be told apart.
@@ -19,6 +23,9 @@ METHOD_COLOURS = (
     ("#4b5563", "#a9b6c6"),  # slate
 )
 METHOD_MARKS = ("X", "o", "s", "D", "^", "v", "P", "h")
+PLOTLY_MARKS = dict(
+    zip(METHOD_MARKS, "x circle square diamond triangle-up triangle-down cross hexagon".split())
+)
 GLYPHS = dict(zip(METHOD_MARKS, "✖●■◆▲▼✚⬢"))  # the marks in running text
 
 GOLDEN = ("#d99200", "#f5bd41")
@@ -53,6 +60,14 @@ def why_empty(subject, reference):
     if getattr(subject, reference) is None:
         return f"no {reference} is stored for this case yet"
     return f"no run has a figure against the {reference}"
+
+
+def solver_methods(header=METHODS_HEADER):
+    """Names of the solver's methods in the order of its list, as the verdicts have them."""
+    text = Path(header).read_text(encoding="utf-8")
+    names = dict(re.findall(r'struct (\w+) \{[^}]*?\bname = "([^"]+)"', text))
+    listed = re.search(r"using Methods = TypeList<([^>]*)>", text)[1]
+    return tuple(names[word] for word in re.findall(r"\w+", listed))
 
 
 class Palette:

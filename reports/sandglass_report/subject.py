@@ -13,6 +13,7 @@ from sandglass_report.load import REFERENCES
 
 # verdicts.json and a recomputation differ by rounding of the square root only, see the tests.
 AGREEMENT = 1e-9
+HOURGLASS = "hourglass_energy_density"
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,8 @@ class Subject:
     golden: Reference | None = None
     truth: Reference | None = None
     displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
+    hourglass: dict = field(default_factory=dict)  # the same -> energy density (m,), J/m^3
+    hashes: dict = field(default_factory=dict)  # of the case and its mesh, as the results have them
 
     def main_run(self, method):
         """The run of a method as it comes (kappa auto where it has one), or None."""
@@ -104,7 +107,7 @@ def _read_subject(verdicts, name, case_files, references, results):
     except (KeyError, TypeError, ValueError) as error:
         raise ReportError(f"{path}: not a case of this solver: {error!r}") from error
     files = _result_files(runs, results)
-    mesh, displacements, hashes = _read_results(files)
+    mesh, displacements, hourglass, hashes = _read_results(files)
     stored_answers = {
         kind: _read_reference(
             path.parent / stored[kind] if kind in stored else references / kind / f"{name}.h5",
@@ -123,6 +126,8 @@ def _read_subject(verdicts, name, case_files, references, results):
         profile_order=profile_order,
         runs=runs,
         displacements=displacements,
+        hourglass=hourglass,
+        hashes=hashes,
         **mesh,
         **stored_answers,
     )
@@ -148,13 +153,15 @@ def _result_files(runs, folder):
 
 
 def _read_results(files):
-    """Mesh (of the first file), last displacements by run, and the hashes they belong to."""
-    mesh, displacements, hashes = {}, {}, {}
+    """Mesh (of the first file), last displacements and hourglass energies by run, and hashes."""
+    mesh, displacements, hourglass, hashes = {}, {}, {}, {}
     for run, path in files:
         with _open(path) as file:
             try:
                 frames = file["frames"]
-                u = frames[max(frames)]["displacement"][...]
+                last = frames[max(frames)]
+                u = last["displacement"][...]
+                density = last[HOURGLASS][...] if HOURGLASS in last else None
                 own = {key: _text(file.attrs[key]) for key in ("case_hash", "mesh_hash")}
                 if not mesh:
                     group, hashes = file["mesh"], own
@@ -167,8 +174,11 @@ def _read_results(files):
             raise ReportError(
                 f"{path}: made for another case or mesh than {files[0][1].name}; run verify anew"
             )
-        displacements[run.method, None if run.is_main else run.kappa] = u
-    return mesh, displacements, hashes
+        key = run.method, None if run.is_main else run.kappa
+        displacements[key] = u
+        if density is not None:
+            hourglass[key] = density
+    return mesh, displacements, hourglass, hashes
 
 
 def _imposed(tables):

@@ -142,6 +142,59 @@ class DataSet:
             "values": [value],
         }
 
+    def write(self, name, document):
+        """Writes a JSON file of another command; `name` may have a folder."""
+        path = self.folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(json.dumps(document), encoding="utf-8")
+
+    @staticmethod
+    def rung(method, seconds, error, **changed):
+        """A row of `sandglass choose --all --json` on the case's own mesh, in double."""
+        return {
+            "method": method,
+            "kappa": None,
+            "accuracy": None,
+            "precision": "double",
+            "mesh": "own mesh",
+            "elements": 12,
+            "seconds": seconds,
+            "step_size": 1e-3,
+            "seconds_per_simulated_second": 1e3 * seconds,
+            "error": error,
+            "reason": "",
+        } | changed
+
+    @staticmethod
+    def ladder(rungs, reference="golden", tolerance=0.01, case="column"):
+        """The document of `sandglass choose --all --json`."""
+        return {
+            "revision": "abc",
+            "case": case,
+            "tolerance": tolerance,
+            "reference": {"name": reference},
+            "rungs": rungs,
+        }
+
+    @staticmethod
+    def timing(method, ns, case="ellipsoid-indentation", elements=2200, **changed):
+        """A record of `sandglass bench --json`."""
+        return {
+            "case": case,
+            "elements": elements,
+            "method": method,
+            "kernel": "pack",
+            "precision": "double",
+            "threads": 1,
+            "ns_per_element_step": ns,
+            "stable_step_seconds": 1e-4,
+        } | changed
+
+    @staticmethod
+    def count(method, total, part="hourglass", form="kernel"):
+        """A record of `sandglass flops --json`."""
+        return {"method": method, "law": "l", "form": form, "part": part, "total": total}
+
     def write_reference(self, kind, displacement, **attributes):
         """Writes a golden or truth for the case."""
         with h5py.File(self.folder / f"reference/{kind}/column.h5", "w") as file:
@@ -168,5 +221,15 @@ class DataSet:
             f"--results={self.folder}/results",
             f"--cases={self.folder}/cases",
             f"--reference={self.folder}/reference",
+            f"--bench={self.folder}/bench.json",
+            f"--flops={self.folder}/flops.json",
+            f"--rest={self.folder}/rest.json",
+            f"--curves={self.folder}/curves",
+            f"--maps={self.folder}/maps",
+            f"--kept-maps={self.folder}/kept-maps",
+            f"--pictures={self.folder}/pictures",
+            f"--claims={self.folder}/claims.toml",
+            f"--mutants={self.folder}/RESULTS.md",
+            f"--root={self.folder}",
             f"--output={self.page}",
         ]

@@ -9,6 +9,7 @@ import pytest
 
 from sandglass_report.curves import curve_plate, read_rungs
 from sandglass_report.errors import ReportError
+from sandglass_report.style import Palette, solver_methods
 
 SCRIPT = Path(__file__).resolve().parent.parent / "make_curves.py"
 
@@ -92,3 +93,14 @@ def test_the_script_draws_and_refuses(tmp_path):
         [sys.executable, SCRIPT, tmp_path / "none"], capture_output=True, text=True
     )
     assert outcome.returncode == 2 and "none" in outcome.stderr
+
+
+def test_colours_follow_the_solvers_list_and_are_those_of_the_page():
+    """The page takes the same list from the verdicts."""
+    methods = solver_methods()
+    assert methods[:3] == ("tl-none", "tl-perturbation", "tl-perturbation-compact")
+    assert len(set(methods)) == len(methods)
+    rungs = {"block": [rung("tl-adaptive", 1.0), rung("tl-perturbation", 1.0)]}
+    for cases in (rungs, {"block": rungs["block"][::-1]}):
+        colours = {words: colour for words, colour, _ in curve_plate(cases).legend}
+        assert colours == {m: Palette(methods).colour(m) for m in colours}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sandglass_report.errors import ReportError
-from sandglass_report.maps import OUTCOMES, map_plates, outcome, read_maps, words_in
+from sandglass_report.maps import OUTCOMES, map_plates, map_texts, outcome, read_maps, words_in
 
 SCRIPT = Path(__file__).resolve().parent.parent / "make_maps.py"
 
@@ -43,7 +43,16 @@ def test_every_outcome_has_a_colour_and_a_letter_of_its_own():
 
 
 @pytest.mark.parametrize(
-    "error, words", [(0.0, "0"), (9e-6, "0"), (0.00123, "0.1"), (0.034, "3"), (0.256, "26")]
+    "error, words",
+    [
+        (0.0, "0"),
+        (9e-6, "0"),
+        (0.00123, "0.1"),
+        (0.034, "3"),
+        (0.256, "26"),
+        (0.094, "9"),
+        (0.096, "10"),
+    ],
 )
 def test_working_methods_show_their_error_in_percent(error, words):
     assert words_in(cell(error=error)) == words
@@ -65,6 +74,28 @@ def test_one_panel_for_each_method_that_counts_its_cells():
     assert [panel.title for panel in plate.panels] == ["a", "b"]
     assert plate.panels[0].alt.endswith("of 2 cells 1 good, 1 locking")
     assert [words for words, _, _ in plate.legend] == ["good", "L  locking"]
+
+
+def test_rows_of_a_table_go_down_from_the_largest_y():
+    cells = [cell(x=x, y=y, error=0.001 * x * y) for y in (1.0, 4.0) for x in (1.0, 2.0)]
+    (text,) = map_texts([document(cells, ys=(1.0, 4.0))])
+    (table,) = text.tables
+    assert [(y, [words for _, words, _ in row]) for y, row in table.rows] == [
+        (4.0, ["0.4", "0.8"]),
+        (1.0, ["0.1", "0.2"]),
+    ]
+
+
+def test_kept_maps_look_the_same_and_are_smaller(tmp_path):
+    cells = [cell(x=1.0, error=0.00123456789), cell(x=2.0, finding=None, error=None, refused=True)]
+    whole = document(cells)
+    (tmp_path / "maps.json").write_text(json.dumps(whole))
+    script = SCRIPT.parent / "keep_maps.py"
+    command = [sys.executable, script, tmp_path / "maps.json", "-o", tmp_path / "kept"]
+    assert subprocess.run(command).returncode == 0
+    small = read_maps(tmp_path / "kept/block.json")
+    assert map_texts([small]) == map_texts([whole])
+    assert "steps" not in json.dumps(small) and "0.00123456" not in json.dumps(small)
 
 
 def test_draws_figures(tmp_path):

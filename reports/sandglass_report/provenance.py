@@ -1,0 +1,88 @@
+"""Where every figure of the page comes from: machine, program, cases, meshes and references."""
+
+import hashlib
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sandglass_report.measured import Source
+
+NAMES = {
+    "processor": "Processor",
+    "compiler": "Compiler",
+    "build_flags": "Build",
+    "version": "Version",
+    "revision": "Revision",
+}
+VERIFY = "sandglass verify --json build/verdicts.json --results build/verify"
+
+
+@dataclass(frozen=True)
+class CaseOrigin:
+    """The hashes of a case and what its references are."""
+
+    case: str
+    case_hash: str
+    mesh_hash: str
+    references: tuple  # (kind, words on how it was computed, SHA-256 of its displacements)
+
+
+def program(verdicts):
+    """(name, value) of what ran and where."""
+    return [(NAMES.get(name, name), value) for name, value in verdicts.provenance.items()]
+
+
+def sources(verdicts, path, measured):
+    """All files that the page reads, verdicts first; those of one folder and one making as one."""
+    groups = {}
+    for source in measured.sources:
+        made = [(source.facts or {}).get(name) for name in ("revision", "processor")]
+        key = source.command, source.facts is None, *made
+        groups.setdefault(key, []).append(source)
+    rows = [Source(_short(path), VERIFY, verdicts.provenance)]
+    for group in groups.values():
+        where = _short(group[0].path)
+        if len(group) > 1:
+            where = f"{where.rpartition('/')[0]}/: {len(group)} files"
+        rows.append(replace(group[0], path=where))
+    return tuple(rows)
+
+
+def _short(path):
+    """A path without the place of the tree on this machine."""
+    path = Path(path)
+    return "/".join(path.parts[-2:]) if path.is_absolute() else path.as_posix()
+
+
+def of_another_revision(source, verdicts):
+    """Whether a file was made by another revision than the verdicts, as far as it says."""
+    own = (source.facts or {}).get("revision")
+    return own is not None and own != verdicts.provenance.get("revision")
+
+
+def origins(subjects):
+    """A CaseOrigin for every case."""
+    return tuple(
+        CaseOrigin(
+            s.name,
+            s.hashes.get("case_hash", ""),
+            s.hashes.get("mesh_hash", ""),
+            tuple(
+                (kind, _words(reference.attributes), _hash(reference.displacement))
+                for kind, reference in (("golden", s.golden), ("truth", s.truth))
+                if reference is not None
+            ),
+        )
+        for s in subjects
+    )
+
+
+def _words(about):
+    """How a reference was computed, from its attributes."""
+    split = f", mesh split {about['refinements']}×" if about.get("refinements") else ", same mesh"
+    program = f", dolfinx {about['dolfinx_version']}" if "dolfinx_version" in about else ""
+    return f"{about.get('element', 'unknown element')}{split}{program}"
+
+
+def _hash(displacement):
+    """SHA-256 of the displacements' bytes, its first sixteen digits."""
+    return hashlib.sha256(displacement.astype("<f8").tobytes()).hexdigest()[:16]

@@ -1,0 +1,70 @@
+"""The paper's Tables I and II beside our counts and times."""
+
+from dataclasses import dataclass
+
+from sandglass_report import paper
+
+
+@dataclass(frozen=True)
+class Counted:
+    """One framework of Table I: operations per element and step, None where not counted."""
+
+    words: str
+    method: str
+    paper: int  # of the hourglass control
+    as_written: int | None  # of eq. 14 as the paper writes it
+    control: int | None  # of the control in the kernel that runs
+    element: int | None  # of all the kernel does for an element
+
+
+@dataclass(frozen=True)
+class Timed:
+    """One column of Table II: ms for a step, and its ratio to the first one."""
+
+    words: str
+    method: str
+    paper: float
+    paper_ratio: float
+    ours: float | None
+    our_ratio: float | None
+
+
+def table_1(counts):
+    """Operations of the hourglass control, Total and Updated Lagrangian; Counted for each."""
+    return tuple(
+        Counted(
+            words,
+            method,
+            figure,
+            *(
+                _count(counts, method, form, part)
+                for form, part in (
+                    ("paper", "hourglass"),
+                    ("kernel", "hourglass"),
+                    ("kernel", "element"),
+                )
+            ),
+        )
+        for words, method, figure in paper.TABLE_1
+    )
+
+
+def table_2(steps):
+    """Time of a step on the ellipsoid, in double on one thread; Timed for each."""
+    ours = [_milliseconds(steps, method) for _, method, _ in paper.TABLE_2]
+    first = paper.TABLE_2[0][2]
+    return tuple(
+        Timed(words, method, ms, ms / first, our, our / ours[0] if our and ours[0] else None)
+        for (words, method, ms), our in zip(paper.TABLE_2, ours)
+    )
+
+
+def _milliseconds(steps, method):
+    wanted = (paper.TIMED_CASE, method, "double")
+    found = (s for s in steps if (s.case, s.method, s.precision) == wanted)
+    return next((1e-6 * s.ns * s.elements for s in found), None)
+
+
+def _count(counts, method, form, part):
+    wanted = (method, form, part)
+    return next((c.total for c in counts if (c.method, c.form, c.part) == wanted), None)

@@ -1,0 +1,131 @@
+"""A headless Chromium, driven over a pipe by its DevTools protocol; it needs nothing else."""
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+PATIENCE = 60.0  # seconds for one answer: far more than it takes on a busy machine
+
+
+class Browser:
+    """One page of one browser. Use as a context; `complaints` holds all that its console said."""
+
+    def __init__(self, width=1280, height=900, dark=False, phone=False, script=True):
+        self.complaints, self.requests = [], []
+        self._waiting, self._number = b"", 0
+        self._folder = tempfile.TemporaryDirectory(prefix="browser.")
+        self._start()
+        target = self._call("Target.createTarget", url="about:blank")["targetId"]
+        session = self._call("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = session["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self._call(f"{domain}.enable")
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self._call("Emulation.setEmulatedMedia", features=[scheme])
+        self.resize(width, height, phone)
+        if not script:
+            self._call("Emulation.setScriptExecutionDisabled", value=True)
+
+    def resize(self, width, height, phone=False):
+        """The size of the window in CSS pixels; a phone has a denser screen and fingers."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 2 if phone else 1}
+        self._call("Emulation.setDeviceMetricsOverride", mobile=phone, **size)
+
+    def open(self, path):
+        """Opens a file and waits until it is loaded."""
+        self._call("Page.navigate", url=f"file://{path}")
+        self.until("document.readyState === 'complete'")
+
+    def run(self, expression):
+        """The value of a JavaScript expression in the page, a promise's too."""
+        found = self._call(
+            "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
+        )
+        if "exceptionDetails" in found:
+            raise AssertionError(f"{expression}: {found['exceptionDetails']}")
+        return found["result"].get("value")
+
+    def until(self, expression):
+        """Waits until an expression is true, and fails where it never becomes so."""
+        end = time.monotonic() + PATIENCE
+        while not self.run(expression):
+            assert time.monotonic() < end, f"never true: {expression}; console: {self.complaints}"
+            time.sleep(0.05)
+
+    def picture(self, path, selector=None):
+        """Saves what an element looks like, or the window, as a PNG."""
+        options = {}
+        if selector:
+            box = self.run(
+                f"(() => {{ const b = document.querySelector({json.dumps(selector)})"
+                ".getBoundingClientRect();"
+                " return [b.x + scrollX, b.y + scrollY, b.width, b.height] })()"
+            )
+            options["clip"] = dict(zip(("x", "y", "width", "height"), box)) | {"scale": 1}
+            options["captureBeyondViewport"] = True
+        data = self._call("Page.captureScreenshot", format="png", **options)["data"]
+        path.write_bytes(base64.b64decode(data))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._process.kill()
+        self._process.wait()
+        os.close(self._out)
+        os.close(self._in)
+        self._folder.cleanup()
+
+    def _start(self):
+        """The browser reads from descriptor 3 and writes to 4."""
+        read_theirs, self._out = os.pipe()
+        self._in, write_theirs = os.pipe()
+        flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe"]
+        flags += ["--disable-dev-shm-usage", f"--user-data-dir={self._folder.name}"]
+        words = " ".join(f"'{word}'" for word in (CHROMIUM, *flags, "about:blank"))
+        self._process = subprocess.Popen(
+            ["bash", "-c", f"exec {words} 3<&{read_theirs} 4>&{write_theirs}"],
+            pass_fds=(read_theirs, write_theirs),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(read_theirs)
+        os.close(write_theirs)
+
+    def _call(self, method, **parameters):
+        """One command; what the page tells in between is noted."""
+        self._number += 1
+        message = {"id": self._number, "method": method, "params": parameters}
+        if hasattr(self, "_session"):
+            message["sessionId"] = self._session
+        os.write(self._out, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self._next()
+            if answer.get("id") == self._number:
+                assert "error" not in answer, f"{method}: {answer['error']}"
+                return answer["result"]
+            self._note(answer)
+
+    def _next(self):
+        while b"\0" not in self._waiting:
+            piece = os.read(self._in, 1 << 20)
+            assert piece, "the browser ended"
+            self._waiting += piece
+        message, self._waiting = self._waiting.split(b"\0", 1)
+        return json.loads(message)
+
+    def _note(self, event):
+        told = event.get("params", {})
+        if event["method"] == "Runtime.exceptionThrown":
+            self.complaints.append(told["exceptionDetails"])
+        elif event["method"] == "Log.entryAdded" and told["entry"]["level"] in ("error", "warning"):
+            self.complaints.append(told["entry"])
+        elif event["method"] == "Runtime.consoleAPICalled" and told["type"] in ("error", "warning"):
+            self.complaints.append(told["args"])
+        elif event["method"] == "Network.requestWillBeSent":
+            self.requests.append(told["request"]["url"])

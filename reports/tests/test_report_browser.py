@@ -1,0 +1,191 @@
+"""The page in a headless Chromium: it draws, its controls work, it asks for nothing."""
+
+import pytest
+from browser import CHROMIUM, Browser
+from synthetic import DataSet
+
+from make_report import main
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+DRAWN = "document.querySelector('#chart').dataset.drawn"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """The page of the data set with a ladder and a truth."""
+    data = DataSet(tmp_path_factory.mktemp("browser"))
+    rungs = [data.rung("tl-perturbation", 2e-6, 0.004, precision="float")]
+    rungs += [data.rung("tl-perturbation", 1e-6, 0.03, mesh="elements = [1]", elements=1)]
+    rungs += [data.rung("tl-perturbation", 4e-6, 0.002)]
+    data.write("curves/a.json", data.ladder(rungs))
+    for record in data.records[1:3]:
+        record["truth"] = record["golden"] | {"max_relative_error": 0.08}
+    data.write_reference("truth", data.answer * [1.0, 1.0, 1.1])
+    data.write_verdicts()
+    assert main(data.arguments) == 0
+    return data.page
+
+
+@pytest.fixture(scope="module")
+def browser(page):
+    """A browser that shows the page, drawn."""
+    with Browser() as found:
+        found.open(page)
+        found.until(DRAWN)
+        yield found
+
+
+def choose(browser, name, value):
+    """Sets a control of the chart as a user does, and waits for the drawing."""
+    browser.run(
+        f"""(async () => {{
+          const chart = document.querySelector("#chart");
+          const control = chart.querySelector("[name={name}]");
+          const was = {str(isinstance(value, bool)).lower()} ? "checked" : "value";
+          control[was] = {str(value).lower() if isinstance(value, bool) else repr(value)};
+          control.dispatchEvent(new Event("input", {{ bubbles: true }}));
+          await new Promise((done) => setTimeout(done, 300));
+        }})()"""
+    )
+
+
+def marks(browser):
+    """(x, y) of the coloured and of the grey marks, as drawn."""
+    return browser.run(
+        """(() => {
+          const traces = document.querySelector("#chart .plot").data;
+          const shown = traces.filter((trace) => trace.mode === "markers").reverse();
+          return shown.map((trace) => trace.x.map((x, i) => [x, trace.y[i]]));
+        })()"""
+    )
+
+
+def test_everything_is_drawn_without_a_word_on_the_console(browser):
+    assert browser.run(DRAWN) == "column|golden|max|simulated|all|all"
+    assert browser.run("document.querySelectorAll('#chart .scatterlayer .point').length") == 4
+    assert browser.run("document.querySelector('#viewer').dataset.drawn") == "column"
+    assert browser.run("document.querySelector('details.static').open") is False
+    assert browser.complaints == []
+
+
+def test_nothing_is_asked_for_beyond_the_page(browser):
+    assert [url for url in browser.requests if not url.startswith(("file:", "data:"))] == []
+    assert len([url for url in browser.requests if url.startswith("file:")]) == 1
+
+
+def test_the_limits_grey_out_what_breaks_them(browser):
+    sound, grey = marks(browser)
+    assert sorted(y for _, y in sound) == [0.002, 0.004]
+    assert sorted(y for _, y in grey) == [0.03, 0.2]
+    choose(browser, "tolerance", -2.6)  # 0.25 %
+    assert [y for _, y in marks(browser)[0]] == [0.002]
+    assert "tl-perturbation, double" in browser.run("document.querySelector('.answer').textContent")
+    choose(browser, "tolerance", -1)
+    assert "mesh of 1 elements" in browser.run("document.querySelector('.answer').textContent")
+    choose(browser, "tolerance", -2)
+
+
+def test_the_budget_counts_too(browser):
+    choose(browser, "cost", "step")
+    budget = "document.querySelector('[name=budget]')"
+    browser.run(f"{budget}.value = Math.log10(3e-6)")
+    choose(browser, "own", True)
+    assert [y for _, y in marks(browser)[0]] == [0.004]
+    choose(browser, "own", False)
+    choose(browser, "cost", "simulated")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "back", "errors"),
+    [
+        ("own", True, False, [0.002, 0.004, 0.2]),
+        ("double", True, False, [0.002, 0.03, 0.2]),
+        ("curves", True, False, [0.002, 0.004, 0.004, 0.03, 0.2]),
+        ("reference", "truth", "golden", [0.08]),
+        ("figure", "profile", "max", [0.002, 0.2]),
+        ("cost", "rest", "simulated", [0.002, 0.2]),
+    ],
+)
+def test_switches_choose_what_is_shown(browser, name, value, back, errors):
+    choose(browser, name, value)
+    shown = sorted(y for trace in marks(browser) for _, y in trace)
+    choose(browser, name, back)
+    assert shown == errors
+
+
+def test_a_method_can_be_hidden_and_shown(browser):
+    click = "document.querySelector('[data-method=tl-none]').click()"
+    browser.run(click)
+    assert sorted(y for trace in marks(browser) for _, y in trace) == [0.002, 0.004, 0.03]
+    browser.run(click)
+    assert sum(len(trace) for trace in marks(browser)) == 4
+
+
+def test_a_dragged_line_moves_its_slider(browser):
+    plot, moved = "document.querySelector('#chart .plot')", "{'shapes[0].y0': 0.1}"
+    browser.run(f"Plotly.relayout({plot}, {moved}).then(() => 1)")
+    slider = float(browser.run("document.querySelector('[name=tolerance]').value"))
+    assert slider == pytest.approx(-1.0, abs=0.011)  # half a step of the slider
+    choose(browser, "tolerance", -2)
+
+
+def test_a_mark_tells_everything(browser):
+    traces = "document.querySelector('#chart .plot').data"
+    texts = browser.run(f"{traces}.find((t) => t.text && t.y.includes(0.002)).text")
+    text = next(one for one in texts if "max 0.2 %" in one)
+    for words in ("tl-perturbation", "column", "κ 0.0065 (auto)", "double", "12 elements"):
+        assert words in text
+    for words in ("max 0.2 %", "max 8 %", "one step 4 µs", "coming to rest 500 ms", "finding"):
+        assert words in text
+
+
+def test_the_front_is_the_one_that_python_found(browser):
+    line = browser.run(
+        "(() => { const t = document.querySelector('#chart .plot').data[0]; return [t.x, t.y] })()"
+    )
+    assert line == [[0.001, 0.002, 0.004], [0.03, 0.004, 0.002]]
+
+
+def test_the_viewer_turns_with_the_keys_and_changes_colours(browser):
+    picture = "document.querySelector('#viewer canvas').toDataURL()"
+
+    def after(action):
+        browser.run(f"(async () => {{ {action}; await new Promise((d) => setTimeout(d, 200)) }})()")
+        return browser.run(picture)
+
+    key = "document.querySelector('#viewer canvas')"
+    key += ".dispatchEvent(new KeyboardEvent('keydown', {key: '%s'}))"
+    first = browser.run(picture)
+    turned = after(key % "ArrowLeft")
+    assert turned != first
+    assert after(key % "ArrowRight") == first
+    volume = "const s = document.querySelector('#viewer [name=colour]'); s.value = 'volume'; "
+    assert after(volume + "s.dispatchEvent(new Event('change', {bubbles: true}))") != first
+    assert "volume" in browser.run("document.querySelector('#viewer .words').textContent")
+
+
+def test_on_a_phone_nothing_is_wider_than_the_screen_and_dark_is_dark(page):
+    with Browser(width=390, height=844, phone=True, dark=True) as phone:
+        phone.open(page)
+        phone.until(DRAWN)
+        assert phone.run("document.documentElement.scrollWidth") == 390
+        assert phone.run("getComputedStyle(document.body).backgroundColor") == "rgb(18, 22, 27)"
+        assert phone.run("document.querySelector('#chart .plot').clientWidth") < 390
+        assert phone.complaints == []
+
+
+def test_without_scripts_the_static_pictures_show(page):
+    with Browser(script=False) as plain:
+        plain.open(page)
+        plain._call("DOM.enable")
+        root = plain._call("DOM.getDocument", depth=0)["root"]["nodeId"]
+
+        def height(selector):
+            node = plain._call("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
+            try:
+                return plain._call("DOM.getBoxModel", nodeId=node)["model"]["height"]
+            except AssertionError:  # what is not displayed has no box
+                return 0
+
+        assert height("details.static svg") > 100
+        assert height("#chart") == 0 and height(".no-script") > 0

@@ -1,0 +1,203 @@
+"""Points of the main chart: what becomes one point, what is beaten by none, which costs count."""
+
+import json
+
+import pytest
+from synthetic import DataSet
+
+from sandglass_report.interactive import chart_data
+from sandglass_report.load import read_verdicts
+from sandglass_report.measured import read_measured
+from sandglass_report.points import CHOOSE, SCALED, families, fronts, make_points, pareto_front
+from sandglass_report.style import FLOOR, Palette
+
+
+def points_of(data, *ladders):
+    """Points by method, and the list, of the data set with these ladders."""
+    for i, ladder in enumerate(ladders):
+        data.write(f"curves/{i}.json", ladder)
+    verdicts = read_verdicts(data.folder / "verdicts.json")
+    absent = data.folder / "absent"
+    measured = read_measured(*3 * [absent], data.folder / "curves", absent, absent)
+    points = make_points(verdicts.runs, {"column": 12}, measured)
+    return {p.method: p for p in points if p.as_it_comes and p.mesh == "own mesh"}, points
+
+
+def test_a_run_is_a_point_with_its_costs_in_seconds(data):
+    found, points = points_of(data)
+    assert len(points) == 4
+    point = found["tl-none"]
+    assert point.step == pytest.approx(120e-9 * 12)
+    assert point.simulated == pytest.approx(point.step / 1e-4)
+    assert point.rest == 0.5
+    assert point.golden["max"] == 0.2 and point.truth == {}
+
+
+def test_a_run_that_failed_says_so_and_has_no_time_to_rest(data):
+    point = points_of(data)[0]["tl-full"]
+    assert not point.ok and point.rest is None and point.finding == "failed: <inverted>"
+
+
+def test_only_points_of_kappa_curves_do_not_come_so(data):
+    _, points = points_of(data)
+    assert [(p.kappa, p.as_it_comes) for p in points if p.method == "tl-perturbation"] == [
+        (0.0065, True),
+        (0.02, False),
+    ]
+
+
+def test_a_rung_of_the_same_choice_brings_its_cost_to_the_runs_point(data):
+    ladder = data.ladder([data.rung("tl-perturbation", 3e-6, 0.9)])
+    truth = data.ladder([data.rung("tl-perturbation", 4e-6, 0.07)], "truth")
+    point = points_of(data, ladder, truth)[0]["tl-perturbation"]
+    assert (point.step, point.simulated) == (3e-6, 3e-3)  # the first one's
+    assert point.measured_by == CHOOSE
+    assert point.golden["max"] == 0.002  # verify's stands
+    assert point.truth == {"max": 0.07}
+
+
+def test_other_meshes_and_precisions_are_points_of_their_own(data):
+    rungs = [
+        data.rung("tl-perturbation", 3e-6, 0.01),
+        data.rung("tl-perturbation", 2e-6, 0.01, precision="float"),
+        data.rung("tl-perturbation", 1e-6, 0.03, mesh="elements = [1, 1, 1]", elements=1),
+    ]
+    _, points = points_of(data, data.ladder(rungs))
+    assert len(points) == 4 + 2
+
+
+def test_the_golden_elements_answer_counts_as_the_golden(data):
+    ladder = data.ladder([data.rung("t4", 1e-6, 0.5)], "tl-mean-dilatation")
+    assert points_of(data, ladder)[0]["t4"].golden == {"max": 0.5}
+
+
+def test_a_refusal_names_the_tolerance_that_it_is_for(data):
+    locks = data.rung("t4", 1e-6, 0.5, reason="it locks")
+    strict = data.ladder([locks, data.rung("linear", 1e-6, 0.5)], tolerance=0.002)
+    loose = data.ladder([locks | {"reason": ""}], tolerance=0.04)
+    truth = data.ladder([locks | {"reason": "it is far"}], "truth", tolerance=0.04)
+    found, _ = points_of(data, strict, loose, truth)
+    assert found["t4"].found() == "enough for 4 %, not for 0.2 %: it locks (golden)"
+    assert found["linear"].found() == "enough for 0.2 % (golden)"
+    assert found["tl-none"].found() == "good"  # verify's
+
+
+def test_costs_of_verify_alone_are_scaled_by_the_median_of_what_both_measured(data):
+    verify = 120e-9 * 12
+    data.records.append(data.run("tl-enhanced", 0.001))
+    data.records.append(data.run("tl-modal-sampling", 0.001))
+    data.write_verdicts()
+    times = {"tl-perturbation": 0.5, "tl-enhanced": 0.1, "tl-modal-sampling": 0.25}
+    rungs = [data.rung(m, share * verify, 0.01) for m, share in times.items()]
+    point = points_of(data, data.ladder(rungs))[0]["tl-none"]
+    assert point.measured_by == SCALED
+    assert point.step == pytest.approx(0.25 * verify)
+    assert point.simulated == pytest.approx(0.25 * verify / 1e-4)
+
+
+def test_a_choice_has_an_answer_when_any_rung_has_one_but_a_failed_run_stays_failed(data):
+    lost = data.ladder([data.rung("t4", 1e-6, None), data.rung("linear", 1e-6, None)])
+    rungs = [data.rung("t4", 1e-6, 0.5), data.rung("tl-full", 1e-6, 0.5)]
+    found, _ = points_of(data, lost, data.ladder(rungs, "truth"))
+    assert {m: found[m].ok for m in ("t4", "linear", "tl-full")} == {
+        "t4": True,
+        "linear": False,
+        "tl-full": False,
+    }
+
+
+def test_a_ladder_of_a_case_that_was_not_run_is_left_out(data):
+    _, points = points_of(data, data.ladder([data.rung("t4", 1e-6, 0.5)], case="elsewhere"))
+    assert len(points) == 4
+
+
+def test_time_to_rest_is_that_of_bench_where_it_is_known(data):
+    record = {"case": "column", "method": "tl-none", "precision": "double"}
+    record |= {"seconds_to_rest": 0.125, "seconds_to_1_percent": None}
+    data.write("rest.json", {"records": [record | {"seconds_to_0_1_percent": None}]})
+    verdicts = read_verdicts(data.folder / "verdicts.json")
+    absent = data.folder / "absent"
+    measured = read_measured(absent, absent, data.folder / "rest.json", *3 * [absent])
+    points = make_points(verdicts.runs, {"column": 12}, measured)
+    assert {p.method: p.rest for p in points if p.method != "tl-perturbation"} == {
+        "tl-none": 0.125,
+        "tl-full": None,
+    }
+
+
+@pytest.mark.parametrize(
+    ("costs", "errors", "front"),
+    [
+        ([1, 2, 3], [0.3, 0.2, 0.1], [0, 1, 2]),
+        ([3, 2, 1], [0.1, 0.2, 0.3], [2, 1, 0]),
+        ([1, 2, 3], [0.1, 0.2, 0.3], [0]),
+        ([1, 2, 3], [0.3, 0.3, 0.1], [0, 2]),
+        ([1, 1], [0.2, 0.1], [1]),
+        ([2, 1], [FLOOR / 100, FLOOR / 2], [1]),
+        ([], [], []),
+    ],
+)
+def test_pareto_front(costs, errors, front):
+    assert pareto_front(costs, errors) == front
+
+
+def test_no_other_point_beats_one_on_the_front_and_one_beats_each_that_is_not():
+    import random
+
+    numbers = random.Random(7)
+    costs = [numbers.random() for _ in range(200)]
+    errors = [numbers.random() for _ in range(200)]
+    front = set(pareto_front(costs, errors))
+
+    def is_beaten(i):
+        others = (j for j in range(200) if j != i)
+        return any(costs[j] <= costs[i] and errors[j] <= errors[i] for j in others)
+
+    assert front == {i for i in range(200) if not is_beaten(i)}
+
+
+def test_fronts_leave_out_kappa_curves_failures_and_what_a_view_hides(data):
+    rungs = [data.rung("tl-perturbation", 1e-9, 0.9, precision="float")]
+    rungs.append(data.rung("tl-perturbation", 2e-9, 0.5, mesh="coarser"))
+    rungs.append(data.rung("tl-perturbation", 3e-9, 1e-4, kappa=0.003))  # better, but tuned
+    _, points = points_of(data, data.ladder(rungs))
+    found = fronts(points)
+
+    def named(view):
+        return [(points[i].precision, points[i].mesh, points[i].kappa) for i in found[view]]
+
+    own, auto = "own mesh", 0.0065
+    assert named("column|golden|max|step|all|all") == [
+        ("float", own, None),
+        ("double", "coarser", None),
+        ("double", own, auto),
+    ]
+    assert named("column|golden|max|step|own|double") == [("double", own, auto)]
+    assert not [view for view in found if "|truth|" in view]
+
+
+def test_adaptive_points_are_lines_from_loose_to_strict(data):
+    shares = (0.001, 0.1, 0.01)
+    rungs = [data.rung("tl-adaptive", s, s, accuracy=s) for s in shares]
+    rungs.append(data.rung("tl-adaptive", 1.0, 0.1, accuracy=0.1, precision="float"))
+    _, points = points_of(data, data.ladder(rungs))
+    (line,) = families(points)
+    assert [points[i].accuracy for i in line] == [0.1, 0.01, 0.001]
+
+
+def test_the_data_of_the_script_are_json_and_say_what_fails(data):
+    data.records[0] |= {"finding": "hourglassing"}
+    data.write_verdicts()
+    _, points = points_of(data)
+    palette = Palette(["tl-none", "tl-perturbation", "tl-full"])
+    found = json.loads(json.dumps(chart_data(points, palette), allow_nan=False))
+    fails = {p["method"]: p["fails"] for p in found["points"]}
+    assert fails == {"tl-none": True, "tl-perturbation": False, "tl-full": True}
+    marks = {(m["css"], m["symbol"]) for m in found["methods"].values()}
+    assert len(marks) == 3
+
+
+def test_rounding_keeps_what_a_chart_shows(data):
+    assert isinstance(data, DataSet)
+    _, points = points_of(data, data.ladder([data.rung("t4", 1.23456789e-6, 0.5)]))
+    assert next(p for p in points if p.method == "t4").as_record()["step"] == 1.2346e-6

@@ -1,0 +1,184 @@
+"""The sections of the page from synthetic data: what each shows, or says when it cannot."""
+
+import json
+import re
+
+import pytest
+
+from make_report import main
+
+OPTIONAL = "sandglass bench --threads", "sandglass flops", "ci/curves", "sandglass stability"
+
+
+def made(data):
+    """The page of a data set, as text."""
+    assert main(data.arguments) == 0
+    return data.page.read_text(encoding="utf-8")
+
+
+def section(page, name):
+    """The part of the page from the heading with this id to the next one."""
+    start = page.index(f'<h2 id="{name}">')
+    end = page.find("<h2 id=", start + 1)
+    return page[start : end if end > 0 else None]
+
+
+def script(page, name):
+    """The JSON of a data block."""
+    return json.loads(re.search(rf'<script[^>]* id="{name}">(.*?)</script>', page, re.S)[1])
+
+
+def test_without_optional_files_the_page_names_the_commands(data):
+    page = made(data)
+    for command in OPTIONAL:
+        assert command in page
+    assert "Our counts are missing" in page and "Our times are missing" in page
+    assert "No file of claims was found" in page and "ci/mutants" in page
+    assert "No maps were computed" in page
+    assert "not there: what it shows is left out" in section(page, "provenance")
+
+
+def test_the_chart_has_the_points_of_runs_and_ladders(data):
+    rungs = [data.rung("tl-perturbation", 3e-6, 0.01, mesh="elements = [1]", elements=3)]
+    rungs += [data.rung("unknown-method", 3e-6, 0.01)]
+    data.write("curves/a.json", data.ladder(rungs))
+    found = script(made(data), "chart-data")
+    assert len(found["points"]) == 5  # a method that the verdicts do not know has no colour
+    coarser = found["points"][-1]
+    assert (coarser["mesh"], coarser["elements"], coarser["step"]) == ("elements = [1]", 3, 3e-6)
+    used = {i for positions in found["fronts"].values() for i in positions}
+    assert used and max(used) < len(found["points"])
+
+
+def test_data_blocks_cannot_end_early(data):
+    data.records[0]["status"] = "failed: </script><b>"
+    data.write_verdicts()
+    page = made(data)
+    points = script(page, "chart-data")["points"]
+    assert "failed: </script><b>" in {p["finding"] for p in points}
+    assert "</script><b>" not in page
+
+
+def test_every_method_has_a_switch_with_its_own_colour_and_glyph(data):
+    page = section(made(data), "chart-head")
+    buttons = re.findall(r'data-method="([^"]+)"><i style="color:var\((.*?)\)">(.)</i>', page)
+    assert [name for name, _, _ in buttons] == ["tl-none", "tl-perturbation", "tl-full"]
+    assert len({(colour, glyph) for _, colour, glyph in buttons}) == 3
+
+
+def test_tables_of_the_paper_stand_beside_ours(data):
+    records = [data.count("tl-perturbation", 360, form="paper"), data.count("tl-perturbation", 100)]
+    records += [data.count("ul-perturbation", 250)]
+    data.write("flops.json", {"records": records})
+    times = {"tl-perturbation": 100.0, "ul-perturbation": 320.0, "ul-enhanced": 410.0}
+    data.write("bench.json", {"records": [data.timing(m, ns) for m, ns in times.items()]})
+    page = section(made(data), "paper")
+    for cell in ("1585", ">360<", ">100<", ">250<", ">2.5<"):  # counts and their ratio
+        assert cell in page
+    for cell in (">13.7<", ">6.5<", ">0.220<", ">3.2<", ">4.1<"):  # times and their ratios
+        assert cell in page
+    assert "missing" not in page
+
+
+def bending(data):
+    """Published records of a cantilever: two methods, two meshes, two ratios."""
+    ratios = {("tl-none", 1): 1.2, ("tl-none", 2): 1.02, ("tl-full", 1): 0.3, ("tl-full", 2): 0.6}
+    for (method, elements), ratio in ratios.items():
+        for nu in ("0.25", "0.499"):
+            record = data.tip(method, ratio, to_truth=ratio)
+            data.published.append(record | {"variants": [str(elements), f"nu{nu}"]})
+    data.write_verdicts()
+
+
+def test_bending_and_locking_curves(data):
+    bending(data)
+    page = section(made(data), "bending")
+    for words in ("1 element through", "2 elements through", "ratio 0.25", "ratio 0.499"):
+        assert words in page
+    assert "tl-full: 0.300 at 0.25, 0.300 at 0.499" in page
+    assert "tl-full: 0.300 at 1, 0.600 at 2" in page
+    figures = {path.name for path in (data.page.parent / "figures").iterdir()}
+    assert {"locking.svg", "bending.png"} <= figures
+
+
+def test_a_failed_run_has_no_place_on_a_curve(data):
+    bending(data)
+    data.published[0] |= {"status": "failed: inverted"}
+    data.write_verdicts()
+    assert "tl-none: 1.20 at 0.499" in made(data)
+
+
+def maps(finding="locking"):
+    """A document of sandglass stability with one map of two cells."""
+    axis = {"name": "load", "meaning": "what it is", "values": [1.0, 2.0]}
+    kept = {"method": "tl-none", "y": 0.0, "golden_failed": False, "refused": False}
+    cells = [
+        kept | {"x": 1.0, "finding": "good", "symptoms": {"error": 0.004}},
+        kept | {"x": 2.0, "finding": finding, "symptoms": None},
+    ]
+    one = {"name": "load", "x": axis, "y": None, "cells": cells}
+    return {"case": "column", "limit": 0.01, "revision": "old", "maps": [one]}
+
+
+def test_failure_maps_are_text_with_titles(data):
+    data.write("maps/column.json", maps())
+    page = section(made(data), "maps")
+    assert '<td class="good" title="good, 0.400 %">0.4</td>' in page
+    assert '<td class="locking" title="locking">L</td>' in page
+    assert "load: what it is" in page and "No maps were computed" not in page
+
+
+def test_pictures_stand_in_for_maps_that_are_not_there(data):
+    data.write("maps/column.json", maps())
+    (data.folder / "pictures").mkdir()
+    for name in ("column.load", "twist.load"):
+        (data.folder / f"pictures/stability.{name}.png").write_bytes(b"picture")
+    page = section(made(data), "maps")
+    assert page.count("data:image/png;base64,cGljdHVyZQ==") == 1
+    assert "twist.load" in page and "column.load<" not in page
+
+
+def test_evidence_shows_claims_with_their_figures(data):
+    (data.folder / "a_test.cpp").write_text("TEST(A, b) {}")
+    (data.folder / "claims.toml").write_text(
+        '[[claim]]\nsays = "It <works>."\noracle = "arithmetic"\ntests = ["a_test.cpp"]\n'
+        'figure = "chart"\nlimits = ["column tl-perturbation auto max_relative_error"]\n'
+    )
+    page = section(made(data), "evidence")
+    assert "It &lt;works&gt;." in page and "arithmetic" in page and "a_test.cpp" in page
+    assert "0.200 %" in page and "≤ 0.3 %" in page
+    assert '<a href="#chart-head">' in page
+
+
+def test_provenance_has_hashes_and_notices_other_revisions(data):
+    document = json.loads((data.folder / "verdicts.json").read_text()) | {"revision": "r1"}
+    (data.folder / "verdicts.json").write_text(json.dumps(document))
+    data.write("bench.json", {"revision": "r2", "records": []})
+    data.write("curves/a.json", data.ladder([]) | {"revision": "r1"})
+    data.write("curves/b.json", data.ladder([]) | {"revision": "r1"})
+    page = section(made(data), "provenance")
+    assert "0123456789abcdef" in page and "fedcba9876543210" in page
+    assert page.count("another than that of the runs") == 1
+    assert "curves/: 2 files" in page
+    data.write_reference("golden", data.answer * 1.0000001)
+    with pytest.raises(AssertionError):  # another golden than that of the runs is refused
+        made(data)
+
+
+def test_the_hash_of_a_reference_is_that_of_its_displacements(data):
+    import hashlib
+
+    expected = hashlib.sha256(data.answer.astype("<f8").tobytes()).hexdigest()[:16]
+    assert expected in section(made(data), "provenance")
+
+
+def test_each_link_of_the_navigation_leads_to_a_heading(data):
+    page = made(data)
+    navigation = re.search(r"<nav class=.*?</nav>", page, re.S)[0]
+    targets = re.findall(r'href="#([^"]+)"', navigation)
+    assert targets == re.findall(r'<h2 id="([^"]+)"', page)
+
+
+def test_the_page_is_small_without_much_data(data):
+    made(data)
+    assert data.page.stat().st_size < 4e6  # Plotly packed is two and a half

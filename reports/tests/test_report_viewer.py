@@ -1,0 +1,105 @@
+"""Data of the 3D viewer: exact volumes, and arrays that decode to what was there."""
+
+import base64
+import json
+
+import numpy as np
+import pytest
+from synthetic import box
+
+from sandglass_report.load import read_verdicts
+from sandglass_report.subject import read_subjects
+from sandglass_report.viewer import _faces, _levels, viewer_data, volumes
+
+
+def decoded(text, kind):
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+def test_volumes_of_boxes_and_of_sheared_ones():
+    points, cells = box(2, 3, 2)
+    assert volumes(points, cells) == pytest.approx(np.ones(12), rel=1e-14)
+    map_of = np.array([[2.0, 0.3, 0.0], [0.0, 0.5, 0.1], [0.7, 0.0, 3.0]])
+    found = volumes(points @ map_of.T, cells)
+    assert found == pytest.approx(np.full(12, np.linalg.det(map_of)), rel=1e-13)
+
+
+def test_volume_of_a_frustum():
+    """The upper face half as long: V = h/3 (1 + 1/2 + 1/4); a cube would pass with one point."""
+    points, cells = box(1, 1, 1)
+    upper = points[:, 2] == 1
+    points[upper, :2] = 0.25 + 0.5 * points[upper, :2]
+    assert volumes(points, cells) == pytest.approx([1.75 / 3], rel=1e-14)
+
+
+def test_an_element_turned_inside_out_has_a_negative_volume():
+    points, cells = box(1, 1, 1)
+    assert volumes(points * [1, 1, -1], cells) == pytest.approx([-1.0])
+
+
+def test_every_face_knows_its_element():
+    _, cells = box(2, 2, 3)
+    faces, owners = _faces(cells)
+    assert len(faces) == 2 * (4 + 6 + 6)
+    assert all(set(face) <= set(cells[owner]) for face, owner in zip(faces, owners))
+
+
+def data_of(data):
+    """The viewer's data of the data set, through JSON."""
+    verdicts = read_verdicts(data.folder / "verdicts.json")
+    folders = (data.folder / name for name in ("cases", "reference", "results"))
+    subjects = read_subjects(verdicts, *folders)
+    return json.loads(json.dumps(viewer_data(subjects), allow_nan=False)), subjects[0]
+
+
+def test_places_and_errors_of_a_method_come_back(data):
+    found, subject = data_of(data)
+    case = found["cases"]["column"]
+    faces = decoded(case["faces"], "<u2").reshape(-1, 4)
+    answer = case["answers"]["tl-none"]
+    box_of = answer["places"]
+    places = decoded(box_of["xyz"], "<u2").reshape(-1, 3) / 65535 * box_of["size"] + box_of["low"]
+    at = subject.points + subject.displacement("tl-none")
+    nodes = np.unique(_faces(subject.cells)[0])
+    # Half a step of the box's largest side.
+    assert np.abs(places - at[nodes]).max() < 0.51 * box_of["size"] / 65535
+    assert answer["largest"] == pytest.approx(0.2, rel=1e-3)
+    low, high = case["limits"]["error"]
+    levels = decoded(answer["error"], "u1")
+    assert len(levels) == len(faces)
+    worst = np.exp(np.log(low) + levels.max() / 255 * np.log(high / low))
+    step = (high / low) ** (1 / 255)
+    assert 0.2 / step < min(worst, high) * step and worst <= 0.2 * step
+
+
+def test_the_golden_is_an_answer_and_is_nowhere_wrong(data):
+    case = data_of(data)[0]["cases"]["column"]
+    assert next(iter(case["answers"])) == "golden"
+    assert decoded(case["answers"]["golden"]["error"], "u1").max() == 0
+    assert "hourglass" not in case["answers"]["golden"]
+
+
+def test_points_of_kappa_curves_are_not_there(data):
+    answers = data_of(data)[0]["cases"]["column"]["answers"]
+    assert list(answers) == ["golden", "tl-none", "tl-perturbation"]
+
+
+def test_without_a_golden_there_is_no_error_to_show(data):
+    (data.folder / "reference/golden/column.h5").unlink()
+    case = data_of(data)[0]["cases"]["column"]
+    assert "error" not in case["limits"] and "golden" not in case["answers"]
+
+
+def test_an_answer_that_is_no_number_is_left_out(data):
+    import h5py
+
+    data.records[0]["golden"] = None
+    data.write_verdicts()
+    with h5py.File(data.folder / "results/column.tl-none.h5", "a") as file:
+        file["frames/0001/displacement"][0, 0] = np.nan
+    assert "tl-none" not in data_of(data)[0]["cases"]["column"]["answers"]
+
+
+def test_levels_end_at_their_limits():
+    found = decoded(_levels(np.array([-1.0, 0.0, 0.5, 1.0, 9.0, np.inf]), (0.0, 1.0)), "u1")
+    assert found.tolist() == [0, 0, 128, 255, 255, 255]
