@@ -121,6 +121,12 @@ def test_files_that_are_no_mesh(tmp_path):
     assert sorted(file.name for file in tmp_path.iterdir()) == ["own.msh", "own.toml", "own.vtu"]
 
 
+def test_a_file_whose_name_looks_like_an_option(tmp_path):
+    case_of(tmp_path, "-o.msh")
+    told = "own.toml: mesh.file: -o.msh: cannot be read: No such file"
+    refused("run", "own.toml", told=told, cwd=tmp_path)
+
+
 def test_a_set_that_the_file_lacks(tmp_path):
     shutil.copy(DATA / "block-4.1.msh", tmp_path)
     refused(
