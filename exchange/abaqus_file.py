@@ -96,16 +96,17 @@ class _Reader:
             rows = np.array(numbers, dtype=np.int64).reshape(-1, 9)
             self._add(Block(HEXAHEDRON, 3, rows[:, 0], rows[:, 1:]), options)
             return
-        dimension, element = 3 if VOLUME.match(kind) else 2, []
+        elements, alike = [[]], {}
         for place, fields in lines:
-            element += [_whole(place, field) for field in fields if field]
-            if fields[-1] or not element:  # a line that ends with a comma goes on
-                row = np.array([element], dtype=np.int64)
-                self._add(Block(kind, dimension, row[:, 0], row[:, 1:]), options)
-                element = []
-        if element:
-            row = np.array([element], dtype=np.int64)
-            self._add(Block(kind, dimension, row[:, 0], row[:, 1:]), options)
+            elements[-1] += [_whole(place, field) for field in fields if field]
+            if fields[-1]:  # a line that ends with a comma goes on
+                elements.append([])
+        for element in filter(None, elements):
+            alike.setdefault(len(element), []).append(element)
+        for rows in alike.values():
+            table = np.array(rows, dtype=np.int64)
+            dimension = 3 if VOLUME.match(kind) else 2
+            self._add(Block(kind, dimension, table[:, 0], table[:, 1:]), options)
 
     def _add(self, block, options):
         self.blocks.append(block)

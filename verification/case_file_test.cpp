@@ -384,6 +384,20 @@ TEST(CaseFile, inverted_elements_of_a_mesh_file_are_named) {
   EXPECT_TRUE(contains(text, "element 0: centre (0.5, 0.5, 0.5), det J = -0.125"));
 }
 
+TEST(CaseFile, empty_sets_of_a_mesh_file_move_nothing) {
+  const TemporaryFolder folder;
+  Scene scene = read_scene(folder.write("good.toml", good));
+  const std::string set = scene.description.displacements.front().set;
+  scene.sets.at(set).clear();
+  write_mesh_file(scene, folder / "mesh.h5");
+  auto text = with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"mesh.h5\"");
+  const auto sets_at = text.find("[sets]");
+  text.erase(sets_at, text.find("[[displacement]]") - sets_at);
+  const auto file = folder.write("bad.toml", text);
+  EXPECT_TRUE(contains(input_error([&] { read_scene(file); }),
+                       "displacement.set = '" + set + "' has no node in the mesh"));
+}
+
 /// A mesh written and read back with its sets is the same scene.
 TEST(CaseFile, mesh_file_gives_the_same_scene) {
   const TemporaryFolder folder;

@@ -54,6 +54,7 @@ def test_the_same_mesh_however_written(tmp_path, capsys, text):
         ),
         ("*ELSET, ELSET=low\n1\n*NSET, NSET=Foot, ELSET=low\n", {"low": FIRST, "Foot": FIRST}),
         ("*ELSET, ELSET=both\n1\n*NSET, NSET=both\n12\n", {"both": [11]}),
+        ("*ELSET, ELSET=BOTH\n1\n*NSET, NSET=both\n12\n", {"both": [11]}),
         ("*ELEMENT, TYPE=S4, ELSET=skin\n9, 1, 2, 3, 4\n", {"skin": [0, 1, 2, 3]}),
         ("*ELEMENT, TYPE=S8R, ELSET=skin\n9, 1, 2, 3, 4,\n5, 6, 7, 8\n", {"skin": FIRST}),
         ("*NSET, NSET=Foot, INSTANCE=a\n1\n*SURFACE, NAME=s\nFoot, S1\n", {"Foot": [0]}),

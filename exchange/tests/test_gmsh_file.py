@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from meshes import DATA, Refused, read, run
 
-FORMS = ("2.2", "2.2-binary", "4.1", "4.1-binary")
+FORMS = ("2.2", "2.2-binary", "4.1", "4.1-binary", "4.1-parametric")
 SIDES = np.array([0.1, 0.1, 0.2])
 
 # Which nodes of block.geo a group has, by their places; "head plate" is named with a minus sign,
@@ -20,6 +20,12 @@ GROUPS = {
 }
 
 
+def expected_sets(points):
+    """The groups of block.geo, by the places of its nodes."""
+    rounded = points.round(12)
+    return {name: np.flatnonzero(rule(rounded)).tolist() for name, rule in GROUPS.items()}
+
+
 @pytest.mark.parametrize("form", FORMS)
 def test_mesh_and_groups(tmp_path, capsys, form):
     path = tmp_path / "block.msh"
@@ -31,9 +37,7 @@ def test_mesh_and_groups(tmp_path, capsys, form):
     edges = points[cells[:, [1, 3, 4]]] - points[cells[:, [0]]]
     assert np.allclose(np.linalg.det(edges), SIDES.prod() / 12, rtol=1e-12)
     assert np.allclose(points[cells[:, 6]] - points[cells[:, 0]], edges.sum(axis=1), atol=1e-15)
-    rounded = points.round(12)
-    expected = {name: np.flatnonzero(rule(rounded)).tolist() for name, rule in GROUPS.items()}
-    assert sets == expected
+    assert sets == expected_sets(points)
     assert [len(sets[name]) for name in GROUPS] == [9, 9, 3, 1, 36, 36, 12]
 
 
@@ -80,7 +84,7 @@ def test_damage_is_named(tmp_path, capsys, form, old, new, told):
 def test_node_without_element_is_left_out(tmp_path, capsys):
     path = edited(tmp_path, "2.2", (b"$Nodes\n36\n", b"$Nodes\n37\n4000000000 7 7 7\n"))
     points, _, sets, warnings = read(capsys, path)
-    assert len(points) == 36 and len(sets["all"]) == 36
+    assert len(points) == 36 and sets == expected_sets(points)
     assert "1 node of no hexahedron left out, as they have no mass: 4000000000" in warnings
 
 

@@ -82,6 +82,14 @@ def test_elements_over_each_other_are_refused(tmp_path, capsys):
             read(capsys, write(tmp_path / "a.vtu", cells=cells))
 
 
+def test_a_third_element_on_a_face_is_refused(tmp_path, capsys):
+    """It lies on the other side than the second, so that only their number tells."""
+    points = np.vstack([POINTS, POINTS[:4] - [0, 0, 1]])
+    cells = [*CELLS, [12, 13, 14, 15, 4, 5, 6, 7]]
+    with pytest.raises(Refused, match="or share it with a third"):
+        read(capsys, write(tmp_path / "a.vtu", points, cells))
+
+
 def test_nodes_at_one_place_are_told(tmp_path, capsys):
     points = np.vstack([POINTS, POINTS[4:8]])
     cells = [CELLS[0], [12, 13, 14, 15, 8, 9, 10, 11]]

@@ -121,6 +121,12 @@ def test_files_that_are_no_mesh(tmp_path):
     assert sorted(file.name for file in tmp_path.iterdir()) == ["own.msh", "own.toml", "own.vtu"]
 
 
+def test_a_file_whose_name_looks_like_an_option(tmp_path):
+    case_of(tmp_path, "-o.msh")
+    told = "own.toml: mesh.file: -o.msh: cannot be read: No such file"
+    refused("run", "own.toml", told=told, cwd=tmp_path)
+
+
 def test_a_set_that_the_file_lacks(tmp_path):
     shutil.copy(DATA / "block-4.1.msh", tmp_path)
     refused(
@@ -229,6 +235,27 @@ def test_a_deck_says_what_the_case_says(block):
     # Of a load that is the same everywhere: a sixteenth and an eighth of it at the nodes of an end.
     assert {axis for _, axis, _ in forces} == {"2"} and len(forces) == 15
     assert abs(sum(float(force) for _, _, force in forces) - 0.5) < 1e-15
+
+
+def test_a_deck_ends_where_a_rotation_ends(block):
+    turned = (
+        '[[rotation]]\nset = "head"\naxis = "z"\nangle = 90.0\ndisplacement = [0.0, 0.0, 0.01]\n'
+    )
+    text = BLOCK[: BLOCK.rindex("[[displacement]]")] + turned
+    block.write_text(text)
+    succeeds("mesh", block, "--deck", "-o", block.parent / "a.inp")
+    lines = (block.parent / "a.inp").read_text().splitlines()
+    points = [line.split(", ")[1:] for line in lines[3:48]]
+    boundary = lines[
+        lines.index("*BOUNDARY") + 1 : lines.index(next(n for n in lines if "FILE" in n))
+    ]
+    u = np.full((45, 3), np.nan)
+    for node, axis, _, value in (line.split(", ") for line in boundary):
+        u[int(node) - 1, int(axis) - 1] = float(value)
+    x, y, z = np.array(points, dtype=float).T
+    exact = np.stack([(0.05 - y) + (0.05 - x), (x - 0.05) + (0.05 - y), 0 * z + 0.01], axis=1)
+    assert (u[z == 0] == 0).all() and np.isnan(u[(z > 0) & (z < 0.2)]).all()
+    assert np.allclose(u[z == 0.2], exact[z == 0.2], rtol=0, atol=1e-16)
 
 
 # Scores.

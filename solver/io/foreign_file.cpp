@@ -117,6 +117,11 @@ void convert(std::vector<std::string> arguments, const fs::path& path) {
                                          : fmt::format("convert.py ended with {}", WEXITSTATUS(status))));
 }
 
+/// A path of the user as an argument that is no option.
+std::string argument(const fs::path& path) {
+  return path.string().starts_with('-') ? "./" + path.string() : path.string();
+}
+
 /// What a deck says beside the mesh: /problem/imposed (node, component, final value in m), /problem/forces
 /// (node and three components in N), attributes law and material.NAME.
 void write_problem(const Scene& scene, Hdf5File& file) {
@@ -158,7 +163,7 @@ bool is_foreign_mesh(const fs::path& path) {
 MeshWithSets read_foreign_mesh(const fs::path& path) {
   const TemporaryFolder folder;
   const fs::path converted = folder / "mesh.h5";
-  convert({"mesh", path.string(), converted.string()}, path);
+  convert({"mesh", argument(path), converted.string()}, path);
   return read_mesh_file(converted);
 }
 
@@ -185,8 +190,8 @@ NodalField read_foreign_displacement(const fs::path& path, const Scene& scene, c
   const TemporaryFolder folder;
   const fs::path mesh = folder / "mesh.h5", matched = folder / "displacement.h5";
   write_mesh_file(scene, mesh);
-  std::vector<std::string> arguments{"displacement",   path.string(), mesh.string(),
-                                     matched.string(), "--tolerance", fmt::to_string(matching.tolerance)};
+  std::vector<std::string> arguments{"displacement",   argument(path), mesh.string(),
+                                     matched.string(), "--tolerance",  fmt::to_string(matching.tolerance)};
   if (!matching.field.empty()) arguments.push_back("--field=" + matching.field);
   convert(std::move(arguments), path);
   return read_nodal_field(Hdf5File::open(matched), "/displacement", scene.mesh.points.size());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -75,6 +76,14 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   for (std::size_t k = 0; k < cells.entries.size(); ++k) {
     require_node(file, "/mesh/cells", cells.entries[k], n_nodes);
     result.mesh.cells[k / 8][k % 8] = static_cast<int>(cells.entries[k]);
+  }
+  std::vector<bool> used(n_nodes, false);
+  for (const auto node : cells.entries) used[static_cast<std::size_t>(node)] = true;
+  if (const auto unused = std::find(used.begin(), used.end(), false); unused != used.end()) {
+    throw InputError(
+        fmt::format("{}: node {} of /mesh/points belongs to no element, as do {} in all; they have "
+                    "no mass and must be left out",
+                    path.string(), unused - used.begin(), std::count(used.begin(), used.end(), false)));
   }
   for (const auto& name : file.names_in("/mesh/sets")) {
     const std::string dataset = "/mesh/sets/" + name;

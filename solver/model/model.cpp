@@ -31,6 +31,10 @@ const std::vector<int>& find_set(const Case& scene, const NodeSets& sets, const 
     throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}", scene.file.string(), key,
                                  name, suggestion(name, names(sets))));
   }
+  if (found->second.empty()) {
+    throw InputError(fmt::format("{}: {} = '{}' has no node in the mesh; a set needs at least one",
+                                 scene.file.string(), key, name));
+  }
   return found->second;
 }
 

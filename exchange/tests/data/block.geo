@@ -1,5 +1,6 @@
 // A block of 2 x 2 x 3 hexahedra with groups of every kind. The other files of this folder were made of it:
 //   gmsh -3 block.geo -format msh22 (or msh41; with -bin the binary ones) -o FILE
+//   gmsh -3 block.geo -format msh41 -setnumber Mesh.SaveParametric 1 -o block-4.1-parametric.msh
 //   gmsh -3 block.geo -format inp -o block.inp
 Point(1) = {0, 0, 0};
 Point(2) = {0.1, 0, 0};
