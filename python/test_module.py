@@ -63,7 +63,7 @@ def test_moved_by_hand_it_goes_as_the_program(case, tmp_path, precision, limit):
     assert np.array_equal(body.points, points)
     assert body.time == pytest.approx(0.2, rel=1e-13)
     assert np.abs(body.displacements[body.rows] - expected).max() < limit
-    assert np.abs(expected).max() > 0.02
+    assert np.abs(expected).max() > 0.019
 
 
 def test_displacements_are_a_view_of_the_present(body):
@@ -77,20 +77,21 @@ def test_displacements_are_a_view_of_the_present(body):
     assert body.displacements.__array_interface__["data"][0] == address
 
 
-def test_views_keep_their_simulation_alive(case):
+def test_views_keep_their_simulation_alive_and_nothing_else_does(case):
     body = sandglass.Simulation(case)
     body.move("head", END)
     body.advance(0.05)
-    gone = weakref.ref(body) if hasattr(body, "__weakref__") else None
-    u, rows, points = body.displacements, body.rows, body.points
+    alive = weakref.ref(body)
+    u, rows = body.displacements, body.rows
     before = u.copy()
-    assert u.base is body and points.base is body
+    assert u.base is body
     del body
     gc.collect()
     others = [sandglass.Simulation(case) for _ in range(20)]  # would take freed memory
     assert np.array_equal(u, before) and sorted(rows) == list(range(45))
-    assert gone is None or gone() is not None
-    assert len(others) == 20
+    assert alive() is not None
+    del u, rows
+    assert alive() is None and len(others) == 20
 
 
 @pytest.mark.parametrize("name", ["displacements", "rows", "points", "cells"])
@@ -147,14 +148,15 @@ def test_a_copy_is_a_snapshot(body):
     assert snapshot.displacements.base is snapshot
 
 
-def test_impose_follows_the_case(body):
+def test_impose_follows_the_case(case):
+    body = sandglass.Simulation(case, damping=20.0)
     other = body.copy()
     body.move("head", 0.5 * END)
     other.impose(0.5)
     for each in (body, other):
-        each.advance(0.05)
+        each.advance(2.0)
     assert np.array_equal(other.displacements, body.displacements)
-    assert other.reaction("head")[2] > 0
+    assert other.reaction("head")[2] > 0.1  # it is pulled, and at rest
     assert np.allclose(other.reaction("head"), body.reaction("head"), rtol=1e-12)
 
 
@@ -176,8 +178,8 @@ def test_errors_are_exceptions_with_the_solvers_words(case, body):
     with pytest.raises(TypeError):
         body.move("head", "far")
     body.move("head", [0, 0, -0.25])
-    with pytest.raises(sandglass.ComputationError, match="inverted"):
-        body.advance(0.25)
+    with pytest.raises(sandglass.ComputationError, match="det F must be positive"):
+        body.advance(0.1)
 
 
 def test_other_threads_run_while_it_steps_and_cannot_step_it_too(body):

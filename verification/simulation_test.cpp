@@ -64,12 +64,13 @@ double smooth(double t) {
 /// carry that on. Another mistake shows in the first digits.
 constexpr double roundoff = 200.0 * 200.0 * 3.5e-18;  // m
 
-class MotionTest : public ::testing::TestWithParam<std::string> {};
+class MotionTest : public ::testing::TestWithParam<SimulationSettings> {};
 
 TEST_P(MotionTest, moved_by_hand_it_goes_as_the_dynamic_run) {
-  const MethodChoice choice{.method = GetParam()};
-  const Motion motion = motion_of(text_of(pulled), choice);
-  Simulation<double> simulation(block(), text_of(pulled), {.method = GetParam()});
+  const SimulationSettings& settings = GetParam();
+  const std::string text = text_of(pulled) + "check_interval = 5\n";  // levels change at every tenth check
+  const Motion motion = motion_of(text, {.method = *settings.method, .kappa = settings.kappa, .threads = 2});
+  Simulation<double> simulation(block(), text, settings);
   ASSERT_LT(step, simulation.step_size());
   for (int n = 1; n <= steps; ++n) {
     const double share = smooth(n * step / 0.2);
@@ -81,12 +82,10 @@ TEST_P(MotionTest, moved_by_hand_it_goes_as_the_dynamic_run) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, MotionTest,
-                         ::testing::Values("tl-perturbation", "tl-adaptive", "ul-perturbation"),
-                         [](const auto& method) {
-                           std::string name = method.param;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         ::testing::Values(SimulationSettings{.method = "tl-perturbation"},
+                                           SimulationSettings{.method = "tl-perturbation", .kappa = 0.5},
+                                           SimulationSettings{.method = "tl-adaptive"},
+                                           SimulationSettings{.method = "ul-perturbation"}));
 
 TEST(Simulation, follows_what_the_case_imposes_turning_sets_and_forces_too) {
   const std::string turned =
@@ -128,6 +127,33 @@ TEST(Simulation, a_frame_of_many_steps_moves_driven_nodes_straight) {
   EXPECT_LT(largest_distance(field_of(frame), field_of(by_steps)), roundoff);
   const auto head = frame.nodes("head");
   EXPECT_EQ(field_of(frame)[index(head[0])], (Vector{0.0, 0.0, 0.016}));
+}
+
+TEST(Simulation, forces_grow_straight_too) {
+  const std::string pushed =
+      "[sets.side]\nx = [0.1, 0.1]\n[[force]]\nset = \"side\"\ntotal = [0.05, 0.0, 0.0]\n";
+  Simulation<double> frame(block(), text_of(pulled + pushed)), by_steps(frame);
+  constexpr int n = 8;  // two frames end before steps are chosen anew
+  const double size = frame.step_size();
+  for (const double before : {0.0, 0.5}) {
+    frame.impose(before + 0.5);
+    frame.advance(n * size);
+    for (int k = 1; k <= n; ++k) {
+      by_steps.impose(before + 0.5 * k / n);
+      by_steps.advance(size);
+    }
+    EXPECT_LT(largest_distance(field_of(frame), field_of(by_steps)), roundoff);
+  }
+}
+
+TEST(Simulation, steps_shorten_as_the_body_stiffens) {
+  Simulation<double> simulation(block(), text_of(pulled), {.damping = 15.0});
+  const double at_rest = simulation.step_size();
+  simulation.move("head", {0.0, 0.0, -0.1});
+  simulation.advance(1.0);
+  // Pressed to half its height, the block is half as far from face to face, and wider.
+  EXPECT_LT(simulation.step_size(), 0.7 * at_rest);
+  EXPECT_GT(simulation.step_size(), 0.2 * at_rest);
 }
 
 TEST(Simulation, no_frame_is_too_long_for_a_stable_motion) {

@@ -95,7 +95,8 @@ class Simulation<Real>::Parts {
         step_fraction_(settings.step_fraction),
         from_(scene().constraints.size(), 0.0),
         to_(from_),
-        imposed_(from_) {
+        imposed_(from_),
+        terms_(scene().angles.size()) {
     choose_step();
     leapfrog_.body().evaluate_forces();
     leapfrog_.set_initial_velocities(scene().initial_velocities);
@@ -125,10 +126,11 @@ class Simulation<Real>::Parts {
   void impose(double factor) {
     require_in_range("factor", factor, Range::any());
     factor_to_ = factor;
+    for (std::size_t m = 0; m < terms_.size(); ++m) terms_[m] = path_terms(scene().angles[m], factor);
     const auto& constraints = scene().constraints;
     for (std::size_t k = 0; k < to_.size(); ++k) {
       const ImposedPath& path = constraints[k].path;
-      to_[k] = path.along(path_terms(scene().angles[path.angle], factor));
+      to_[k] = path.along(terms_[path.angle]);
     }
   }
 
@@ -149,10 +151,13 @@ class Simulation<Real>::Parts {
  private:
   /// A step that ends where a share of the way from `from_` to `to_` is gone.
   void take(double step, double share) {
-    const double rest = 1.0 - share;  // zero at the end, where the sum is exact
-    for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
+    const double rest = 1.0 - share;
+    if (rest > 0.0) {
+      for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
+    }
+    const std::span<const double> imposed = rest > 0.0 ? imposed_ : to_;
     const double factor = share * factor_to_ + rest * factor_from_;
-    leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor); });
+    leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed, factor); });
     if (leapfrog_.step() % scene().description.dynamics.check_interval == 0) check();
   }
 
@@ -175,6 +180,7 @@ class Simulation<Real>::Parts {
   double step_size_ = 0.0;
   Judgements judgements_;
   std::vector<double> from_, to_, imposed_;  // m, in the order of the scene's constraints
+  std::vector<PathTerms> terms_;             // of paths of each angle
   double factor_from_ = 0.0, factor_to_ = 0.0;
 };
 
