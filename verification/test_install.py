@@ -123,6 +123,23 @@ def test_the_installed_program_has_its_cases(prefix, tmp_path):
     assert (moved / "share/sandglass/reference/golden/column.h5").exists()
 
 
+def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
+    """By its own copy of exchange/, not by that of the source."""
+    moved = shutil.copytree(prefix, tmp_path / "elsewhere")
+    program = moved / "bin" / "sandglass"
+    run(program, "mesh", "column", "-o", tmp_path / "column.vtu", cwd=tmp_path)
+    assert (tmp_path / "column.vtu").stat().st_size > 1000
+    converter = moved / "share/sandglass/exchange/convert.py"
+    converter.write_text("import sys\nsys.exit(print('the copy', file=sys.stderr) or 2)\n")
+    done = subprocess.run(
+        [program, "mesh", "column", "-o", tmp_path / "again.vtu"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2 and "the copy" in done.stderr
+
+
 def test_other_versions_are_refused(tmp_path):
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.25)\nproject(later LANGUAGES CXX)\n"
