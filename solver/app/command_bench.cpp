@@ -111,7 +111,7 @@ int run_bench(const BenchOptions& options) {
 /// one point and with eight.
 std::vector<MethodChoice> rest_variants(BenchOptions options) {
   if (options.methods.empty())
-    options.methods = {std::string(TlPerturbation::name), std::string(TlMeanDilatation::name)};
+    options.methods = {"tl-perturbation", std::string(golden_method)};
   if (options.threads.empty()) options.threads = {1};
   auto variants = variants_of(make_plan(options));
   std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });

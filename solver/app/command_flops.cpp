@@ -5,6 +5,7 @@
 
 #include "app/commands.hpp"
 #include "app/machine.hpp"
+#include "element/operation_count.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "material/laws.hpp"

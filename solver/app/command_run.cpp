@@ -151,7 +151,7 @@ void print_estimate(const Model& model, const NodalField& u) {
   fmt::print(
       "estimated error against {}: max {:.4g} %, rms {:.4g} % of the {} displacement, after {} "
       "evaluations\n",
-      TlMeanDilatation::name, 100.0 * estimate.largest / unit, 100.0 * estimate.rms / unit,
+      golden_method, 100.0 * estimate.largest / unit, 100.0 * estimate.rms / unit,
       largest_imposed(model.scene()) > 0.0 ? "imposed" : "largest", estimate.evaluations);
 }
 
