@@ -119,6 +119,7 @@ def _of_verdicts(inputs, palette):
         "gallery": {subject.name: bodies.gallery_panel(subject) for subject in subjects},
         "speed": {s.name: speed.speed_panels(s, palette, costs) for s in subjects},
         "kappa": {s.name: kappa.kappa_panels(s, palette) for s in subjects},
+        "kappa_methods": dict.fromkeys(run.method for run in verdicts.runs if not run.is_main),
         "tip_tables": tips.tip_tables(verdicts.tips),
         "viewer": viewer.viewer_data(subjects),
         "paper_method": paper.METHOD,
