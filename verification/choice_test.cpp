@@ -81,7 +81,7 @@ TEST(Ladder, has_every_method) {
 
 /// An adaptive method stands on several rungs, on both sides of what the user asks for.
 TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
-  const auto choices = choices_of<TlAdaptive>({"tl-adaptive"}, NeoHookean{}, 0.01);
+  const auto choices = choices_of(method_named("tl-adaptive"), {"tl-adaptive"}, NeoHookean{}, 0.01);
   ASSERT_GE(choices.size(), 3u);
   EXPECT_GT(choices.front().accuracy, 0.01);
   EXPECT_LT(choices.back().accuracy, 0.01);

@@ -4,6 +4,7 @@
 
 #include "comparison/verdict_json.hpp"
 #include "io/case_file.hpp"
+#include "model/method_entry.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,9 +1,7 @@
 #pragma once
 
-#include "element/hourglass_none.hpp"
-#include "element/method_traits.hpp"
 #include "element/operation_count.hpp"
-#include "model/method_entry.hpp"
+#include "model/method_facts.hpp"
 
 /// The definition of `method_entry`, for the source file of each method; see CMakeLists.txt.
 namespace sandglass {
@@ -47,24 +45,14 @@ Traffic traffic_with(const AnyLaw& any_law) {
 
 template <class Method>
 MethodEntry method_entry() {
-  using Hourglass = typename Method::Hourglass;
-  return {
-      .name = Method::name,
-      .summary = Method::summary,
-      .integration_points = Method::integration_points,
-      .controls_hourglass = Method::integration_points > 1 || !std::is_same_v<Hourglass, NoHourglassControl>,
-      .damps_only = DampsOnly<Hourglass>,
-      .takes_kappa = Hourglass::takes_kappa,
-      .kappa_matters_at_rest = kappa_matters_at_rest<Method>,
-      .is_linear = is_linear<Method>,
-      .is_condensed = is_condensed<Method>,
-      .levels = level_names<Method>(),
-      .assemble_packed_double = &assemble<Method, Pack<double>>,
-      .assemble_packed_float = &assemble<Method, Pack<float>>,
-      .assemble_scalar_double = &assemble<Method, double>,
-      .auto_kappa = &detail::auto_kappa_of<Method>,
-      .operations = &detail::operations_of<Method>,
-      .traffic = &detail::traffic_with<Method>};
+  MethodEntry entry = method_facts<Method>();
+  entry.assemble_packed_double = &assemble<Method, Pack<double>>;
+  entry.assemble_packed_float = &assemble<Method, Pack<float>>;
+  entry.assemble_scalar_double = &assemble<Method, double>;
+  entry.auto_kappa = &detail::auto_kappa_of<Method>;
+  entry.operations = &detail::operations_of<Method>;
+  entry.traffic = &detail::traffic_with<Method>;
+  return entry;
 }
 
 }  // namespace sandglass

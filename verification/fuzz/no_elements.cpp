@@ -1,9 +1,11 @@
 /// Readers make scenes and never compute. The kernels, minutes of compilation, stay out of the fuzzers; these
 /// are the names that the linker still asks for.
 
+#include <array>
 #include <stdexcept>
 
-#include "model/internal_force.hpp"
+#include "element/methods.hpp"
+#include "model/method_facts.hpp"
 
 namespace sandglass {
 
@@ -34,5 +36,22 @@ template NodalField to_field(const Rows<double>&, const Layout&);
 template NodalField to_field(const Rows<float>&, const Layout&);
 template State<double> state_at(const InternalForce<double>&, const NodalField&);
 template State<float> state_at(const InternalForce<float>&, const NodalField&);
+
+template <class Method>
+MethodEntry method_entry() {
+  return method_facts<Method>();
+}
+
+namespace {
+
+/// Makes the compiler emit all entries, which the list is made of.
+template <class... Method>
+auto entries_of(TypeList<Method...> /*methods*/) {
+  return std::array{&method_entry<Method>...};
+}
+
+[[gnu::used]] const auto entries = entries_of(Methods{});
+
+}  // namespace
 
 }  // namespace sandglass

@@ -5,6 +5,7 @@
 
 #include "element/methods.hpp"
 #include "model/assemble.hpp"
+#include "model/method_facts.hpp"
 
 namespace sandglass {
 
@@ -31,10 +32,9 @@ ForceOf<Pack<double>> few(const Mesh& mesh, const AnyLaw& any_law, const Hourgla
 
 template <class Method>
 MethodEntry method_entry() {
-  return {.name = Method::name,
-          .is_condensed = is_condensed<Method>,
-          .levels = level_names<Method>(),
-          .assemble_packed_double = &few<Method>};
+  MethodEntry entry = method_facts<Method>();
+  entry.assemble_packed_double = &few<Method>;
+  return entry;
 }
 
 namespace {
