@@ -409,8 +409,10 @@ TEST(Adaptive, answers_rest_at_their_levels) {
 
 /// In motion elements only go up. Each that does brings the energy that it holds more at its new level, the
 /// work of a difference of forces that the accuracy keeps small. A beam that is bent and let vibrate for many
-/// periods, until most of its elements have gone up, gains 8 times the accuracy of the work put into it, 4.6
-/// times with finer elements; were elements to go down again, it would gain without end.
+/// periods, until most of its elements have gone up, gains 10 times the accuracy of the work put into it;
+/// were elements to go down again, it would gain without end. The history tells that gain: what is left is
+/// that of a fixed method, whose energy swings by the square of the step, and half a step's change of
+/// velocities where forces change at once, 2.7 times as much together.
 TEST(Adaptive, motion_keeps_its_energy) {
   Case description = plain_case(law());
   const Mesh mesh = box({0.02, 0.02, 0.1}, {3, 3, 12});
@@ -426,8 +428,8 @@ TEST(Adaptive, motion_keeps_its_energy) {
   for (const double accuracy : {0.01, 0.003}) {
     FrameRecorder told;
     integrate(Model(scene, {.method = "tl-adaptive", .accuracy = accuracy}), told);
-    EXPECT_LT(told.imbalance / told.work, fixed.imbalance / fixed.work + 10.0 * accuracy) << accuracy;
-    EXPECT_LT(told.unexplained / told.work, 2.0 * fixed.imbalance / fixed.work) << accuracy;
+    EXPECT_LT(told.imbalance / told.work, fixed.imbalance / fixed.work + 12.0 * accuracy) << accuracy;
+    EXPECT_LT(told.unexplained / told.work, 4.0 * fixed.imbalance / fixed.work) << accuracy;
     RecordProperty("unexplained over work, accuracy " + std::to_string(accuracy),
                    std::to_string(told.unexplained / told.work));
     RecordProperty("imbalance over work, accuracy " + std::to_string(accuracy),

@@ -102,7 +102,7 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
 
   const std::vector<std::pair<std::string, std::string>> columns{
       {"time", "ramp"},       {"kinetic_energy", "J"}, {"strain_energy", "J"}, {"hourglass_energy", "J"},
-      {"external_work", "J"}, {"residual", "-"},       {"step_size", "ramp"}};
+      {"external_work", "J"}, {"residual", "-"},       {"step_size", "ramp"},  {"adaption_energy", "J"}};
   EXPECT_EQ(file.names_in("/history").size(), columns.size());
   for (const auto& [name, unit] : columns) {
     EXPECT_EQ(file.read_doubles("/history/" + name).shape, std::vector<std::size_t>{rows}) << name;

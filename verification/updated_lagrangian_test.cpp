@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "model/method_entry.hpp"
 #include "stepping/relaxation.hpp"
 #include "support/derivatives.hpp"
 #include "support/eigenvalues.hpp"

@@ -164,7 +164,9 @@ class Simulation<Real>::Parts {
   void check() {
     leapfrog_.body().require_healthy(leapfrog_.step());
     if (adaption_.active() && judgements_.due()) {
-      judgements_.done(adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0);
+      const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
+      if (rose) leapfrog_.body().evaluate_forces();
+      judgements_.done(rose);
     }
     choose_step();
   }

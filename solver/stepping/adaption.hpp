@@ -10,16 +10,16 @@ namespace sandglass {
 /// way), or, so that a motion does not send them up and down, where half as much would do.
 enum class Demotion { never, where_enough, reluctant };
 
-/// When levels are chosen anew in a motion, counted in checks. To judge them costs about ten steps: as long
-/// as elements rise they are judged often, and ever more seldom while none does. Elements only go up: in
-/// every vibration one that goes down where its hourglass modes pass through zero, and up again where they
-/// are wide, would take energy from nowhere.
+/// When levels are chosen anew in a motion, counted in checks. To judge them costs about ten steps: often
+/// while elements rise, ever more seldom while none does. Elements only go up: in every vibration one that
+/// goes down where its hourglass modes pass through zero, and up again where they are wide, would take energy
+/// from nowhere.
 class Judgements {
  public:
   bool due() { return ++checks_ >= next_; }
 
   void done(bool rose) {
-    wait_ = rose ? shortest : std::min(2 * wait_, longest);
+    wait_ = rose ? std::max(wait_ / 2, shortest) : std::min(2 * wait_, longest);
     next_ = checks_ + wait_;
   }
 
