@@ -32,10 +32,13 @@ def arguments(given):
     add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")
     add("--baseline", type=Path, default="ci/baseline.json", help="default: %(default)s")
     add(
-        "--verdicts", metavar="FILE", nargs="+", help="of sandglass verify --json, instead of a run"
+        "--verdicts",
+        metavar="FILE",
+        action="append",
+        help="of sandglass verify --json, instead of a run",
     )
-    add("--flops", metavar="FILE", nargs="+", help="of sandglass flops --json")
-    add("--bits", metavar="FILE", nargs="+", help="bits.json of an earlier run")
+    add("--flops", metavar="FILE", action="append", help="of sandglass flops --json")
+    add("--bits", metavar="FILE", action="append", help="bits.json of an earlier run")
     add("--bench", metavar="FILE", nargs="+", help="of processes of sandglass bench --json")
     add(
         "--most", type=int, default=32, help="processes of bench when few cannot tell (%(default)s)"
