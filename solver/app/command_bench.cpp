@@ -110,8 +110,7 @@ int run_bench(const BenchOptions& options) {
 /// The variants that --rest times: packs only, and by default one thread and the two methods to compare, with
 /// one point and with eight.
 std::vector<MethodChoice> rest_variants(BenchOptions options) {
-  if (options.methods.empty())
-    options.methods = {"tl-perturbation", std::string(golden_method)};
+  if (options.methods.empty()) options.methods = {"tl-perturbation", std::string(golden_method)};
   if (options.threads.empty()) options.threads = {1};
   auto variants = variants_of(make_plan(options));
   std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });

@@ -11,12 +11,12 @@
 #include "base/error.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
-#include "model/method_entry.hpp"
 #include "io/case_file.hpp"
 #include "io/foreign_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
+#include "model/method_entry.hpp"
 #include "stability/answer.hpp"
 #include "stepping/body.hpp"
 
