@@ -9,7 +9,7 @@ from .records import OF_MACHINE
 # One build repeats its errors to the bit; another compiler or instruction set rounds otherwise, and
 # the search for rest ends elsewhere. README.md tells how far that was seen to move errors.
 RELATIVE = 1e-3
-FLOOR = {"double": 2e-6, "float": 1e-4}  # fractions of the largest imposed displacement
+FLOOR = {"double": 2e-7, "float": 1e-4}  # fractions of the largest imposed displacement
 SPEED_LIMIT = 0.01  # so far an interval may lie above that of the baseline
 
 SAME, BETTER, WORSE, BROKEN, VANISHED, NEW, NOISY, UNGATED = (
