@@ -202,10 +202,13 @@ template <class Real>
 Simulation<Real>::Simulation(Simulation&& other) noexcept = default;
 
 template <class Real>
-Simulation<Real>& Simulation<Real>::operator=(Simulation other) noexcept {
-  parts_.swap(other.parts_);
+Simulation<Real>& Simulation<Real>::operator=(const Simulation& other) {
+  parts_ = std::make_unique<Parts>(*other.parts_);
   return *this;
 }
+
+template <class Real>
+Simulation<Real>& Simulation<Real>::operator=(Simulation&& other) noexcept = default;
 
 template <class Real>
 Simulation<Real>::~Simulation() = default;

@@ -63,7 +63,8 @@ class Simulation {
 
   Simulation(const Simulation& other);
   Simulation(Simulation&& other) noexcept;
-  Simulation& operator=(Simulation other) noexcept;
+  Simulation& operator=(const Simulation& other);
+  Simulation& operator=(Simulation&& other) noexcept;
   ~Simulation();
 
   /// Where the driven nodes of a set shall be when the next `advance` ends: `displacement` (m) for all of
