@@ -64,8 +64,12 @@ def why_empty(subject, reference):
 
 def solver_methods(header=METHODS_HEADER):
     """Names of the solver's methods in the order of its list, as the verdicts have them."""
-    text = Path(header).read_text(encoding="utf-8")
-    names = dict(re.findall(r'struct (\w+) \{[^}]*?\bname = "([^"]+)"', text))
+    header = Path(header)
+    text = header.read_text(encoding="utf-8")
+    each = "".join(
+        file.read_text(encoding="utf-8") for file in header.with_suffix("").glob("*.hpp")
+    )
+    names = dict(re.findall(r'struct (\w+) \{[^}]*?\bname = "([^"]+)"', each))
     listed = re.search(r"using Methods = TypeList<([^>]*)>", text)[1]
     return tuple(names[word] for word in re.findall(r"\w+", listed))
 
