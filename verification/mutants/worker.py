@@ -24,7 +24,8 @@ SHORTEST_LIMIT = 120  # s
 # Folders of Python tests, with the folders whose modules they use; SOLVER is the built program.
 SOLVER = "solver"
 PYTHON_FOLDERS = {
-    "bench": ("bench", "reference", SOLVER),
+    "bench": ("bench", "exchange", "reference", SOLVER),
+    "exchange": ("exchange", SOLVER),
     "reference": ("reference", SOLVER),
     "reports": ("reports",),
     "verification": ("verification", SOLVER),
