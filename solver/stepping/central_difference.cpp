@@ -90,9 +90,9 @@ class CentralDifference {
   }
 
   /// New levels for the elements, which from now on pull with the forces of these: the energy that they store
-  /// more where they stand is none that anything did work for. Returns whether there were any.
-  bool adapt(Adaption<Real>& adaption) {
-    const StrainEnergies before = body_.energies();
+  /// more where they stand is none that anything did work for. `before` are the energies as they stand.
+  /// Returns whether there were any.
+  bool adapt(Adaption<Real>& adaption, const StrainEnergies& before) {
     if (adaption.apply(body_, Demotion::never).promoted == 0) return false;
     body_.evaluate_forces();
     const StrainEnergies now = body_.energies();
@@ -180,13 +180,14 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   Judgements judgements;
   Motion motion;
   int frames = 0;
+  StrainEnergies energies;  // of the last report
 
   const auto frame_due = [&] {
     return scheme.finished() || scheme.time() >= frames * settings.duration / settings.frames;
   };
   const auto report = [&] {
     NodalField v = scheme.velocities();
-    const StrainEnergies energies = body.energies();
+    energies = body.energies();
     observer.history({scheme.time(), 0.5 * weighted_dot(model.masses(), v, v), energies.strain,
                       energies.hourglass, scheme.external_work(), body.residual(), scheme.step_size(),
                       scheme.adaption_energy()});
@@ -227,7 +228,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {
       body.require_healthy(scheme.step());
       report();
-      if (adaption.active() && judgements.due()) judgements.done(scheme.adapt(adaption));
+      if (adaption.active() && judgements.due()) judgements.done(scheme.adapt(adaption, energies));
       scheme.choose_step();
       observer.resumable(checkpoint);
     }
