@@ -37,8 +37,12 @@ class Browser:
         self._call("Emulation.setDeviceMetricsOverride", mobile=phone, **size)
 
     def open(self, path):
-        """Opens a file and waits until it is loaded."""
-        self._call("Page.navigate", url=f"file://{path}")
+        """Opens a file and waits until it is loaded: until then the page before it answers."""
+        loader = self._call("Page.navigate", url=f"file://{path}")["loaderId"]
+        end = time.monotonic() + PATIENCE
+        while self._call("Page.getFrameTree")["frameTree"]["frame"]["loaderId"] != loader:
+            assert time.monotonic() < end, f"{path} never came"
+            time.sleep(0.05)
         self.until("document.readyState === 'complete'")
 
     def run(self, expression):
