@@ -9,7 +9,7 @@ import re
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
 
 GENERATING = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM")

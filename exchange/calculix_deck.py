@@ -7,8 +7,8 @@ project, mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2, with C10 = mu / 2 and D1 = 2 / 
 
 import numpy as np
 
+from common.errors import InputError
 from exchange.abaqus_file import mesh_lines, number
-from exchange.errors import InputError
 
 # ccx cuts and stretches the increments by itself, so this only sets the speed: of 0.1, 0.25 and 1
 # it needs the fewest iterations on ellipsoid-indentation.

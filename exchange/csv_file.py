@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 
 # Spellings of a column, in lower case; those with a digit are ParaView's.
 POINTS = {axis: (axis, f"points:{i}", f"points_{i}") for i, axis in enumerate("xyz")}

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
 
 # Gmsh's number of an element type: name, dimension, nodes.

@@ -16,13 +16,17 @@ from pathlib import Path
 
 import numpy as np
 
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+
 import solve
-from accuracy import relative_errors
 from case_file import find_case, read_case
-from errors import DivergenceError, InputError
-from mesh_file import load_case_mesh
-from result_file import read_result, write_estimate
-from solver_binary import CASES, make_mesh
+from common.accuracy import relative_errors
+from common.command import exit_code
+from common.errors import InputError, suggestion
+from common.program import CASES
+from mesh_file import load_case_mesh, make_mesh
+from reference_file import read_reference, write_estimate
 from symmetry import halve
 
 FOLDER = Path(__file__).resolve().parent
@@ -84,7 +88,7 @@ def attributes_of(kind, fields, stored, unit, reason):
 
     kind: "golden" or "truth". fields: as for richardson(). stored: (n, 3), m, one of them.
     unit: m, of relative errors. reason: why there are no more fields, for the note.
-    Returns what result_file.write_estimate() takes.
+    Returns what reference_file.write_estimate() takes.
     """
     estimate = richardson(fields, ASSUMED_ORDER[kind])
     if estimate is None:
@@ -115,7 +119,7 @@ def fields_of(kind, name, displacement, refinements):
     """The displacements of a stored result's element on its mesh split 0, 1, 2, ... times.
 
     displacement: the stored one, on the mesh split `refinements` times. Returns (list of (n, 3),
-    m; why there are no more). Raises InputError or DivergenceError.
+    m; why there are no more). Raises InputError or ComputationError.
     """
     path = find_case(CASES, name)
     case = read_case(path, name)
@@ -138,13 +142,24 @@ def fields_of(kind, name, displacement, refinements):
 
 
 def estimate(kind, name):
-    """Estimate a stored result's own error and store it. Raises InputError or DivergenceError."""
+    """Estimate a stored result's own error and store it. Raises InputError or ComputationError."""
     path = FOLDER / kind / f"{name}.h5"
-    _, displacement, attributes = read_result(path)
+    _, displacement, attributes = read_reference(path)
     fields, reason = fields_of(kind, name, displacement, attributes["refinements"])
     found = attributes_of(kind, fields, displacement, attributes["largest_imposed"], reason)
     print(f"{kind} {name}: {100 * found['own_error_max']:.3g} %; {found['own_error_note']}")
     write_estimate(path, found)
+
+
+def run(options):
+    """Estimates what is asked for. Raises InputError or ComputationError."""
+    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
+    for kind in [options.kind] if options.kind else ASSUMED_ORDER:
+        stored = sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
+        for name in options.cases or stored:
+            if name not in stored:
+                raise InputError(f"CASE: '{name}' has no {kind}; {suggestion(name, stored)}")
+            estimate(kind, name)
 
 
 def main(arguments=None):
@@ -155,22 +170,7 @@ def main(arguments=None):
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all stored ones")
     parser.add_argument("--kind", choices=ASSUMED_ORDER, help="default: both")
-    parsed = parser.parse_args(arguments)
-    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
-    try:
-        for kind in [parsed.kind] if parsed.kind else ASSUMED_ORDER:
-            stored = sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
-            for name in parsed.cases or stored:
-                if name not in stored:
-                    raise InputError(f"CASE = {name!r}: allowed: {', '.join(stored)}")
-                estimate(kind, name)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except DivergenceError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 3
-    return 0
+    return exit_code(run, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

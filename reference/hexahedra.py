@@ -5,14 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Local vertices of a VTK hexahedron in the lexicographic order of FEniCSx (x fastest). The
-# permutation is its own inverse: it only swaps 2 with 3 and 6 with 7.
-VTK_TO_LEXICOGRAPHIC = np.array([0, 1, 3, 2, 4, 5, 7, 6])
-
-# The faces of a VTK hexahedron, vertices in a circle.
-FACES = np.array(
-    [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
-)
+from common.hexahedron import LEXICOGRAPHIC, boundary_faces
 
 
 @dataclass(frozen=True)
@@ -112,21 +105,6 @@ class HexMesh:
         return (np.linalg.norm(values, axis=1) + self.largest_turn()).max()
 
 
-def faces_of(cells):
-    """The faces (m, 6, 4) of VTK cells (m, 8), vertices in a circle."""
-    return cells[:, FACES]
-
-
-def faces_within(cells, nodes):
-    """The boundary faces (k, 4) of VTK cells (m, 8) whose vertices are all in nodes (n,) bool."""
-    faces = faces_of(cells).reshape(-1, 4)
-    _, first, count = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
-    boundary = faces[first[count == 1]]
-    return boundary[nodes[boundary].all(axis=1)]
-
-
 def traction(points, cells, nodes, total, moment):
     """The Traction whose sum is `total` (N) and whose moment about its centre is `moment` (N m).
 
@@ -134,7 +112,8 @@ def traction(points, cells, nodes, total, moment):
     centroid of the faces. Integrals by 2x2 Gauss points per face, as in solver/mesh/face_load.cpp.
     Returns None when no boundary face has all its vertices in nodes.
     """
-    corners = points[faces_within(cells, nodes)]  # (k, 4, 3)
+    faces = boundary_faces(cells)
+    corners = points[faces[nodes[faces].all(axis=1)]]  # (k, 4, 3)
     if not len(corners):
         return None
     signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
@@ -173,7 +152,7 @@ def refine(mesh):
     mesh: HexMesh. Returns a HexMesh with 8 m cells of the same trilinear geometry; the children of
     cell c are the cells 8 c to 8 c + 7.
     """
-    cells = mesh.cells[:, VTK_TO_LEXICOGRAPHIC]
+    cells = mesh.cells[:, LEXICOGRAPHIC]
     n_cells = len(cells)
     # The 27 points of a subdivided cell, and the vertices of which each is the mean: those that
     # agree with it in every direction in which it is not half-way.
@@ -203,7 +182,7 @@ def refine(mesh):
     for corner in corners:
         offsets = [np.add(corner, other) // 2 for other in corners]
         slots = [positions.index(tuple(offset)) for offset in offsets]
-        children.append(local_to_global[:, slots][:, VTK_TO_LEXICOGRAPHIC])
+        children.append(local_to_global[:, slots][:, LEXICOGRAPHIC])
 
     def extend_turn(turn):
         return turn and Turn(turn.angle, extend(turn.versine, np.mean), extend(turn.sine, np.mean))

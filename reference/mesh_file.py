@@ -1,12 +1,15 @@
-"""Reading the mesh file that `sandglass mesh CASE -o FILE` writes."""
+"""The mesh file that `sandglass mesh CASE -o FILE` writes: having it made, and reading it."""
 
 import dataclasses
 from dataclasses import dataclass
+from pathlib import Path
 
 import h5py
 import numpy as np
 
-from errors import InputError
+from common.errors import InputError
+from common.program import ROOT, binary, output_of
+from common.result_file import text_of
 from hexahedra import Condition, HexMesh, traction, turn_about
 
 
@@ -20,6 +23,17 @@ class MeshFile:
     case: str
     case_hash: str
     mesh_hash: str
+
+
+def make_mesh(case_path, output, name=None):
+    """Runs `sandglass mesh CASE -o OUTPUT`.
+
+    case_path: str or Path of a case file. name: of the case, where the file has variants. Raises
+    InputError or ComputationError when the program is missing or fails.
+    """
+    case_path = Path(case_path).resolve()
+    case = case_path.parent / name if name else case_path
+    output_of(binary(), "mesh", case, "-o", Path(output).resolve(), cwd=ROOT)
 
 
 def read_mesh(path):
@@ -41,8 +55,7 @@ def read_mesh(path):
             for name in ("case", "case_hash", "mesh_hash"):
                 if name not in file.attrs:
                     raise InputError(f"{path}: root attribute {name!r} is missing")
-                value = file.attrs[name]
-                attributes[name] = value.decode() if isinstance(value, bytes) else str(value)
+                attributes[name] = str(text_of(file.attrs[name]))
     except OSError as error:
         raise InputError(f"{path}: cannot read the mesh (HDF5): {error}") from error
     if not np.isfinite(points).all():

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from errors import DivergenceError
+from common.errors import ComputationError
 
 MAX_ITERATIONS = 20
 # A load step only has to lead into the basin of the next one; the last one is solved to round-off.
@@ -41,7 +41,7 @@ def solve(problem, load_steps, tolerance, guessed=False):
     halved. tolerance: the last step ends when a Newton correction is below tolerance times the
     largest imposed component, or the largest of the displacement where nothing is moved. Newton's
     method converges quadratically, so the solution is then exact to round-off. Returns an
-    Outcome. Raises DivergenceError when halving does not help.
+    Outcome. Raises ComputationError when halving does not help.
     """
     scale = problem.scale
     state = (problem.displacement.x.array, problem.pressure.x.array)
@@ -65,7 +65,7 @@ def solve(problem, load_steps, tolerance, guessed=False):
             array[:] = value
         step = min((target - load) / 2, 1 / load_steps)
         if step < SMALLEST_STEP:
-            raise DivergenceError(
+            raise ComputationError(
                 f"no equilibrium beyond {load:.4f} of the load: Newton's method fails even with "
                 f"steps of {2 * step:.1e} of it"
             )

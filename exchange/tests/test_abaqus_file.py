@@ -5,7 +5,7 @@ import pytest
 from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, read, run
 
 from exchange import abaqus_file
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HexMesh
 
 FIRST, SECOND = list(range(8)), list(range(4, 12))

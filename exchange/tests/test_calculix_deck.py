@@ -5,7 +5,7 @@ import pytest
 
 from exchange import abaqus_file
 from exchange.calculix_deck import deck
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HexMesh
 
 CORNERS = np.array(

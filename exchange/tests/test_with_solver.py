@@ -5,16 +5,15 @@ import os
 import resource
 import shutil
 import subprocess
-import sys
 
 import h5py
 import numpy as np
 import pytest
-from command_line import BLOCK, ROOT, sandglass, text_of, write_golden
+from command_line import BLOCK, ROOT, sandglass, write_golden
 from meshes import CELLS, DATA, POINTS, write
 
-sys.path.append(str(ROOT / "reference"))
-from accuracy import relative_errors  # noqa: E402  (an account of its own; the path comes first)
+from common.accuracy import relative_errors  # an account of its own
+from common.result_file import last_displacement, text_of
 
 FILE_MESH = '[mesh]\nfile = "{}"\n'
 GENERATED = BLOCK[BLOCK.index("[mesh]") : BLOCK.index("[material]")]
@@ -42,11 +41,6 @@ def refused(*arguments, told, **options):
     lines = done.stderr.splitlines()
     assert len(lines) == 1 and lines[0].startswith("error: ") and told in lines[0], done.stderr
     assert "sandglass-" not in done.stderr, "a temporary file is nobody's business"
-
-
-def last_displacement(path):
-    with h5py.File(path) as file:
-        return file["frames"][max(file["frames"])]["displacement"][...]
 
 
 @pytest.mark.parametrize("ending", ["vtu", "inp"])

@@ -9,7 +9,7 @@ import pytest
 import compare
 import convergence
 from convergence import attributes_of, richardson
-from result_file import NOT_ESTIMATED, read_result, write_estimate, write_result
+from reference_file import NOT_ESTIMATED, read_reference, write_estimate, write_reference
 
 GENERATOR = np.random.default_rng(5)
 LIMIT, COEFFICIENT = GENERATOR.normal(size=(2, 7, 3))
@@ -100,9 +100,9 @@ def test_splits_stay_below_the_cells_that_are_affordable():
 
 def test_an_estimate_leaves_the_displacement_as_it_is(tmp_path):
     source = compare.FOLDER / "golden" / "column.h5"
-    points, displacement, attributes = read_result(source)
+    points, displacement, attributes = read_reference(source)
     path = tmp_path / "golden.h5"
-    write_result(path, points, displacement, attributes | NOT_ESTIMATED)
+    write_reference(path, points, displacement, attributes | NOT_ESTIMATED)
 
     def stored():
         with h5py.File(path, "r") as file:
@@ -111,7 +111,7 @@ def test_an_estimate_leaves_the_displacement_as_it_is(tmp_path):
     before = stored()
     write_estimate(path, NOT_ESTIMATED | {"own_error_max": 0.25, "own_error_note": "a test"})
     assert stored() == before
-    _, after, found = read_result(path)
+    _, after, found = read_reference(path)
     assert (after == displacement).all()
     assert (found["own_error_max"], found["own_error_note"]) == (0.25, "a test")
     assert {name: found[name] for name in found if name not in NOT_ESTIMATED} == {
@@ -121,7 +121,7 @@ def test_an_estimate_leaves_the_displacement_as_it_is(tmp_path):
 
 @pytest.mark.parametrize("kind, name", STORED)
 def test_every_stored_result_has_an_estimate_or_a_reason(kind, name):
-    _, _, attributes = read_result(compare.FOLDER / kind / f"{name}.h5")
+    _, _, attributes = read_reference(compare.FOLDER / kind / f"{name}.h5")
     note = attributes["own_error_note"]
     if note.startswith("not estimated: "):
         assert math.isnan(attributes["own_error_max"]) and "has not been run" not in note

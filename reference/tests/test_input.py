@@ -5,7 +5,7 @@ import pytest
 
 import solve
 from blocks import distorted_block, write_mesh
-from result_file import read_result
+from reference_file import read_reference
 
 CASE = """
 [case]
@@ -50,7 +50,7 @@ def _run(folder, kind="golden", mesh="mesh.h5"):
 
 def test_good_input(folder):
     assert _run(folder) == 0
-    points, displacement, attributes = read_result(folder / "out.h5")
+    points, displacement, attributes = read_reference(folder / "out.h5")
     top, bottom = points[:, 2] == 1, points[:, 2] == 0
     # Exact: prescribed values are copied, not computed.
     assert (displacement[top, 2] == 0.1).all() and (displacement[bottom] == 0).all()
@@ -105,7 +105,7 @@ def test_output_that_cannot_be_written(folder, capsys):
     arguments = ["golden", folder / "block.toml", "--mesh", folder / "mesh.h5", "-o"]
     for output in (folder / "nowhere" / "out.h5", folder):
         assert solve.main([str(argument) for argument in arguments + [output]]) == 2
-        assert f"{output}: cannot write" in capsys.readouterr().err
+        assert f"{output}: cannot be written" in capsys.readouterr().err
 
 
 def test_truncated_mesh(folder, capsys):

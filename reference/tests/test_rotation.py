@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 import solve
-from accuracy import relative_errors
+from common.accuracy import relative_errors
 from blocks import MATERIAL, affine, distorted_block, write_mesh
 from case_file import read_case
-from errors import InputError
+from common.errors import InputError
 from hexahedra import Condition, HexMesh, refine, turn_about
 from newton import solve as newton_solve
 from problem import GOLDEN, TRUTH, MixedProblem
-from result_file import read_result
+from reference_file import read_reference
 from symmetry import halve
 from test_input import CASE
 
@@ -89,7 +89,7 @@ def _solve(folder, text):
 def test_once_round_is_not_the_state_of_rest(folder):
     text = CASE[: CASE.rindex("[[displacement]]")] + TURNED
     assert _solve(folder, text) == 0
-    points, displacement, attributes = read_result(folder / "out.h5")
+    points, displacement, attributes = read_reference(folder / "out.h5")
     assert attributes["largest_imposed"] == pytest.approx(np.sqrt(2))
     held = (points[:, 2] == 0) | (points[:, 2] == 1)
     assert np.abs(displacement[held]).max() < 1e-14

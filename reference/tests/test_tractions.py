@@ -5,7 +5,7 @@ import pytest
 
 from blocks import MATERIAL, affine, distorted_block, pressed_block
 from case_file import find_case, read_case, read_tables
-from errors import InputError
+from common.errors import InputError
 from hexahedra import Condition, HexMesh, refine, traction
 from newton import solve
 from problem import GOLDEN, TRUTH, MixedProblem
@@ -136,7 +136,7 @@ def test_variants(tmp_path):
     assert find_case(tmp_path, "bar-1-c") is None
     with pytest.raises(InputError, match="has variants: one of bar-1-a, bar-1-b"):
         read_case(path)
-    with pytest.raises(InputError, match="no case 'bar-1-c'"):
+    with pytest.raises(InputError, match="has no case 'bar-1-c'"):
         read_case(path, "bar-1-c")
 
 

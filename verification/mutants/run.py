@@ -16,9 +16,16 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent.parent))
 
 import results
-from patches import ROOT, read_patches
+from common.command import exit_code
+from common.errors import InputError
+from common.program import ROOT
+from patches import read_patches
 from worker import OutOfTime, Stopped, Worker
 
 
@@ -116,16 +123,12 @@ def chosen_patches(names):
         return patches
     for name in names:
         if not any(patch.name.startswith(name) for patch in patches):
-            raise UsageError(f"no mutant begins with '{name}' in verification/mutants")
+            raise InputError(f"NAME: no mutant begins with '{name}' in verification/mutants")
     return [patch for patch in patches if patch.name.startswith(tuple(names))]
 
 
-class UsageError(Exception):
-    """Bad usage."""
-
-
 def run(options, stop):
-    """Everything; returns the exit code."""
+    """Everything; returns the exit code. Raises InputError."""
     patches = chosen_patches(options.names)
     tree, revision = tree_digest(), git("rev-parse", "--short=12", "HEAD").strip()
     todo = queue.Queue()
@@ -183,11 +186,7 @@ def main():
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    try:
-        return run(options, stop)
-    except UsageError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+    return exit_code(run, options, stop)
 
 
 if __name__ == "__main__":
