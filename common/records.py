@@ -1,6 +1,8 @@
 """Reading documents with care: what is missing or of the wrong kind is said with file and key."""
 
+import dataclasses
 import math
+import typing
 
 from common.errors import InputError
 
@@ -15,16 +17,17 @@ WORDS = {
 }
 
 
-def entries(path, document, key):
-    """(where, entry) of each entry of a required list of objects, where as in "FILE: key[0]".
+def entries(where, record, key):
+    """(where, object) of each entry of a required list of objects, where as in "FILE: key[0]".
 
     Raises InputError.
     """
-    found = entry(path, document, key, list)
-    for number, one in enumerate(found):
+    found = []
+    for number, one in enumerate(entry(where, record, key, list)):
+        found.append((f"{_name(where, key)}[{number}]", one))
         if not isinstance(one, dict):
-            raise InputError(f"{path}: {key}[{number}] = {one!r} must be an object")
-    return [(f"{path}: {key}[{number}]", one) for number, one in enumerate(found)]
+            raise InputError(f"{found[-1][0]} = {one!r} must be an object")
+    return found
 
 
 def entry(where, record, key, kind, none_allowed=False):
@@ -32,7 +35,7 @@ def entry(where, record, key, kind, none_allowed=False):
 
     where: the file, or the file and the object's own key. Raises InputError.
     """
-    name = f"{where}.{key}" if ": " in str(where) else f"{where}: {key}"
+    name = _name(where, key)
     if key not in record:
         raise InputError(f"{name} is missing; it must be {WORDS[kind]}")
     value = record[key]
@@ -43,6 +46,35 @@ def entry(where, record, key, kind, none_allowed=False):
     if isinstance(value, float) and not math.isfinite(value):
         raise InputError(f"{name} = {value!r} must be finite")
     return value
+
+
+def _name(where, key):
+    """A key of a file, or of an object in it."""
+    return f"{where}.{key}" if ": " in str(where) else f"{where}: {key}"
+
+
+def as_dataclass(kind, where, record, **known):
+    """An object as a dataclass: each field by its name, or by the key that `key` gave it.
+
+    Fields are texts, numbers (float: any), lists, objects or dataclasses, or one of them | None.
+    known: the fields that are not read. Raises InputError.
+    """
+    for field in dataclasses.fields(kind):
+        if field.name in known:
+            continue
+        of, *others = typing.get_args(field.type) or (field.type,)
+        name, nested = field.metadata.get("key", field.name), dataclasses.is_dataclass(of)
+        of_json = dict if nested else NUMBER if of is float else of
+        value = entry(where, record, name, of_json, none_allowed=bool(others))
+        if nested and value is not None:
+            value = as_dataclass(of, _name(where, name), value)
+        known[field.name] = value
+    return kind(**known)
+
+
+def key(name):
+    """A field of a dataclass whose key in documents is not its own name."""
+    return dataclasses.field(metadata={"key": name})
 
 
 def facts(document):

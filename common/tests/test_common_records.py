@@ -1,9 +1,11 @@
 """Documents are checked key by key; messages name file, key, value and rule."""
 
+from dataclasses import dataclass
+
 import pytest
 
 from common.errors import InputError
-from common.records import NUMBER, entries, entry, facts
+from common.records import NUMBER, as_dataclass, entries, entry, facts, key
 
 
 def test_values_of_the_right_kind_are_taken():
@@ -55,6 +57,46 @@ def test_lists_of_objects():
     ):
         with pytest.raises(InputError, match=f"^x.json: {told}"):
             entries("x.json", document, key)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """What the tests read: one object within another."""
+
+    max: float = key("max_error")
+
+
+@dataclass(frozen=True)
+class Run:
+    """What the tests read."""
+
+    case: str
+    steps: int
+    golden: Figure | None
+    truth: Figure | None
+    rest: float | None = key("seconds_to_rest")
+
+
+RECORD = {"case": "c", "steps": 3, "golden": {"max_error": 1}, "truth": None, "seconds_to_rest": 2}
+
+
+def test_an_object_becomes_a_dataclass():
+    assert as_dataclass(Run, "a.json: runs[0]", RECORD) == Run("c", 3, Figure(1), None, 2)
+    assert as_dataclass(Run, "a.json", RECORD | {"case": 3}, case="known").case == "known"
+
+
+@pytest.mark.parametrize(
+    "changed, told",
+    [
+        ({"steps": 1.5}, "steps = 1.5 must be a whole number"),
+        ({"golden": 0.1}, "golden = 0.1 must be an object or null"),
+        ({"golden": {"max": 1}}, "golden.max_error is missing; it must be a number"),
+        ({"seconds_to_rest": "2"}, "seconds_to_rest = '2' must be a number or null"),
+    ],
+)
+def test_an_object_of_another_kind_is_refused(changed, told):
+    with pytest.raises(InputError, match=rf"^a.json: runs\[0\].{told}$"):
+        as_dataclass(Run, "a.json: runs[0]", RECORD | changed)
 
 
 def test_facts_are_what_is_no_list_and_no_object():

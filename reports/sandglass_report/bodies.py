@@ -3,9 +3,10 @@
 import numpy as np
 from matplotlib.colors import to_rgb
 
+from common.hexahedron import boundary_faces
 from sandglass_report import paper, style
 from sandglass_report.plates import Panel, Plate
-from sandglass_report.shapes import View, boundary_faces, draw_surface, frame, window
+from sandglass_report.shapes import View, draw_surface, frame, window
 
 BODY = "#c9d3dd"
 HELD = "#76818d"

@@ -5,7 +5,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandglass_report.errors import ReportError
+from common.errors import InputError
 
 SUITE = re.compile(r"^(?:TYPED_)?TEST\w*\(\s*(\w+)", re.MULTILINE)
 COLUMNS = ("mutant", "mistake", "verdict", "by", "s", "revision")
@@ -56,7 +56,7 @@ class Evidence:
 def read_evidence(claims, mutants, root, limits):
     """Evidence from a TOML file of claims and the table of mutants; each may be absent.
 
-    root: of the tree, where the tests are. limits: of the verdicts. Raises ReportError when a file
+    root: of the tree, where the tests are. limits: of the verdicts. Raises InputError when a file
     is broken, or when a claim names a test or a limit that is not there.
     """
     files = _files_of_suites(Path(root))
@@ -74,7 +74,7 @@ def _read_claims(path, root, limits, mutants):
             for t in tables
         ]
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError) as error:
-        raise ReportError(f"{path}: not a file of claims: {error!r}") from error
+        raise InputError(f"{path}: not a file of claims: {error!r}") from error
     return tuple(
         Claim(
             says,
@@ -91,7 +91,7 @@ def _read_claims(path, root, limits, mutants):
 def _known_tests(path, root, says, tests):
     for test in tests:
         if not (root / test).is_file():
-            raise ReportError(f"{path}: claim {says!r}: there is no test {test}")
+            raise InputError(f"{path}: claim {says!r}: there is no test {test}")
     return tests
 
 
@@ -103,7 +103,7 @@ def _limit(path, says, words, limits):
         if (limit.method, limit.kappa, limit.figure) == (method, kappa, figure):
             return limit
     if of_case:
-        raise ReportError(f"{path}: claim {says!r}: the verdicts have no limit {words!r}")
+        raise InputError(f"{path}: claim {says!r}: the verdicts have no limit {words!r}")
     return None
 
 
@@ -123,7 +123,7 @@ def _read_mutants(path, files):
     lines = path.read_text(encoding="utf-8").splitlines()
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if "|" in line]
     if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
-        raise ReportError(f"{path}: not the table of ci/mutants: its columns must be {COLUMNS}")
+        raise InputError(f"{path}: not the table of ci/mutants: its columns must be {COLUMNS}")
     made = next((line for line in lines if line.startswith("Made by")), "")
     return made, tuple(_mutant(row, files) for row in rows[2:])
 

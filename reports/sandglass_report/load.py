@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
+from common.errors import InputError
+from common.files import read_json
+from common.records import NUMBER, as_dataclass, entries, entry, facts, key
 from sandglass_report.accuracy import Accuracy
-from sandglass_report.checks import NUMBER, entries, entry, facts, read_document
-from sandglass_report.errors import ReportError
 
 REFERENCES = ("golden", "truth")
 
@@ -64,8 +65,8 @@ class Tip:
     ok: bool
     finding: str
     source: str
-    to_published: float | None
-    to_truth: float | None
+    to_published: float | None = key("ratio")
+    to_truth: float | None = key("ratio_to_truth")
 
 
 @dataclass(frozen=True)
@@ -106,48 +107,15 @@ class Verdicts:
 
 
 def read_verdicts(path):
-    """Verdicts of a verdicts.json. Raises ReportError when it is missing or not one."""
-    document = read_document(path, f"sandglass verify --json {path} --results FOLDER")
-    runs = tuple(_run(where, r) for where, r in entries(path, document, "records"))
+    """Verdicts of a verdicts.json. Raises InputError when it is missing or not one."""
+    document = read_json(path, f"sandglass verify --json {path} --results FOLDER")
+    runs = tuple(as_dataclass(Run, *found) for found in entries(path, document, "records"))
     if not runs:
-        raise ReportError(f"{path}: records is empty: nothing ran, there is nothing to report")
-    limits = tuple(_limit(where, r) for where, r in entries(path, document, "limits"))
+        raise InputError(f"{path}: records = [] must not be empty: nothing ran")
+    limits = tuple(_limit(*found) for found in entries(path, document, "limits"))
     published = entries(path, document, "published") if "published" in document else []
-    tips = tuple(tip for where, record in published for tip in _tips(where, record))
+    tips = tuple(tip for found in published for tip in _tips(*found))
     return Verdicts(facts(document), runs, limits, tips)
-
-
-def _accuracy(where, record, key):
-    """The accuracy figures against one reference, or None."""
-    figures = entry(where, record, key, dict, none_allowed=True)
-    if figures is None:
-        return None
-    return Accuracy(
-        max=entry(f"{where}.{key}", figures, "max_relative_error", NUMBER),
-        rms=entry(f"{where}.{key}", figures, "rms_relative_error", NUMBER),
-        profile=entry(f"{where}.{key}", figures, "profile_relative_error", NUMBER, True),
-    )
-
-
-def _run(where, record):
-    return Run(
-        case=entry(where, record, "case", str),
-        method=entry(where, record, "method", str),
-        kappa=entry(where, record, "kappa", NUMBER, none_allowed=True),
-        kappa_is_auto=entry(where, record, "kappa_is_auto", bool),
-        precision=entry(where, record, "precision", str),
-        status=entry(where, record, "status", str),
-        finding=entry(where, record, "finding", str, none_allowed=True),
-        golden=_accuracy(where, record, "golden"),
-        truth=_accuracy(where, record, "truth"),
-        operations=entry(where, record, "operations", int),
-        stable_step=entry(where, record, "stable_step", NUMBER),
-        steps=entry(where, record, "steps", int),
-        residual=entry(where, record, "residual", NUMBER),
-        hourglass_energy_ratio=entry(where, record, "hourglass_energy_ratio", NUMBER),
-        ns_per_element_step=entry(where, record, "ns_per_element_step", NUMBER),
-        wall_seconds=entry(where, record, "wall_seconds", NUMBER),
-    )
 
 
 def _tips(where, record):
@@ -155,35 +123,19 @@ def _tips(where, record):
     kappa = entry(where, record, "kappa", NUMBER, none_allowed=True)
     if kappa is not None and not entry(where, record, "kappa_is_auto", bool):
         return []
-    return [
-        Tip(
-            family=entry(where, record, "family", str),
-            variant=" ".join(entry(where, record, "variants", list)),
-            method=entry(where, record, "method", str),
-            ok=entry(where, record, "status", str) == "ok",
-            finding=entry(where, record, "finding", str, none_allowed=True) or "",
-            source=entry(where, value, "source", str),
-            to_published=entry(where, value, "ratio", NUMBER, none_allowed=True),
-            to_truth=entry(where, value, "ratio_to_truth", NUMBER, none_allowed=True),
-        )
-        for value in entry(where, record, "values", list)
-    ]
+    known = {
+        "variant": " ".join(entry(where, record, "variants", list)),
+        "ok": entry(where, record, "status", str) == "ok",
+        "finding": entry(where, record, "finding", str, none_allowed=True) or "",
+    }
+    values = [value for _, value in entries(where, record, "values")]
+    return [as_dataclass(Tip, where, record | value, **known) for value in values]
 
 
 def _limit(where, record):
-    reference = entry(where, record, "reference", str)
-    if reference not in (*REFERENCES, "published"):
-        raise ReportError(f"{where}.reference = {reference!r}: must be golden, truth or published")
-    return Limit(
-        case=entry(where, record, "case", str),
-        method=entry(where, record, "method", str),
-        kappa=entry(where, record, "kappa", str),
-        reference=reference,
-        figure=entry(where, record, "figure", str),
-        below=entry(where, record, "below", NUMBER, none_allowed=True),
-        above=entry(where, record, "above", NUMBER, none_allowed=True),
-        found=entry(where, record, "found", NUMBER, none_allowed=True),
-        at_kappa=entry(where, record, "at_kappa", NUMBER, none_allowed=True),
-        holds=entry(where, record, "holds", bool),
-        reason=entry(where, record, "reason", str),
-    )
+    """A limit of the verdicts. Raises InputError."""
+    limit = as_dataclass(Limit, where, record)
+    if limit.reference not in (*REFERENCES, "published"):
+        allowed = "golden, truth or published"
+        raise InputError(f"{where}.reference = {limit.reference!r} must be {allowed}")
+    return limit

@@ -152,6 +152,7 @@ class DataSet:
     def rung(method, seconds, error, **changed):
         """A row of `sandglass choose --all --json` on the case's own mesh, in double."""
         return {
+            "rung": f"{method} {changed}",
             "method": method,
             "kappa": None,
             "accuracy": None,
