@@ -44,16 +44,16 @@ class WatchedProblem(MixedProblem):
         return super().linearize()
 
 
-def seconds_within(moments, limit, largest_imposed):
+def seconds_within(moments, limit, unit):
     """Seconds from the first moment to the one from which on the displacement stays near the last.
 
     moments: list of (seconds, displacement (n, 3) in m). limit: of max |u - u_last| over the nodes,
-    as a fraction of largest_imposed, m.
+    as a fraction of the unit of errors, m.
     """
     started, last = moments[0][0], moments[-1][1]
     reached = moments[-1][0]
     for moment, displacement in reversed(moments):
-        if relative_errors(displacement, last, largest_imposed)[0] > limit:
+        if relative_errors(displacement, last, unit)[0] > limit:
             break
         reached = moment
     return reached - started

@@ -38,7 +38,7 @@ from common.program import CASES, ROOT, binary, output_of
 from common.result_file import last_displacement
 from exchange.calculix_deck import LAWS
 from mesh_file import load_case_mesh, make_mesh
-from reference_file import read_reference
+from reference_file import path_of, read_reference
 
 METHODS = ("tl-mean-dilatation", "tl-perturbation")
 ELEMENTS = ("C3D8", "C3D8R")
@@ -244,7 +244,7 @@ def compare(job):
     """
     golden = job.golden
     if golden is None:
-        stored = ROOT / "reference" / "golden" / f"{job.case.name}.h5"
+        stored = path_of("golden", job.case.name)
         if not stored.exists():
             note("no golden: the others are compared with nothing")
             return

@@ -3,15 +3,15 @@
 import numpy as np
 
 
-def relative_distances(displacement, reference, largest_imposed):
-    """Distance (n,) of two displacement fields (n, 3), m, as fractions of the imposed one.
+def relative_distances(displacement, reference, unit):
+    """Distance (n,) of two displacement fields (n, 3), m, at each node, over the unit.
 
-    largest_imposed: max over the prescribed nodes of |d|, m.
+    unit: the largest imposed displacement, max over the prescribed nodes of |d|, m.
     """
-    return np.linalg.norm(displacement - reference, axis=1) / largest_imposed
+    return np.linalg.norm(displacement - reference, axis=1) / unit
 
 
-def relative_errors(displacement, reference, largest_imposed):
+def relative_errors(displacement, reference, unit):
     """(max, rms) over all nodes of relative_distances()."""
-    distance = relative_distances(displacement, reference, largest_imposed)
+    distance = relative_distances(displacement, reference, unit)
     return distance.max(), np.sqrt((distance**2).mean())

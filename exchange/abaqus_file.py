@@ -35,6 +35,7 @@ class _Sets:
         self.spelled, self.members = {}, {}
 
     def add(self, name, numbers):
+        """Adds numbers to those of a name."""
         self.spelled.setdefault(name.upper(), name)
         self.members.setdefault(name.upper(), set()).update(numbers)
 
@@ -195,13 +196,13 @@ def _keywords(path, text):
             lines.append((place, [field.strip() for field in line.split(",")]))
             continue
         if current is not None:
-            yield *_parsed(*current), lines, current[1]
+            yield *_parsed(current[0]), lines, current[1]
         current, lines = (line, place), []
     if current is not None:
-        yield *_parsed(*current), lines, current[1]
+        yield *_parsed(current[0]), lines, current[1]
 
 
-def _parsed(line, place):
+def _parsed(line):
     """The keyword of a line in capitals, and its options; names keep their case."""
     words = re.findall(r'(?:[^,"]|"[^"]*")+', line[1:])
     options = {}

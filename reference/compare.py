@@ -18,9 +18,8 @@ from common.accuracy import relative_errors
 from common.command import exit_code
 from common.errors import InputError
 from common.files import write_whole
-from reference_file import read_reference, write_reference
+from reference_file import FOLDER, path_of, read_reference, stored, write_reference
 
-FOLDER = Path(__file__).resolve().parent
 BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
 
 
@@ -55,15 +54,15 @@ def fill_golden_error(golden_path, truth_path):
     write_reference(golden_path, points, displacement, attributes)
 
 
-def table(folder=FOLDER):
-    """The Markdown table of folder/golden/*.h5 against folder/truth/*.h5, as a string."""
+def table():
+    """The Markdown table of all stored goldens against their truths, as a string."""
     lines = [
         "| case | golden to truth, max | rms | golden's own error, max | rms | order "
         "| truth's mesh | truth's own error, max | rms | order | golden, s | truth, s |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
-    for golden_path in sorted((folder / "golden").glob("*.h5")):
-        truth_path = folder / "truth" / golden_path.name
+    for name in stored("golden"):
+        golden_path, truth_path = path_of("golden", name), path_of("truth", name)
         _, _, golden = read_reference(golden_path)
         seconds = f"{golden['wall_seconds']:.0f}"
         if truth_path.exists():
@@ -79,15 +78,15 @@ def table(folder=FOLDER):
     return "\n".join(lines)
 
 
-def update_readme(folder=FOLDER):
-    """Put the present table between the two marks of folder/README.md. Raises InputError."""
-    readme = folder / "README.md"
+def update_readme():
+    """Put the present table between the two marks of README.md. Raises InputError."""
+    readme = FOLDER / "README.md"
     text = readme.read_text(encoding="utf-8")
     before, begin, rest = text.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not end:
         raise InputError(f"{readme}: the marks {BEGIN} and {END} are missing")
-    write_whole(readme, f"{before}{begin}\n{table(folder)}\n{end}{after}")
+    write_whole(readme, f"{before}{begin}\n{table()}\n{end}{after}")
 
 
 def _own_error(attributes):

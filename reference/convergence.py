@@ -26,10 +26,8 @@ from common.command import exit_code
 from common.errors import InputError, suggestion
 from common.program import CASES
 from mesh_file import load_case_mesh, make_mesh
-from reference_file import read_reference, write_estimate
+from reference_file import path_of, read_reference, stored, write_estimate
 from symmetry import halve
-
-FOLDER = Path(__file__).resolve().parent
 
 # With two meshes the order is assumed: 2 is what the golden's element has on smooth answers; a
 # truth has converged so far that the singular edges of the answer rule it.
@@ -83,10 +81,10 @@ def richardson(fields, assumed_order):
     return Estimate(fields[-1] + last / (2**order - 1), order, origin)
 
 
-def attributes_of(kind, fields, stored, unit, reason):
-    """The attributes that say how far `stored` is from the limit of `fields`.
+def attributes_of(kind, fields, displacement, unit, reason):
+    """The attributes that say how far a displacement is from the limit of `fields`.
 
-    kind: "golden" or "truth". fields: as for richardson(). stored: (n, 3), m, one of them.
+    kind: "golden" or "truth". fields: as for richardson(). displacement: (n, 3), m, one of them.
     unit: m, of relative errors. reason: why there are no more fields, for the note.
     Returns what reference_file.write_estimate() takes.
     """
@@ -95,7 +93,7 @@ def attributes_of(kind, fields, stored, unit, reason):
         why = "differences do not fall" if len(fields) > 1 else reason
         errors, order, note = (math.nan, math.nan), math.nan, f"not estimated: {why}"
     else:
-        errors = relative_errors(stored, estimate.limit, unit)
+        errors = relative_errors(displacement, estimate.limit, unit)
         order = estimate.order
         note = f"Richardson's extrapolation of {len(fields)} meshes; order {order:.2f}: "
         note += estimate.origin + (f", for {reason}" if estimate.origin == "assumed" else "")
@@ -143,7 +141,7 @@ def fields_of(kind, name, displacement, refinements):
 
 def estimate(kind, name):
     """Estimate a stored result's own error and store it. Raises InputError or ComputationError."""
-    path = FOLDER / kind / f"{name}.h5"
+    path = path_of(kind, name)
     _, displacement, attributes = read_reference(path)
     fields, reason = fields_of(kind, name, displacement, attributes["refinements"])
     found = attributes_of(kind, fields, displacement, attributes["largest_imposed"], reason)
@@ -155,10 +153,10 @@ def run(options):
     """Estimates what is asked for. Raises InputError or ComputationError."""
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     for kind in [options.kind] if options.kind else ASSUMED_ORDER:
-        stored = sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
-        for name in options.cases or stored:
-            if name not in stored:
-                raise InputError(f"CASE: '{name}' has no {kind}; {suggestion(name, stored)}")
+        known = stored(kind)
+        for name in options.cases or known:
+            if name not in known:
+                raise InputError(f"CASE: '{name}' has no {kind}; {suggestion(name, known)}")
             estimate(kind, name)
 
 

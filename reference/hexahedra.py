@@ -7,6 +7,10 @@ import numpy as np
 
 from common.hexahedron import LEXICOGRAPHIC, boundary_faces
 
+# The 27 points of a cell that is split in eight, and its vertices among them, x fastest.
+SPLIT_POINTS = [(i, j, k) for k in range(3) for j in range(3) for i in range(3)]
+SPLIT_CORNERS = [(2 * i, 2 * j, 2 * k) for k in range(2) for j in range(2) for i in range(2)]
+
 
 @dataclass(frozen=True)
 class Turn:
@@ -142,6 +146,31 @@ def turn_about(points, axis, center, angle):
     return Turn(angle, -arm, np.cross(axis, arm))
 
 
+def _split_nodes(cells, n_nodes):
+    """The nodes of split cells: ((m, 27), and for edges, faces and cells the parents (k, 2|4|8)).
+
+    cells: (m, 8), lexicographic. n_nodes: of their mesh; new nodes are numbered on from there.
+    """
+    # The vertices of which each point is the mean: those that agree with it in every direction in
+    # which it is not half-way.
+    parents = [
+        [v for v, corner in enumerate(SPLIT_CORNERS) if np.abs(np.subtract(p, corner)).max() <= 1]
+        for p in SPLIT_POINTS
+    ]
+    local_to_global = np.empty((len(cells), 27), dtype=np.int64)
+    local_to_global[:, [SPLIT_POINTS.index(corner) for corner in SPLIT_CORNERS]] = cells
+    parents_of_new = []
+    for n_parents in (2, 4, 8):  # edges, faces, cells
+        slots = [s for s in range(27) if len(parents[s]) == n_parents]
+        # Two cells share an edge or a face exactly when they share its set of vertices.
+        keys = np.sort(np.stack([cells[:, parents[s]] for s in slots], axis=1), axis=2)
+        entities, number = np.unique(keys.reshape(-1, n_parents), axis=0, return_inverse=True)
+        local_to_global[:, slots] = n_nodes + number.reshape(len(cells), len(slots))
+        parents_of_new.append(entities)
+        n_nodes += len(entities)
+    return local_to_global, parents_of_new
+
+
 def refine(mesh):
     """Split every hexahedron into eight through the images of its parent mid-points.
 
@@ -152,36 +181,15 @@ def refine(mesh):
     mesh: HexMesh. Returns a HexMesh with 8 m cells of the same trilinear geometry; the children of
     cell c are the cells 8 c to 8 c + 7.
     """
-    cells = mesh.cells[:, LEXICOGRAPHIC]
-    n_cells = len(cells)
-    # The 27 points of a subdivided cell, and the vertices of which each is the mean: those that
-    # agree with it in every direction in which it is not half-way.
-    positions = [(i, j, k) for k in range(3) for j in range(3) for i in range(3)]
-    corners = [(2 * i, 2 * j, 2 * k) for k in range(2) for j in range(2) for i in range(2)]
-    parents = [
-        [v for v, corner in enumerate(corners) if np.abs(np.subtract(p, corner)).max() <= 1]
-        for p in positions
-    ]
-    local_to_global = np.empty((n_cells, 27), dtype=np.int64)
-    local_to_global[:, [positions.index(corner) for corner in corners]] = cells
-    n_nodes = len(mesh.points)
-    parents_of_new = []
-    for n_parents in (2, 4, 8):  # edges, faces, cells
-        slots = [s for s in range(27) if len(parents[s]) == n_parents]
-        # Two cells share an edge or a face exactly when they share its set of vertices.
-        keys = np.sort(np.stack([cells[:, parents[s]] for s in slots], axis=1), axis=2)
-        entities, number = np.unique(keys.reshape(-1, n_parents), axis=0, return_inverse=True)
-        local_to_global[:, slots] = n_nodes + number.reshape(n_cells, len(slots))
-        parents_of_new.append(entities)
-        n_nodes += len(entities)
+    local_to_global, parents_of_new = _split_nodes(mesh.cells[:, LEXICOGRAPHIC], len(mesh.points))
 
     def extend(of_nodes, reduce):
         return np.concatenate([of_nodes] + [reduce(of_nodes[e], axis=1) for e in parents_of_new])
 
     children = []
-    for corner in corners:
-        offsets = [np.add(corner, other) // 2 for other in corners]
-        slots = [positions.index(tuple(offset)) for offset in offsets]
+    for corner in SPLIT_CORNERS:
+        offsets = [np.add(corner, other) // 2 for other in SPLIT_CORNERS]
+        slots = [SPLIT_POINTS.index(tuple(offset)) for offset in offsets]
         children.append(local_to_global[:, slots][:, LEXICOGRAPHIC])
 
     def extend_turn(turn):

@@ -2,12 +2,16 @@
 
 import math
 import shutil
+from pathlib import Path
 
 import h5py
 import numpy as np
 
 from common.errors import InputError
 from common.files import new_file
+
+FOLDER = Path(__file__).resolve().parent
+KINDS = ("golden", "truth")
 
 # Every root attribute of such a file, with its type.
 ATTRIBUTES = {
@@ -45,6 +49,16 @@ NOT_ESTIMATED = {
     "own_error_order": math.nan,
     "own_error_note": "not estimated: reference/convergence.py has not been run",
 }
+
+
+def path_of(kind, name):
+    """Where the golden or truth of a case is stored. kind: out of KINDS. name: of the case."""
+    return FOLDER / kind / f"{name}.h5"
+
+
+def stored(kind):
+    """The names of the cases that have a golden or truth, sorted."""
+    return sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
 
 
 def write_reference(path, points, displacement, attributes):

@@ -99,7 +99,7 @@ def run(options):
         "newton_iterations": outcome.newton_iterations,
         "residual": outcome.residual,
         "newton_tolerance": NEWTON_TOLERANCE,
-        "last_correction": outcome.last_increment,
+        "last_correction": outcome.last_correction,
         "dolfinx_version": dolfinx.__version__,
         "wall_seconds": time.perf_counter() - started,
         **discretisation_error(displacements, unit),

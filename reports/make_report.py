@@ -16,7 +16,7 @@ if __name__ == "__main__":
 
 from common.command import exit_code
 from sandglass_report.evidence import read_evidence
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.measured import read_measured
 from sandglass_report.page import Inputs, write_report
 from sandglass_report.subject import read_subjects

@@ -51,6 +51,8 @@ kappas = [0.01]
 golden = "golden.h5"
 """
 
+BARE = BLOCK.partition("[comparison]")[0]  # compared with nothing
+
 LIMIT = """
 [[expect]]
 method = "{method}"
@@ -59,6 +61,12 @@ figure = "max_relative_error"
 below = {below}
 reason = "a test"
 """
+
+
+def dynamic(text, **numbers):
+    """A quasi-static case in motion. numbers: of its table [dynamics]."""
+    keys = "".join(f"{key} = {value}\n" for key, value in numbers.items())
+    return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
 def sandglass(*arguments, **options):

@@ -11,18 +11,10 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-from command_line import BINARY, BLOCK, PATIENCE, ROOT, sandglass
+from command_line import BARE, BINARY, PATIENCE, ROOT, dynamic, sandglass
 
 BUILD = pathlib.Path(BINARY).resolve().parent
-DYNAMIC = (
-    BLOCK.replace('"quasi-static"', '"dynamic"').partition("[comparison]")[0]
-    + """
-[dynamics]
-duration = 1.0
-time_step = 1e-3
-frames = 10
-"""
-)
+DYNAMIC = dynamic(BARE, duration=1.0, time_step=1e-3, frames=10)
 BY_KERNELS = """
 #include "element/methods.hpp"
 #include "io/case_file.hpp"

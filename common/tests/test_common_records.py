@@ -10,8 +10,8 @@ from common.records import NUMBER, as_dataclass, entries, entry, facts, key
 
 def test_values_of_the_right_kind_are_taken():
     record = {"n": 3, "x": 0.5, "t": "text", "b": True, "l": [], "o": {}, "none": None}
-    for key, kind in (("n", int), ("n", NUMBER), ("x", NUMBER), ("t", str), ("b", bool)):
-        assert entry("a.json", record, key, kind) is record[key]
+    for name, kind in (("n", int), ("n", NUMBER), ("x", NUMBER), ("t", str), ("b", bool)):
+        assert entry("a.json", record, name, kind) is record[name]
     assert entry("a.json", record, "l", list) == [] and entry("a.json", record, "o", dict) == {}
     assert entry("a.json", record, "none", str, none_allowed=True) is None
 
@@ -50,13 +50,13 @@ def test_lists_of_objects():
         ("x.json: records[0]", {"a": 1}),
         ("x.json: records[1]", {"a": 2}),
     ]
-    for key, told in (
+    for name, told in (
         ("mixed", r"mixed\[1\] = 7 must be an object"),
         ("none", "none = {} must be a list"),
         ("absent", "absent is missing; it must be a list"),
     ):
         with pytest.raises(InputError, match=f"^x.json: {told}"):
-            entries("x.json", document, key)
+            entries("x.json", document, name)
 
 
 @dataclass(frozen=True)

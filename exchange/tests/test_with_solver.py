@@ -9,7 +9,7 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-from command_line import BLOCK, ROOT, sandglass, write_golden
+from command_line import BLOCK, ROOT, dynamic, sandglass, write_golden
 from meshes import CELLS, DATA, POINTS, write
 
 from common.accuracy import relative_errors  # an account of its own
@@ -203,7 +203,7 @@ def test_decks_that_cannot_be(block):
     refused(
         "mesh", block, *words, told="law = 'st-venant-kirchhoff': CalculiX has no such", cwd=folder
     )
-    block.write_text(BLOCK.replace('"quasi-static"', '"dynamic"') + "[dynamics]\nduration = 0.05\n")
+    block.write_text(dynamic(BLOCK, duration=0.05))
     refused("mesh", block, *words, told="a dynamic case has no deck", cwd=folder)
     refused(
         "score", "a.csv", "--case", block, told="a dynamic case has no answer to score", cwd=folder

@@ -1,41 +1,10 @@
 """Wrong input ends with exit code 2 (3 when there is no equilibrium) and leaves no file behind."""
 
-import numpy as np
 import pytest
 
 import solve
-from blocks import distorted_block, write_mesh
+from blocks import CASE, distorted_block, write_mesh
 from reference_file import read_reference
-
-CASE = """
-[case]
-name = "block"
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.49
-density = 1000.0
-
-[[displacement]]
-set = "bottom"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "top"
-value = [0.0, 0.0, 0.1]
-components = "z"
-"""
-
-
-@pytest.fixture
-def folder(tmp_path):
-    """A folder with block.toml and its mesh.h5."""
-    points, cells, _ = distorted_block(n=2)
-    sets = {"bottom": np.flatnonzero(points[:, 2] == 0), "top": np.flatnonzero(points[:, 2] == 1)}
-    write_mesh(tmp_path / "mesh.h5", points, cells, sets)
-    (tmp_path / "block.toml").write_text(CASE)
-    return tmp_path
 
 
 def _run(folder, kind="golden", mesh="mesh.h5"):

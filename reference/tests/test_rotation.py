@@ -5,7 +5,7 @@ import pytest
 
 import solve
 from common.accuracy import relative_errors
-from blocks import MATERIAL, affine, distorted_block, write_mesh
+from blocks import CASE, MATERIAL, affine, distorted_block
 from case_file import read_case
 from common.errors import InputError
 from hexahedra import Condition, HexMesh, refine, turn_about
@@ -13,7 +13,6 @@ from newton import solve as newton_solve
 from problem import GOLDEN, TRUTH, MixedProblem
 from reference_file import read_reference
 from symmetry import halve
-from test_input import CASE
 
 AXIS = np.array([2.0, -1.0, 2.0]) / 3
 CENTER = np.array([0.3, 0.1, -0.2])
@@ -69,15 +68,6 @@ def test_largest_imposed_is_that_of_the_way():
         assert abs(mesh.largest_imposed() - 0.2 - chord) < 1e-15
         # A turned set has no mirror plane, though its final values may be zero.
         assert halve(mesh)[1] == []
-
-
-@pytest.fixture
-def folder(tmp_path):
-    """A folder with block.toml and its mesh.h5."""
-    points, cells, _ = distorted_block(n=2)
-    sets = {"bottom": np.flatnonzero(points[:, 2] == 0), "top": np.flatnonzero(points[:, 2] == 1)}
-    write_mesh(tmp_path / "mesh.h5", points, cells, sets)
-    return tmp_path
 
 
 def _solve(folder, text):

@@ -4,7 +4,7 @@ import numpy as np
 
 from sandglass_report import axes as helpers
 from sandglass_report import style
-from sandglass_report.load import REFERENCES
+from sandglass_report.verdicts import REFERENCES
 from sandglass_report.plates import Panel, Plate
 
 FIGURES = (("max", "-", 1.6), ("profile", "--", 1.3), ("rms", ":", 1.6))

@@ -10,7 +10,7 @@ import numpy as np
 from common.errors import InputError
 from common.result_file import text_of
 from sandglass_report.accuracy import accuracy, ordered_profile
-from sandglass_report.load import REFERENCES
+from sandglass_report.verdicts import REFERENCES
 
 # verdicts.json and a recomputation differ by rounding of the square root only, see the tests.
 AGREEMENT = 1e-9

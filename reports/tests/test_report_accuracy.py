@@ -8,7 +8,7 @@ from command_line import BINARY
 
 from common.program import ROOT, output_of
 from sandglass_report.accuracy import accuracy, ordered_profile
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.subject import read_subjects
 
 

@@ -7,7 +7,7 @@ import pytest
 from common.errors import InputError
 from common.program import ROOT
 from sandglass_report.evidence import read_evidence
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.page import ANCHORS
 
 TABLE = """# Mutants
@@ -108,7 +108,7 @@ def test_the_claims_of_this_tree_rest_on_tests_limits_and_sections_that_are_ther
     """Limits are those that the case files expect."""
     import tomllib
 
-    from sandglass_report.load import Limit
+    from sandglass_report.verdicts import Limit
 
     nothing = dict.fromkeys(("below", "above", "found", "at_kappa"))
     limits = []

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from synthetic import box
 
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.subject import read_subjects
 from sandglass_report.viewer import _faces, _levels, viewer_data
 
