@@ -13,7 +13,6 @@ import shutil
 import sys
 import tempfile
 import time
-import tomllib
 import types
 from pathlib import Path
 
@@ -33,7 +32,7 @@ from case_file import read_case
 from common.accuracy import relative_errors
 from common.command import exit_code, whole_number
 from common.errors import ComputationError, InputError, suggestion
-from common.files import require_writable, write_json
+from common.files import read_toml, require_writable, write_json
 from common.program import CASES, ROOT, binary, output_of
 from common.result_file import last_displacement
 from exchange.calculix_deck import LAWS
@@ -100,8 +99,7 @@ def case_path(name):
 
 def require_quasi_static(path):
     """Raise InputError unless the case, a readable one, has a static answer."""
-    with open(path, "rb") as file:
-        answer = tomllib.load(file)["case"].get("answer")
+    answer = read_toml(path)["case"].get("answer")
     if answer != "quasi-static":
         raise InputError(f"{path}: case.answer = {answer!r} must be 'quasi-static'")
 

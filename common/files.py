@@ -1,8 +1,9 @@
-"""JSON files that are read, and files that appear whole or not at all."""
+"""JSON and TOML files that are read, and files that appear whole or not at all."""
 
 import json
 import os
 import tempfile
+import tomllib
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -14,16 +15,26 @@ def read_json(path, command=""):
 
     command: what makes such a file, for the message where there is none.
     """
+    document = _parsed(path, json.loads, "JSON", command)
+    if not isinstance(document, dict):
+        raise InputError(f"{path}: must be an object, not {type(document).__name__}")
+    return document
+
+
+def read_toml(path):
+    """The tables of a TOML file, a dict. Raises InputError."""
+    return _parsed(path, tomllib.loads, "TOML")
+
+
+def _parsed(path, parse, language, command=""):
+    """What parse() makes of the text of a file. Raises InputError."""
     try:
-        document = json.loads(Path(path).read_text(encoding="utf-8"))
+        return parse(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         hint = f"; make it with {command}" if command else ""
         raise InputError(f"{path}: cannot be read: {error.strerror}{hint}") from error
     except ValueError as error:
-        raise InputError(f"{path}: not a JSON file: {error}") from error
-    if not isinstance(document, dict):
-        raise InputError(f"{path}: must be an object, not {type(document).__name__}")
-    return document
+        raise InputError(f"{path}: not a {language} file: {error}") from error
 
 
 def require_writable(path):

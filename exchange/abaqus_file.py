@@ -219,14 +219,14 @@ def _whole(place, text):
             return number
     except ValueError:
         pass
-    raise InputError(f"{place}: {text!r}: a whole number is required")
+    raise InputError(f"{place}: {text!r} must be a whole number")
 
 
 def _real(place, text):
     try:
         return float(text.upper().replace("D", "E")) if text else 0.0
     except ValueError:
-        raise InputError(f"{place}: {text!r}: a number is required") from None
+        raise InputError(f"{place}: {text!r} must be a number") from None
 
 
 def number(value):

@@ -9,7 +9,7 @@ from exchange.foreign_mesh import HexMesh
 
 
 def read_mesh(path):
-    """The HexMesh of a file that `sandglass` wrote."""
+    """The HexMesh of a file that `sandglass` wrote, which is not checked."""
     with h5py.File(path, "r") as file:
         mesh = file["mesh"]
         sets = {name: nodes[...] for name, nodes in mesh.get("sets", {}).items()}

@@ -1,10 +1,10 @@
 """Reading the parts of a case file (TOML) that the reference needs: material and displacements."""
 
 import math
-import tomllib
 from dataclasses import dataclass
 
 from common.errors import InputError, suggestion
+from common.files import read_toml
 from common.records import NUMBER, entries, entry
 from laws import LAWS, parameters
 
@@ -59,13 +59,7 @@ def read_tables(path):
 
     path: str or Path of a TOML file. A file without [variants] has one case. Raises InputError.
     """
-    try:
-        with open(path, "rb") as file:
-            tables = tomllib.load(file)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not a TOML file: {error}") from error
+    tables = read_toml(path)
     family = entry(f"{path}: case", entry(path, tables, "case", dict), "name", str)
     cases = {family: tables}
     for axis in tables.pop("variants", {}).values():
@@ -92,13 +86,7 @@ def read_case(path, name=None):
     path: str or Path of a TOML file. name: of the case; needed where the file has variants.
     Returns a Case. Raises InputError naming file, key, value, rule and what is allowed.
     """
-    cases = read_tables(path)
-    if name is None and len(cases) > 1:
-        raise InputError(f"{path}: has variants: one of {', '.join(cases)} is required")
-    name = name or next(iter(cases))
-    if name not in cases:
-        raise InputError(f"{path}: has no case {name!r}; {suggestion(name, cases)}")
-    tables = cases[name]
+    name, tables = _chosen(path, read_tables(path), name)
     where, table = f"{path}: material", entry(path, tables, "material", dict)
     law = entry(where, table, "law", str)
     if law not in LAWS:
@@ -128,6 +116,18 @@ def read_case(path, name=None):
         forces=read_all("force", _force),
         rotations=rotations,
     )
+
+
+def _chosen(path, cases, name):
+    """(name, tables) of a case out of those of a file; without a name the only one."""
+    if name is None and len(cases) > 1:
+        raise InputError(
+            f"{path}: has {len(cases)} variants, and one must be named; known: {', '.join(cases)}"
+        )
+    name = name or next(iter(cases))
+    if name not in cases:
+        raise InputError(f"{path}: has no case {name!r}; {suggestion(name, cases)}")
+    return name, cases[name]
 
 
 def _material_number(where, table, key):

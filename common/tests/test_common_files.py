@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and JSON that is read with care."""
+"""Files that appear whole or not at all, and JSON and TOML that are read with care."""
 
 import json
 import os
@@ -6,7 +6,15 @@ import os
 import pytest
 
 from common.errors import InputError
-from common.files import new_file, read_json, require_writable, write_json, write_whole, writing
+from common.files import (
+    new_file,
+    read_json,
+    read_toml,
+    require_writable,
+    write_json,
+    write_whole,
+    writing,
+)
 
 
 def test_a_text_takes_the_place_of_the_old_one(tmp_path):
@@ -97,3 +105,12 @@ def test_what_is_no_document_is_refused(tmp_path, content, told):
         (tmp_path / "x.json").write_bytes(content)
     with pytest.raises(InputError, match=told):
         read_json(tmp_path / "x.json", "a command")
+
+
+def test_tables(tmp_path):
+    (tmp_path / "x.toml").write_text('[case]\nname = "Fuß"\n', encoding="utf-8")
+    assert read_toml(tmp_path / "x.toml") == {"case": {"name": "Fuß"}}
+    for content in (b"[case\n", b"\xff"):
+        (tmp_path / "x.toml").write_bytes(content)
+        with pytest.raises(InputError, match="x.toml: not a TOML file: "):
+            read_toml(tmp_path / "x.toml")

@@ -70,7 +70,7 @@ def test_deck_without_tolerance_and_forces_keeps_to_what_ccx_takes():
 
 
 def test_deck_of_a_law_that_ccx_lacks():
-    with pytest.raises(InputError, match="'glass'.*allowed: neo-hookean"):
+    with pytest.raises(InputError, match="'glass'.*known: neo-hookean"):
         deck("t", BRICK, "glass", MATERIAL, ~FREE, np.ones((8, 3)))
 
 

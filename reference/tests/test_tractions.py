@@ -134,7 +134,9 @@ def test_variants(tmp_path):
     assert not read_case(path, "bar-1-a").forces
     assert find_case(tmp_path, "bar-1-b") == path
     assert find_case(tmp_path, "bar-1-c") is None
-    with pytest.raises(InputError, match="has variants: one of bar-1-a, bar-1-b"):
+    with pytest.raises(
+        InputError, match="has 4 variants, and one must be named; known: bar-1-a, bar-1-b"
+    ):
         read_case(path)
     with pytest.raises(InputError, match="has no case 'bar-1-c'"):
         read_case(path, "bar-1-c")

@@ -1,11 +1,12 @@
 """What the project claims, what tests it, by which oracle; which planted mistakes are noticed."""
 
 import re
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from common.errors import InputError
+from common.files import read_toml
+from common.records import entries, entry
 
 SUITE = re.compile(r"^(?:TYPED_)?TEST\w*\(\s*(\w+)", re.MULTILINE)
 COLUMNS = ("mutant", "mistake", "verdict", "by", "s", "revision")
@@ -65,37 +66,33 @@ def read_evidence(claims, mutants, root, limits):
 
 
 def _read_claims(path, root, limits, mutants):
+    """The claims of a file; none without it."""
     if not path.is_file():
         return ()
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8")).get("claim", [])
-        raw = [
-            (t["says"], t["oracle"], tuple(t["tests"]), t.get("figure", ""), t.get("limits", []))
-            for t in tables
-        ]
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: not a file of claims: {error!r}") from error
+    found = read_toml(path)
     return tuple(
-        Claim(
-            says,
-            oracle,
-            _known_tests(path, root, says, tests),
-            figure,
-            tuple(_limit(path, says, words, limits) for words in wanted),
-            sum(m.verdict == "killed" and m.file in tests for m in mutants),
-        )
-        for says, oracle, tests, figure, wanted in raw
+        _claim(where, table, root, limits, mutants)
+        for where, table in (entries(path, found, "claim") if "claim" in found else ())
     )
 
 
-def _known_tests(path, root, says, tests):
+def _claim(where, table, root, limits, mutants):
+    """A checked [[claim]] table as a Claim."""
+    says, tests = entry(where, table, "says", str), tuple(entry(where, table, "tests", list))
     for test in tests:
         if not (root / test).is_file():
-            raise InputError(f"{path}: claim {says!r}: there is no test {test}")
-    return tests
+            raise InputError(f"{where}: {says!r}: there is no test {test}")
+    return Claim(
+        says,
+        entry(where, table, "oracle", str),
+        tests,
+        table.get("figure", ""),
+        tuple(_limit(where, says, words, limits) for words in table.get("limits", [])),
+        sum(m.verdict == "killed" and m.file in tests for m in mutants),
+    )
 
 
-def _limit(path, says, words, limits):
+def _limit(where, says, words, limits):
     """The limit "CASE METHOD KAPPA FIGURE" of the verdicts; None where the case was not run."""
     case, method, kappa, figure = (words.split() + [""] * 4)[:4]
     of_case = [limit for limit in limits if limit.case == case]
@@ -103,7 +100,7 @@ def _limit(path, says, words, limits):
         if (limit.method, limit.kappa, limit.figure) == (method, kappa, figure):
             return limit
     if of_case:
-        raise InputError(f"{path}: claim {says!r}: the verdicts have no limit {words!r}")
+        raise InputError(f"{where}: {says!r}: the verdicts have no limit {words!r}")
     return None
 
 

@@ -1,6 +1,5 @@
 """One case with everything known about it: mesh, references, runs and their displacements."""
 
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import h5py
 import numpy as np
 
 from common.errors import InputError
+from common.files import read_toml
 from common.result_file import text_of
 from sandglass_report.accuracy import accuracy, ordered_profile
 from sandglass_report.verdicts import REFERENCES
@@ -86,10 +86,7 @@ def _case_files(folder):
         raise InputError(f"{folder}: no such folder of cases")
     found = {}
     for path in sorted(folder.glob("*.toml")):
-        try:
-            tables = tomllib.loads(path.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise InputError(f"{path}: not a TOML file: {error}") from error
+        tables = read_toml(path)
         found[tables.get("case", {}).get("name")] = (path, tables)
     return found
 

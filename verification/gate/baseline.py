@@ -147,11 +147,8 @@ def _accepted(area, outcomes, figures):
 def accept(baseline, run, areas, reason, date):
     """Makes what a run found the baseline's records of `areas`, and writes down why.
 
-    Returns the changes by area. Raises InputError without a reason, or where a ratio has no
-    interval.
+    Returns the changes by area. Raises InputError where a ratio has no interval.
     """
-    if not reason.strip():
-        raise InputError("--reason: a text is required: why is this the new baseline?")
     for record in run.records:
         for figure, value in record.figures.items():
             if isinstance(value, Interval) and value.low == 0.0:

@@ -127,6 +127,15 @@ def chosen_patches(names):
     return [patch for patch in patches if patch.name.startswith(tuple(names))]
 
 
+def conclude(verdicts, stopped):
+    """Prints how often each verdict was given; the exit code that they stand for."""
+    for verdict in sorted(set(verdicts)):
+        print(f"{verdicts.count(verdict):4} {verdict}")
+    if stopped or {"broken", "no verdict", "not run"} & set(verdicts):
+        return 3
+    return 1 if "survived" in verdicts else 0
+
+
 def run(options, stop):
     """Everything; returns the exit code. Raises InputError."""
     patches = chosen_patches(options.names)
@@ -165,12 +174,8 @@ def run(options, stop):
         print(f"error: {error}", file=sys.stderr)
     if errors:
         return 1
-    verdicts = [row[2] for row in rows if row[0] in {patch.name for patch in patches}]
-    for verdict in sorted(set(verdicts)):
-        print(f"{verdicts.count(verdict):4} {verdict}")
-    if stop.is_set() or {"broken", "no verdict", "not run"} & set(verdicts):
-        return 3
-    return 1 if "survived" in verdicts else 0
+    names = {patch.name for patch in patches}
+    return conclude([row[2] for row in rows if row[0] in names], stop.is_set())
 
 
 def main():
