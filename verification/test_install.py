@@ -116,7 +116,7 @@ def test_the_installed_program_has_its_cases(prefix, tmp_path):
 
 
 def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
-    """By its own copy of exchange/, not by that of the source."""
+    """By its own copies of exchange/ and common/, not by those of the source."""
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     program = moved / "bin" / "sandglass"
     run(program, "mesh", "column", "-o", tmp_path / "column.vtu", cwd=tmp_path)
