@@ -47,7 +47,7 @@ class _Reader:
         self.instances = 0
 
     def read(self, path, depth):
-        """All keywords of a file and of those that it includes."""
+        """All keywords of a file and of those that it includes. Raises InputError."""
         try:
             text = path.read_text(encoding="utf-8", errors="replace")
         except OSError as error:

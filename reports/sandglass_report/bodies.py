@@ -16,7 +16,7 @@ FROM_THE_SIDE = View(azimuth=16.0, elevation=14.0)
 
 
 def view_of(points):
-    """A direction of sight: slender bodies from the side, others from above."""
+    """A direction of sight on points (n, 3): slender bodies from the side, others from above."""
     size = np.ptp(points, axis=0)
     return FROM_THE_SIDE if size[2] > 3 * max(size[0], size[1]) else ALL_ROUND
 

@@ -28,7 +28,7 @@ SOURCES = {
 
 
 def arguments(given):
-    """The command line, parsed."""
+    """The command line, parsed. Raises InputError."""
     parser = argparse.ArgumentParser(prog="ci/gate", description=__doc__.splitlines()[0])
     add = parser.add_argument
     add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")

@@ -49,7 +49,7 @@ def entries_of(path, document, key, required):
 
 
 def unique(path, records):
-    """The records, of which no two may have one name."""
+    """The records, of which no two may have one name. Raises InputError."""
     seen = set()
     for record in records:
         if (record.area, record.name) in seen:

@@ -117,7 +117,7 @@ def is_finished(patch, tree):
 
 
 def chosen_patches(names):
-    """The patches whose names begin with one of the names given; all without names."""
+    """The patches whose names begin with one of those given, or all. Raises InputError."""
     patches = read_patches()
     if not names:
         return patches
