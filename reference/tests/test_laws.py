@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 import pytest
 import ufl
+from command_line import BLOCK
 from dolfinx import fem
 
 import newton
@@ -31,12 +32,9 @@ RELAXATION = "relaxation_1 = 0.25\ntime_1 = 0.5\nrelaxation_2 = 0.15\ntime_2 = 5
 MATERIALS |= {f"{VISCOELASTIC}{law}": f"{text}\n{RELAXATION}" for law, text in MATERIALS.items()}
 
 # Stretched by a third, sheared by as much, with free sides: every part of a law takes part.
-CASE = """
-[case]
-name = "block"
-requirement = "A block is pulled and sheared."
-answer = "quasi-static"
-
+CASE = (
+    BLOCK[: BLOCK.index("[mesh]")]
+    + """
 [mesh]
 generator = "box"
 size = [0.1, 0.1, 0.1]
@@ -62,6 +60,7 @@ value = [0.03, 0.01, 0.03]
 [relaxation]
 tolerance = 1e-11
 """
+)
 
 
 def _case(folder, law):
