@@ -5,20 +5,15 @@ Deck and result file are those of exchange/, which tells what they hold.
 
 import re
 import subprocess
-import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parent.parent))
+import numpy as np
 
-import numpy as np  # noqa: E402  (the path above must come first)
-
-from errors import DivergenceError, InputError  # noqa: E402
-from exchange import calculix_deck, frd_file  # noqa: E402
-from exchange.calculix_deck import LAWS  # noqa: E402, F401  (for those who ask what ccx can do)
-from exchange.errors import InputError as ExchangeError  # noqa: E402
-from exchange.foreign_mesh import HexMesh  # noqa: E402
+from common.errors import ComputationError, InputError
+from exchange import calculix_deck, frd_file
+from exchange.foreign_mesh import HexMesh
 
 PROGRAM, PACKAGE = "ccx", "calculix-ccx"
 
@@ -50,18 +45,7 @@ def deck(title, mesh, law, material, element="C3D8", tolerance=None):
     prescribed, values = mesh.imposed()
     plain = HexMesh(mesh.points, mesh.cells, {})
     options = {"element": element, "tolerance": tolerance}
-    try:
-        return calculix_deck.deck(title, plain, law, material, prescribed, values, **options)
-    except ExchangeError as error:
-        raise InputError(str(error)) from error
-
-
-def read_displacement(path, n_nodes):
-    """The displacements that ccx wrote, (n_nodes, 3) in m. Raises InputError."""
-    try:
-        return frd_file.read_displacement(path, n_nodes)
-    except ExchangeError as error:
-        raise InputError(str(error)) from error
+    return calculix_deck.deck(title, plain, law, material, prescribed, values, **options)
 
 
 def read_progress(path):
@@ -88,7 +72,7 @@ def solve(text, n_nodes, folder, environment=None):
     """Run ccx on a deck in an empty folder. Returns a Solution.
 
     text: of deck(). n_nodes: of its mesh. environment: of the process; None takes the present one.
-    Raises DivergenceError when ccx finds no equilibrium, InputError when its files are damaged.
+    Raises ComputationError when ccx finds no equilibrium, InputError when its files are damaged.
     """
     folder = Path(folder)
     (folder / "case.inp").write_text(text, encoding="ascii")
@@ -101,13 +85,13 @@ def solve(text, n_nodes, folder, environment=None):
     if done.returncode or not said:
         errors = re.findall(r"\*ERROR.*", done.stdout)
         reason = errors[-1] if errors else "no message"
-        raise DivergenceError(f"CalculiX ended with {done.returncode}: {reason}")
+        raise ComputationError(f"CalculiX ended with {done.returncode}: {reason}")
     increments, iterations, reached = read_progress(folder / "case.sta")
     if reached != 1:
-        raise DivergenceError(f"CalculiX stopped at {reached:.4f} of the load")
+        raise ComputationError(f"CalculiX stopped at {reached:.4f} of the load")
     version = re.search(r"CalculiX Version ([\w.]+)", done.stdout)
     return Solution(
-        read_displacement(folder / "case.frd", n_nodes),
+        frd_file.read_displacement(folder / "case.frd", n_nodes),
         seconds,
         float(said[1]),
         increments,
@@ -121,4 +105,4 @@ def _text(path):
     try:
         return Path(path).read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot read what CalculiX wrote: {error}") from error
+        raise InputError(f"{path}: cannot be read as what CalculiX writes: {error}") from error

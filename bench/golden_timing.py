@@ -11,20 +11,21 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "reference"))
+import dolfinx
+import numpy as np
 
-import dolfinx  # noqa: E402  (the path above must come first)
-import numpy as np  # noqa: E402
+if __name__ == "__main__":
+    TREE = Path(__file__).resolve().parent.parent
+    sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 
-import newton  # noqa: E402
-from accuracy import relative_errors  # noqa: E402
-from case_file import read_case  # noqa: E402
-from errors import DivergenceError, InputError  # noqa: E402
-from mesh_file import load_case_mesh  # noqa: E402
-from problem import GOLDEN, MixedProblem  # noqa: E402
-from rest_records import whole_number  # noqa: E402
-from result_file import require_writable  # noqa: E402
-from solve import LOAD_STEPS, NEWTON_TOLERANCE  # noqa: E402
+import newton
+from case_file import read_case
+from common.accuracy import relative_errors
+from common.command import exit_code, whole_number
+from common.files import require_writable
+from mesh_file import load_case_mesh
+from problem import GOLDEN, MixedProblem
+from solve import LOAD_STEPS, NEWTON_TOLERANCE
 
 
 class WatchedProblem(MixedProblem):
@@ -43,16 +44,16 @@ class WatchedProblem(MixedProblem):
         return super().linearize()
 
 
-def seconds_within(moments, limit, largest_imposed):
+def seconds_within(moments, limit, unit):
     """Seconds from the first moment to the one from which on the displacement stays near the last.
 
     moments: list of (seconds, displacement (n, 3) in m). limit: of max |u - u_last| over the nodes,
-    as a fraction of largest_imposed, m.
+    as a fraction of the unit of errors, m.
     """
     started, last = moments[0][0], moments[-1][1]
     reached = moments[-1][0]
     for moment, displacement in reversed(moments):
-        if relative_errors(displacement, last, largest_imposed)[0] > limit:
+        if relative_errors(displacement, last, unit)[0] > limit:
             break
         reached = moment
     return reached - started
@@ -63,7 +64,7 @@ def time_golden(case, mesh, load_steps):
 
     case: Case. mesh: HexMesh. load_steps: from rest. Returns a dict of displacement (n, 3) in m and
     of numbers: seconds (the keys tell of what), load_steps, iterations, residual.
-    Raises DivergenceError.
+    Raises ComputationError.
     """
     set_up = [time.perf_counter()]
     for _ in range(2):
@@ -89,6 +90,15 @@ def time_golden(case, mesh, load_steps):
     }
 
 
+def run(options):
+    """Reads, times, stores. Raises InputError or ComputationError."""
+    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
+    case = read_case(options.case)
+    mesh, _ = load_case_mesh(case, options.mesh)
+    require_writable(options.output)
+    np.savez(options.output, **time_golden(case, mesh, options.load_steps))
+
+
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(description="Time a golden: set-up, compilation, solution.")
@@ -98,20 +108,7 @@ def main(arguments=None):
     parser.add_argument(
         "--load-steps", type=whole_number(1), default=LOAD_STEPS["golden"], metavar="N"
     )
-    parsed = parser.parse_args(arguments)
-    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
-    try:
-        case = read_case(parsed.case)
-        mesh, _ = load_case_mesh(case, parsed.mesh)
-        require_writable(parsed.output)
-        np.savez(parsed.output, **time_golden(case, mesh, parsed.load_steps))
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except DivergenceError as error:
-        print(f"error: {parsed.case}: {error}", file=sys.stderr)
-        return 3
-    return 0
+    return exit_code(run, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

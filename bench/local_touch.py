@@ -7,23 +7,26 @@ time and the largest difference of displacements, over all nodes, in percent of 
 --case keeps the case file, for other commands. --survey runs random blocks, patches, Poisson's
 ratios and methods at 10 %, 2 % and 0.4 % and prints what is neglected over what may be.
 The binary is build/release/sandglass, or the one that SANDGLASS_BINARY names.
-Exit codes: 0 done, 2 bad usage, 3 a run failed.
+Exit codes: 0 done, 2 bad usage or input, 3 a run failed.
 """
 
 import argparse
-import os
 import random
 import re
 import statistics
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-import h5py
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parent.parent
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+
+from common.command import exit_code, whole_number
+from common.program import binary, output_of
+from common.result_file import last_displacement
+
 EDGE = 0.002  # m, of an element
 
 CASE = """# A block on a fixed base, touched in the middle of its upper side.
@@ -58,10 +61,6 @@ value = [0.0, 0.0, {depth}]
 """
 
 
-class RunError(Exception):
-    """A run of the solver failed."""
-
-
 def case_text(elements, patch, depth, poisson_ratio=0.49):
     """A block of so many elements; patch x patch of them are pushed in by depth (m)."""
     middle = [EDGE * (n // 2) for n in elements[:2]]
@@ -79,19 +78,17 @@ def case_text(elements, patch, depth, poisson_ratio=0.49):
 
 
 def run(case, method, folder, share=None):
-    """Seconds, share of the elements awake and displacements (m) of one run."""
-    binary = os.environ.get("SANDGLASS_BINARY", str(REPOSITORY / "build/release/sandglass"))
+    """Seconds, share of the elements awake and displacements (n, 3), m, of one run.
+
+    Raises InputError or ComputationError where the solver does.
+    """
     result = Path(folder) / "result.h5"
-    command = [binary, "run", case, "--method", method, "--output", result]
-    command += ["--sleep", share] if share else []
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
-    if done.returncode:
-        raise RunError(done.stderr.strip() or f"the solver ended with {done.returncode}")
-    seconds = float(re.search(r"wall time (\S+) s", done.stdout)[1])
-    awake = re.search(r"awake: (\d+) of (\d+)", done.stdout)
-    with h5py.File(result) as file:
-        u = file["frames"][sorted(file["frames"])[-1]]["displacement"][:]
-    return seconds, int(awake[1]) / int(awake[2]) if awake else 1.0, u
+    sleep = ["--sleep", share] if share else []
+    text = output_of(binary(), "run", case, "--method", method, "--output", result, *sleep)
+    seconds = float(re.search(r"wall time (\S+) s", text)[1])
+    awake = re.search(r"awake: (\d+) of (\d+)", text)
+    share_awake = int(awake[1]) / int(awake[2]) if awake else 1.0
+    return seconds, share_awake, last_displacement(result)
 
 
 def measure(case, method, shares, repetitions):
@@ -159,31 +156,24 @@ def survey(count):
     return [head] + [f"{ratio:6.2f}  {text}" for ratio, text in found[:5]]
 
 
+def show(options):
+    """Measures and prints. Raises InputError or ComputationError."""
+    print("\n".join(survey(options.survey) if options.survey else touch(options)))
+
+
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--elements", nargs=3, type=int, default=[182, 182, 6], metavar=("NX", "NY", "NZ")
-    )
-    parser.add_argument("--patch", type=int, default=4, help="touched faces along x and y")
-    parser.add_argument("--depth", type=float, default=EDGE, help="of the touch, m")
-    parser.add_argument("--method", default="tl-perturbation")
-    parser.add_argument("--shares", nargs="+", default=["1%", "0.1%"], help="what to neglect")
-    parser.add_argument("--repetitions", type=int, default=3)
-    parser.add_argument("--case", type=Path, help="keep the case file there")
-    parser.add_argument("--survey", type=int, metavar="N", help="run N random blocks instead")
-    options = parser.parse_args(arguments)
-    if options.survey is not None and options.survey < 1:
-        parser.error("--survey must be at least 1")
-    if min(options.elements) < 1 or options.repetitions < 1 or options.patch < 1:
-        parser.error("--elements, --patch and --repetitions must be at least 1")
-    try:
-        lines = survey(options.survey) if options.survey else touch(options)
-    except RunError as error:
-        print(error, file=sys.stderr)
-        return 3
-    print("\n".join(lines))
-    return 0
+    add, count = parser.add_argument, whole_number(1)
+    add("--elements", nargs=3, type=count, default=[182, 182, 6], metavar=("NX", "NY", "NZ"))
+    add("--patch", type=count, default=4, help="touched faces along x and y")
+    add("--depth", type=float, default=EDGE, help="of the touch, m")
+    add("--method", default="tl-perturbation")
+    add("--shares", nargs="+", default=["1%", "0.1%"], help="what to neglect")
+    add("--repetitions", type=count, default=3)
+    add("--case", type=Path, help="keep the case file there")
+    add("--survey", type=count, metavar="N", help="run N random blocks instead")
+    return exit_code(show, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

@@ -3,15 +3,11 @@
 A record is a dict with every key of KEYS; None stands for what is not measured.
 """
 
-import argparse
-import json
-import math
-import os
 import re
-import tempfile
-from pathlib import Path
 
-from errors import DivergenceError, InputError
+from common.errors import ComputationError, InputError
+from common.files import read_json
+from common.records import NUMBER, entries, entry
 
 # What `sandglass bench --rest` gives of each of its runs.
 SOLVER_KEYS = {
@@ -35,7 +31,6 @@ KEYS = {
     "error_to_golden_max": float,
     "error_to_golden_rms": float,
 }
-REQUIRED = ("case", "method", "precision")
 
 
 def record(**known):
@@ -51,50 +46,29 @@ def read_solver_records(path):
     Other keys, of the document and of a record, are ignored. Returns a list of records with
     program "sandglass". Raises InputError naming file, entry, key, value and rule.
     """
-    try:
-        document = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: cannot read the records: {error.strerror}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: not a JSON file: {error}") from error
-    if not isinstance(document, dict):
-        raise InputError(f"{path}: an object is required, not {type(document).__name__}")
-    entries = document.get("records")
-    if not isinstance(entries, list):
-        raise InputError(f"{path}: records = {entries!r}: a list is required")
-    return [_checked(path, number, entry) for number, entry in enumerate(entries)]
+    return [_checked(*found) for found in entries(path, read_json(path), "records")]
 
 
-def _checked(path, number, entry):
-    """One entry of a list of solver records as a record. Raises InputError."""
-    if not isinstance(entry, dict):
-        raise InputError(f"{path}: record {number} = {entry!r}: an object is required")
+def _checked(where, found):
+    """An object of a list of solver records as a record: texts, and numbers >= 0 or null."""
+    figures = {}
     for key, kind in SOLVER_KEYS.items():
-        if key not in entry:
-            raise InputError(f"{path}: record {number}: {key} is missing")
-        value = entry[key]
-        if value is None and key not in REQUIRED:
-            continue
-        number_wanted = kind is not str
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if number_wanted and not (is_number and math.isfinite(value) and value >= 0):
-            raise InputError(
-                f"{path}: record {number}: {key} = {value!r}: a number >= 0 or null is required"
-            )
-        if not number_wanted and not isinstance(value, str):
-            raise InputError(f"{path}: record {number}: {key} = {value!r}: a text is required")
-    return record(program="sandglass", **{key: entry[key] for key in SOLVER_KEYS})
+        text = kind is str
+        figures[key] = entry(where, found, key, str if text else NUMBER, none_allowed=not text)
+        if not text and figures[key] is not None and figures[key] < 0:
+            raise InputError(f"{where}.{key} = {figures[key]!r} must be >= 0 or null")
+    return record(program="sandglass", **figures)
 
 
 def read_run(case, method, text):
     """The record of what `sandglass run` printed about a quasi-static case: only time to rest.
 
-    Raises DivergenceError when the text does not say that the case came to rest, and how fast.
+    Raises ComputationError when the text does not say that the case came to rest, and how fast.
     """
     rest = re.search(r"at rest after (\d+) steps, residual (\S+)", text)
     wall = re.search(r"^wall time (\S+) s", text, re.MULTILINE)
     if not (rest and wall):
-        raise DivergenceError(
+        raise ComputationError(
             f"sandglass run {case} -m {method}: 'at rest after N steps, residual R' and 'wall time "
             f"T s' are required, but it printed {text!r}"
         )
@@ -131,8 +105,8 @@ COLUMNS = (
 def table(records):
     """A Markdown table of records of one case, one line each, columns aligned; "-" for None."""
     rows = [[heading for heading, _, _ in COLUMNS]]
-    for entry in records:
-        rows.append(["-" if entry[key] is None else show(entry[key]) for _, key, show in COLUMNS])
+    for one in records:
+        rows.append(["-" if one[key] is None else show(one[key]) for _, key, show in COLUMNS])
     widths = [max(map(len, column)) for column in zip(*rows)]
     lines = [
         "| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths)) + " |"
@@ -140,33 +114,3 @@ def table(records):
     ]
     lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
     return "\n".join(lines)
-
-
-def write_json(path, document):
-    """Write a document to a temporary file beside `path` and rename it. Raises InputError."""
-    path = Path(path).resolve()
-    temporary = None
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            json.dump(document, file, indent=2, allow_nan=False)
-            file.write("\n")
-        os.chmod(temporary, 0o644)  # mkstemp makes it readable by its owner only
-        os.replace(temporary, path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot write: {error.strerror}") from error
-    finally:
-        if temporary and os.path.exists(temporary):
-            os.unlink(temporary)
-
-
-def whole_number(smallest):
-    """A function that takes a whole number >= smallest out of the command line, for argparse."""
-
-    def number(text):
-        found = int(text)
-        if found < smallest:
-            raise argparse.ArgumentTypeError(f"{text}: must be {smallest} or more")
-        return found
-
-    return number

@@ -20,8 +20,8 @@ def test_prints_what_sleep_neglects(tmp_path, capsys):
     assert (u[:, 2] == -local_touch.EDGE).sum() == 25, "five nodes along each side of the patch"
 
 
-def test_tells_of_a_failed_run(capsys):
-    assert local_touch.main(["--elements", "4", "4", "2", "--method", "tl-nothing"]) == 3
+def test_tells_of_a_refused_run(capsys):
+    assert local_touch.main(["--elements", "4", "4", "2", "--method", "tl-nothing"]) == 2
     assert "'tl-nothing'" in capsys.readouterr().err
 
 

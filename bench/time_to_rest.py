@@ -10,32 +10,34 @@ import argparse
 import importlib.util
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
-import tomllib
 import types
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "reference"))
+import numpy as np
+
+if __name__ == "__main__":
+    TREE = Path(__file__).resolve().parent.parent
+    sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 if importlib.util.find_spec("ufl") is None:
     # The list of laws, which checks the case file, is written in UFL: without FEniCSx its energies
     # are never called, but its import must not fail.
     sys.modules["ufl"] = types.ModuleType("ufl")
 
-import h5py  # noqa: E402  (the lines above must come first)
-import numpy as np  # noqa: E402
-
-import calculix  # noqa: E402
-import rest_records  # noqa: E402
-from accuracy import relative_errors  # noqa: E402
-from case_file import read_case  # noqa: E402
-from errors import DivergenceError, InputError  # noqa: E402
-from mesh_file import load_case_mesh  # noqa: E402
-from rest_records import whole_number  # noqa: E402
-from result_file import read_result, require_writable  # noqa: E402
-from solver_binary import CASES, REPOSITORY, make_mesh  # noqa: E402
+import calculix
+import rest_records
+from case_file import read_case
+from common.accuracy import relative_errors
+from common.command import exit_code, whole_number
+from common.errors import ComputationError, InputError, suggestion
+from common.files import read_toml, require_writable, write_json
+from common.program import CASES, ROOT, binary, output_of
+from common.result_file import last_displacement
+from exchange.calculix_deck import LAWS
+from mesh_file import load_case_mesh, make_mesh
+from reference_file import path_of, read_reference
 
 METHODS = ("tl-mean-dilatation", "tl-perturbation")
 ELEMENTS = ("C3D8", "C3D8R")
@@ -89,16 +91,17 @@ def case_path(name):
     for path in (Path(name), CASES / f"{name}.toml"):
         if path.is_file():
             return path.resolve()
-    known = ", ".join(sorted(path.stem for path in CASES.glob("*.toml")))
-    raise InputError(f"CASE = {name!r}: neither a file nor one of: {known}")
+    known = sorted(path.stem for path in CASES.glob("*.toml"))
+    raise InputError(
+        f"CASE: '{name}' is neither a file nor a known case; {suggestion(name, known)}"
+    )
 
 
 def require_quasi_static(path):
     """Raise InputError unless the case, a readable one, has a static answer."""
-    with open(path, "rb") as file:
-        answer = tomllib.load(file)["case"].get("answer")
+    answer = read_toml(path)["case"].get("answer")
     if answer != "quasi-static":
-        raise InputError(f"{path}: case.answer = {answer!r}: 'quasi-static' is required here")
+        raise InputError(f"{path}: case.answer = {answer!r} must be 'quasi-static'")
 
 
 def time_golden(job):
@@ -110,7 +113,7 @@ def time_golden(job):
     for steps in job.options.load_steps:
         try:
             timed, displacement = _golden(job, steps)
-        except DivergenceError as error:
+        except ComputationError as error:
             job.fail(error)
             continue
         if job.golden is None:
@@ -122,19 +125,19 @@ def time_golden(job):
 def _golden(job, load_steps):
     """(record, displacement (n, 3) in m) of the golden by so many load steps; 0: the reference's.
 
-    Raises DivergenceError.
+    Raises ComputationError.
     """
     folder = job.folder / f"golden-{load_steps}"
     folder.mkdir()
     output = folder / "golden.npz"
-    command = [sys.executable, REPOSITORY / "bench" / "golden_timing.py", job.path]
+    command = [sys.executable, ROOT / "bench" / "golden_timing.py", job.path]
     command += ["--mesh", job.mesh_path, "-o", output]
     if load_steps:
         command += ["--load-steps", load_steps]
     # In an empty cache, so that what is compiled does not depend on earlier runs.
     environment = {**job.environment, "XDG_CACHE_HOME": str(folder / "cache")}
     started = time.perf_counter()
-    run(command, environment)
+    output_of(*command, env=environment)
     seconds = time.perf_counter() - started
     with np.load(output) as found:
         figures = {key: found[key].item() for key in found if key != "displacement"}
@@ -158,7 +161,7 @@ def time_calculix(job):
         raise Unavailable(
             f"{calculix.PROGRAM} is not installed; package {calculix.PACKAGE} (ci/setup bench)"
         )
-    if job.case.law not in calculix.LAWS:
+    if job.case.law not in LAWS:
         raise Unavailable(f"CalculiX has no law {job.case.law!r}")
     for element in job.options.elements:
         title = f"{job.case.name}, mesh {job.mesh_file.mesh_hash}"
@@ -168,7 +171,7 @@ def time_calculix(job):
         folder.mkdir()
         try:
             solution = calculix.solve(deck, len(job.mesh.points), folder, job.environment)
-        except DivergenceError as error:
+        except ComputationError as error:
             job.fail(f"{element}: {error}")
             continue
         job.versions["ccx"] = solution.version
@@ -189,44 +192,44 @@ def time_calculix(job):
 def time_sandglass(job):
     """Adds the records of Sandglass, those of `sandglass bench --rest` where it is there.
 
-    METHODS that it lacks get their seconds to rest from `sandglass run`. Raises DivergenceError or
+    METHODS that it lacks get their seconds to rest from `sandglass run`. Raises ComputationError or
     InputError.
     """
-    binary = Path(os.environ.get("SANDGLASS_BINARY", REPOSITORY / "build/release/sandglass"))
-    binary = str(binary.resolve())
-    job.versions["sandglass"] = run([binary, "--version"], None).split(maxsplit=1)[-1].strip()
-    records = []
-    if "--rest" in run([binary, "bench", "--help"], None):
-        output = job.folder / "rest.json"
-        try:
-            run([binary, "bench", "--rest", job.path, "--json", output], None)
-        except DivergenceError as error:
-            job.fail(error)
-        if output.exists():  # with what came to rest, also when something did not
-            records = rest_records.read_solver_records(output)
-    else:
-        note("this sandglass has no `bench --rest`: its seconds to 1 % and 0.1 % are not measured")
+    solver = binary()
+    job.versions["sandglass"] = output_of(solver, "--version").split(maxsplit=1)[-1].strip()
+    records = _records_of_bench(job, solver)
     for method in METHODS:
-        command = [binary, "run", job.path, "-m", method]
+        command = [solver, "run", job.path, "-m", method]
         output = job.folder / f"{method}.h5"
         try:
             if not any(timed["method"] == method for timed in records):
                 started = time.perf_counter()
-                timed = rest_records.read_run(job.case.name, method, run(command, None))
+                timed = rest_records.read_run(job.case.name, method, output_of(*command))
                 timed["process_seconds"] = time.perf_counter() - started
                 records.append(timed)
             # Again for the displacement: writing frames must not count.
-            run(command + ["-o", output], None)
-        except DivergenceError as error:
+            output_of(*command, "-o", output)
+        except ComputationError as error:
             job.fail(f"{method}: {error}")
             continue
-        with h5py.File(output) as file:
-            last = sorted(file["frames"])[-1]
-            displacement = file[f"frames/{last}/displacement"][...]
         for timed in records:
             if (timed["method"], timed["precision"]) == (method, "double"):
-                job.displacements.append((timed, displacement))
+                job.displacements.append((timed, last_displacement(output)))
     job.records += records
+
+
+def _records_of_bench(job, solver):
+    """The records of `bench --rest`; none of a solver that has no such command."""
+    if "--rest" not in output_of(solver, "bench", "--help"):
+        note("this sandglass has no `bench --rest`: its seconds to 1 % and 0.1 % are not measured")
+        return []
+    output = job.folder / "rest.json"
+    try:
+        output_of(solver, "bench", "--rest", job.path, "--json", output)
+    except ComputationError as error:
+        job.fail(error)
+    # With what came to rest, also when something did not.
+    return rest_records.read_solver_records(output) if output.exists() else []
 
 
 PROGRAMS = {"golden": time_golden, "calculix": time_calculix, "sandglass": time_sandglass}
@@ -239,11 +242,11 @@ def compare(job):
     """
     golden = job.golden
     if golden is None:
-        stored = REPOSITORY / "reference" / "golden" / f"{job.case.name}.h5"
+        stored = path_of("golden", job.case.name)
         if not stored.exists():
             note("no golden: the others are compared with nothing")
             return
-        _, golden, attributes = read_result(stored)
+        _, golden, attributes = read_reference(stored)
         if attributes["mesh_hash"] != job.mesh_file.mesh_hash or (
             attributes["case_hash"] != job.mesh_file.case_hash
         ):
@@ -253,21 +256,6 @@ def compare(job):
     for timed, displacement in job.displacements:
         errors = relative_errors(displacement, golden, job.mesh.largest_imposed())
         timed["error_to_golden_max"], timed["error_to_golden_rms"] = map(float, errors)
-
-
-def run(command, environment):
-    """What a program prints. Raises InputError for its exit code 2, DivergenceError for others."""
-    command = [str(word) for word in command]
-    try:
-        done = subprocess.run(command, env=environment, capture_output=True, text=True)
-    except OSError as error:
-        raise InputError(f"{command[0]}: cannot run: {error.strerror}") from error
-    if done.returncode:
-        told = done.stderr.strip().splitlines() or ["it told no reason"]
-        kind = InputError if done.returncode == 2 else DivergenceError
-        text = told[-1].removeprefix("error: ")
-        raise kind(f"`{' '.join(command)}` ended with {done.returncode}: {text}")
-    return done.stdout
 
 
 def machine(threads):
@@ -316,7 +304,7 @@ def measure(options):
                 PROGRAMS[name](job)
             except Unavailable as reason:
                 note(f"{name} is left out: {reason}")
-            except DivergenceError as error:
+            except ComputationError as error:
                 job.fail(error)
         place["load_average_after"] = os.getloadavg()[0]
         compare(job)
@@ -324,7 +312,7 @@ def measure(options):
         show(job, place)
     if options.json:
         document = {**place, "versions": job.versions, "records": job.records}
-        rest_records.write_json(options.json, document)
+        write_json(options.json, document)
     return job.exit_code
 
 
@@ -354,11 +342,7 @@ def main(arguments=None):
         metavar="N",
         help="of each implicit program; default: all processors",
     )
-    try:
-        return measure(parser.parse_args(arguments))
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+    return exit_code(measure, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import re
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
 
 GENERATING = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM")
@@ -35,6 +35,7 @@ class _Sets:
         self.spelled, self.members = {}, {}
 
     def add(self, name, numbers):
+        """Adds numbers to those of a name."""
         self.spelled.setdefault(name.upper(), name)
         self.members.setdefault(name.upper(), set()).update(numbers)
 
@@ -46,7 +47,7 @@ class _Reader:
         self.instances = 0
 
     def read(self, path, depth):
-        """All keywords of a file and of those that it includes."""
+        """All keywords of a file and of those that it includes. Raises InputError."""
         try:
             text = path.read_text(encoding="utf-8", errors="replace")
         except OSError as error:
@@ -195,13 +196,13 @@ def _keywords(path, text):
             lines.append((place, [field.strip() for field in line.split(",")]))
             continue
         if current is not None:
-            yield *_parsed(*current), lines, current[1]
+            yield *_parsed(current[0]), lines, current[1]
         current, lines = (line, place), []
     if current is not None:
-        yield *_parsed(*current), lines, current[1]
+        yield *_parsed(current[0]), lines, current[1]
 
 
-def _parsed(line, place):
+def _parsed(line):
     """The keyword of a line in capitals, and its options; names keep their case."""
     words = re.findall(r'(?:[^,"]|"[^"]*")+', line[1:])
     options = {}
@@ -218,14 +219,14 @@ def _whole(place, text):
             return number
     except ValueError:
         pass
-    raise InputError(f"{place}: {text!r}: a whole number is required")
+    raise InputError(f"{place}: {text!r} must be a whole number")
 
 
 def _real(place, text):
     try:
         return float(text.upper().replace("D", "E")) if text else 0.0
     except ValueError:
-        raise InputError(f"{place}: {text!r}: a number is required") from None
+        raise InputError(f"{place}: {text!r} must be a number") from None
 
 
 def number(value):

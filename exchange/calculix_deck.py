@@ -7,8 +7,8 @@ project, mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2, with C10 = mu / 2 and D1 = 2 / 
 
 import numpy as np
 
+from common.errors import InputError, suggestion
 from exchange.abaqus_file import mesh_lines, number
-from exchange.errors import InputError
 
 # ccx cuts and stretches the increments by itself, so this only sets the speed: of 0.1, 0.25 and 1
 # it needs the fewest iterations on ellipsoid-indentation.
@@ -41,7 +41,7 @@ def deck(title, mesh, law, material, prescribed, values, **options):
     """
     if law not in LAWS:
         raise InputError(
-            f"material.law = {law!r}: CalculiX has no such law; allowed: {', '.join(sorted(LAWS))}"
+            f"material.law = {law!r} is not known to CalculiX; {suggestion(law, sorted(LAWS))}"
         )
     tolerance, forces = options.get("tolerance", TOLERANCE), options.get("forces")
     lines = ["*HEADING", " ".join(title.split())]

@@ -18,9 +18,9 @@ PACKAGES = "python3-numpy, python3-h5py, python3-scipy and python3-meshio (ci/se
 try:
     import numpy as np
 
+    from common.errors import InputError
     from exchange import abaqus_file, csv_file, frd_file, gmsh_file, hdf5_file, vtu_file
     from exchange.calculix_deck import deck
-    from exchange.errors import InputError
     from exchange.foreign_mesh import to_hexahedra
 except ImportError as error:
     print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")

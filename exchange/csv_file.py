@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 
 # Spellings of a column, in lower case; those with a digit are ParaView's.
 POINTS = {axis: (axis, f"points:{i}", f"points_{i}") for i, axis in enumerate("xyz")}
@@ -58,9 +58,9 @@ def _number(path, line, row, header, name):
     try:
         value = float(row[header.index(name)]) if len(row) == len(header) else None
     except ValueError:
-        raise InputError(f"{path}:{line}: column '{name}': a number is required") from None
+        raise InputError(f"{path}:{line}: column '{name}': must be a number") from None
     if value is None:
         raise InputError(f"{path}:{line}: {len(row)} cells; {len(header)} are required, as above")
     if not math.isfinite(value):
-        raise InputError(f"{path}:{line}: column '{name}': {value} is not finite")
+        raise InputError(f"{path}:{line}: column '{name}': {value} must be finite")
     return value

@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from common.errors import InputError
+from common.hexahedron import LEXICOGRAPHIC
 from exchange import orientation
-from exchange.errors import InputError
 
 HEXAHEDRON = "hexahedron"
 SHOWN = 3  # of what is wrong, in a message
@@ -155,7 +156,7 @@ def _oriented(mesh, block, cells, path, warn):
     tangled = np.flatnonzero(state == orientation.TANGLED)
     if tangled.size:
         hint = ""
-        if (orientation.judge(mesh.points, cells[:, orientation.LEXICOGRAPHIC]) != 0).all():
+        if (orientation.judge(mesh.points, cells[:, LEXICOGRAPHIC]) != orientation.TANGLED).all():
             hint = "; counted with x fastest they would not be: swap the 3rd with the 4th, 7th, 8th"
         centres = mesh.points[cells[tangled]].mean(axis=1)
         told = [

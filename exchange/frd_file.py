@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 
 NUMBER = re.compile(r"[-+]?\d\.\d+E[-+]\d{2,3}")
 

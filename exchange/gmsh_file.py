@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
 
 # Gmsh's number of an element type: name, dimension, nodes.
@@ -74,7 +74,7 @@ class _Numbers:
         self.size = "i8" if size == b"8" else "i4"
 
     def take(self, count, kind="i4"):
-        """The next numbers: of an int, of "size" or of "f8"."""
+        """The next numbers (count,): of an int, of "size" or of "f8". Raises InputError."""
         kind = self.size if kind == "size" else kind
         if not 0 <= count <= len(self.data):
             raise InputError(f"{self.where} speaks of {count} numbers, more than it holds")

@@ -3,12 +3,13 @@
 import h5py
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
+from common.result_file import text_of
 from exchange.foreign_mesh import HexMesh
 
 
 def read_mesh(path):
-    """The HexMesh of a file that `sandglass` wrote."""
+    """The HexMesh of a file that `sandglass` wrote, which is not checked."""
     with h5py.File(path, "r") as file:
         mesh = file["mesh"]
         sets = {name: nodes[...] for name, nodes in mesh.get("sets", {}).items()}
@@ -37,8 +38,8 @@ def read_problem(path):
     forces[loads[:, 0].astype(int)] = loads[:, 1:]
     prefix = "material."
     return {
-        "title": f"{_text(attributes['case'])}, mesh {_text(attributes['mesh_hash'])}",
-        "law": _text(attributes["law"]),
+        "title": f"{text_of(attributes['case'])}, mesh {text_of(attributes['mesh_hash'])}",
+        "law": text_of(attributes["law"]),
         "material": {k.removeprefix(prefix): v for k, v in attributes.items() if prefix in k},
         "prescribed": prescribed,
         "values": values,
@@ -59,7 +60,7 @@ def read_displacement(path, warn):
                 raise InputError(
                     f"{path}: dataset 'displacement' (n, 3) is required, or the frames of a result"
                 )
-            status = _text(file.attrs.get("status", "complete"))
+            status = text_of(file.attrs.get("status", "complete"))
             if status != "complete":
                 warn(f"its run ended so: {status}")
             found = [_nodal(path, file, at) if at else None, _nodal(path, file, name)]
@@ -86,7 +87,3 @@ def _nodal(path, file, name):
     if data.ndim != 2 or data.shape[1] != 3 or data.dtype.kind not in "fiu":
         raise InputError(f"{path}: {name} has shape {data.shape}, {data.dtype}; (n, 3) is required")
     return data[...].astype(float)
-
-
-def _text(value):
-    return value.decode() if isinstance(value, bytes) else str(value)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from exchange.errors import InputError
+from common.errors import InputError
 
 WORST = 5  # offenders that are told
 

@@ -2,33 +2,18 @@
 
 import numpy as np
 
+from common.hexahedron import FACES, gauss_jacobians
+
 TANGLED, RIGHT, MIRRORED = 0, 1, -1
 MIRROR = [4, 5, 6, 7, 0, 1, 2, 3]  # top and bottom change places
-LEXICOGRAPHIC = [0, 1, 3, 2, 4, 5, 7, 6]  # from x fastest, then y, then z
-
-SIGNS = np.array(
-    [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)]
-    + [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
-)
-# Counterclockwise seen from outside.
-FACES = np.array(
-    [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
-)
 
 
 def judge(points, cells):
-    """RIGHT, MIRRORED or TANGLED for each cell: det dX/dxi at the eight Gauss points is above
-    zero at all, below zero at all, or neither. points (n, 3), cells (m, 8)."""
-    lowest, highest = np.full(len(cells), np.inf), np.full(len(cells), -np.inf)
-    corners = points[cells]
-    for xi in SIGNS / np.sqrt(3.0):
-        factors = 1.0 + SIGNS * xi  # (8, 3)
-        slopes = SIGNS * np.stack(
-            [factors[:, (i + 1) % 3] * factors[:, (i + 2) % 3] / 8.0 for i in range(3)], axis=1
-        )
-        measure = np.linalg.det(np.einsum("mai,aj->mij", corners, slopes))
-        lowest, highest = np.minimum(lowest, measure), np.maximum(highest, measure)
-    return np.where(lowest > 0, RIGHT, np.where(highest < 0, MIRRORED, TANGLED))
+    """RIGHT, MIRRORED or TANGLED for each cell, (m,): det dX/dxi at the eight Gauss points is above
+    zero at all, below zero at all, or neither. points: (n, 3), m. cells: (m, 8)."""
+    found = gauss_jacobians(points, cells)
+    right, mirrored = (found > 0).all(axis=0), (found < 0).all(axis=0)
+    return np.where(right, RIGHT, np.where(mirrored, MIRRORED, TANGLED))
 
 
 def overlap(cells):

@@ -7,7 +7,7 @@ import warnings
 
 import numpy as np
 
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import Block, ForeignMesh
 
 DISPLACEMENTS = ("displacement", "displacements", "u", "disp")

@@ -1,10 +1,7 @@
-"""What the tests of the module share lies in verification/."""
+"""Makes the module under test importable."""
 
-import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "verification"))
-
-import module_folder  # noqa: E402
+import module_folder
 
 sys.path.insert(0, module_folder.FOLDER)

@@ -10,21 +10,12 @@ import weakref
 import h5py
 import numpy as np
 import pytest
-from command_line import BLOCK, sandglass as program
-from module_folder import FOLDER, ROOT
+from command_line import BARE, ROOT, dynamic, sandglass as program
+from module_folder import FOLDER
 
 import sandglass
 
-DYNAMIC = (
-    BLOCK.replace('"quasi-static"', '"dynamic"').partition("[comparison]")[0]
-    + """
-[dynamics]
-duration = 0.2
-time_step = 1e-3
-damping = 3.0
-frames = 1
-"""
-)
+DYNAMIC = dynamic(BARE, duration=0.2, time_step=1e-3, damping=3.0, frames=1)
 END = np.array([0.02, 0.0, 0.01])  # where BLOCK's head goes
 
 

@@ -1,11 +1,11 @@
 """Reading the parts of a case file (TOML) that the reference needs: material and displacements."""
 
-import difflib
 import math
-import tomllib
 from dataclasses import dataclass
 
-from errors import InputError
+from common.errors import InputError, suggestion
+from common.files import read_toml
+from common.records import NUMBER, entries, entry
 from laws import LAWS, parameters
 
 
@@ -59,14 +59,8 @@ def read_tables(path):
 
     path: str or Path of a TOML file. A file without [variants] has one case. Raises InputError.
     """
-    try:
-        with open(path, "rb") as file:
-            tables = tomllib.load(file)
-    except OSError as error:
-        raise InputError(f"{path}: cannot read the case file: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not a TOML file: {error}") from error
-    family = _get(path, tables, "case", "name", str)
+    tables = read_toml(path)
+    family = entry(f"{path}: case", entry(path, tables, "case", dict), "name", str)
     cases = {family: tables}
     for axis in tables.pop("variants", {}).values():
         longer = {}
@@ -92,52 +86,59 @@ def read_case(path, name=None):
     path: str or Path of a TOML file. name: of the case; needed where the file has variants.
     Returns a Case. Raises InputError naming file, key, value, rule and what is allowed.
     """
-    cases = read_tables(path)
-    if name is None and len(cases) > 1:
-        raise InputError(f"{path}: has variants: one of {', '.join(cases)} is required")
-    name = name or next(iter(cases))
-    if name not in cases:
-        raise InputError(f"{path}: no case {name!r}; {_allowed(name, cases)}")
-    tables = cases[name]
-    law = _get(path, tables, "material", "law", str)
+    name, tables = _chosen(path, read_tables(path), name)
+    where, table = f"{path}: material", entry(path, tables, "material", dict)
+    law = entry(where, table, "law", str)
     if law not in LAWS:
-        raise InputError(f"{path}: material.law = {law!r}: unknown law; {_allowed(law, LAWS)}")
-    _check_keys(path, "material", tables["material"], ("law", "density", *parameters(law)))
+        raise InputError(f"{where}.law = {law!r} is not known; {suggestion(law, LAWS)}")
+    _check_keys(where, table, ("law", "density", *parameters(law)))
     material = {
-        key: _material_number(path, tables, key)
+        key: _material_number(where, table, key)
         for key, required in parameters(law).items()
-        if required or key in tables["material"]
+        if required or key in table
     }
-    entries = tables.get("displacement", [])
-    rotations = tables.get("rotation", [])
-    if not isinstance(entries, list) or not (entries or rotations):
+
+    def read_all(key, read):
+        return tuple(read(*one) for one in (entries(path, tables, key) if key in tables else ()))
+
+    displacements, rotations = read_all("displacement", _displacement), read_all(
+        "rotation", _rotation
+    )
+    if not (displacements or rotations):
         raise InputError(
-            f"{path}: no [[displacement]] or [[rotation]]: at least one table is required"
+            f"{path}: has no [[displacement]] or [[rotation]]; at least one table is required"
         )
     return Case(
         name=name,
         law=law,
         material=material,
-        displacements=tuple(_displacement(path, i, entry) for i, entry in enumerate(entries)),
-        forces=tuple(_force(path, i, entry) for i, entry in enumerate(tables.get("force", []))),
-        rotations=tuple(_rotation(path, i, entry) for i, entry in enumerate(rotations)),
+        displacements=displacements,
+        forces=read_all("force", _force),
+        rotations=rotations,
     )
 
 
-def _material_number(path, tables, key):
-    """material.key: a finite number or a tuple of three; other rules are the solver's."""
-    value = tables["material"].get(key)
-    if isinstance(value, list):
-        if len(value) == 3 and all(_is_number(v) and math.isfinite(v) for v in value):
-            return tuple(float(v) for v in value)
-        raise InputError(f"{path}: material.{key} = {value!r}: must be three finite numbers")
-    value = _get(path, tables, "material", key, float)
+def _chosen(path, cases, name):
+    """(name, tables) of a case out of those of a file; without a name the only one."""
+    if name is None and len(cases) > 1:
+        raise InputError(
+            f"{path}: has {len(cases)} variants, and one must be named; known: {', '.join(cases)}"
+        )
+    name = name or next(iter(cases))
+    if name not in cases:
+        raise InputError(f"{path}: has no case {name!r}; {suggestion(name, cases)}")
+    return name, cases[name]
+
+
+def _material_number(where, table, key):
+    """A finite number or a tuple of three; other rules are the solver's."""
+    if isinstance(table.get(key), list):
+        return _vector(where, table, key)
+    value = float(entry(where, table, key, NUMBER))
     if key == "poisson_ratio" and not -1 < value < 0.5:
-        raise InputError(f"{path}: material.{key} = {value}: must lie in (-1, 0.5)")
+        raise InputError(f"{where}.{key} = {value} must be in (-1, 0.5)")
     if key in ("young_modulus", "bulk_modulus") and not value > 0:
-        raise InputError(f"{path}: material.{key} = {value}: must be positive (Pa)")
-    if not math.isfinite(value):
-        raise InputError(f"{path}: material.{key} = {value}: must be finite")
+        raise InputError(f"{where}.{key} = {value} must be positive (Pa)")
     return value
 
 
@@ -150,106 +151,65 @@ def _merged(tables, changes):
     return merged
 
 
-def _force(path, index, entry):
-    """One checked [[force]] table as a Force."""
-    where = f"force[{index}]"
-    _check_keys(path, where, entry, ("set", "total", "moment"))
-    none = [0.0, 0.0, 0.0]
-    vectors = [_vector(path, where, key, entry.get(key, none)) for key in ("total", "moment")]
-    return Force(_set_name(path, where, entry), *vectors)
-
-
-def _rotation(path, index, entry):
-    """One checked [[rotation]] table as a Rotation; the file has degrees."""
-    where = f"rotation[{index}]"
-    _check_keys(path, where, entry, ("set", "axis", "angle", "center", "displacement"))
-    axis = entry.get("axis")
-    if isinstance(axis, str):
-        if axis not in ("x", "y", "z"):
-            raise InputError(f"{path}: {where}.axis = {axis!r}: {_allowed(axis, ('x', 'y', 'z'))}")
-        axis = [float(axis == letter) for letter in "xyz"]
-    axis = _vector(path, where, "axis", axis)
-    length = math.hypot(*axis)
-    if not length:
-        raise InputError(f"{path}: {where}.axis = {list(axis)}: must not be zero")
-    angle = entry.get("angle")
-    if not (_is_number(angle) and math.isfinite(angle)):
-        raise InputError(f"{path}: {where}.angle = {angle!r}: must be a finite number (degrees)")
-    center = entry.get("center")
-    return Rotation(
-        _set_name(path, where, entry),
-        tuple(a / length for a in axis),
-        angle / 180 * math.pi,
-        None if center is None else _vector(path, where, "center", center),
-        _vector(path, where, "displacement", entry.get("displacement", [0.0, 0.0, 0.0])),
+def _displacement(where, table):
+    """A checked [[displacement]] table as a Displacement. where: its file, key and number."""
+    _check_keys(where, table, ("set", "value", "components"))
+    letters = entry(where, table, "components", str) if "components" in table else "xyz"
+    if not letters or len(set(letters)) != len(letters) or not set(letters) <= set("xyz"):
+        raise InputError(
+            f"{where}.components = {letters!r} must be letters out of 'xyz', each at most once, "
+            "at least one"
+        )
+    return Displacement(
+        entry(where, table, "set", str),
+        _vector(where, table, "value"),
+        tuple(sorted("xyz".index(letter) for letter in letters)),
     )
 
 
-def _set_name(path, where, entry):
-    """The checked set of a table of something imposed."""
-    if not isinstance(entry.get("set"), str):
-        raise InputError(f"{path}: {where}.set = {entry.get('set')!r}: must be a node set's name")
-    return entry["set"]
+def _rotation(where, table):
+    """A checked [[rotation]] table as a Rotation; the file has degrees."""
+    _check_keys(where, table, ("set", "axis", "angle", "center", "displacement"))
+    axis = table.get("axis")
+    if isinstance(axis, str):
+        if axis not in ("x", "y", "z"):
+            raise InputError(f"{where}.axis = {axis!r} must be 'x', 'y', 'z' or a vector")
+        axis = [float(axis == letter) for letter in "xyz"]
+    else:
+        axis = _vector(where, table, "axis")
+    length = math.hypot(*axis)
+    if not length:
+        raise InputError(f"{where}.axis = {list(axis)} must not be zero")
+    return Rotation(
+        entry(where, table, "set", str),
+        tuple(a / length for a in axis),
+        entry(where, table, "angle", NUMBER) / 180 * math.pi,
+        _vector(where, table, "center") if "center" in table else None,
+        _vector(where, table, "displacement") if "displacement" in table else (0.0, 0.0, 0.0),
+    )
 
 
-def _vector(path, where, key, value):
-    """Three finite numbers as a tuple."""
-    numbers = isinstance(value, list) and all(_is_number(v) for v in value)
-    if not (numbers and len(value) == 3 and all(math.isfinite(v) for v in value)):
-        raise InputError(f"{path}: {where}.{key} = {value!r}: must be three finite numbers")
-    return tuple(float(v) for v in value)
+def _force(where, table):
+    """A checked [[force]] table as a Force."""
+    _check_keys(where, table, ("set", "total", "moment"))
+    total, moment = (
+        _vector(where, table, key) if key in table else (0.0, 0.0, 0.0)
+        for key in ("total", "moment")
+    )
+    return Force(entry(where, table, "set", str), total, moment)
 
 
-def _displacement(path, index, entry):
-    """One checked [[displacement]] table as a Displacement."""
-    where = f"displacement[{index}]"
-    _check_keys(path, where, entry, ("set", "value", "components"))
-    set_name = entry.get("set")
-    if not isinstance(set_name, str):
-        raise InputError(f"{path}: {where}.set = {set_name!r}: must be the name of a node set")
-    value = entry.get("value")
-    numbers = isinstance(value, list) and all(_is_number(v) for v in value)
-    if not (numbers and len(value) == 3 and all(math.isfinite(v) for v in value)):
-        raise InputError(f"{path}: {where}.value = {value!r}: must be three finite numbers (m)")
-    components = entry.get("components", "xyz")
-    letters = components if isinstance(components, str) else ""
-    if not letters or len(set(letters)) != len(letters) or not set(letters) <= set("xyz"):
-        raise InputError(
-            f"{path}: {where}.components = {components!r}: must be letters out of 'xyz', each "
-            "at most once, at least one"
-        )
-    axes = tuple(sorted("xyz".index(letter) for letter in letters))
-    return Displacement(set_name, tuple(float(v) for v in value), axes)
+def _vector(where, table, key):
+    """Three finite numbers of a table as a tuple."""
+    value = entry(where, table, key, list)
+    numbers = [v for v in value if isinstance(v, NUMBER) and not isinstance(v, bool)]
+    if not (len(value) == len(numbers) == 3 and all(map(math.isfinite, numbers))):
+        raise InputError(f"{where}.{key} = {value!r} must be three finite numbers")
+    return tuple(map(float, numbers))
 
 
-def _get(path, tables, table, key, kind):
-    """The value of table.key, checked to be a string or a number."""
-    if not isinstance(tables.get(table), dict):
-        raise InputError(f"{path}: table [{table}] is missing")
-    value = tables[table].get(key)
-    if kind is float and _is_number(value):
-        return float(value)
-    if kind is str and isinstance(value, str):
-        return value
-    wanted = {str: "a string", float: "a number"}[kind]
-    found = "is missing" if value is None else f"= {value!r}"
-    raise InputError(f"{path}: {table}.{key} {found}: {wanted} is required")
-
-
-def _is_number(value):
-    """True for a TOML integer or float (booleans are integers in Python, not here)."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def _check_keys(path, where, table, known):
-    """Raise InputError at the first key of the table that is not known."""
+def _check_keys(where, table, known):
+    """Raises InputError at the first key of the table that is not known."""
     for key in table:
         if key not in known:
-            raise InputError(f"{path}: {where}.{key}: unknown key; {_allowed(key, known)}")
-
-
-def _allowed(word, known):
-    """The allowed words, and the nearest one when there is one."""
-    nearest = difflib.get_close_matches(word, known, n=1)
-    hint = f"did you mean {nearest[0]!r}? " if nearest else ""
-    return f"{hint}allowed: {', '.join(sorted(known))}"
+            raise InputError(f"{where}.{key}: unknown key; {suggestion(key, known)}")

@@ -11,11 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from accuracy import relative_errors
-from errors import InputError
-from result_file import read_result, write_result
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-FOLDER = Path(__file__).resolve().parent
+from common.accuracy import relative_errors
+from common.command import exit_code
+from common.errors import InputError
+from common.files import write_whole
+from reference_file import FOLDER, path_of, read_reference, stored, write_reference
+
 BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
 
 
@@ -24,8 +28,8 @@ def golden_error(golden_path, truth_path):
 
     Raises InputError when the two do not belong together.
     """
-    points, displacement, golden = read_result(golden_path)
-    truth_points, truth_displacement, truth = read_result(truth_path)
+    points, displacement, golden = read_reference(golden_path)
+    truth_points, truth_displacement, truth = read_reference(truth_path)
     for name in ("case", "case_hash", "mesh_hash"):
         if golden[name] != truth[name]:
             raise InputError(
@@ -44,25 +48,25 @@ def golden_error(golden_path, truth_path):
 def fill_golden_error(golden_path, truth_path):
     """Store the distance from the truth in the golden's attributes. Raises InputError."""
     errors = golden_error(golden_path, truth_path)
-    points, displacement, attributes = read_result(golden_path)
+    points, displacement, attributes = read_reference(golden_path)
     attributes["discretisation_error_max"], attributes["discretisation_error_rms"] = errors
     attributes["discretisation_error_note"] = "distance from the truth of the same case"
-    write_result(golden_path, points, displacement, attributes)
+    write_reference(golden_path, points, displacement, attributes)
 
 
-def table(folder=FOLDER):
-    """The Markdown table of folder/golden/*.h5 against folder/truth/*.h5, as a string."""
+def table():
+    """The Markdown table of all stored goldens against their truths, as a string."""
     lines = [
         "| case | golden to truth, max | rms | golden's own error, max | rms | order "
         "| truth's mesh | truth's own error, max | rms | order | golden, s | truth, s |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
-    for golden_path in sorted((folder / "golden").glob("*.h5")):
-        truth_path = folder / "truth" / golden_path.name
-        _, _, golden = read_result(golden_path)
+    for name in stored("golden"):
+        golden_path, truth_path = path_of("golden", name), path_of("truth", name)
+        _, _, golden = read_reference(golden_path)
         seconds = f"{golden['wall_seconds']:.0f}"
         if truth_path.exists():
-            _, _, truth = read_result(truth_path)
+            _, _, truth = read_reference(truth_path)
             cells = [_percent(error) for error in golden_error(golden_path, truth_path)]
             cells += _own_error(golden)
             cells.append(f"split {truth['refinements']}x" if truth["refinements"] else "same")
@@ -74,15 +78,15 @@ def table(folder=FOLDER):
     return "\n".join(lines)
 
 
-def update_readme(folder=FOLDER):
-    """Put the present table between the two marks of folder/README.md. Raises InputError."""
-    readme = folder / "README.md"
+def update_readme():
+    """Put the present table between the two marks of README.md. Raises InputError."""
+    readme = FOLDER / "README.md"
     text = readme.read_text(encoding="utf-8")
     before, begin, rest = text.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not end:
         raise InputError(f"{readme}: the marks {BEGIN} and {END} are missing")
-    readme.write_text(f"{before}{begin}\n{table(folder)}\n{end}{after}", encoding="utf-8")
+    write_whole(readme, f"{before}{begin}\n{table()}\n{end}{after}")
 
 
 def _own_error(attributes):
@@ -100,19 +104,18 @@ def _percent(fraction):
     return "not estimated" if math.isnan(fraction) else f"{100 * fraction:.3g} %"
 
 
+def run(options):
+    """Prints the table and puts it into README.md where that is asked for. Raises InputError."""
+    print(table())
+    if options.update:
+        update_readme()
+
+
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(description="Print the distances of goldens from truths.")
     parser.add_argument("--update", action="store_true", help="write the table into README.md")
-    parsed = parser.parse_args(arguments)
-    try:
-        print(table())
-        if parsed.update:
-            update_readme()
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return exit_code(run, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

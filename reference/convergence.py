@@ -16,16 +16,18 @@ from pathlib import Path
 
 import numpy as np
 
-import solve
-from accuracy import relative_errors
-from case_file import find_case, read_case
-from errors import DivergenceError, InputError
-from mesh_file import load_case_mesh
-from result_file import read_result, write_estimate
-from solver_binary import CASES, make_mesh
-from symmetry import halve
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-FOLDER = Path(__file__).resolve().parent
+import solve
+from case_file import find_case, read_case
+from common.accuracy import relative_errors
+from common.command import exit_code
+from common.errors import InputError, suggestion
+from common.program import CASES
+from mesh_file import load_case_mesh, make_mesh
+from reference_file import path_of, read_reference, stored, write_estimate
+from symmetry import halve
 
 # With two meshes the order is assumed: 2 is what the golden's element has on smooth answers; a
 # truth has converged so far that the singular edges of the answer rule it.
@@ -79,19 +81,19 @@ def richardson(fields, assumed_order):
     return Estimate(fields[-1] + last / (2**order - 1), order, origin)
 
 
-def attributes_of(kind, fields, stored, unit, reason):
-    """The attributes that say how far `stored` is from the limit of `fields`.
+def attributes_of(kind, fields, displacement, unit, reason):
+    """The attributes that say how far a displacement is from the limit of `fields`.
 
-    kind: "golden" or "truth". fields: as for richardson(). stored: (n, 3), m, one of them.
+    kind: "golden" or "truth". fields: as for richardson(). displacement: (n, 3), m, one of them.
     unit: m, of relative errors. reason: why there are no more fields, for the note.
-    Returns what result_file.write_estimate() takes.
+    Returns what reference_file.write_estimate() takes.
     """
     estimate = richardson(fields, ASSUMED_ORDER[kind])
     if estimate is None:
         why = "differences do not fall" if len(fields) > 1 else reason
         errors, order, note = (math.nan, math.nan), math.nan, f"not estimated: {why}"
     else:
-        errors = relative_errors(stored, estimate.limit, unit)
+        errors = relative_errors(displacement, estimate.limit, unit)
         order = estimate.order
         note = f"Richardson's extrapolation of {len(fields)} meshes; order {order:.2f}: "
         note += estimate.origin + (f", for {reason}" if estimate.origin == "assumed" else "")
@@ -115,7 +117,7 @@ def fields_of(kind, name, displacement, refinements):
     """The displacements of a stored result's element on its mesh split 0, 1, 2, ... times.
 
     displacement: the stored one, on the mesh split `refinements` times. Returns (list of (n, 3),
-    m; why there are no more). Raises InputError or DivergenceError.
+    m; why there are no more). Raises InputError or ComputationError.
     """
     path = find_case(CASES, name)
     case = read_case(path, name)
@@ -138,13 +140,24 @@ def fields_of(kind, name, displacement, refinements):
 
 
 def estimate(kind, name):
-    """Estimate a stored result's own error and store it. Raises InputError or DivergenceError."""
-    path = FOLDER / kind / f"{name}.h5"
-    _, displacement, attributes = read_result(path)
+    """Estimate a stored result's own error and store it. Raises InputError or ComputationError."""
+    path = path_of(kind, name)
+    _, displacement, attributes = read_reference(path)
     fields, reason = fields_of(kind, name, displacement, attributes["refinements"])
     found = attributes_of(kind, fields, displacement, attributes["largest_imposed"], reason)
     print(f"{kind} {name}: {100 * found['own_error_max']:.3g} %; {found['own_error_note']}")
     write_estimate(path, found)
+
+
+def run(options):
+    """Estimates what is asked for. Raises InputError or ComputationError."""
+    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
+    for kind in [options.kind] if options.kind else ASSUMED_ORDER:
+        known = stored(kind)
+        for name in options.cases or known:
+            if name not in known:
+                raise InputError(f"CASE: '{name}' has no {kind}; {suggestion(name, known)}")
+            estimate(kind, name)
 
 
 def main(arguments=None):
@@ -155,22 +168,7 @@ def main(arguments=None):
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all stored ones")
     parser.add_argument("--kind", choices=ASSUMED_ORDER, help="default: both")
-    parsed = parser.parse_args(arguments)
-    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
-    try:
-        for kind in [parsed.kind] if parsed.kind else ASSUMED_ORDER:
-            stored = sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
-            for name in parsed.cases or stored:
-                if name not in stored:
-                    raise InputError(f"CASE = {name!r}: allowed: {', '.join(stored)}")
-                estimate(kind, name)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except DivergenceError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 3
-    return 0
+    return exit_code(run, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

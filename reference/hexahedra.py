@@ -5,14 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Local vertices of a VTK hexahedron in the lexicographic order of FEniCSx (x fastest). The
-# permutation is its own inverse: it only swaps 2 with 3 and 6 with 7.
-VTK_TO_LEXICOGRAPHIC = np.array([0, 1, 3, 2, 4, 5, 7, 6])
+from common.hexahedron import LEXICOGRAPHIC, boundary_faces
 
-# The faces of a VTK hexahedron, vertices in a circle.
-FACES = np.array(
-    [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
-)
+# The 27 points of a cell that is split in eight, and its vertices among them, x fastest.
+SPLIT_POINTS = [(i, j, k) for k in range(3) for j in range(3) for i in range(3)]
+SPLIT_CORNERS = [(2 * i, 2 * j, 2 * k) for k in range(2) for j in range(2) for i in range(2)]
 
 
 @dataclass(frozen=True)
@@ -112,21 +109,6 @@ class HexMesh:
         return (np.linalg.norm(values, axis=1) + self.largest_turn()).max()
 
 
-def faces_of(cells):
-    """The faces (m, 6, 4) of VTK cells (m, 8), vertices in a circle."""
-    return cells[:, FACES]
-
-
-def faces_within(cells, nodes):
-    """The boundary faces (k, 4) of VTK cells (m, 8) whose vertices are all in nodes (n,) bool."""
-    faces = faces_of(cells).reshape(-1, 4)
-    _, first, count = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
-    boundary = faces[first[count == 1]]
-    return boundary[nodes[boundary].all(axis=1)]
-
-
 def traction(points, cells, nodes, total, moment):
     """The Traction whose sum is `total` (N) and whose moment about its centre is `moment` (N m).
 
@@ -134,7 +116,8 @@ def traction(points, cells, nodes, total, moment):
     centroid of the faces. Integrals by 2x2 Gauss points per face, as in solver/mesh/face_load.cpp.
     Returns None when no boundary face has all its vertices in nodes.
     """
-    corners = points[faces_within(cells, nodes)]  # (k, 4, 3)
+    faces = boundary_faces(cells)
+    corners = points[faces[nodes[faces].all(axis=1)]]  # (k, 4, 3)
     if not len(corners):
         return None
     signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
@@ -163,6 +146,31 @@ def turn_about(points, axis, center, angle):
     return Turn(angle, -arm, np.cross(axis, arm))
 
 
+def _split_nodes(cells, n_nodes):
+    """The nodes of split cells: ((m, 27), and for edges, faces and cells the parents (k, 2|4|8)).
+
+    cells: (m, 8), lexicographic. n_nodes: of their mesh; new nodes are numbered on from there.
+    """
+    # The vertices of which each point is the mean: those that agree with it in every direction in
+    # which it is not half-way.
+    parents = [
+        [v for v, corner in enumerate(SPLIT_CORNERS) if np.abs(np.subtract(p, corner)).max() <= 1]
+        for p in SPLIT_POINTS
+    ]
+    local_to_global = np.empty((len(cells), 27), dtype=np.int64)
+    local_to_global[:, [SPLIT_POINTS.index(corner) for corner in SPLIT_CORNERS]] = cells
+    parents_of_new = []
+    for n_parents in (2, 4, 8):  # edges, faces, cells
+        slots = [s for s in range(27) if len(parents[s]) == n_parents]
+        # Two cells share an edge or a face exactly when they share its set of vertices.
+        keys = np.sort(np.stack([cells[:, parents[s]] for s in slots], axis=1), axis=2)
+        entities, number = np.unique(keys.reshape(-1, n_parents), axis=0, return_inverse=True)
+        local_to_global[:, slots] = n_nodes + number.reshape(len(cells), len(slots))
+        parents_of_new.append(entities)
+        n_nodes += len(entities)
+    return local_to_global, parents_of_new
+
+
 def refine(mesh):
     """Split every hexahedron into eight through the images of its parent mid-points.
 
@@ -173,37 +181,16 @@ def refine(mesh):
     mesh: HexMesh. Returns a HexMesh with 8 m cells of the same trilinear geometry; the children of
     cell c are the cells 8 c to 8 c + 7.
     """
-    cells = mesh.cells[:, VTK_TO_LEXICOGRAPHIC]
-    n_cells = len(cells)
-    # The 27 points of a subdivided cell, and the vertices of which each is the mean: those that
-    # agree with it in every direction in which it is not half-way.
-    positions = [(i, j, k) for k in range(3) for j in range(3) for i in range(3)]
-    corners = [(2 * i, 2 * j, 2 * k) for k in range(2) for j in range(2) for i in range(2)]
-    parents = [
-        [v for v, corner in enumerate(corners) if np.abs(np.subtract(p, corner)).max() <= 1]
-        for p in positions
-    ]
-    local_to_global = np.empty((n_cells, 27), dtype=np.int64)
-    local_to_global[:, [positions.index(corner) for corner in corners]] = cells
-    n_nodes = len(mesh.points)
-    parents_of_new = []
-    for n_parents in (2, 4, 8):  # edges, faces, cells
-        slots = [s for s in range(27) if len(parents[s]) == n_parents]
-        # Two cells share an edge or a face exactly when they share its set of vertices.
-        keys = np.sort(np.stack([cells[:, parents[s]] for s in slots], axis=1), axis=2)
-        entities, number = np.unique(keys.reshape(-1, n_parents), axis=0, return_inverse=True)
-        local_to_global[:, slots] = n_nodes + number.reshape(n_cells, len(slots))
-        parents_of_new.append(entities)
-        n_nodes += len(entities)
+    local_to_global, parents_of_new = _split_nodes(mesh.cells[:, LEXICOGRAPHIC], len(mesh.points))
 
     def extend(of_nodes, reduce):
         return np.concatenate([of_nodes] + [reduce(of_nodes[e], axis=1) for e in parents_of_new])
 
     children = []
-    for corner in corners:
-        offsets = [np.add(corner, other) // 2 for other in corners]
-        slots = [positions.index(tuple(offset)) for offset in offsets]
-        children.append(local_to_global[:, slots][:, VTK_TO_LEXICOGRAPHIC])
+    for corner in SPLIT_CORNERS:
+        offsets = [np.add(corner, other) // 2 for other in SPLIT_CORNERS]
+        slots = [SPLIT_POINTS.index(tuple(offset)) for offset in offsets]
+        children.append(local_to_global[:, slots][:, LEXICOGRAPHIC])
 
     def extend_turn(turn):
         return turn and Turn(turn.angle, extend(turn.versine, np.mean), extend(turn.sine, np.mean))

@@ -1,12 +1,15 @@
-"""Reading the mesh file that `sandglass mesh CASE -o FILE` writes."""
+"""The mesh file that `sandglass mesh CASE -o FILE` writes: having it made, and reading it."""
 
 import dataclasses
 from dataclasses import dataclass
+from pathlib import Path
 
 import h5py
 import numpy as np
 
-from errors import InputError
+from common.errors import InputError, suggestion
+from common.program import ROOT, binary, output_of
+from common.result_file import text_of
 from hexahedra import Condition, HexMesh, traction, turn_about
 
 
@@ -20,6 +23,17 @@ class MeshFile:
     case: str
     case_hash: str
     mesh_hash: str
+
+
+def make_mesh(case_path, output, name=None):
+    """Runs `sandglass mesh CASE -o OUTPUT`.
+
+    case_path: str or Path of a case file. name: of the case, where the file has variants. Raises
+    InputError or ComputationError when the program is missing or fails.
+    """
+    case_path = Path(case_path).resolve()
+    case = case_path.parent / name if name else case_path
+    output_of(binary(), "mesh", case, "-o", Path(output).resolve(), cwd=ROOT)
 
 
 def read_mesh(path):
@@ -41,16 +55,15 @@ def read_mesh(path):
             for name in ("case", "case_hash", "mesh_hash"):
                 if name not in file.attrs:
                     raise InputError(f"{path}: root attribute {name!r} is missing")
-                value = file.attrs[name]
-                attributes[name] = value.decode() if isinstance(value, bytes) else str(value)
+                attributes[name] = str(text_of(file.attrs[name]))
     except OSError as error:
-        raise InputError(f"{path}: cannot read the mesh (HDF5): {error}") from error
+        raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
     if not np.isfinite(points).all():
         raise InputError(f"{path}: /mesh/points: coordinates must be finite")
     for name, nodes in [("cells", cells)] + [(f"sets/{n}", s) for n, s in sets.items()]:
         if nodes.size and not (0 <= nodes.min() and nodes.max() < len(points)):
             raise InputError(
-                f"{path}: /mesh/{name}: node numbers {nodes.min()}..{nodes.max()} must lie in "
+                f"{path}: /mesh/{name}: node numbers {nodes.min()}..{nodes.max()} must be in "
                 f"0..{len(points) - 1}"
             )
     return MeshFile(points=points, cells=cells, sets=sets, **attributes)
@@ -66,8 +79,8 @@ def load_case_mesh(case, mesh_path):
     file = read_mesh(mesh_path)
     if file.case != case.name:
         raise InputError(
-            f"{mesh_path}: attribute case = {file.case!r}: this is the mesh of another case; "
-            f"{case.name!r} is required (sandglass mesh {case.name} -o FILE)"
+            f"{mesh_path}: attribute case = {file.case!r} must be {case.name!r}: it is the mesh of "
+            f"another case (sandglass mesh {case.name} -o FILE)"
         )
     mesh = HexMesh(file.points, file.cells, ())
     for entry in case.displacements:
@@ -113,9 +126,10 @@ def _members(mesh_path, file, table, set_name):
     """The nodes of a set of a MeshFile. Raises InputError when there are none."""
     members = file.sets.get(set_name, np.empty(0, dtype=np.int64))
     if not members.size:
+        known = sorted(n for n, s in file.sets.items() if s.size)
         raise InputError(
-            f"{mesh_path}: {table}.set = {set_name!r}: no such node set, or empty; "
-            f"allowed: {', '.join(sorted(n for n, s in file.sets.items() if s.size))}"
+            f"{mesh_path}: {table}.set = {set_name!r} is not a node set that has nodes; "
+            + suggestion(set_name, known)
         )
     return members
 
@@ -136,7 +150,7 @@ def _dataset(path, file, name, dtype, width):
     good_shape = data.ndim == 1 if width is None else data.ndim == 2 and data.shape[1] == width
     if not good_shape or data.dtype.kind != np.dtype(dtype).kind:
         raise InputError(
-            f"{path}: {name} has shape {data.shape} and type {data.dtype}; "
-            f"{shape} {np.dtype(dtype)} is required"
+            f"{path}: {name} has shape {data.shape} and type {data.dtype}; it must be {shape}, "
+            f"{np.dtype(dtype)}"
         )
     return data[...].astype(dtype)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from errors import DivergenceError
+from common.errors import ComputationError
 
 MAX_ITERATIONS = 20
 # A load step only has to lead into the basin of the next one; the last one is solved to round-off.
@@ -23,14 +23,14 @@ class Outcome:
     """What the solution cost and how good it is.
 
     residual: norm of the unbalanced nodal forces over the norm of the reactions.
-    last_increment: largest component of the last Newton correction over the largest imposed
+    last_correction: largest component of the last Newton correction over the largest imposed
     component; where nothing is moved, over the largest of the displacement.
     """
 
     load_steps: int
     newton_iterations: int
     residual: float
-    last_increment: float
+    last_correction: float
 
 
 def solve(problem, load_steps, tolerance, guessed=False):
@@ -41,7 +41,7 @@ def solve(problem, load_steps, tolerance, guessed=False):
     halved. tolerance: the last step ends when a Newton correction is below tolerance times the
     largest imposed component, or the largest of the displacement where nothing is moved. Newton's
     method converges quadratically, so the solution is then exact to round-off. Returns an
-    Outcome. Raises DivergenceError when halving does not help.
+    Outcome. Raises ComputationError when halving does not help.
     """
     scale = problem.scale
     state = (problem.displacement.x.array, problem.pressure.x.array)
@@ -51,11 +51,11 @@ def solve(problem, load_steps, tolerance, guessed=False):
     while load < 1:
         target = 1.0 if load + step > 1 - 1e-9 else load + step
         started = time.perf_counter()
-        converged, count, residual, increment = _equilibrate(
+        converged, count, residual, correction = _equilibrate(
             problem, target, scale, tolerance if target == 1 else STEP_TOLERANCE
         )
         iterations += count
-        _report(target, converged, count, residual, increment, time.perf_counter() - started)
+        _report(target, converged, count, residual, correction, time.perf_counter() - started)
         if converged:
             load, steps = target, steps + 1
             balanced = [array.copy() for array in state]
@@ -65,23 +65,23 @@ def solve(problem, load_steps, tolerance, guessed=False):
             array[:] = value
         step = min((target - load) / 2, 1 / load_steps)
         if step < SMALLEST_STEP:
-            raise DivergenceError(
+            raise ComputationError(
                 f"no equilibrium beyond {load:.4f} of the load: Newton's method fails even with "
                 f"steps of {2 * step:.1e} of it"
             )
-    return Outcome(steps, iterations, residual, increment)
+    return Outcome(steps, iterations, residual, correction)
 
 
 def _equilibrate(problem, load, scale, tolerance):
-    """Newton's method at one load: (converged, iterations, residual, increment), both relative."""
+    """Newton's method at one load: (converged, iterations, residual, correction), both relative."""
     u = problem.displacement.x.array
     fixed = problem.values_at(load)
     problem.load = load
-    increment = np.inf
+    correction = np.inf
     for count in range(1, MAX_ITERATIONS + 1):
         tangent, residual, recover = problem.linearize()
         if not np.isfinite(residual).all():  # the guess inverts elements
-            return False, count, np.nan, increment
+            return False, count, np.nan, correction
         du = np.zeros_like(u)
         # The first correction moves the boundary and the interior together: moving
         # the boundary alone would crush the elements next to it.
@@ -92,15 +92,15 @@ def _equilibrate(problem, load, scale, tolerance):
         du[problem.free] = _direct_solve(free_tangent, right)
         dp = recover(du)
         fraction = _advance(problem, du, dp, fixed)
-        increment = np.abs(du).max() / (scale or np.abs(u).max())
-        if not fraction or increment > LARGEST_CORRECTION:
-            return False, count, np.nan, increment
-        if increment < tolerance and fraction == 1:
+        correction = np.abs(du).max() / (scale or np.abs(u).max())
+        if not fraction or correction > LARGEST_CORRECTION:
+            return False, count, np.nan, correction
+        if correction < tolerance and fraction == 1:
             forces, _ = problem.mixed_residual()
             unbalanced, reactions = (forces[dofs] for dofs in (problem.free, problem.fixed))
             relative = np.linalg.norm(unbalanced) / np.linalg.norm(reactions)
-            return True, count, relative, increment
-    return False, count, np.nan, increment
+            return True, count, relative, correction
+    return False, count, np.nan, correction
 
 
 def _advance(problem, du, dp, fixed):
@@ -148,11 +148,11 @@ def _direct_solve(matrix, right):
     return solution
 
 
-def _report(load, converged, count, residual, increment, seconds):
+def _report(load, converged, count, residual, correction, seconds):
     """One line of progress on stderr."""
     verdict = f"residual {residual:.1e}" if converged else "failed, step halved"
     print(
-        f"load {load:6.4f}: {count} iterations, correction {increment:.1e}, {verdict}, "
+        f"load {load:6.4f}: {count} iterations, correction {correction:.1e}, {verdict}, "
         f"{seconds:.1f} s",
         file=sys.stderr,
         flush=True,

@@ -16,7 +16,7 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from boundary import prescribed_dofs
-from hexahedra import VTK_TO_LEXICOGRAPHIC
+from common.hexahedron import LEXICOGRAPHIC
 from laws import LAWS
 
 
@@ -54,7 +54,7 @@ class MixedProblem:
 
     def __init__(self, mesh, pair, law, material):
         vertex = ufl.VectorElement("Lagrange", "hexahedron", 1)
-        lexicographic = mesh.cells[:, VTK_TO_LEXICOGRAPHIC]
+        lexicographic = mesh.cells[:, LEXICOGRAPHIC]
         domain = dolfinx.mesh.create_mesh(
             MPI.COMM_SELF, lexicographic, mesh.points, ufl.Mesh(vertex)
         )

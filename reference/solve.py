@@ -9,18 +9,24 @@ import logging
 import math
 import sys
 import time
+from pathlib import Path
 
 import dolfinx
 import numpy as np
 
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+
 import newton
-from accuracy import relative_errors
 from case_file import read_case
-from errors import DivergenceError, InputError
+from common.accuracy import relative_errors
+from common.command import exit_code, whole_number
+from common.errors import ComputationError
+from common.files import require_writable
 from hexahedra import refine
 from mesh_file import load_case_mesh
 from problem import GOLDEN, TRUTH, MixedProblem
-from result_file import NOT_ESTIMATED, require_writable, write_result
+from reference_file import NOT_ESTIMATED, write_reference
 from symmetry import halve
 
 PAIRS = {"golden": GOLDEN, "truth": TRUTH}
@@ -36,7 +42,7 @@ def solve_case(kind, case, mesh, refinements, load_steps):
 
     kind: "golden" or "truth". case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh.
     Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
-    the last mesh; axes of the mirror planes used, as text). Raises DivergenceError.
+    the last mesh; axes of the mirror planes used, as text). Raises ComputationError.
     """
     # The golden is the oracle of every other program: on its own mesh it takes no short cut.
     part, halves = halve(mesh) if kind == "truth" or refinements else (mesh, [])
@@ -47,7 +53,10 @@ def solve_case(kind, case, mesh, refinements, load_steps):
         problem = MixedProblem(part, PAIRS[kind], case.law, case.material)
         if coarse:
             problem.start_from(coarse)
-        outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE, guessed=bool(coarse))
+        try:
+            outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE, guessed=bool(coarse))
+        except ComputationError as error:
+            raise ComputationError(f"{case.name}: {error}") from error
         whole = problem.nodal_displacement()[:n_nodes]
         for half in reversed(halves):
             whole = half.expand(whole)
@@ -62,51 +71,57 @@ def load_steps_of(kind, case):
     return max(LOAD_STEPS[kind], math.ceil(turn / LARGEST_TURN - 1e-9))
 
 
-def run(arguments):
-    """Read, solve, store. Raises InputError or DivergenceError."""
+def run(options):
+    """Reads, solves, stores. Raises InputError or ComputationError."""
     started = time.perf_counter()
-    kind, refinements = arguments.kind, arguments.refine
-    case = read_case(arguments.case, arguments.variant)
-    mesh, file = load_case_mesh(case, arguments.mesh)
-    require_writable(arguments.output)
+    kind, refinements, pair = options.kind, options.refine, PAIRS[options.kind]
+    case = read_case(options.case, options.variant)
+    mesh, file = load_case_mesh(case, options.mesh)
+    require_writable(options.output)
+    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     displacements, outcome, mirrors = solve_case(
-        kind, case, mesh, refinements, arguments.load_steps or load_steps_of(kind, case)
+        kind, case, mesh, refinements, options.load_steps or load_steps_of(kind, case)
     )
     unit = mesh.largest_imposed() or np.linalg.norm(displacements[-1], axis=1).max()
+    attributes = {
+        "case": case.name,
+        "case_hash": file.case_hash,
+        "mesh_hash": file.mesh_hash,
+        "kind": kind,
+        "element": pair.name,
+        "refinements": refinements,
+        "quadrature": pair.quadrature,
+        "law": case.law,
+        "mirror_planes": mirrors,
+        "boundary_rule": BOUNDARY_RULE,
+        "largest_imposed": unit,
+        "load_steps": outcome.load_steps,
+        "newton_iterations": outcome.newton_iterations,
+        "residual": outcome.residual,
+        "newton_tolerance": NEWTON_TOLERANCE,
+        "last_correction": outcome.last_correction,
+        "dolfinx_version": dolfinx.__version__,
+        "wall_seconds": time.perf_counter() - started,
+        **discretisation_error(displacements, unit),
+        **NOT_ESTIMATED,
+    }
+    write_reference(options.output, mesh.points, displacements[-1], attributes)
+
+
+def discretisation_error(displacements, unit):
+    """The attributes that say how far the last displacements are from those before.
+
+    displacements: of solve_case(). unit: m, of relative errors.
+    """
     errors, note = (math.nan, math.nan), "not estimated"
-    if refinements:
+    if len(displacements) > 1:
         errors = relative_errors(displacements[-2], displacements[-1], unit)
-        note = f"difference to the same element on the mesh split {refinements - 1} times"
-    pair = PAIRS[kind]
-    write_result(
-        arguments.output,
-        mesh.points,
-        displacements[-1],
-        {
-            "case": case.name,
-            "case_hash": file.case_hash,
-            "mesh_hash": file.mesh_hash,
-            "kind": kind,
-            "element": pair.name,
-            "refinements": refinements,
-            "quadrature": pair.quadrature,
-            "law": case.law,
-            "mirror_planes": mirrors,
-            "boundary_rule": BOUNDARY_RULE,
-            "largest_imposed": unit,
-            "load_steps": outcome.load_steps,
-            "newton_iterations": outcome.newton_iterations,
-            "residual": outcome.residual,
-            "newton_tolerance": NEWTON_TOLERANCE,
-            "last_correction": outcome.last_increment,
-            "dolfinx_version": dolfinx.__version__,
-            "wall_seconds": time.perf_counter() - started,
-            "discretisation_error_max": errors[0],
-            "discretisation_error_rms": errors[1],
-            "discretisation_error_note": note,
-            **NOT_ESTIMATED,
-        },
-    )
+        note = f"difference to the same element on the mesh split {len(displacements) - 2} times"
+    return {
+        "discretisation_error_max": errors[0],
+        "discretisation_error_rms": errors[1],
+        "discretisation_error_note": note,
+    }
 
 
 def main(arguments=None):
@@ -115,41 +130,27 @@ def main(arguments=None):
         description="Solve a case with mixed elements in FEniCSx.",
         epilog="exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium found",
     )
-    parser.add_argument("kind", choices=PAIRS, help="golden: Q1-P0; truth: Q2-P1")
-    parser.add_argument("case", metavar="CASE.toml", help="the case file")
-    parser.add_argument("--variant", metavar="NAME", help="case of the file, where it has variants")
-    parser.add_argument("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
-    parser.add_argument("-o", "--output", required=True, help="HDF5 file to write")
-    parser.add_argument(
+    add = parser.add_argument
+    add("kind", choices=PAIRS, help="golden: Q1-P0; truth: Q2-P1")
+    add("case", metavar="CASE.toml", help="the case file")
+    add("--variant", metavar="NAME", help="case of the file, where it has variants")
+    add("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
+    add("-o", "--output", required=True, help="HDF5 file to write")
+    add(
         "--refine",
-        type=_count,
+        type=whole_number(0),
         default=0,
         metavar="N",
         help="split every hexahedron into 8, N times; the difference to N-1 is stored as the "
         "estimate of the discretisation error (default 0: no estimate)",
     )
-    parser.add_argument(
-        "--load-steps", type=_count, metavar="N", help=f"default: {LOAD_STEPS}, halved on failure"
+    add(
+        "--load-steps",
+        type=whole_number(1),
+        metavar="N",
+        help=f"default: {LOAD_STEPS}, halved on failure",
     )
-    parsed = parser.parse_args(arguments)
-    logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
-    try:
-        run(parsed)
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except DivergenceError as error:
-        print(f"error: {parsed.case}: {error}", file=sys.stderr)
-        return 3
-    return 0
-
-
-def _count(text):
-    """A whole number >= 0 out of the command line."""
-    number = int(text)
-    if number < 0:
-        raise argparse.ArgumentTypeError(f"{text}: must be 0 or more")
-    return number
+    return exit_code(run, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from hexahedra import Condition, HexMesh, faces_of
+from common.hexahedron import FACES
+from hexahedra import Condition, HexMesh
 
 # Coordinates and values that differ by less than this part of the mesh's size are equal.
 TOLERANCE = 1e-9
@@ -99,7 +100,7 @@ def _has_mirror(traction, mesh, axis, side, image):
     ):
         if np.abs(part).max() > TOLERANCE * np.abs(whole).max():
             return False
-    faces = faces_of(mesh.cells)
+    faces = mesh.cells[:, FACES]  # (m, 6, 4)
     return not (traction.nodes[faces] & (side[faces] == 0)).all(axis=2).any()
 
 

@@ -11,11 +11,23 @@ import json
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from sandglass_report.errors import ReportError  # noqa: E402 (the path must be set first)
-from sandglass_report.maps import kept, read_maps  # noqa: E402
-from sandglass_report.page import write_whole  # noqa: E402
+from common.command import exit_code
+from common.files import write_whole, writing
+from sandglass_report.maps import kept, read_maps
+
+
+def keep(options):
+    """Writes the small maps and prints where. Raises InputError."""
+    with writing(options.output):
+        options.output.mkdir(parents=True, exist_ok=True)
+    for file in options.files:
+        document = kept(read_maps(file))
+        place = options.output / f"{document['case']}.json"
+        write_whole(place, json.dumps(document, separators=(",", ":")) + "\n")
+        print(place)
 
 
 def main(arguments=None):
@@ -23,18 +35,7 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", type=Path, help="of sandglass stability --json")
     parser.add_argument("-o", "--output", type=Path, default="reports/maps", help="folder")
-    options = parser.parse_args(arguments)
-    try:
-        options.output.mkdir(parents=True, exist_ok=True)
-        for file in options.files:
-            document = kept(read_maps(file))
-            place = options.output / f"{document['case']}.json"
-            write_whole(place, json.dumps(document, separators=(",", ":")) + "\n")
-            print(place)
-    except (ReportError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return exit_code(keep, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

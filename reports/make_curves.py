@@ -9,17 +9,18 @@ Exit codes: 0 done, 2 an input is missing or broken.
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from sandglass_report.curves import curve_plate, read_rungs  # noqa: E402 (path first)
-from sandglass_report.drawing import draw  # noqa: E402
+from sandglass_report.curves import curve_plate, read_costs
+from sandglass_report.drawing import draw
 
 
 def main(arguments=None):
     """The command line. Returns the exit code."""
 
     def plates_of(files):
-        return [curve_plate(read_rungs(files))]
+        return [curve_plate(read_costs(files))]
 
     return draw(__doc__, "of sandglass choose --all --json", plates_of, arguments)
 

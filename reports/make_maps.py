@@ -7,10 +7,11 @@ Exit codes: 0 done, 2 an input is missing or broken.
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from sandglass_report.drawing import draw  # noqa: E402 (the path must be set first)
-from sandglass_report.maps import map_plates, read_maps  # noqa: E402
+from sandglass_report.drawing import draw
+from sandglass_report.maps import map_plates, read_maps
 
 
 def main(arguments=None):

@@ -11,14 +11,30 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from sandglass_report.errors import ReportError  # noqa: E402 (the path must be set first)
-from sandglass_report.evidence import read_evidence  # noqa: E402
-from sandglass_report.load import read_verdicts  # noqa: E402
-from sandglass_report.measured import read_measured  # noqa: E402
-from sandglass_report.page import Inputs, write_report  # noqa: E402
-from sandglass_report.subject import read_subjects  # noqa: E402
+from common.command import exit_code
+from sandglass_report.evidence import read_evidence
+from sandglass_report.verdicts import read_verdicts
+from sandglass_report.measured import read_measured
+from sandglass_report.page import Inputs, write_report
+from sandglass_report.subject import read_subjects
+
+
+def make(options):
+    """Reads all inputs and writes the page. Raises InputError."""
+    start = time.monotonic()
+    verdicts = read_verdicts(options.verdicts)
+    subjects = read_subjects(verdicts, options.cases, options.reference, options.results)
+    files = options.bench, options.flops, options.rest
+    found = read_measured(*files, options.curves, options.maps, options.kept_maps)
+    evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
+    pictures = tuple(sorted(options.pictures.glob("stability.*.png")))
+    inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures)
+    size = write_report(inputs, options.output)
+    seconds = time.monotonic() - start
+    print(f"{options.output}: {size / 1e6:.1f} MB, made in {seconds:.0f} s")
 
 
 def main(arguments=None):
@@ -40,23 +56,7 @@ def main(arguments=None):
     add("--mutants", type=Path, default="verification/mutants/RESULTS.md", help="of ci/mutants")
     add("--root", type=Path, default=".", help="of the tree that the claims' tests are in")
     add("-o", "--output", type=Path, default="build/report/index.html", help="the page to write")
-    options = parser.parse_args(arguments)
-    start = time.monotonic()
-    try:
-        verdicts = read_verdicts(options.verdicts)
-        subjects = read_subjects(verdicts, options.cases, options.reference, options.results)
-        files = options.bench, options.flops, options.rest
-        found = read_measured(*files, options.curves, options.maps, options.kept_maps)
-        evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
-        pictures = tuple(sorted(options.pictures.glob("stability.*.png")))
-        inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures)
-        size = write_report(inputs, options.output)
-    except ReportError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    seconds = time.monotonic() - start
-    print(f"{options.output}: {size / 1e6:.1f} MB, made in {seconds:.0f} s")
-    return 0
+    return exit_code(make, parser.parse_args(arguments))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,9 @@ import subprocess
 
 import h5py
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from common.program import ROOT
+from common.result_file import last_displacement
+
 PATIENCE = float(os.environ.get("SANDGLASS_PATIENCE", "1"))
 BINARY = os.environ.get("SANDGLASS_BINARY", str(ROOT / "build" / "release" / "sandglass"))
 
@@ -49,6 +51,8 @@ kappas = [0.01]
 golden = "golden.h5"
 """
 
+BARE = BLOCK.partition("[comparison]")[0]  # compared with nothing
+
 LIMIT = """
 [[expect]]
 method = "{method}"
@@ -57,6 +61,12 @@ figure = "max_relative_error"
 below = {below}
 reason = "a test"
 """
+
+
+def dynamic(text, **numbers):
+    """A quasi-static case in motion. numbers: of its table [dynamics]."""
+    keys = "".join(f"{key} = {value}\n" for key, value in numbers.items())
+    return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
 def sandglass(*arguments, **options):
@@ -80,17 +90,11 @@ def methods():
     return [line.split()[0] for line in sandglass("methods").stdout.splitlines()]
 
 
-def text_of(attribute):
-    """A text attribute; texts of fixed length come out of h5py as bytes."""
-    return attribute.decode() if isinstance(attribute, bytes) else attribute
-
-
 def write_golden(case, **changed):
     """Makes the answer of mean dilatation the golden of a case; `changed` replaces attributes."""
     result = case.parent / "for-golden.h5"
     assert sandglass("run", case, "--method", "tl-mean-dilatation", "-o", result).returncode == 0
-    with h5py.File(result) as source, h5py.File(case.parent / "golden.h5", "w") as golden:
-        last = sorted(source["frames"])[-1]
-        golden["displacement"] = source[f"frames/{last}/displacement"][:]
+    with h5py.File(case.parent / "golden.h5", "w") as golden, h5py.File(result) as source:
+        golden["displacement"] = last_displacement(result)
         for name in ("case_hash", "mesh_hash"):
             golden.attrs[name] = changed.get(name, source.attrs[name])

@@ -6,7 +6,7 @@ No time is judged: only that figures exist, are positive and follow from each ot
 import json
 
 import pytest
-from command_line import methods, sandglass
+from command_line import BLOCK, dynamic, methods, sandglass
 
 FIGURES = (
     "ns_per_element_step",
@@ -214,8 +214,7 @@ def test_rest_that_is_not_reached_ends_with_3(block):
 
 
 def test_dynamic_case_has_no_rest(block):
-    text = block.read_text().replace('"quasi-static"', '"dynamic"')
-    block.write_text(text + "\n[dynamics]\nduration = 1.0\n")
+    block.write_text(dynamic(BLOCK, duration=1.0))
     outcome = sandglass("bench", "--rest", block)
     assert outcome.returncode == 2
     assert "block.toml: a dynamic case has no rest to come to" in outcome.stderr

@@ -12,7 +12,7 @@ import subprocess
 import time
 
 import pytest
-from command_line import BINARY, BLOCK, catches_interrupts, sandglass
+from command_line import BINARY, BLOCK, catches_interrupts, dynamic, sandglass
 
 KILLS = int(os.environ.get("SANDGLASS_KILLS", "5"))
 
@@ -26,21 +26,15 @@ RELAXING = (
 SMALL = "[2, 2, 4]"
 
 
-def dynamic(text, duration, frames=9):
-    """The same case in motion."""
-    text = text.replace('"quasi-static"', '"dynamic"')
-    return text + f"[dynamics]\nduration = {duration}\nframes = {frames}\n"
-
-
 # Name, case, options. Each takes about a second, most of it spent on checkpoints: kills fall into
 # all that a run does, steps, checkpoints being written, results being written.
 RUNS = {
     "dynamic": (
-        dynamic(RELAXING.replace(SMALL, "[6, 6, 12]"), 1.0),
+        dynamic(RELAXING.replace(SMALL, "[6, 6, 12]"), duration=1.0, frames=9),
         ["--method", "ul-enhanced"],
     ),
     "dynamic-float": (
-        dynamic(BLOCK.replace(SMALL, "[8, 8, 16]") + LOAD, 1.0),
+        dynamic(BLOCK.replace(SMALL, "[8, 8, 16]") + LOAD, duration=1.0, frames=9),
         ["--precision", "float"],
     ),
     "quasi-static": (
@@ -142,7 +136,7 @@ def checkpoint_of(case, *options):
 @pytest.fixture
 def stopped(block):
     """A case that takes long, and the checkpoint that its killed run left."""
-    block.write_text(dynamic(BLOCK, 1e6))
+    block.write_text(dynamic(BLOCK, duration=1e6, frames=9))
     return block, checkpoint_of(block)
 
 
@@ -224,7 +218,7 @@ def test_missing_folder_is_told_before_the_work(block):
 @pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="needs Linux's /proc")
 def test_an_interrupted_run_goes_on(block):
     """Ctrl-C writes a checkpoint at the next check, whatever the interval."""
-    block.write_text(dynamic(BLOCK, 40.0))
+    block.write_text(dynamic(BLOCK, duration=40.0, frames=9))
     folder = block.parent
     assert sandglass("run", block, "-o", folder / "whole.h5").returncode == 0
     file = folder / "run.checkpoint"
@@ -243,7 +237,7 @@ def test_an_interrupted_run_goes_on(block):
 
 def test_a_full_disk_costs_a_warning_and_no_run(block):
     """Without room for a checkpoint the run goes on: it does not need one to end well."""
-    block.write_text(dynamic(BLOCK.replace(SMALL, "[8, 8, 16]"), 0.1))
+    block.write_text(dynamic(BLOCK.replace(SMALL, "[8, 8, 16]"), duration=0.1, frames=9))
     file = block.parent / "run.checkpoint"
 
     def no_room():

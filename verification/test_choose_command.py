@@ -11,6 +11,8 @@ import pytest
 from command_line import BINARY, BLOCK, ROOT, catches_interrupts, sandglass, write_golden
 from scipy.interpolate import RegularGridInterpolator
 
+from common.result_file import last_displacement
+
 CASES = ROOT / "cases"
 
 
@@ -41,8 +43,7 @@ def answer(case, *arguments):
     outcome = sandglass("run", case, *arguments, "-o", result)
     assert outcome.returncode == 0, outcome.stderr
     with h5py.File(result) as file:
-        last = sorted(file["frames"])[-1]
-        return file["mesh/points"][:], file[f"frames/{last}/displacement"][:]
+        return file["mesh/points"][:], last_displacement(result)
 
 
 def on_lattice(points, u, wanted):

@@ -14,7 +14,9 @@ import xml.etree.ElementTree
 import h5py
 import numpy
 import pytest
-from command_line import BINARY, BLOCK, ROOT, catches_interrupts, methods, sandglass, text_of
+from command_line import BINARY, BLOCK, ROOT, catches_interrupts, dynamic, methods, sandglass
+
+from common.result_file import last_displacement, text_of
 
 CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
 COMMANDS = ["cases", "methods", "mesh", "run", "score", "verify", "bench"]
@@ -285,10 +287,7 @@ def test_mesh_writes_mesh_and_sets(tmp_path):
 
 
 def test_dynamic_case(block):
-    text = (
-        BLOCK.replace('"quasi-static"', '"dynamic"') + "[dynamics]\nduration = 0.05\nframes = 5\n"
-    )
-    block.write_text(text)
+    block.write_text(dynamic(BLOCK, duration=0.05, frames=5))
     result = block.parent / "result.h5"
     assert sandglass("run", block, "-o", result).returncode == 0
     with h5py.File(result) as file:
@@ -323,8 +322,7 @@ def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
 
 @pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="needs Linux's /proc")
 def test_interrupt_keeps_what_was_computed(block):
-    endless = BLOCK.replace('"quasi-static"', '"dynamic"') + "[dynamics]\nduration = 1e6\n"
-    block.write_text(endless)
+    block.write_text(dynamic(BLOCK, duration=1e6))
     result = block.parent / "result.h5"
     with subprocess.Popen(
         [BINARY, "run", str(block), "-o", str(result)],
@@ -357,11 +355,8 @@ def test_mesh_file_as_input(block):
     from_file.write_text(BLOCK.replace(generated, 'file = "mesh.h5"'))
     for case, result in ((block, "a.h5"), (from_file, "b.h5")):
         assert sandglass("run", case, "-o", folder / result).returncode == 0
-    with h5py.File(folder / "a.h5") as a, h5py.File(folder / "b.h5") as b:
-        last = sorted(a["frames"])[-1]
-        assert numpy.array_equal(
-            a[f"frames/{last}/displacement"][:], b[f"frames/{last}/displacement"][:]
-        )
+    a, b = (last_displacement(folder / name) for name in ("a.h5", "b.h5"))
+    assert numpy.array_equal(a, b)
 
 
 def test_cases_folder_is_found_from_anywhere(tmp_path):

@@ -10,7 +10,7 @@ import shutil
 import subprocess
 
 import pytest
-from command_line import BINARY, BLOCK, sandglass, write_golden
+from command_line import BINARY, BLOCK, dynamic, sandglass, write_golden
 
 FULL = ("File too large", "No space left on device", "Disk quota exceeded")
 
@@ -143,10 +143,7 @@ def test_a_disk_that_is_really_full(small_disk, case):
 
 def test_a_disk_without_room_for_a_checkpoint(small_disk, case):
     """The run needs none to end well: it warns and goes on, and its result is elsewhere."""
-    case.write_text(
-        BLOCK.replace("[2, 2, 4]", "[8, 8, 16]").replace('"quasi-static"', '"dynamic"')
-        + "[dynamics]\nduration = 0.05\n"
-    )
+    case.write_text(dynamic(BLOCK.replace("[2, 2, 4]", "[8, 8, 16]"), duration=0.05))
     options = ["--checkpoint", small_disk / "c", "--checkpoint-every", "0"]
     result = case.parent / "out.h5"
     outcome = sandglass("run", case, *options, "-o", result)

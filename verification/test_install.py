@@ -11,18 +11,10 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-from command_line import BINARY, BLOCK, PATIENCE, ROOT, sandglass
+from command_line import BARE, BINARY, PATIENCE, ROOT, dynamic, sandglass
 
 BUILD = pathlib.Path(BINARY).resolve().parent
-DYNAMIC = (
-    BLOCK.replace('"quasi-static"', '"dynamic"').partition("[comparison]")[0]
-    + """
-[dynamics]
-duration = 1.0
-time_step = 1e-3
-frames = 10
-"""
-)
+DYNAMIC = dynamic(BARE, duration=1.0, time_step=1e-3, frames=10)
 BY_KERNELS = """
 #include "element/methods.hpp"
 #include "io/case_file.hpp"
@@ -124,7 +116,7 @@ def test_the_installed_program_has_its_cases(prefix, tmp_path):
 
 
 def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
-    """By its own copy of exchange/, not by that of the source."""
+    """By its own copies of exchange/ and common/, not by those of the source."""
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     program = moved / "bin" / "sandglass"
     run(program, "mesh", "column", "-o", tmp_path / "column.vtu", cwd=tmp_path)

@@ -4,15 +4,11 @@ What kills them is the work of `ci/mutants`, which takes hours.
 """
 
 import subprocess
-import sys
 
+import patches
 import pytest
+import results
 from command_line import ROOT
-
-sys.path.insert(0, str(ROOT / "verification" / "mutants"))
-
-import patches  # noqa: E402
-import results  # noqa: E402
 
 PATCHES = patches.read_patches()
 

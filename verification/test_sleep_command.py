@@ -4,6 +4,8 @@ import h5py
 import pytest
 from command_line import BLOCK, sandglass
 
+from common.result_file import last_displacement
+
 # As long as it is thin, pulled at one end: motion does not reach the other.
 BEAM = (
     BLOCK.replace("size = [0.1, 0.1, 0.2]", "size = [0.1, 0.1, 3.0]")
@@ -29,8 +31,7 @@ def test_what_sleeps_is_in_the_result_at_rest(beam):
     assert "at rest" in outcome.stdout
     with h5py.File(result) as file:
         points = file["mesh/points"][:]
-        last = sorted(file["frames"])[-1]
-        u = file[f"frames/{last}/displacement"][:]
+    u = last_displacement(result)
     assert len(u) == 9 * 61
     assert (u[points[:, 2] < 1.0] == 0.0).all()
     assert abs(u).max() > 0.01

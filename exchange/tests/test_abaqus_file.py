@@ -5,7 +5,7 @@ import pytest
 from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, read, run
 
 from exchange import abaqus_file
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HexMesh
 
 FIRST, SECOND = list(range(8)), list(range(4, 12))
@@ -95,19 +95,19 @@ def test_included_files(tmp_path, capsys):
         (CUBES + "*ELEMENT, TYPE=C3D20R\n7, 1, 2, 3, 5\n", "1 of type 'C3D20R'"),
         (CUBES.replace("TYPE=C3D8R, ", ""), ":14: .ELEMENT needs TYPE="),
         (CUBES.replace("2, 5, 6, 7,", "2, 5, 6,"), ":14: C3D8R needs an id and eight nodes"),
-        (CUBES.replace("2, 5, 6, 7,", "2, 5, 6, x,"), ":16: 'x': a whole number is required"),
-        (CUBES.replace("12, 0., 1.", "12, 0., l."), ":13: 'l.': a number is required"),
+        (CUBES.replace("2, 5, 6, 7,", "2, 5, 6, x,"), ":16: 'x' must be a whole number"),
+        (CUBES.replace("12, 0., 1.", "12, 0., l."), ":13: 'l.' must be a number"),
         (CUBES.replace("12, 0., 1., 2.", "12"), ":13: a node is an id and three coordinates"),
         (CUBES.replace("12, 0., 1.", "12, 0., inf"), "finite; those of node 12 are not"),
         (CUBES.replace("12, 0., 1.", "-12, 0., 1."), "node -12: ids of nodes must not be negative"),
-        (CUBES.replace("12, 0., 1.", "9223372036854775808, 0., 1."), "a whole number is required"),
+        (CUBES.replace("12, 0., 1.", "9223372036854775808, 0., 1."), "must be a whole number"),
         (CUBES.replace("12, 0., 1.", "9223372036854775807, 0., 1."), "element 2 names node 12"),
         (
             CUBES.replace("\n2, 5, 6", "\n1, 5, 6"),
             "1 of 2 elements have an id that others have; ids must differ: 1",
         ),
         (CUBES + "*NSET, NSET=Foot\n1, 13\n", "set 'Foot' names node 13, which is not there"),
-        (CUBES + "*NSET, NSET=Foot\nToes\n", ":18: 'Toes': a whole number is required"),
+        (CUBES + "*NSET, NSET=Foot\nToes\n", ":18: 'Toes' must be a whole number"),
         (CUBES + "*NSET\n1\n", ":17: .NSET needs a name"),
         (CUBES + "*NSET, NSET=Foot, GENERATE\n4, 1\n", ":18: GENERATE needs first, last"),
         (CUBES + "*NSET, NSET=Foot, GENERATE\n1, 4, 0\n", ":18: GENERATE needs first, last"),

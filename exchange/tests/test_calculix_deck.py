@@ -5,7 +5,7 @@ import pytest
 
 from exchange import abaqus_file
 from exchange.calculix_deck import deck
-from exchange.errors import InputError
+from common.errors import InputError
 from exchange.foreign_mesh import HexMesh
 
 CORNERS = np.array(
@@ -70,7 +70,7 @@ def test_deck_without_tolerance_and_forces_keeps_to_what_ccx_takes():
 
 
 def test_deck_of_a_law_that_ccx_lacks():
-    with pytest.raises(InputError, match="'glass'.*allowed: neo-hookean"):
+    with pytest.raises(InputError, match="'glass'.*known: neo-hookean"):
         deck("t", BRICK, "glass", MATERIAL, ~FREE, np.ones((8, 3)))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from meshes import CELLS, CUBES, POINTS, Refused, read, write
 
-from exchange import orientation
+from common.hexahedron import LEXICOGRAPHIC
 
 MIRRORS = ([4, 5, 6, 7, 0, 1, 2, 3], [0, 3, 2, 1, 4, 7, 6, 5])
 
@@ -59,7 +59,7 @@ def test_tangled_elements_are_refused_with_a_hint(tmp_path, capsys):
     with pytest.raises(
         Refused, match=r"2 of 2 elements are tangled.*: 0 at \(0.5, 0.5, 0.5\)"
     ) as told:
-        read(capsys, write(tmp_path / "a.vtu", cells=CELLS[:, orientation.LEXICOGRAPHIC]))
+        read(capsys, write(tmp_path / "a.vtu", cells=CELLS[:, LEXICOGRAPHIC]))
     assert "counted with x fastest they would not be" in str(told.value)
     points = POINTS.copy()
     points[6] = [-0.5, -0.5, 0.5]  # the common corner beyond the opposite one

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from exchange import frd_file
-from exchange.errors import InputError
+from common.errors import InputError
 
 # Fields touch where a number has a sign; the first block is of an earlier increment; node 3 belongs
 # to no element.

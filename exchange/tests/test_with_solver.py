@@ -5,16 +5,15 @@ import os
 import resource
 import shutil
 import subprocess
-import sys
 
 import h5py
 import numpy as np
 import pytest
-from command_line import BLOCK, ROOT, sandglass, text_of, write_golden
+from command_line import BLOCK, ROOT, dynamic, sandglass, write_golden
 from meshes import CELLS, DATA, POINTS, write
 
-sys.path.append(str(ROOT / "reference"))
-from accuracy import relative_errors  # noqa: E402  (an account of its own; the path comes first)
+from common.accuracy import relative_errors  # an account of its own
+from common.result_file import last_displacement, text_of
 
 FILE_MESH = '[mesh]\nfile = "{}"\n'
 GENERATED = BLOCK[BLOCK.index("[mesh]") : BLOCK.index("[material]")]
@@ -42,11 +41,6 @@ def refused(*arguments, told, **options):
     lines = done.stderr.splitlines()
     assert len(lines) == 1 and lines[0].startswith("error: ") and told in lines[0], done.stderr
     assert "sandglass-" not in done.stderr, "a temporary file is nobody's business"
-
-
-def last_displacement(path):
-    with h5py.File(path) as file:
-        return file["frames"][max(file["frames"])]["displacement"][...]
 
 
 @pytest.mark.parametrize("ending", ["vtu", "inp"])
@@ -207,9 +201,13 @@ def test_decks_that_cannot_be(block):
     folder, words = block.parent, ["-o", "a.inp", "--deck"]
     block.write_text(BLOCK.replace('law = "neo-hookean"', 'law = "st-venant-kirchhoff"'))
     refused(
-        "mesh", block, *words, told="law = 'st-venant-kirchhoff': CalculiX has no such", cwd=folder
+        "mesh",
+        block,
+        *words,
+        told="law = 'st-venant-kirchhoff' is not known to CalculiX",
+        cwd=folder,
     )
-    block.write_text(BLOCK.replace('"quasi-static"', '"dynamic"') + "[dynamics]\nduration = 0.05\n")
+    block.write_text(dynamic(BLOCK, duration=0.05))
     refused("mesh", block, *words, told="a dynamic case has no deck", cwd=folder)
     refused(
         "score", "a.csv", "--case", block, told="a dynamic case has no answer to score", cwd=folder

@@ -6,6 +6,25 @@ import numpy as np
 from hexahedra import Condition, HexMesh
 
 MATERIAL = {"young_modulus": 3000.0, "poisson_ratio": 0.49}
+CASE = """
+[case]
+name = "block"
+
+[material]
+law = "neo-hookean"
+young_modulus = 3000.0
+poisson_ratio = 0.49
+density = 1000.0
+
+[[displacement]]
+set = "bottom"
+value = [0.0, 0.0, 0.0]
+
+[[displacement]]
+set = "top"
+value = [0.0, 0.0, 0.1]
+components = "z"
+"""
 
 
 def distorted_block(n=3, distortion=0.15, seed=1):

@@ -1,8 +1,15 @@
-"""Makes the modules of reference/ importable and keeps FFCx's compiler calls out of the output."""
+"""A case of the reference, with its mesh."""
 
-import logging
-import sys
-from pathlib import Path
+import numpy as np
+import pytest
+from blocks import CASE, distorted_block, write_mesh
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-logging.disable(logging.INFO)
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with block.toml and its mesh.h5."""
+    points, cells, _ = distorted_block(n=2)
+    sets = {"bottom": np.flatnonzero(points[:, 2] == 0), "top": np.flatnonzero(points[:, 2] == 1)}
+    write_mesh(tmp_path / "mesh.h5", points, cells, sets)
+    (tmp_path / "block.toml").write_text(CASE)
+    return tmp_path

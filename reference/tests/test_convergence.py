@@ -6,18 +6,21 @@ import h5py
 import numpy as np
 import pytest
 
-import compare
 import convergence
 from convergence import attributes_of, richardson
-from result_file import NOT_ESTIMATED, read_result, write_estimate, write_result
+from reference_file import (
+    KINDS,
+    NOT_ESTIMATED,
+    path_of,
+    read_reference,
+    stored,
+    write_estimate,
+    write_reference,
+)
 
 GENERATOR = np.random.default_rng(5)
 LIMIT, COEFFICIENT = GENERATOR.normal(size=(2, 7, 3))
-STORED = sorted(
-    (path.parent.name, path.stem)
-    for kind in ("golden", "truth")
-    for path in (compare.FOLDER / kind).glob("*.h5")
-)
+STORED = [(kind, name) for kind in KINDS for name in stored(kind)]
 
 
 def sequence(order, meshes, first=1.0):
@@ -70,8 +73,8 @@ def test_sequences_that_do_not_converge_have_no_limit():
 
 def test_attributes_hold_the_distance_of_the_stored_field_from_the_limit():
     fields = sequence(2.0, 3)
-    for stored, share in ((fields[0], 1.0), (fields[2], 1 / 16)):
-        found = attributes_of("golden", fields, stored, unit=0.5, reason="no reason")
+    for field, share in ((fields[0], 1.0), (fields[2], 1 / 16)):
+        found = attributes_of("golden", fields, field, unit=0.5, reason="no reason")
         distance = share * np.linalg.norm(COEFFICIENT, axis=1) / 0.5
         assert found["own_error_max"] == pytest.approx(distance.max(), rel=1e-9)
         assert found["own_error_rms"] == pytest.approx(np.sqrt((distance**2).mean()), rel=1e-9)
@@ -99,19 +102,19 @@ def test_splits_stay_below_the_cells_that_are_affordable():
 
 
 def test_an_estimate_leaves_the_displacement_as_it_is(tmp_path):
-    source = compare.FOLDER / "golden" / "column.h5"
-    points, displacement, attributes = read_result(source)
+    source = path_of("golden", "column")
+    points, displacement, attributes = read_reference(source)
     path = tmp_path / "golden.h5"
-    write_result(path, points, displacement, attributes | NOT_ESTIMATED)
+    write_reference(path, points, displacement, attributes | NOT_ESTIMATED)
 
-    def stored():
+    def chunk():
         with h5py.File(path, "r") as file:
             return file["displacement"].id.read_direct_chunk((0, 0))
 
-    before = stored()
+    before = chunk()
     write_estimate(path, NOT_ESTIMATED | {"own_error_max": 0.25, "own_error_note": "a test"})
-    assert stored() == before
-    _, after, found = read_result(path)
+    assert chunk() == before
+    _, after, found = read_reference(path)
     assert (after == displacement).all()
     assert (found["own_error_max"], found["own_error_note"]) == (0.25, "a test")
     assert {name: found[name] for name in found if name not in NOT_ESTIMATED} == {
@@ -121,7 +124,7 @@ def test_an_estimate_leaves_the_displacement_as_it_is(tmp_path):
 
 @pytest.mark.parametrize("kind, name", STORED)
 def test_every_stored_result_has_an_estimate_or_a_reason(kind, name):
-    _, _, attributes = read_result(compare.FOLDER / kind / f"{name}.h5")
+    _, _, attributes = read_reference(path_of(kind, name))
     note = attributes["own_error_note"]
     if note.startswith("not estimated: "):
         assert math.isnan(attributes["own_error_max"]) and "has not been run" not in note

@@ -1,41 +1,10 @@
 """Wrong input ends with exit code 2 (3 when there is no equilibrium) and leaves no file behind."""
 
-import numpy as np
 import pytest
 
 import solve
-from blocks import distorted_block, write_mesh
-from result_file import read_result
-
-CASE = """
-[case]
-name = "block"
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.49
-density = 1000.0
-
-[[displacement]]
-set = "bottom"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "top"
-value = [0.0, 0.0, 0.1]
-components = "z"
-"""
-
-
-@pytest.fixture
-def folder(tmp_path):
-    """A folder with block.toml and its mesh.h5."""
-    points, cells, _ = distorted_block(n=2)
-    sets = {"bottom": np.flatnonzero(points[:, 2] == 0), "top": np.flatnonzero(points[:, 2] == 1)}
-    write_mesh(tmp_path / "mesh.h5", points, cells, sets)
-    (tmp_path / "block.toml").write_text(CASE)
-    return tmp_path
+from blocks import CASE, distorted_block, write_mesh
+from reference_file import read_reference
 
 
 def _run(folder, kind="golden", mesh="mesh.h5"):
@@ -50,7 +19,7 @@ def _run(folder, kind="golden", mesh="mesh.h5"):
 
 def test_good_input(folder):
     assert _run(folder) == 0
-    points, displacement, attributes = read_result(folder / "out.h5")
+    points, displacement, attributes = read_reference(folder / "out.h5")
     top, bottom = points[:, 2] == 1, points[:, 2] == 0
     # Exact: prescribed values are copied, not computed.
     assert (displacement[top, 2] == 0.1).all() and (displacement[bottom] == 0).all()
@@ -105,7 +74,7 @@ def test_output_that_cannot_be_written(folder, capsys):
     arguments = ["golden", folder / "block.toml", "--mesh", folder / "mesh.h5", "-o"]
     for output in (folder / "nowhere" / "out.h5", folder):
         assert solve.main([str(argument) for argument in arguments + [output]]) == 2
-        assert f"{output}: cannot write" in capsys.readouterr().err
+        assert f"{output}: cannot be written" in capsys.readouterr().err
 
 
 def test_truncated_mesh(folder, capsys):

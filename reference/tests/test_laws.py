@@ -3,22 +3,21 @@
 The solver's element `tl-mean-dilatation` is the golden's, so that on one mesh only the laws differ.
 """
 
-import os
-import subprocess
-
 import h5py
 import numpy as np
 import pytest
 import ufl
+from command_line import BLOCK
 from dolfinx import fem
 
 import newton
 from case_file import read_case
-from errors import InputError
+from common.errors import InputError
+from common.program import binary, output_of
+from common.result_file import last_displacement
 from laws import LAWS, VISCOELASTIC, parameters
-from mesh_file import load_case_mesh
+from mesh_file import load_case_mesh, make_mesh
 from problem import GOLDEN, MixedProblem
-from solver_binary import REPOSITORY, make_mesh
 
 MATERIALS = {
     "neo-hookean": "young_modulus = 3000.0\npoisson_ratio = 0.45",
@@ -33,12 +32,9 @@ RELAXATION = "relaxation_1 = 0.25\ntime_1 = 0.5\nrelaxation_2 = 0.15\ntime_2 = 5
 MATERIALS |= {f"{VISCOELASTIC}{law}": f"{text}\n{RELAXATION}" for law, text in MATERIALS.items()}
 
 # Stretched by a third, sheared by as much, with free sides: every part of a law takes part.
-CASE = """
-[case]
-name = "block"
-requirement = "A block is pulled and sheared."
-answer = "quasi-static"
-
+CASE = (
+    BLOCK[: BLOCK.index("[mesh]")]
+    + """
 [mesh]
 generator = "box"
 size = [0.1, 0.1, 0.1]
@@ -64,6 +60,7 @@ value = [0.03, 0.01, 0.03]
 [relaxation]
 tolerance = 1e-11
 """
+)
 
 
 def _case(folder, law):
@@ -74,12 +71,9 @@ def _case(folder, law):
 
 def _run_solver(path, output):
     """The solver's displacements (n, 3) in m and its strain energy in J."""
-    binary = os.environ.get("SANDGLASS_BINARY", REPOSITORY / "build/release/sandglass")
-    command = [binary, "run", path, "--method", "tl-mean-dilatation", "-o", output]
-    subprocess.run(command, check=True, capture_output=True)
+    output_of(binary(), "run", path, "--method", "tl-mean-dilatation", "-o", output)
     with h5py.File(output) as file:
-        last = sorted(file["frames"])[-1]
-        return file[f"frames/{last}/displacement"][:], file["history/strain_energy"][-1]
+        return last_displacement(output), file["history/strain_energy"][-1]
 
 
 @pytest.mark.parametrize("law", LAWS)

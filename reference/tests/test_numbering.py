@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from blocks import MATERIAL, affine, affine_patch
-from hexahedra import VTK_TO_LEXICOGRAPHIC, Condition, HexMesh
+from common.hexahedron import LEXICOGRAPHIC
+from hexahedra import Condition, HexMesh
 from newton import solve
 from problem import GOLDEN, TRUTH, MixedProblem
 
@@ -13,12 +14,12 @@ GRADIENT = [[0.1, 0.2, -0.1], [0.05, -0.1, 0.3], [-0.2, 0.1, 0.05]]
 
 def test_vertex_order_is_its_own_inverse():
     # Exact: integers.
-    assert (VTK_TO_LEXICOGRAPHIC[VTK_TO_LEXICOGRAPHIC] == np.arange(8)).all()
+    assert (LEXICOGRAPHIC[LEXICOGRAPHIC] == np.arange(8)).all()
     # The unit cube's VTK vertices, reordered, count in binary with x fastest.
     x = np.array([0, 1, 1, 0, 0, 1, 1, 0])
     y = np.array([0, 0, 1, 1, 0, 0, 1, 1])
     z = np.array([0, 0, 0, 0, 1, 1, 1, 1])
-    assert ((x + 2 * y + 4 * z)[VTK_TO_LEXICOGRAPHIC] == np.arange(8)).all()
+    assert ((x + 2 * y + 4 * z)[LEXICOGRAPHIC] == np.arange(8)).all()
 
 
 @pytest.mark.parametrize("pair", [GOLDEN, TRUTH], ids=lambda pair: pair.name)

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 
 import solve
-from accuracy import relative_errors
-from blocks import MATERIAL, affine, distorted_block, write_mesh
+from common.accuracy import relative_errors
+from blocks import CASE, MATERIAL, affine, distorted_block
 from case_file import read_case
-from errors import InputError
+from common.errors import InputError
 from hexahedra import Condition, HexMesh, refine, turn_about
 from newton import solve as newton_solve
 from problem import GOLDEN, TRUTH, MixedProblem
-from result_file import read_result
+from reference_file import read_reference
 from symmetry import halve
-from test_input import CASE
 
 AXIS = np.array([2.0, -1.0, 2.0]) / 3
 CENTER = np.array([0.3, 0.1, -0.2])
@@ -71,15 +70,6 @@ def test_largest_imposed_is_that_of_the_way():
         assert halve(mesh)[1] == []
 
 
-@pytest.fixture
-def folder(tmp_path):
-    """A folder with block.toml and its mesh.h5."""
-    points, cells, _ = distorted_block(n=2)
-    sets = {"bottom": np.flatnonzero(points[:, 2] == 0), "top": np.flatnonzero(points[:, 2] == 1)}
-    write_mesh(tmp_path / "mesh.h5", points, cells, sets)
-    return tmp_path
-
-
 def _solve(folder, text):
     (folder / "block.toml").write_text(text)
     arguments = ["golden", folder / "block.toml", "--mesh", folder / "mesh.h5"]
@@ -89,7 +79,7 @@ def _solve(folder, text):
 def test_once_round_is_not_the_state_of_rest(folder):
     text = CASE[: CASE.rindex("[[displacement]]")] + TURNED
     assert _solve(folder, text) == 0
-    points, displacement, attributes = read_result(folder / "out.h5")
+    points, displacement, attributes = read_reference(folder / "out.h5")
     assert attributes["largest_imposed"] == pytest.approx(np.sqrt(2))
     held = (points[:, 2] == 0) | (points[:, 2] == 1)
     assert np.abs(displacement[held]).max() < 1e-14

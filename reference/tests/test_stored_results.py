@@ -8,13 +8,11 @@ import pytest
 import compare
 import solve
 from case_file import find_case, read_case
-from mesh_file import load_case_mesh
-from result_file import read_result
-from solver_binary import CASES, make_mesh
+from common.program import CASES
+from mesh_file import load_case_mesh, make_mesh
+from reference_file import FOLDER, KINDS, path_of, read_reference, stored
 
-GOLDENS = sorted(path.stem for path in (compare.FOLDER / "golden").glob("*.h5"))
-TRUTHS = sorted(path.stem for path in (compare.FOLDER / "truth").glob("*.h5"))
-STORED = [("golden", name) for name in GOLDENS] + [("truth", name) for name in TRUTHS]
+STORED = [(kind, name) for kind in KINDS for name in stored(kind)]
 
 
 @pytest.fixture(scope="module")
@@ -32,12 +30,12 @@ def mesh_of(tmp_path_factory):
 
 
 def test_every_golden_is_there():
-    assert {"column", "ellipsoid-indentation", "ellipsoid-touch"} <= set(GOLDENS)
+    assert {"column", "ellipsoid-indentation", "ellipsoid-touch"} <= set(stored("golden"))
 
 
 @pytest.mark.parametrize("kind, name", STORED)
 def test_stored_result_belongs_to_its_case(kind, name, mesh_of):
-    points, displacement, attributes = read_result(compare.FOLDER / kind / f"{name}.h5")
+    points, displacement, attributes = read_reference(path_of(kind, name))
     case = read_case(find_case(CASES, name), name)
     mesh, file = load_case_mesh(case, mesh_of(name))
     for attribute in ("case", "case_hash", "mesh_hash"):
@@ -57,18 +55,18 @@ def test_golden_can_be_made_again(name, mesh_of, tmp_path):
     command = ["golden", find_case(CASES, name), "--variant", name]
     command += ["--mesh", mesh_of(name), "-o", output]
     assert solve.main([str(word) for word in command]) == 0
-    _, displacement, attributes = read_result(output)
-    _, stored, _ = read_result(compare.FOLDER / "golden" / f"{name}.h5")
+    _, displacement, attributes = read_reference(output)
+    _, stored, _ = read_reference(path_of("golden", name))
     # Solved to a last correction below 1e-10; other libraries and thread counts change round-off
     # only. 1e-8 of the imposed displacement is what the solver is judged with at the finest.
     difference = np.linalg.norm(displacement - stored, axis=1).max()
     assert difference < 1e-8 * attributes["largest_imposed"]
 
 
-@pytest.mark.parametrize("name", TRUTHS)
+@pytest.mark.parametrize("name", stored("truth"))
 def test_golden_knows_its_distance_from_the_truth(name):
-    golden, truth = (compare.FOLDER / kind / f"{name}.h5" for kind in ("golden", "truth"))
-    _, _, attributes = read_result(golden)
+    golden, truth = (path_of(kind, name) for kind in KINDS)
+    _, _, attributes = read_reference(golden)
     errors = compare.golden_error(golden, truth)
     # Stored from the same numbers: equal but for the order of a sum.
     assert errors[0] == pytest.approx(attributes["discretisation_error_max"], rel=1e-12)
@@ -76,4 +74,4 @@ def test_golden_knows_its_distance_from_the_truth(name):
 
 
 def test_readme_shows_the_table_of_the_stored_results():
-    assert compare.table() in (compare.FOLDER / "README.md").read_text()
+    assert compare.table() in (FOLDER / "README.md").read_text()

@@ -5,7 +5,7 @@ import pytest
 
 from blocks import MATERIAL, affine, distorted_block, pressed_block
 from case_file import find_case, read_case, read_tables
-from errors import InputError
+from common.errors import InputError
 from hexahedra import Condition, HexMesh, refine, traction
 from newton import solve
 from problem import GOLDEN, TRUTH, MixedProblem
@@ -134,9 +134,11 @@ def test_variants(tmp_path):
     assert not read_case(path, "bar-1-a").forces
     assert find_case(tmp_path, "bar-1-b") == path
     assert find_case(tmp_path, "bar-1-c") is None
-    with pytest.raises(InputError, match="has variants: one of bar-1-a, bar-1-b"):
+    with pytest.raises(
+        InputError, match="has 4 variants, and one must be named; known: bar-1-a, bar-1-b"
+    ):
         read_case(path)
-    with pytest.raises(InputError, match="no case 'bar-1-c'"):
+    with pytest.raises(InputError, match="has no case 'bar-1-c'"):
         read_case(path, "bar-1-c")
 
 

@@ -4,33 +4,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.accuracy import relative_distances, relative_errors
+from common.records import key
+
 
 @dataclass(frozen=True)
 class Accuracy:
     """Distances of a displacement field from a reference, as fractions of the imposed one."""
 
-    max: float  # over all nodes
-    rms: float  # over all nodes
-    profile: float | None  # largest on the case's profile line; None without one
-
-
-def relative_distances(u, reference, unit):
-    """|u - reference| / unit per node; u and reference (n, 3) in m, unit in m."""
-    return np.linalg.norm(u - reference, axis=1) / unit
+    max: float = key("max_relative_error")  # over all nodes
+    rms: float = key("rms_relative_error")  # over all nodes
+    profile: float | None = key("profile_relative_error")  # on the profile line; None without one
 
 
 def accuracy(u, reference, unit, profile=None):
     """Accuracy of u (n, 3) against reference (n, 3), both in m.
 
     unit: largest imposed displacement, m. profile: node numbers of the profile line, or None.
-    The formulas are those of solver/comparison/accuracy.cpp.
     """
-    distances = relative_distances(u, reference, unit)
-    return Accuracy(
-        max=float(distances.max()),
-        rms=float(np.sqrt(np.mean(distances**2))),
-        profile=None if profile is None else float(distances[profile].max()),
-    )
+    largest, rms = relative_errors(u, reference, unit)
+    on_line = None if profile is None else relative_distances(u, reference, unit)[profile].max()
+    return Accuracy(float(largest), float(rms), None if on_line is None else float(on_line))
 
 
 def ordered_profile(points, nodes, order):

@@ -3,9 +3,10 @@
 import numpy as np
 from matplotlib.colors import to_rgb
 
+from common.hexahedron import boundary_faces
 from sandglass_report import paper, style
 from sandglass_report.plates import Panel, Plate
-from sandglass_report.shapes import View, boundary_faces, draw_surface, frame, window
+from sandglass_report.shapes import View, draw_surface, frame, window
 
 BODY = "#c9d3dd"
 HELD = "#76818d"
@@ -15,7 +16,7 @@ FROM_THE_SIDE = View(azimuth=16.0, elevation=14.0)
 
 
 def view_of(points):
-    """A direction of sight: slender bodies from the side, others from above."""
+    """A direction of sight on points (n, 3): slender bodies from the side, others from above."""
     size = np.ptp(points, axis=0)
     return FROM_THE_SIDE if size[2] > 3 * max(size[0], size[1]) else ALL_ROUND
 

@@ -1,73 +1,70 @@
 """Error against cost of a step: fixed methods as points, adaptive ones as lines."""
 
-import json
-from pathlib import Path
-
+from common.errors import InputError
+from common.files import read_json
 from sandglass_report import style
-from sandglass_report.errors import ReportError
+from sandglass_report.measured import OWN_MESH, rungs_of
 from sandglass_report.plates import MUTED, Panel, Plate
 
 UNIT = "tl-perturbation"  # whose step at kappa auto is the unit of cost
 LIMIT = 0.0034  # the paper's error on its profile line
 
 
-def read_rungs(paths):
-    """Case -> rungs of files of `sandglass choose --all --json`. Raises ReportError."""
+def read_costs(paths):
+    """Case -> (cost, Rung) of files of `sandglass choose --all --json`. Raises InputError.
+
+    cost: of a step, in steps of UNIT of the same file. Of a rung in several files the first counts.
+    """
     cases = {}
     for path in paths:
-        try:
-            document = json.loads(Path(path).read_text())
-            rungs = [r for r in document["rungs"] if _is_shown(r)]
-            unit = next(r["seconds"] for r in rungs if r["method"] == UNIT)
-            known = cases.setdefault(document["case"], {})
-            for rung in rungs:
-                known.setdefault(rung["rung"], rung | {"cost": rung["seconds"] / unit})
-        except StopIteration:
-            raise ReportError(f"{path}: has no step of {UNIT}, the unit of cost") from None
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            message = f"{path}: not a file of sandglass choose --json: {error!r}"
-            raise ReportError(message) from error
-    return {case: list(rungs.values()) for case, rungs in cases.items()}
+        rungs = rungs_of(path, read_json(path, "sandglass choose --all --json"))
+        shown = [rung for rung in rungs if _is_shown(rung)]
+        unit = next((rung.step for rung in shown if rung.method == UNIT), None)
+        if unit is None:
+            raise InputError(f"{path}: rungs: must have a step of {UNIT}, the unit of cost")
+        for rung in shown:
+            known = cases.setdefault(rung.case, {})
+            known.setdefault(rung.name, (rung.step / unit, rung))
+    return {case: list(found.values()) for case, found in cases.items()}
 
 
 def _is_shown(rung):
     """Steps in double on the user's own mesh that have an answer, with the strength a user gets."""
-    own = rung["precision"] == "double" and rung["mesh"] == "own mesh" and rung["kappa"] is None
-    return own and rung["seconds"] and rung["step_size"] and rung["error"] is not None
+    own = rung.precision == "double" and rung.mesh == OWN_MESH and rung.kappa is None
+    return own and rung.step and rung.step_size and rung.error is not None
 
 
 def curve_plate(cases):
-    """A plate with one panel for each case."""
-    methods = dict.fromkeys(rung["method"] for rungs in cases.values() for rung in rungs)
+    """A plate with one panel for each case. cases: of read_costs()."""
+    methods = dict.fromkeys(rung.method for found in cases.values() for _, rung in found)
     palette = style.Palette(dict.fromkeys((*style.solver_methods(), *methods)))
-    panels = tuple(_panel(case, rungs, palette) for case, rungs in cases.items())
+    panels = tuple(_panel(case, found, palette) for case, found in cases.items())
     legend = tuple((m, palette.colour(m), palette.mark(m)) for m in methods)
     note = (
         "Largest error over all nodes against the mixed reference on the same mesh, over the "
         f"cost of a step under the full load, in steps of {UNIT}; double, one thread. The line is "
-        "the adaptive "
-        f"method from loose to strict accuracy; the dashed line is {style.exact_percent(LIMIT)}."
+        "the adaptive method from loose to strict accuracy; the dashed line is "
+        f"{style.exact_percent(LIMIT)}."
     )
     return Plate("adaptive", "How much accuracy for how much time", panels, 2, note, legend)
 
 
-def _panel(case, rungs, palette):
-    adaptive = sorted((r for r in rungs if r.get("accuracy")), key=lambda r: -r["accuracy"])
-    fixed = [r for r in rungs if not r.get("accuracy")]
+def _panel(case, found, palette):
+    """Errors over costs of one case."""
+    adaptive = [(cost, rung) for cost, rung in found if rung.accuracy]
+    adaptive.sort(key=lambda one: -one[1].accuracy)
 
     def draw(axes):
-        for rung in fixed:
-            where = rung["cost"], max(rung["error"], style.FLOOR)
-            method = rung["method"]
-            axes.plot(*where, palette.mark(method), color=palette.colour(method), ms=5)
+        for cost, rung in found:
+            if not rung.accuracy:
+                colour, mark = palette.colour(rung.method), palette.mark(rung.method)
+                axes.plot(cost, max(rung.error, style.FLOOR), mark, color=colour, ms=5)
         if adaptive:
-            method = adaptive[0]["method"]
-            costs = [r["cost"] for r in adaptive]
-            errors = [max(r["error"], style.FLOOR) for r in adaptive]
-            axes.plot(costs, errors, "-", color=palette.colour(method), lw=1.4, zorder=3)
-            axes.plot(
-                costs, errors, palette.mark(method), color=palette.colour(method), ms=4, zorder=3
-            )
+            method = adaptive[0][1].method
+            colour, mark = palette.colour(method), palette.mark(method)
+            costs = [cost for cost, _ in adaptive]
+            errors = [max(rung.error, style.FLOOR) for _, rung in adaptive]
+            axes.plot(costs, errors, f"-{mark}", color=colour, lw=1.4, ms=4, zorder=3)
         axes.axhline(LIMIT, color=MUTED, lw=0.8, ls="--")
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -77,7 +74,7 @@ def _panel(case, rungs, palette):
         axes.set_ylabel("max error, all nodes")
         axes.yaxis.set_major_formatter(lambda y, _: f"{100 * y:g} %")
 
-    words = ", ".join(f"{100 * r['error']:.3g} % at {r['cost']:.2f}" for r in adaptive)
+    words = ", ".join(f"{100 * rung.error:.3g} % at {cost:.2f}" for cost, rung in adaptive)
     return Panel(
         f"adaptive.{case}", case, f"{case}: adaptive errors and costs: {words}", draw, 400, 320
     )

@@ -1,11 +1,12 @@
 """What the project claims, what tests it, by which oracle; which planted mistakes are noticed."""
 
 import re
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandglass_report.errors import ReportError
+from common.errors import InputError
+from common.files import read_toml
+from common.records import entries, entry
 
 SUITE = re.compile(r"^(?:TYPED_)?TEST\w*\(\s*(\w+)", re.MULTILINE)
 COLUMNS = ("mutant", "mistake", "verdict", "by", "s", "revision")
@@ -56,7 +57,7 @@ class Evidence:
 def read_evidence(claims, mutants, root, limits):
     """Evidence from a TOML file of claims and the table of mutants; each may be absent.
 
-    root: of the tree, where the tests are. limits: of the verdicts. Raises ReportError when a file
+    root: of the tree, where the tests are. limits: of the verdicts. Raises InputError when a file
     is broken, or when a claim names a test or a limit that is not there.
     """
     files = _files_of_suites(Path(root))
@@ -65,37 +66,33 @@ def read_evidence(claims, mutants, root, limits):
 
 
 def _read_claims(path, root, limits, mutants):
+    """The claims of a file; none without it."""
     if not path.is_file():
         return ()
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8")).get("claim", [])
-        raw = [
-            (t["says"], t["oracle"], tuple(t["tests"]), t.get("figure", ""), t.get("limits", []))
-            for t in tables
-        ]
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, KeyError, TypeError) as error:
-        raise ReportError(f"{path}: not a file of claims: {error!r}") from error
+    found = read_toml(path)
     return tuple(
-        Claim(
-            says,
-            oracle,
-            _known_tests(path, root, says, tests),
-            figure,
-            tuple(_limit(path, says, words, limits) for words in wanted),
-            sum(m.verdict == "killed" and m.file in tests for m in mutants),
-        )
-        for says, oracle, tests, figure, wanted in raw
+        _claim(where, table, root, limits, mutants)
+        for where, table in (entries(path, found, "claim") if "claim" in found else ())
     )
 
 
-def _known_tests(path, root, says, tests):
+def _claim(where, table, root, limits, mutants):
+    """A checked [[claim]] table as a Claim."""
+    says, tests = entry(where, table, "says", str), tuple(entry(where, table, "tests", list))
     for test in tests:
         if not (root / test).is_file():
-            raise ReportError(f"{path}: claim {says!r}: there is no test {test}")
-    return tests
+            raise InputError(f"{where}: {says!r}: there is no test {test}")
+    return Claim(
+        says,
+        entry(where, table, "oracle", str),
+        tests,
+        table.get("figure", ""),
+        tuple(_limit(where, says, words, limits) for words in table.get("limits", [])),
+        sum(m.verdict == "killed" and m.file in tests for m in mutants),
+    )
 
 
-def _limit(path, says, words, limits):
+def _limit(where, says, words, limits):
     """The limit "CASE METHOD KAPPA FIGURE" of the verdicts; None where the case was not run."""
     case, method, kappa, figure = (words.split() + [""] * 4)[:4]
     of_case = [limit for limit in limits if limit.case == case]
@@ -103,7 +100,7 @@ def _limit(path, says, words, limits):
         if (limit.method, limit.kappa, limit.figure) == (method, kappa, figure):
             return limit
     if of_case:
-        raise ReportError(f"{path}: claim {says!r}: the verdicts have no limit {words!r}")
+        raise InputError(f"{where}: {says!r}: the verdicts have no limit {words!r}")
     return None
 
 
@@ -123,7 +120,7 @@ def _read_mutants(path, files):
     lines = path.read_text(encoding="utf-8").splitlines()
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if "|" in line]
     if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
-        raise ReportError(f"{path}: not the table of ci/mutants: its columns must be {COLUMNS}")
+        raise InputError(f"{path}: not the table of ci/mutants: its columns must be {COLUMNS}")
     made = next((line for line in lines if line.startswith("Made by")), "")
     return made, tuple(_mutant(row, files) for row in rows[2:])
 

@@ -4,8 +4,8 @@ import base64
 import functools
 import gzip
 
+from common.errors import InputError
 from sandglass_report import style
-from sandglass_report.errors import ReportError
 from sandglass_report.measured import OWN_MESH
 from sandglass_report.points import families, fronts
 
@@ -29,11 +29,13 @@ def chart_data(points, palette):
 
 @functools.cache
 def packed_plotly():
-    """Plotly's script, compressed, as base64: a quarter of its size. Raises ReportError."""
+    """Plotly's script, compressed, as base64: a quarter of its size. Raises InputError."""
     try:
         from plotly.offline import get_plotlyjs
 
         script = get_plotlyjs()
     except (ImportError, OSError) as error:
-        raise ReportError(f"plotly is missing: {error}; install python3-plotly") from error
+        raise InputError(
+            f"plotly: is missing: {error}; package python3-plotly (ci/setup report)"
+        ) from error
     return base64.b64encode(gzip.compress(script.encode(), 9, mtime=0)).decode("ascii")

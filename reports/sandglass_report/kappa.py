@@ -4,10 +4,10 @@ import numpy as np
 
 from sandglass_report import axes as helpers
 from sandglass_report import style
+from sandglass_report.verdicts import REFERENCES
 from sandglass_report.plates import Panel, Plate
 
 FIGURES = (("max", "-", 1.6), ("profile", "--", 1.3), ("rms", ":", 1.6))
-KINDS = ("golden", "truth")
 NAMES = {"max": "max, all nodes", "profile": "max, profile", "rms": "rms"}
 
 
@@ -16,7 +16,7 @@ def kappa_panels(subject, palette):
     if not _curves(subject, "golden") and not _curves(subject, "truth"):
         return ()
     limits = _limits(subject)
-    return tuple(_panel(subject, palette, kind, limits) for kind in KINDS)
+    return tuple(_panel(subject, palette, kind, limits) for kind in REFERENCES)
 
 
 def kappa_plates(subjects, palette):
@@ -26,7 +26,7 @@ def kappa_plates(subjects, palette):
         panels = kappa_panels(subject, palette)
         if panels:
             title = f"{subject.name}: error against the hourglass stiffness kappa"
-            shown = dict.fromkeys(m for kind in KINDS for m in _curves(subject, kind))
+            shown = dict.fromkeys(m for kind in REFERENCES for m in _curves(subject, kind))
             legend = tuple((m, palette.colour(m), palette.mark(m)) for m in shown)
             plates.append(Plate(f"kappa.{subject.name}", title, panels, 2, legend=legend))
     return plates
@@ -60,7 +60,7 @@ def _levels(subject):
 
 def _limits(subject):
     values = [v for v in _levels(subject).values() if v]
-    for kind in KINDS:
+    for kind in REFERENCES:
         for runs in _curves(subject, kind).values():
             values += [getattr(getattr(r, kind), name) or 0 for r in runs for name, _, _ in FIGURES]
     shown = [value for value in values if value > style.FLOOR] or [style.FLOOR, 1.0]

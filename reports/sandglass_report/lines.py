@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from common.accuracy import relative_distances
 from sandglass_report import axes as helpers
 from sandglass_report import paper, style
-from sandglass_report.accuracy import is_closed, relative_distances
+from sandglass_report.accuracy import is_closed
 from sandglass_report.plates import Panel, Plate
 
 

@@ -1,13 +1,12 @@
 """Failure maps: what becomes of every method along two axes, one small map per method."""
 
-import json
 from dataclasses import dataclass
-from pathlib import Path
 
 from matplotlib.patches import Rectangle
 
+from common.files import read_json
+from common.records import NUMBER, entry
 from sandglass_report import style
-from sandglass_report.errors import ReportError
 from sandglass_report.plates import MUTED, Panel, Plate
 
 COLUMNS = 5
@@ -30,14 +29,10 @@ OUTCOMES = {
 
 
 def read_maps(path):
-    """The maps of a case as `sandglass stability --json` writes them. Raises ReportError."""
-    try:
-        document = json.loads(Path(path).read_text())
-    except (OSError, ValueError) as error:
-        raise ReportError(f"{path}: not a file of sandglass stability --json: {error}") from error
-    missing = {"case", "limit", "maps", "revision"} - set(document)
-    if missing:
-        raise ReportError(f"{path}: has no {sorted(missing)[0]!r}; sandglass stability --json has")
+    """The maps of a case, as `sandglass stability --json` writes them. Raises InputError."""
+    document = read_json(path, "sandglass stability --json")
+    for key, kind in (("case", str), ("limit", NUMBER), ("maps", list), ("revision", str)):
+        entry(path, document, key, kind)
     return document
 
 

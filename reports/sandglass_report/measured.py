@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from sandglass_report.checks import NUMBER, entries, entry, facts, read_document
+from common.files import read_json
+from common.records import NUMBER, as_dataclass, entries, entry, facts, key
 from sandglass_report.maps import read_maps
 
 BENCH = "sandglass bench --threads 1 --json build/bench.json"
@@ -23,17 +24,19 @@ class Rung:
 
     case: str
     reference: str  # golden or truth
+    tolerance: float  # that was asked for, a fraction
     method: str
     kappa: float | None  # None: as it comes
     accuracy: float | None  # asked of an adaptive method, a fraction
     precision: str
     mesh: str
     elements: int
-    step: float | None  # s
-    simulated: float | None  # s of wall time for a simulated second
+    step_size: float | None  # s, of simulated time; None where nothing moves
     error: float | None  # largest of all nodes, a fraction of the imposed displacement
-    tolerance: float  # that was asked for, a fraction
-    reason: str  # why it is not enough for that; empty where it is
+    reason: str  # why it is not enough; empty where it is
+    name: str = key("rung")  # of method, kappa or accuracy, precision and mesh
+    step: float | None = key("seconds")  # s of wall time
+    simulated: float | None = key("seconds_per_simulated_second")  # s of wall time
 
 
 @dataclass(frozen=True)
@@ -44,8 +47,8 @@ class Step:
     elements: int
     method: str
     precision: str
-    ns: float  # per element and step, median
-    stable_step: float | None  # s
+    ns: float = key("ns_per_element_step")  # median
+    stable_step: float | None = key("stable_step_seconds")
 
 
 @dataclass(frozen=True)
@@ -55,9 +58,9 @@ class Rest:
     case: str
     method: str
     precision: str
-    seconds: float | None
-    to_1_percent: float | None
-    to_0_1_percent: float | None
+    seconds: float | None = key("seconds_to_rest")
+    to_1_percent: float | None = key("seconds_to_1_percent")
+    to_0_1_percent: float | None = key("seconds_to_0_1_percent")
 
 
 @dataclass(frozen=True)
@@ -96,17 +99,22 @@ def read_measured(bench, flops, rest, curves, maps, kept_maps):
     """Measured from three files and three folders of JSON files, each of which may be absent.
 
     kept_maps: earlier maps, which stand in for cases that have none in maps.
-    Raises ReportError when one is there and broken.
+    Raises InputError when one is there and broken.
     """
     sources = []
-    steps = _read(bench, BENCH, _steps, sources)
-    counts = _read(flops, FLOPS, _counts, sources)
-    rests = _read(rest, REST, _rests, sources)
-    rungs = [
-        rung
-        for path in _files(curves, CURVES, sources)
-        for rung in _read(path, CURVES, _rungs, sources)
-    ]
+
+    def records(path, command):
+        if Path(path).is_file():
+            return entries(path, _document(path, command, sources), "records")
+        sources.append(Source(str(path), command, None))
+        return []
+
+    steps = [as_dataclass(Step, *one) for one in records(bench, BENCH) if _is_step(*one)]
+    counts = [as_dataclass(Count, *one) for one in records(flops, FLOPS)]
+    rests = [as_dataclass(Rest, *one) for one in records(rest, REST)]
+    rungs = []
+    for path in _files(curves, CURVES, sources):
+        rungs += rungs_of(path, _document(path, CURVES, sources))
     found = {}
     for path in (*sorted(Path(maps).glob("*.json")), *_files(kept_maps, MAPS, sources)):
         document = read_maps(path)
@@ -123,82 +131,30 @@ def _files(folder, command, sources):
     return found
 
 
-def _read(path, command, records_of, sources):
-    """The records of a file; none when it is absent, which is noted."""
-    if not Path(path).is_file():
-        sources.append(Source(str(path), command, None))
-        return []
-    document = read_document(path, command)
-    records = records_of(path, document)
+def _document(path, command, sources):
+    """The document of a file, which is noted."""
+    document = read_json(path)
     sources.append(Source(str(path), command, facts(document)))
-    return records
+    return document
 
 
-def _rungs(path, document):
-    case = entry(path, document, "case", str)
-    name = entry(f"{path}: reference", entry(path, document, "reference", dict), "name", str)
-    reference = REFERENCE_NAMES.get(name, name)
-    tolerance = entry(path, document, "tolerance", NUMBER)
-    return [
-        Rung(
-            case,
-            reference,
-            method=entry(where, r, "method", str),
-            kappa=entry(where, r, "kappa", NUMBER, True),
-            accuracy=entry(where, r, "accuracy", NUMBER, True),
-            precision=entry(where, r, "precision", str),
-            mesh=entry(where, r, "mesh", str),
-            elements=entry(where, r, "elements", int),
-            step=entry(where, r, "seconds", NUMBER, True),
-            simulated=entry(where, r, "seconds_per_simulated_second", NUMBER, True),
-            error=entry(where, r, "error", NUMBER, True),
-            tolerance=tolerance,
-            reason=entry(where, r, "reason", str),
-        )
-        for where, r in entries(path, document, "rungs")
-    ]
+def _is_step(where, record):
+    """Whether a record of bench is of packs on one thread, and has a time."""
+    has_time = entry(where, record, "ns_per_element_step", NUMBER, none_allowed=True) is not None
+    on_packs = entry(where, record, "kernel", str) == "pack"
+    return has_time and on_packs and entry(where, record, "threads", int) == 1
 
 
-def _steps(path, document):
-    found = []
-    for where, r in entries(path, document, "records"):
-        ns = entry(where, r, "ns_per_element_step", NUMBER, True)
-        if entry(where, r, "kernel", str) == "pack" and r.get("threads") == 1 and ns is not None:
-            found.append(
-                Step(
-                    case=entry(where, r, "case", str),
-                    elements=entry(where, r, "elements", int),
-                    method=entry(where, r, "method", str),
-                    precision=entry(where, r, "precision", str),
-                    ns=ns,
-                    stable_step=entry(where, r, "stable_step_seconds", NUMBER, True),
-                )
-            )
-    return found
+def rungs_of(path, document):
+    """The Rungs of a document of `sandglass choose --all --json`. Raises InputError.
 
-
-def _rests(path, document):
-    return [
-        Rest(
-            case=entry(where, r, "case", str),
-            method=entry(where, r, "method", str),
-            precision=entry(where, r, "precision", str),
-            seconds=entry(where, r, "seconds_to_rest", NUMBER, True),
-            to_1_percent=entry(where, r, "seconds_to_1_percent", NUMBER, True),
-            to_0_1_percent=entry(where, r, "seconds_to_0_1_percent", NUMBER, True),
-        )
-        for where, r in entries(path, document, "records")
-    ]
-
-
-def _counts(path, document):
-    return [
-        Count(
-            method=entry(where, r, "method", str),
-            law=entry(where, r, "law", str),
-            form=entry(where, r, "form", str),
-            part=entry(where, r, "part", str),
-            total=entry(where, r, "total", int),
-        )
-        for where, r in entries(path, document, "records")
-    ]
+    path: its file, for messages.
+    """
+    reference = entry(path, document, "reference", dict)
+    name = entry(f"{path}: reference", reference, "name", str)
+    known = {
+        "case": entry(path, document, "case", str),
+        "reference": REFERENCE_NAMES.get(name, name),
+        "tolerance": entry(path, document, "tolerance", NUMBER),
+    }
+    return [as_dataclass(Rung, *found, **known) for found in entries(path, document, "rungs")]

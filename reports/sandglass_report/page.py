@@ -1,17 +1,15 @@
 """The page: what the template needs, and how it and the figures are written."""
 
 import base64
-import os
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import jinja2
 import markupsafe
 
+from common.files import write_whole, writing
 from sandglass_report import bending, bodies, interactive, kappa, lines, maps, measured, paper
 from sandglass_report import plates, provenance, replication, speed, style, tips, viewer
-from sandglass_report.errors import ReportError
 from sandglass_report.points import make_points
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -51,7 +49,7 @@ def write_report(inputs, page):
     """Writes the page, and its static figures to the folder figures/ beside it.
 
     page: path of the HTML file. The page is written whole or not at all. Returns its size in bytes.
-    Raises ReportError when a file cannot be written.
+    Raises InputError when a file cannot be written.
     """
     palette = style.Palette(inputs.verdicts.methods)
     sections = tuple(_paper_section(e, inputs.subjects, palette) for e in paper.EXPERIMENTS)
@@ -68,16 +66,12 @@ def write_report(inputs, page):
             anchors=ANCHORS,
         )
     )
-    try:
-        folder = page.parent / "figures"
+    folder = page.parent / "figures"
+    with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for plate in (*_static_plates(inputs, palette, sections), *bent):
             plates.save_plate(plate, folder)
-        write_whole(page, html)
-    except OSError as error:
-        raise ReportError(
-            f"{error.filename or page}: cannot write the report: {error.strerror}"
-        ) from error
+    write_whole(page, html)
     return len(html.encode())
 
 
@@ -193,19 +187,6 @@ def _static_plates(inputs, palette, sections):
             plates.Plate("cases", "The cases, at rest and deformed", gallery, len(gallery))
         )
     return found
-
-
-def write_whole(path, text):
-    """Writes to a temporary file beside the path and renames it."""
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with open(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise
 
 
 def _scientific(value):

@@ -10,7 +10,7 @@ import statistics
 from dataclasses import asdict, dataclass, field
 
 from sandglass_report import style
-from sandglass_report.load import REFERENCES
+from sandglass_report.verdicts import REFERENCES
 from sandglass_report.measured import OWN_MESH
 from sandglass_report.style import exact_percent
 

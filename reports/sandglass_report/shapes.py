@@ -10,23 +10,9 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 
-# Faces of a hexahedron in VTK order, each counter-clockwise seen from outside.
-FACES = np.array(
-    [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
-)
-
 LIGHT = np.array([-0.45, -0.55, 0.70]) / np.linalg.norm(
     [-0.45, -0.55, 0.70]
 )  # from the viewer's left
-
-
-def boundary_faces(cells):
-    """Node numbers (k, 4) of the faces that belong to one cell only, outward; cells (m, 8), VTK."""
-    faces = np.asarray(cells)[:, FACES].reshape(-1, 4)
-    _, first, count = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
-    return faces[np.sort(first[count == 1])]
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ import numpy as np
 
 from sandglass_report import axes as helpers
 from sandglass_report import style
+from sandglass_report.verdicts import REFERENCES
 from sandglass_report.plates import Panel, Plate
 
 FIGURES = (("max", "max over all nodes"), ("rms", "rms over all nodes"))
-REFERENCES = ("golden", "truth")
 MOST_LABELS = 4  # more names than these do not fit at their points
 
 

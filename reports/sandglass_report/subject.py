@@ -1,15 +1,16 @@
 """One case with everything known about it: mesh, references, runs and their displacements."""
 
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import h5py
 import numpy as np
 
+from common.errors import InputError
+from common.files import read_toml
+from common.result_file import text_of
 from sandglass_report.accuracy import accuracy, ordered_profile
-from sandglass_report.errors import ReportError
-from sandglass_report.load import REFERENCES
+from sandglass_report.verdicts import REFERENCES
 
 # verdicts.json and a recomputation differ by rounding of the square root only, see the tests.
 AGREEMENT = 1e-9
@@ -70,7 +71,7 @@ def read_subjects(verdicts, cases, references, results):
     """A Subject for every case of the verdicts.
 
     cases: folder of case files. references: folder with golden/ and truth/. results: folder with
-    the result files of the runs. Raises ReportError when a file is missing, broken or of others.
+    the result files of the runs. Raises InputError when a file is missing, broken or of others.
     """
     case_files = _case_files(Path(cases))
     return tuple(
@@ -82,20 +83,17 @@ def read_subjects(verdicts, cases, references, results):
 def _case_files(folder):
     """name of a case -> (path, tables) for every case file in the folder."""
     if not folder.is_dir():
-        raise ReportError(f"{folder}: no such folder of cases")
+        raise InputError(f"{folder}: no such folder of cases")
     found = {}
     for path in sorted(folder.glob("*.toml")):
-        try:
-            tables = tomllib.loads(path.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise ReportError(f"{path}: not a TOML file: {error}") from error
+        tables = read_toml(path)
         found[tables.get("case", {}).get("name")] = (path, tables)
     return found
 
 
 def _read_subject(verdicts, name, case_files, references, results):
     if name not in case_files:
-        raise ReportError(f"case {name!r} is in the verdicts, but no case file has this name")
+        raise InputError(f"case {name!r} is in the verdicts, but no case file has this name")
     path, tables = case_files[name]
     runs = tuple(run for run in verdicts.runs if run.case == name)
     try:
@@ -105,7 +103,7 @@ def _read_subject(verdicts, name, case_files, references, results):
         profile_set, profile_order = profile.get("set"), profile.get("order")
         stored = tables.get("comparison", {})
     except (KeyError, TypeError, ValueError) as error:
-        raise ReportError(f"{path}: not a case of this solver: {error!r}") from error
+        raise InputError(f"{path}: not a case of this solver: {error!r}") from error
     files = _result_files(runs, results)
     mesh, displacements, hourglass, hashes = _read_results(files)
     stored_answers = {
@@ -132,7 +130,7 @@ def _read_subject(verdicts, name, case_files, references, results):
         **stored_answers,
     )
     if profile_set is not None and files and profile_set not in subject.sets:
-        raise ReportError(f"{files[0][1]}: node set {profile_set} of the profile is missing")
+        raise InputError(f"{files[0][1]}: node set {profile_set} of the profile is missing")
     _require_same_runs(subject, files)
     return subject
 
@@ -145,7 +143,7 @@ def _result_files(runs, folder):
         if path.is_file():
             found.append((run, path))
         elif run.ok:
-            raise ReportError(
+            raise InputError(
                 f"{path}: no such result file, but the verdicts say that {run.label} on {run.case} "
                 f"is ok; make both in one go: sandglass verify --json FILE --results {folder}"
             )
@@ -162,16 +160,16 @@ def _read_results(files):
                 last = frames[max(frames)]
                 u = last["displacement"][...]
                 density = last[HOURGLASS][...] if HOURGLASS in last else None
-                own = {key: _text(file.attrs[key]) for key in ("case_hash", "mesh_hash")}
+                own = {key: text_of(file.attrs[key]) for key in ("case_hash", "mesh_hash")}
                 if not mesh:
                     group, hashes = file["mesh"], own
                     sets = {name: nodes[...] for name, nodes in group.get("sets", {}).items()}
                     mesh = {"points": group["points"][...], "cells": group["cells"][...]}
                     mesh["sets"] = sets
             except (KeyError, ValueError) as error:
-                raise ReportError(f"{path}: not a result file of this solver: {error}") from error
+                raise InputError(f"{path}: not a result file of this solver: {error}") from error
         if own != hashes or u.shape != mesh["points"].shape:
-            raise ReportError(
+            raise InputError(
                 f"{path}: made for another case or mesh than {files[0][1].name}; run verify anew"
             )
         key = run.method, None if run.is_main else run.kappa
@@ -206,18 +204,18 @@ def _read_reference(path, name, hashes, points):
     if not path.is_file():
         return None
     with _open(path) as file:
-        attributes = {key: _text(value) for key, value in file.attrs.items()}
+        attributes = {key: text_of(value) for key, value in file.attrs.items()}
         if "displacement" not in file:
-            raise ReportError(f"{path}: dataset displacement is missing: not a reference")
+            raise InputError(f"{path}: dataset displacement is missing: not a reference")
         displacement = file["displacement"][...]
     for key, expected in hashes.items():
         if attributes.get(key) != expected:
-            raise ReportError(
+            raise InputError(
                 f"{path}: {key} is {attributes.get(key)}, but the runs have {expected}; the "
                 f"reference was made for another case or mesh: reference/regenerate {name}"
             )
     if points is not None and displacement.shape != points.shape:
-        raise ReportError(
+        raise InputError(
             f"{path}: displacement has shape {displacement.shape}, but the mesh of the runs has "
             f"{points.shape}; make it anew: reference/regenerate {name}"
         )
@@ -225,7 +223,7 @@ def _read_reference(path, name, hashes, points):
 
 
 def _require_same_runs(subject, files):
-    """Raises ReportError unless the result files give the very figures of the verdicts."""
+    """Raises InputError unless the result files give the very figures of the verdicts."""
     profile = None if subject.profile_set is None else subject.sets.get(subject.profile_set)
     for run, path in files:
         u = subject.displacements[run.method, None if run.is_main else run.kappa]
@@ -235,7 +233,7 @@ def _require_same_runs(subject, files):
                 continue
             found = accuracy(u, reference.displacement, subject.unit, profile)
             if abs(found.max - told.max) > AGREEMENT * max(1.0, told.max):
-                raise ReportError(
+                raise InputError(
                     f"{path}: its largest error against the {kind} is {found.max:.6g}, but the "
                     f"verdicts say {told.max:.6g}: they come from different runs; run verify anew"
                 )
@@ -245,9 +243,4 @@ def _open(path):
     try:
         return h5py.File(path, "r")
     except OSError as error:
-        raise ReportError(f"{path}: cannot read it as HDF5: {error}") from error
-
-
-def _text(value):
-    """HDF5 attribute: bytes as text, all else as it is."""
-    return value.decode() if isinstance(value, bytes) else value
+        raise InputError(f"{path}: cannot be read as HDF5: {error}") from error

@@ -9,9 +9,9 @@ import base64
 import numpy as np
 from matplotlib import colormaps
 
-from sandglass_report.accuracy import relative_distances
+from common.accuracy import relative_distances
+from common.hexahedron import FACES, boundary_faces, gauss_jacobians
 from sandglass_report.bodies import view_of
-from sandglass_report.shapes import FACES, boundary_faces
 
 STOPS = 32  # of a colour scale; the page draws the nearest one
 LEAST_ERROR = 1e-5  # fractions; the logarithmic scale of errors begins here
@@ -24,27 +24,10 @@ COLOURS = {
     "hourglass": ("hourglass energy", "J/m³", "linear", "viridis"),
 }
 
-_ROOT = 1 / np.sqrt(3.0)
-_CORNERS = np.array(
-    [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)]
-    + [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
-)
-
 
 def volumes(points, cells):
-    """Volumes (m,) of trilinear hexahedra, m^3: exact, for det J is quadratic in each direction.
-
-    points: (n, 3), m. cells: (m, 8), VTK order.
-    """
-    corners = points[cells]
-    total = np.zeros(len(cells))
-    for at in _CORNERS * _ROOT:
-        one = 1 + _CORNERS * at
-        gradients = 0.125 * np.column_stack(
-            [_CORNERS[:, i] * np.delete(one, i, axis=1).prod(axis=1) for i in range(3)]
-        )
-        total += np.linalg.det(np.einsum("mai,aj->mij", corners, gradients))
-    return total
+    """Volumes (m,) of trilinear hexahedra, m^3. points: (n, 3), m. cells: (m, 8), VTK order."""
+    return gauss_jacobians(points, cells).sum(axis=0)
 
 
 def viewer_data(subjects):

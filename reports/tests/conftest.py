@@ -1,14 +1,7 @@
-"""Makes the report's package importable and offers a tiny data set."""
-
-import sys
-from pathlib import Path
+"""A tiny data set for the tests of the report."""
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-from synthetic import DataSet  # noqa: E402
+from synthetic import DataSet
 
 
 @pytest.fixture

@@ -7,6 +7,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from make_report import main
+
 HASHES = {"case_hash": "0123456789abcdef", "mesh_hash": "fedcba9876543210"}
 CASE = """
 [case]
@@ -152,6 +154,7 @@ class DataSet:
     def rung(method, seconds, error, **changed):
         """A row of `sandglass choose --all --json` on the case's own mesh, in double."""
         return {
+            "rung": f"{method} {changed}",
             "method": method,
             "kappa": None,
             "accuracy": None,
@@ -207,6 +210,11 @@ class DataSet:
         document = {"version": "0", "compiler": "none", "processor": "none"}
         document |= {"records": self.records, "limits": self.limits, "published": self.published}
         (self.folder / "verdicts.json").write_text(json.dumps(document), encoding="utf-8")
+
+    def make(self):
+        """Makes the page. Returns it as text."""
+        assert main(self.arguments) == 0
+        return self.page.read_text(encoding="utf-8")
 
     @property
     def page(self):

@@ -1,18 +1,15 @@
 """The accuracy formulas, by hand and against the solver's own figures."""
 
 import os
-import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import BINARY
 
+from common.program import ROOT, output_of
 from sandglass_report.accuracy import accuracy, ordered_profile
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.subject import read_subjects
-
-ROOT = Path(__file__).resolve().parents[2]
-BINARY = ROOT / "build/release/sandglass"
 
 
 def test_figures_of_a_field_made_by_hand():
@@ -53,13 +50,12 @@ def test_profile_around_an_axis_is_in_order_of_the_angle(order, first, last):
     assert along[5] == pytest.approx(180.0)
 
 
-@pytest.mark.skipif(not BINARY.exists(), reason="the solver is not built")
+@pytest.mark.skipif(not os.path.exists(BINARY), reason="the solver is not built")
 def test_figures_are_the_solvers_own(tmp_path):
     """The solver writes displacements and figures; the same formulas must give the same figures."""
     verdicts_file, results = tmp_path / "verdicts.json", tmp_path / "results"
-    command = [BINARY, "verify", "column", "--json", verdicts_file, "--results", results]
-    done = subprocess.run(command, cwd=ROOT, env=os.environ, capture_output=True, text=True)
-    assert done.returncode in (0, 1), done.stderr
+    words = ["verify", "column", "--json", verdicts_file, "--results", results]
+    output_of(BINARY, *words, allowed=(0, 1), cwd=ROOT)
     verdicts = read_verdicts(verdicts_file)
     (subject,) = read_subjects(verdicts, ROOT / "cases", ROOT / "reference", results)
     compared = 0

@@ -4,8 +4,6 @@ import pytest
 from browser import CHROMIUM, Browser
 from synthetic import DataSet
 
-from make_report import main
-
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 DRAWN = "document.querySelector('#chart').dataset.drawn"
 
@@ -22,7 +20,7 @@ def page(tmp_path_factory):
         record["truth"] = record["golden"] | {"max_relative_error": 0.08}
     data.write_reference("truth", data.answer * [1.0, 1.0, 1.1])
     data.write_verdicts()
-    assert main(data.arguments) == 0
+    data.make()
     return data.page
 
 

@@ -3,29 +3,24 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from synthetic import DataSet
 
-from sandglass_report.curves import curve_plate, read_rungs
-from sandglass_report.errors import ReportError
+from common.errors import InputError
+from common.program import ROOT
+from sandglass_report.curves import curve_plate, read_costs
 from sandglass_report.style import Palette, solver_methods
 
-SCRIPT = Path(__file__).resolve().parent.parent / "make_curves.py"
+SCRIPT = ROOT / "reports" / "make_curves.py"
 
 
-def rung(method, seconds, error=0.01, accuracy=None, **changed):
-    name = f"{method} accuracy {accuracy} double" if accuracy else f"{method} double"
-    common = {"kappa": None, "precision": "double", "mesh": "own mesh", "step_size": 1e-3}
-    return (
-        {"rung": name, "method": method, "seconds": seconds, "error": error, "accuracy": accuracy}
-        | common
-        | changed
-    )
+def rung(method, seconds, error=0.01, **changed):
+    return DataSet.rung(method, seconds, error, **changed)
 
 
 def write(path, rungs, case="block"):
-    path.write_text(json.dumps({"case": case, "rungs": rungs}))
+    path.write_text(json.dumps(DataSet.ladder(rungs, case=case)))
     return path
 
 
@@ -37,8 +32,9 @@ def test_costs_are_in_steps_of_the_unit_of_their_own_file(tmp_path):
     two = write(
         tmp_path / "2", [rung("tl-perturbation", 4e-5), rung("tl-adaptive", 8e-5, accuracy=0.001)]
     )
-    rungs = read_rungs([one, two])["block"]
-    assert [(r["accuracy"], r["cost"]) for r in rungs] == [(None, 1.0), (0.01, 1.5), (0.001, 2.0)]
+    found = read_costs([one, two])["block"]
+    costs = [(rung.accuracy, cost) for cost, rung in found]
+    assert costs == [(None, 1.0), (0.01, 1.5), (0.001, 2.0)]
 
 
 @pytest.mark.parametrize(
@@ -55,8 +51,8 @@ def test_costs_are_in_steps_of_the_unit_of_their_own_file(tmp_path):
 )
 def test_other_rungs_are_left_out(tmp_path, left_out):
     shown, hidden = rung("tl-perturbation", 1e-5), rung("other", 1e-5) | left_out
-    rungs = read_rungs([write(tmp_path / "1", [shown, hidden])])["block"]
-    assert [r["method"] for r in rungs] == ["tl-perturbation"]
+    found = read_costs([write(tmp_path / "1", [shown, hidden])])["block"]
+    assert [rung.method for _, rung in found] == ["tl-perturbation"]
 
 
 def test_a_panel_for_each_case_says_its_curve(tmp_path):
@@ -68,19 +64,25 @@ def test_a_panel_for_each_case_says_its_curve(tmp_path):
         )
         for case in ("a", "b")
     ]
-    plate = curve_plate(read_rungs(files))
+    plate = curve_plate(read_costs(files))
     assert [panel.title for panel in plate.panels] == ["a", "b"]
     assert all("0.3 % at 2.00" in panel.alt for panel in plate.panels)
 
 
 @pytest.mark.parametrize(
-    "text", ["", "{}", '{"case": "a", "rungs": [{}]}', '{"case": "a", "rungs": []}']
+    "text, told",
+    [
+        ("", "not a JSON file"),
+        ("{}", "reference is missing"),
+        (json.dumps(DataSet.ladder([{}])), r"rungs\[0\].method is missing"),
+        (json.dumps(DataSet.ladder([])), "must have a step of tl-perturbation"),
+    ],
 )
-def test_broken_files_are_refused(tmp_path, text):
+def test_broken_files_are_refused(tmp_path, text, told):
     path = tmp_path / "broken.json"
     path.write_text(text)
-    with pytest.raises(ReportError, match="broken.json"):
-        read_rungs([path])
+    with pytest.raises(InputError, match=f"broken.json: .*{told}"):
+        read_costs([path])
 
 
 def test_the_script_draws_and_refuses(tmp_path):
@@ -95,12 +97,13 @@ def test_the_script_draws_and_refuses(tmp_path):
     assert outcome.returncode == 2 and "none" in outcome.stderr
 
 
-def test_colours_follow_the_solvers_list_and_are_those_of_the_page():
+def test_colours_follow_the_solvers_list_and_are_those_of_the_page(tmp_path):
     """The page takes the same list from the verdicts."""
     methods = solver_methods()
     assert methods[:3] == ("tl-none", "tl-perturbation", "tl-perturbation-compact")
     assert len(set(methods)) == len(methods)
-    rungs = {"block": [rung("tl-adaptive", 1.0), rung("tl-perturbation", 1.0)]}
-    for cases in (rungs, {"block": rungs["block"][::-1]}):
-        colours = {words: colour for words, colour, _ in curve_plate(cases).legend}
+    rungs = [rung("tl-adaptive", 1.0), rung("tl-perturbation", 1.0)]
+    for order in (rungs, rungs[::-1]):
+        plate = curve_plate(read_costs([write(tmp_path / "1", order)]))
+        colours = {words: colour for words, colour, _ in plate.legend}
         assert colours == {m: Palette(methods).colour(m) for m in colours}

@@ -1,16 +1,14 @@
 """Claims and mutants: what belongs together, what is refused; the tree's own claims hold."""
 
 import json
-from pathlib import Path
 
 import pytest
 
-from sandglass_report.errors import ReportError
+from common.errors import InputError
+from common.program import ROOT
 from sandglass_report.evidence import read_evidence
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.page import ANCHORS
-
-ROOT = Path(__file__).resolve().parents[2]
 
 TABLE = """# Mutants
 
@@ -91,7 +89,7 @@ def test_both_files_may_be_absent(tree):
 )
 def test_claims_that_rest_on_nothing_are_refused(tree, old, new, words):
     tree.write_claims(CLAIM.replace(old, new))
-    with pytest.raises(ReportError, match=words):
+    with pytest.raises(InputError, match=words):
         tree.read()
 
 
@@ -102,7 +100,7 @@ def test_a_claim_about_a_case_that_was_not_run_shows_no_figure(tree):
 
 def test_a_table_of_another_shape_is_refused(tree):
     tree.write_mutants(TABLE.replace("| s |", "|"))
-    with pytest.raises(ReportError, match="ci/mutants"):
+    with pytest.raises(InputError, match="ci/mutants"):
         tree.read()
 
 
@@ -110,7 +108,7 @@ def test_the_claims_of_this_tree_rest_on_tests_limits_and_sections_that_are_ther
     """Limits are those that the case files expect."""
     import tomllib
 
-    from sandglass_report.load import Limit
+    from sandglass_report.verdicts import Limit
 
     nothing = dict.fromkeys(("below", "above", "found", "at_kappa"))
     limits = []

@@ -116,7 +116,7 @@ def test_results_and_verdicts_of_different_runs(data, capsys):
 def test_a_page_that_cannot_be_written(data, capsys):
     (data.folder / "report").write_text("in the way", encoding="utf-8")
     assert main(data.arguments) == 2
-    assert "cannot write" in capsys.readouterr().err
+    assert "cannot be written" in capsys.readouterr().err
 
 
 def test_an_older_page_survives_a_refusal(data):

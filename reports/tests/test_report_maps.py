@@ -3,14 +3,14 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-from sandglass_report.errors import ReportError
+from common.errors import InputError
+from common.program import ROOT
 from sandglass_report.maps import OUTCOMES, map_plates, map_texts, outcome, read_maps, words_in
 
-SCRIPT = Path(__file__).resolve().parent.parent / "make_maps.py"
+SCRIPT = ROOT / "reports" / "make_maps.py"
 
 
 def cell(method="tl-none", x=1.0, y=0.3, finding="good", error=0.001, **changed):
@@ -35,7 +35,7 @@ def document(cells, xs=(1.0, 2.0), ys=(0.3,)):
 
 def test_every_outcome_has_a_colour_and_a_letter_of_its_own():
     """The words are the solver's; a new one must be given a colour here."""
-    header = Path(__file__).resolve().parents[2] / "solver" / "comparison" / "finding.cpp"
+    header = ROOT / "solver" / "comparison" / "finding.cpp"
     words = [line.split('"')[1] for line in header.read_text().splitlines() if 'return "' in line]
     assert set(words) <= set(OUTCOMES) and len(words) == 7
     assert len({colour for colour, _ in OUTCOMES.values()}) == len(OUTCOMES)
@@ -114,7 +114,7 @@ def test_draws_figures(tmp_path):
 def test_broken_files_are_refused(tmp_path, text):
     file = tmp_path / "maps.json"
     file.write_text(text)
-    with pytest.raises(ReportError, match="maps.json"):
+    with pytest.raises(InputError, match="maps.json"):
         read_maps(file)
     outcome = subprocess.run([sys.executable, SCRIPT, file], capture_output=True, text=True)
     assert outcome.returncode == 2 and "maps.json" in outcome.stderr

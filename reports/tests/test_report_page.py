@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 from synthetic import DataSet
 
-from make_report import main
-
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 
 
@@ -36,17 +34,11 @@ class Balance(HTMLParser):
         assert self.open and self.open.pop() == tag
 
 
-def made(data):
-    """The page of a data set, as text."""
-    assert main(data.arguments) == 0
-    return data.page.read_text(encoding="utf-8")
-
-
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory):
     """The data set as it is, with its page made."""
     data = DataSet(tmp_path_factory.mktemp("plain"))
-    made(data)
+    data.make()
     return data
 
 
@@ -79,7 +71,7 @@ def test_page_loads_nothing(plain, page):
 
 
 def test_page_is_the_same_when_made_again(plain, page):
-    assert made(plain) == page
+    assert plain.make() == page
 
 
 def test_a_failed_run_is_shown_with_its_reason(page):
@@ -93,11 +85,11 @@ def test_a_missing_truth_is_said(page):
 
 def test_a_truth_gives_the_goldens_own_error(data):
     data.write_reference("truth", data.answer * [1.0, 1.0, 1.1], element="Q2-P1", refinements=1)
-    assert "no run has a figure against the truth" in made(data)
+    assert "no run has a figure against the truth" in data.make()
     for record in data.records[1:3]:
         record["truth"] = record["golden"] | {"max_relative_error": 0.08}
     data.write_verdicts()
-    page = made(data)
+    page = data.make()
     assert "no truth is stored for this case yet" not in page
     assert "golden to truth, max" in page
     assert "8.00 %" in page  # 0.1 * 0.4 m over 0.5 m
@@ -108,7 +100,7 @@ def test_a_broken_limit_comes_first(data):
     broken = data.limits[0] | {"below": 0.001, "holds": False, "reason": "a reason of its own"}
     data.limits.append(broken)
     data.write_verdicts()
-    page = made(data)
+    page = data.make()
     assert "1 of 2 limits is BROKEN" in page
     assert page.index("a reason of its own") < page.index("it is the paper&#39;s")
 
@@ -119,7 +111,7 @@ def test_a_case_whose_runs_all_failed_makes_a_page(data):
     data.write_verdicts()
     for path in (data.folder / "results").iterdir():
         path.unlink()
-    page = made(data)
+    page = data.make()
     assert "No limits were checked" in page
     assert "No run left a mesh to show" in page
 
@@ -128,14 +120,14 @@ def test_an_exploded_run_makes_a_page(data):
     error = 1e9
     data.records[0] = data.run("tl-none", error) | {"status": "failed: not at rest"}
     data.write_verdicts()
-    page = made(data)
+    page = data.make()
     assert "failed: not at rest" in page
 
 
 def test_an_exact_method_is_named_below_the_scale(data):
     data.records.append(data.run("tl-mean-dilatation", 3e-8))
     data.write_verdicts()
-    assert "tl-mean-dilatation 3·10⁻⁶ %" in made(data)
+    assert "tl-mean-dilatation 3·10⁻⁶ %" in data.make()
 
 
 def test_a_ninth_and_further_method_gets_a_pair_of_its_own():
@@ -162,7 +154,7 @@ def test_published_values_stand_in_tables(data):
         data.tip("tl-full", 0.9876, "long", to_truth=0.9321),
     ]
     data.write_verdicts()
-    page = made(data)
+    page = data.make()
     assert "over a book" in page and "over the truth" in page
     for cell in (">1.2·10⁴<", ">0.765<", ">0.988<", ">0.932<"):
         assert cell in page

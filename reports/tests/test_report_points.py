@@ -6,7 +6,7 @@ import pytest
 from synthetic import DataSet
 
 from sandglass_report.interactive import chart_data
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.measured import read_measured
 from sandglass_report.points import CHOOSE, SCALED, families, fronts, make_points, pareto_front
 from sandglass_report.style import FLOOR, Palette

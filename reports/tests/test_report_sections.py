@@ -5,15 +5,7 @@ import re
 
 import pytest
 
-from make_report import main
-
 OPTIONAL = "sandglass bench --threads", "sandglass flops", "ci/curves", "sandglass stability"
-
-
-def made(data):
-    """The page of a data set, as text."""
-    assert main(data.arguments) == 0
-    return data.page.read_text(encoding="utf-8")
 
 
 def section(page, name):
@@ -29,7 +21,7 @@ def script(page, name):
 
 
 def test_without_optional_files_the_page_names_the_commands(data):
-    page = made(data)
+    page = data.make()
     for command in OPTIONAL:
         assert command in page
     assert "Our counts are missing" in page and "Our times are missing" in page
@@ -42,7 +34,7 @@ def test_the_chart_has_the_points_of_runs_and_ladders(data):
     rungs = [data.rung("tl-perturbation", 3e-6, 0.01, mesh="elements = [1]", elements=3)]
     rungs += [data.rung("unknown-method", 3e-6, 0.01)]
     data.write("curves/a.json", data.ladder(rungs))
-    found = script(made(data), "chart-data")
+    found = script(data.make(), "chart-data")
     assert len(found["points"]) == 5  # a method that the verdicts do not know has no colour
     coarser = found["points"][-1]
     assert (coarser["mesh"], coarser["elements"], coarser["step"]) == ("elements = [1]", 3, 3e-6)
@@ -53,14 +45,14 @@ def test_the_chart_has_the_points_of_runs_and_ladders(data):
 def test_data_blocks_cannot_end_early(data):
     data.records[0]["status"] = "failed: </script><b>"
     data.write_verdicts()
-    page = made(data)
+    page = data.make()
     points = script(page, "chart-data")["points"]
     assert "failed: </script><b>" in {p["finding"] for p in points}
     assert "</script><b>" not in page
 
 
 def test_every_method_has_a_switch_with_its_own_colour_and_glyph(data):
-    page = section(made(data), "chart-head")
+    page = section(data.make(), "chart-head")
     buttons = re.findall(r'data-method="([^"]+)"><i style="color:var\((.*?)\)">(.)</i>', page)
     assert [name for name, _, _ in buttons] == ["tl-none", "tl-perturbation", "tl-full"]
     assert len({(colour, glyph) for _, colour, glyph in buttons}) == 3
@@ -72,7 +64,7 @@ def test_tables_of_the_paper_stand_beside_ours(data):
     data.write("flops.json", {"records": records})
     times = {"tl-perturbation": 100.0, "ul-perturbation": 320.0, "ul-enhanced": 410.0}
     data.write("bench.json", {"records": [data.timing(m, ns) for m, ns in times.items()]})
-    page = section(made(data), "paper")
+    page = section(data.make(), "paper")
     for cell in ("1585", ">360<", ">100<", ">250<", ">2.5<"):  # counts and their ratio
         assert cell in page
     for cell in (">13.7<", ">6.5<", ">0.220<", ">3.2<", ">4.1<"):  # times and their ratios
@@ -92,7 +84,7 @@ def bending(data):
 
 def test_bending_and_locking_curves(data):
     bending(data)
-    page = section(made(data), "bending")
+    page = section(data.make(), "bending")
     for words in ("1 element through", "2 elements through", "ratio 0.25", "ratio 0.499"):
         assert words in page
     assert "tl-full: 0.300 at 0.25, 0.300 at 0.499" in page
@@ -105,7 +97,7 @@ def test_a_failed_run_has_no_place_on_a_curve(data):
     bending(data)
     data.published[0] |= {"status": "failed: inverted"}
     data.write_verdicts()
-    assert "tl-none: 1.20 at 0.499" in made(data)
+    assert "tl-none: 1.20 at 0.499" in data.make()
 
 
 def maps(finding="locking"):
@@ -122,7 +114,7 @@ def maps(finding="locking"):
 
 def test_failure_maps_are_text_with_titles(data):
     data.write("maps/column.json", maps())
-    page = section(made(data), "maps")
+    page = section(data.make(), "maps")
     assert '<td class="good" title="good, 0.400 %">0.4</td>' in page
     assert '<td class="locking" title="locking">L</td>' in page
     assert "load: what it is" in page and "No maps were computed" not in page
@@ -133,7 +125,7 @@ def test_pictures_stand_in_for_maps_that_are_not_there(data):
     (data.folder / "pictures").mkdir()
     for name in ("column.load", "twist.load"):
         (data.folder / f"pictures/stability.{name}.png").write_bytes(b"picture")
-    page = section(made(data), "maps")
+    page = section(data.make(), "maps")
     assert page.count("data:image/png;base64,cGljdHVyZQ==") == 1
     assert "twist.load" in page and "column.load<" not in page
 
@@ -144,7 +136,7 @@ def test_evidence_shows_claims_with_their_figures(data):
         '[[claim]]\nsays = "It <works>."\noracle = "arithmetic"\ntests = ["a_test.cpp"]\n'
         'figure = "chart"\nlimits = ["column tl-perturbation auto max_relative_error"]\n'
     )
-    page = section(made(data), "evidence")
+    page = section(data.make(), "evidence")
     assert "It &lt;works&gt;." in page and "arithmetic" in page and "a_test.cpp" in page
     assert "0.200 %" in page and "≤ 0.3 %" in page
     assert '<a href="#chart-head">' in page
@@ -156,29 +148,29 @@ def test_provenance_has_hashes_and_notices_other_revisions(data):
     data.write("bench.json", {"revision": "r2", "records": []})
     data.write("curves/a.json", data.ladder([]) | {"revision": "r1"})
     data.write("curves/b.json", data.ladder([]) | {"revision": "r1"})
-    page = section(made(data), "provenance")
+    page = section(data.make(), "provenance")
     assert "0123456789abcdef" in page and "fedcba9876543210" in page
     assert page.count("another than that of the runs") == 1
     assert "curves/: 2 files" in page
     data.write_reference("golden", data.answer * 1.0000001)
     with pytest.raises(AssertionError):  # another golden than that of the runs is refused
-        made(data)
+        data.make()
 
 
 def test_the_hash_of_a_reference_is_that_of_its_displacements(data):
     import hashlib
 
     expected = hashlib.sha256(data.answer.astype("<f8").tobytes()).hexdigest()[:16]
-    assert expected in section(made(data), "provenance")
+    assert expected in section(data.make(), "provenance")
 
 
 def test_each_link_of_the_navigation_leads_to_a_heading(data):
-    page = made(data)
+    page = data.make()
     navigation = re.search(r"<nav class=.*?</nav>", page, re.S)[0]
     targets = re.findall(r'href="#([^"]+)"', navigation)
     assert targets == re.findall(r'<h2 id="([^"]+)"', page)
 
 
 def test_the_page_is_small_without_much_data(data):
-    made(data)
+    data.make()
     assert data.page.stat().st_size < 4e6  # Plotly packed is two and a half

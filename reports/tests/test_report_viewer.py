@@ -1,4 +1,4 @@
-"""Data of the 3D viewer: exact volumes, and arrays that decode to what was there."""
+"""Data of the 3D viewer: arrays that decode to what was there."""
 
 import base64
 import json
@@ -7,34 +7,13 @@ import numpy as np
 import pytest
 from synthetic import box
 
-from sandglass_report.load import read_verdicts
+from sandglass_report.verdicts import read_verdicts
 from sandglass_report.subject import read_subjects
-from sandglass_report.viewer import _faces, _levels, viewer_data, volumes
+from sandglass_report.viewer import _faces, _levels, viewer_data
 
 
 def decoded(text, kind):
     return np.frombuffer(base64.b64decode(text), dtype=kind)
-
-
-def test_volumes_of_boxes_and_of_sheared_ones():
-    points, cells = box(2, 3, 2)
-    assert volumes(points, cells) == pytest.approx(np.ones(12), rel=1e-14)
-    map_of = np.array([[2.0, 0.3, 0.0], [0.0, 0.5, 0.1], [0.7, 0.0, 3.0]])
-    found = volumes(points @ map_of.T, cells)
-    assert found == pytest.approx(np.full(12, np.linalg.det(map_of)), rel=1e-13)
-
-
-def test_volume_of_a_frustum():
-    """The upper face half as long: V = h/3 (1 + 1/2 + 1/4); a cube would pass with one point."""
-    points, cells = box(1, 1, 1)
-    upper = points[:, 2] == 1
-    points[upper, :2] = 0.25 + 0.5 * points[upper, :2]
-    assert volumes(points, cells) == pytest.approx([1.75 / 3], rel=1e-14)
-
-
-def test_an_element_turned_inside_out_has_a_negative_volume():
-    points, cells = box(1, 1, 1)
-    assert volumes(points * [1, 1, -1], cells) == pytest.approx([-1.0])
 
 
 def test_every_face_knows_its_element():

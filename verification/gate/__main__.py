@@ -9,11 +9,13 @@ import datetime
 import sys
 from pathlib import Path
 
+from common.command import exit_code
+from common.errors import InputError, suggestion
+
 from . import baseline as baselines
 from . import collect, tell
 from .bench import read_bench
 from .compare import compare, undecided
-from .files import ComputationError, InputError
 from .records import Run, read_bits, read_flops, read_verdicts
 
 # What a source tells of.
@@ -26,7 +28,7 @@ SOURCES = {
 
 
 def arguments(given):
-    """The command line, parsed."""
+    """The command line, parsed. Raises InputError."""
     parser = argparse.ArgumentParser(prog="ci/gate", description=__doc__.splitlines()[0])
     add = parser.add_argument
     add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")
@@ -49,13 +51,13 @@ def arguments(given):
     options = parser.parse_args(given)
     for source in options.sources:
         if source not in SOURCES:
-            raise InputError(f"SOURCE: '{source}' is not known; known: {', '.join(SOURCES)}")
+            raise InputError(f"SOURCE: '{source}' is not known; {suggestion(source, SOURCES)}")
     if options.accept and not (options.reason or "").strip():
         raise InputError("--accept: --reason TEXT is required: why is this the new baseline?")
     if options.reason and not options.accept:
         raise InputError("--reason: goes with --accept")
     if options.most < collect.PROCESSES:
-        raise InputError(f"--most: {options.most}: {collect.PROCESSES} or more are required")
+        raise InputError(f"--most = {options.most} must be {collect.PROCESSES} or more")
     options.sources = options.sources or list(SOURCES)
     options.areas = [area for source in options.sources for area in SOURCES[source]]
     return options
@@ -105,8 +107,9 @@ def bench_files(options, baseline, folder):
             return files
 
 
-def gate(options):
-    """Everything; returns the exit code."""
+def gate(given):
+    """Everything; returns the exit code. Raises InputError or ComputationError."""
+    options = arguments(given)
     known = options.baseline.exists() or not options.accept
     baseline = baselines.read(options.baseline) if known else baselines.Baseline()
     run = find(options, baseline)
@@ -125,14 +128,7 @@ def gate(options):
 
 def main(given=None):
     """The command line. Returns the exit code."""
-    try:
-        return gate(arguments(given))
-    except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except ComputationError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 3
+    return exit_code(gate, given)
 
 
 if __name__ == "__main__":

@@ -6,8 +6,11 @@ One JSON file, one record a line, so that its diffs can be read.
 import json
 from dataclasses import dataclass, field
 
+from common.errors import InputError, suggestion
+from common.files import read_json, write_whole
+from common.records import entries, entry
+
 from .compare import NOISY, SAME, compare
-from .files import InputError, read_json, write_whole
 from .interval import Interval
 from .records import AREAS, OF_MACHINE, Record
 
@@ -41,45 +44,39 @@ class Baseline:
             self.records = kept
 
 
-def _record(path, number, entry):
+def _record(where, found):
     """One line of the file as a Record."""
-    if not isinstance(entry, dict):
-        raise InputError(f"{path}: record {number} = {entry!r}: an object is required")
-    if entry.get("area") not in AREAS or not isinstance(entry.get("name"), str):
-        rule = f"a name and an area are required; areas: {', '.join(AREAS)}"
-        raise InputError(f"{path}: record {number} = {entry!r}: {rule}")
+    area, name = entry(where, found, "area", str), entry(where, found, "name", str)
+    if area not in AREAS:
+        raise InputError(f"{where}.area = {area!r} is not known; {suggestion(area, AREAS)}")
     figures = {}
-    for key, value in entry.items():
+    for key, value in found.items():
         if key in ("area", "name"):
             continue
         if isinstance(value, list):
             if len(value) != 3 or not all(isinstance(part, (int, float)) for part in value):
-                rule = "low, median, high are required"
-                raise InputError(f"{path}: record {number}: {key} = {value}: {rule}")
+                raise InputError(f"{where}.{key} = {value} must be low, median and high")
             value = Interval(*value)
         elif isinstance(value, bool) or not isinstance(value, (int, float, str)):
-            raise InputError(
-                f"{path}: record {number}: {key} = {value!r}: a number or text is required"
-            )
+            raise InputError(f"{where}.{key} = {value!r} must be a number or a text")
         figures[key] = value
-    return Record(entry["area"], entry["name"], figures)
+    return Record(area, name, figures)
 
 
 def read(path):
     """The Baseline of a file. Raises InputError."""
     document = read_json(path)
     if document.get("format") != FORMAT:
-        raise InputError(f"{path}: format = {document.get('format')!r}: {FORMAT} is required")
-    for key, kind in (("history", list), ("records", list), ("machines", dict)):
-        if not isinstance(document.get(key), kind):
-            kinds = "a list" if kind is list else "an object"
-            raise InputError(f"{path}: {key} = {document.get(key)!r}: {kinds} is required")
-
-    def records(entries):
-        return [_record(path, number, entry) for number, entry in enumerate(entries)]
-
-    machines = {name: records(entries) for name, entries in document["machines"].items()}
-    return Baseline(document["history"], records(document["records"]), machines)
+        raise InputError(f"{path}: format = {document.get('format')!r} must be {FORMAT}")
+    machines = entry(path, document, "machines", dict)
+    return Baseline(
+        entry(path, document, "history", list),
+        [_record(*found) for found in entries(path, document, "records")],
+        {
+            name: [_record(*found) for found in entries(f"{path}: machines", machines, name)]
+            for name in machines
+        },
+    )
 
 
 def _line(entry):
@@ -122,7 +119,8 @@ def text_of(baseline):
 
 
 def write(path, baseline):
-    """Writes the file whole or not at all."""
+    """Writes the file whole or not at all. Raises InputError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, text_of(baseline))
 
 
@@ -149,11 +147,8 @@ def _accepted(area, outcomes, figures):
 def accept(baseline, run, areas, reason, date):
     """Makes what a run found the baseline's records of `areas`, and writes down why.
 
-    Returns the changes by area. Raises InputError without a reason, or where a ratio has no
-    interval.
+    Returns the changes by area. Raises InputError where a ratio has no interval.
     """
-    if not reason.strip():
-        raise InputError("--reason: a text is required: why is this the new baseline?")
     for record in run.records:
         for figure, value in record.figures.items():
             if isinstance(value, Interval) and value.low == 0.0:

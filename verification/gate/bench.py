@@ -7,7 +7,10 @@ processes, each of which lies elsewhere in memory, a ratio becomes an interval.
 
 import math
 
-from .files import InputError, read_json
+from common.errors import InputError
+from common.files import read_json
+from common.records import NUMBER, entry
+
 from .interval import Interval
 from .records import Record, entries_of, unique
 
@@ -38,32 +41,24 @@ FIGURES = ("ns_best", "bytes_per_element_step")
 def _machine(path, document):
     """What times depend on besides the code: processor, compiler, flags."""
     keys = ("processor", "compiler", "build_flags")
-    for key in keys:
-        if not isinstance(document.get(key), str):
-            raise InputError(f"{path}: {key} = {document.get(key)!r}: a text is required")
-    return "; ".join(document[key] for key in keys)
+    return "; ".join(entry(path, document, key, str) for key in keys)
 
 
 def _variants(path, document):
     """The timed entries by variant: case, elements, method, kernel, precision, threads."""
     variants = {}
-    for number, entry in enumerate(entries_of(path, document, "records", REQUIRED)):
-        if entry["status"].startswith("left out"):
+    for where, timed in entries_of(path, document, "records", REQUIRED):
+        if timed["status"].startswith("left out"):
             continue
-        variant = tuple(entry[key] for key in list(REQUIRED)[:-1])
-        if entry["status"] != "ok":
+        variant = tuple(timed[key] for key in list(REQUIRED)[:-1])
+        if timed["status"] != "ok":
             variants[variant] = None
             continue
         for key in FIGURES:
-            value = entry.get(key)
-            if not isinstance(value, (int, float)) or isinstance(value, bool):
-                rule = "a number is required"
-                raise InputError(f"{path}: records {number}: {key} = {value!r}: {rule}")
-        if entry["ns_best"] <= 0.0:
-            raise InputError(
-                f"{path}: records {number}: ns_best = {entry['ns_best']}: > 0 is required"
-            )
-        variants[variant] = entry
+            entry(where, timed, key, NUMBER)
+        if timed["ns_best"] <= 0.0:
+            raise InputError(f"{where}.ns_best = {timed['ns_best']} must be > 0")
+        variants[variant] = timed
     return variants
 
 
@@ -105,17 +100,17 @@ def _ratios_of_all(variant, variants, document):
 def _ratios(variants, document):
     """The ratios of one process: by variant, then by name."""
     ratios = {}
-    for variant, entry in variants.items():
-        if entry is None or variant[2] in UNSTEADY:
+    for variant, timed in variants.items():
+        if timed is None or variant[2] in UNSTEADY:
             continue
         of_variant = ratios.setdefault(variant, {})
         pace = _pace(variant, variants)
         if pace:
-            of_variant["over pace"] = entry["ns_best"] / pace
+            of_variant["over pace"] = timed["ns_best"] / pace
         twin = TWINS.get(variant[2])
         other = variants.get(_with(variant, method=twin))
         if other:
-            of_variant[f"over {twin}"] = entry["ns_best"] / other["ns_best"]
+            of_variant[f"over {twin}"] = timed["ns_best"] / other["ns_best"]
         of_all, found = _ratios_of_all(variant, variants, document)
         ratios.setdefault(of_all, {}).update(found)
     return ratios
@@ -130,15 +125,13 @@ def read_bench(paths):
     origins = {(_machine(p, d), d.get("revision")) for p, d in zip(paths, documents)}
     if len(origins) > 1:
         told = " and ".join(sorted(f"'{machine}' at {revision}" for machine, revision in origins))
-        raise InputError(
-            f"{paths[0]} and others: {told}: one machine and one revision are required"
-        )
+        raise InputError(f"{paths[0]} and others: {told}; must be of one machine and one revision")
     machine = origins.pop()[0]
     entries, samples = {}, {}
     for path, document in zip(paths, documents):
         variants = _variants(path, document)
-        for variant, entry in variants.items():
-            entries.setdefault(variant, []).append(entry)
+        for variant, timed in variants.items():
+            entries.setdefault(variant, []).append(timed)
         for variant, ratios in _ratios(variants, document).items():
             for figure, ratio in ratios.items():
                 samples.setdefault(variant, {}).setdefault(figure, []).append(ratio)
@@ -153,7 +146,7 @@ def read_bench(paths):
             continue
         figures = {name: Interval.of(of) for name, of in samples.get(variant, {}).items()}
         if found:
-            figures["trend ns"] = min(entry["ns_best"] for entry in found)
+            figures["trend ns"] = min(timed["ns_best"] for timed in found)
         if figures:
             records.append(Record("speed", _name(variant), figures))
     return unique(paths[0], records), machine, documents[0]
@@ -161,8 +154,8 @@ def read_bench(paths):
 
 def _memory(variant, found):
     """Bytes and allocations of a step; where processes differ, the worst."""
-    figures = {"bytes": max(entry["bytes_per_element_step"] for entry in found)}
-    allocations = [entry.get("allocations_per_step") for entry in found]
+    figures = {"bytes": max(timed["bytes_per_element_step"] for timed in found)}
+    allocations = [timed.get("allocations_per_step") for timed in found]
     if None not in allocations:
         figures["allocations"] = max(allocations)
     return Record("memory", _name(variant), figures)

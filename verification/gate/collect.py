@@ -1,6 +1,5 @@
 """Runs the program and leaves what it found as JSON files in a folder."""
 
-import json
 import os
 import subprocess
 import tempfile
@@ -8,7 +7,8 @@ from pathlib import Path
 
 import h5py
 
-from .files import ComputationError, InputError, write_whole
+from common.files import write_json
+from common.program import binary, output_of
 
 # A mesh that stays in a cache: what is compared is arithmetic, not the traffic of neighbours. Many
 # short processes tell more than few long ones: where a program lies in memory moves its best times
@@ -19,62 +19,33 @@ PROCESSES = 12
 BIT_CASES = {"column": (), "bar-wave": ("linear-condensed",)}
 
 
-def program():
-    """The program under test: SANDGLASS_BINARY, else the release build. Raises InputError."""
-    path = Path(os.environ.get("SANDGLASS_BINARY", "build/release/sandglass"))
-    if not os.access(path, os.X_OK) or path.is_dir():
-        raise InputError(
-            f"{path}: no program there; `bash ci/build release sandglass_cli` makes it"
-        )
-    return str(path)
-
-
-def call(*arguments, allowed=(0,)):
-    """Runs the program; what it printed. Raises ComputationError."""
-    command = [program(), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode not in allowed:
-        told = done.stderr.strip().splitlines()[-1:] or ["no message"]
-        raise ComputationError(f"{' '.join(command)}: exit code {done.returncode}: {told[0]}")
-    return done.stdout
-
-
 def verdicts(folder):
     """The file of `sandglass verify`, in double. Broken limits are the business of ci/verify."""
     file = folder / "verdicts.json"
-    call("verify", "--json", file, allowed=(0, 1))
+    output_of(binary(), "verify", "--json", file, allowed=(0, 1))
     return file
 
 
 def flops(folder):
     """The file of `sandglass flops`."""
     file = folder / "flops.json"
-    call("flops", "--json", file)
+    output_of(binary(), "flops", "--json", file)
     return file
 
 
 def bench(folder, name):
     """The file of one process of `sandglass bench`. Wrong forces are told in the file."""
     file = folder / f"{name}.json"
-    call("bench", *BENCH, "--json", file, allowed=(0, 1))
+    output_of(binary(), "bench", *BENCH, "--json", file, allowed=(0, 1))
     return file
 
 
 def _run(case, method, precision, threads, file):
     """Runs a case; its exit code."""
-    options = [
-        "--method",
-        method,
-        "--precision",
-        precision,
-        "--threads",
-        str(threads),
-        "-o",
-        str(file),
-    ]
+    command = [binary(), "run", case, "--method", method, "--precision", precision]
+    command += ["--threads", str(threads), "-o", file]
     # Threads that wait busily would take the processor of those they wait for.
     environment = os.environ | {"OMP_WAIT_POLICY": "passive"}
-    command = [program(), "run", case, *options]
     return subprocess.run(command, capture_output=True, env=environment).returncode
 
 
@@ -108,7 +79,9 @@ def _bits(case, method, precision):
 
 def bits(folder):
     """A file that tells of every method whether 1 and 2 threads give the same bits."""
-    methods = [line.split()[0] for line in call("methods").splitlines() if line.strip()]
+    methods = [
+        line.split()[0] for line in output_of(binary(), "methods").splitlines() if line.strip()
+    ]
     records = [
         {
             "name": f"{case}, {method}, {precision}, 1 and 2 threads",
@@ -120,5 +93,5 @@ def bits(folder):
         for precision in ("double", "float")
     ]
     file = folder / "bits.json"
-    write_whole(file, json.dumps({"records": records}, indent=1) + "\n")
+    write_json(file, {"records": records})
     return file

@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from .files import InputError, read_json
+from common.errors import InputError
+from common.files import read_json
+from common.records import entries, entry
 
 # Where figures come from; those of the last two hold for one machine only.
 AREAS = ("accuracy", "operations", "bits", "forces", "memory", "speed")
@@ -31,32 +33,23 @@ class Run:
         revision = document.get("revision")
         if revision and self.revision not in (revision, None):
             raise InputError(
-                f"{path}: revision = {revision}: {self.revision} as before is required"
+                f"{path}: revision = {revision!r} must be {self.revision!r}, as of the others"
             )
         self.revision = revision or self.revision
         self.records = unique(path, self.records + records)
 
 
 def entries_of(path, document, key, required):
-    """The objects of a list of a document, each with the required keys and kinds."""
-    entries = document.get(key)
-    if not isinstance(entries, list):
-        raise InputError(f"{path}: {key} = {entries!r}: a list is required")
-    for number, entry in enumerate(entries):
-        if not isinstance(entry, dict):
-            raise InputError(f"{path}: {key} {number} = {entry!r}: an object is required")
+    """(where, object) of a list of a document, each with the required keys and kinds."""
+    found = entries(path, document, key)
+    for where, one in found:
         for name, kind in required.items():
-            if name not in entry:
-                raise InputError(f"{path}: {key} {number}: {name} is missing")
-            value = entry[name]
-            if not isinstance(value, kind) or isinstance(value, bool):
-                kinds = "a text" if kind is str else "a number"
-                raise InputError(f"{path}: {key} {number}: {name} = {value!r}: {kinds} is required")
-    return entries
+            entry(where, one, name, kind)
+    return found
 
 
 def unique(path, records):
-    """The records, of which no two may have one name."""
+    """The records, of which no two may have one name. Raises InputError."""
     seen = set()
     for record in records:
         if (record.area, record.name) in seen:
@@ -67,14 +60,14 @@ def unique(path, records):
     return records
 
 
-def _errors(entry):
+def _errors(verdict):
     """The accuracy figures of a verdict by name: fractions of the largest imposed displacement."""
     figures = {}
     for reference in ("golden", "truth"):
-        for key, value in (entry.get(reference) or {}).items():
+        for key, value in (verdict.get(reference) or {}).items():
             if value is not None:
                 figures[f"{reference} {key.removesuffix('_relative_error')}"] = value
-    for value in entry.get("values", []):
+    for value in verdict.get("values", []):
         if value.get("ratio") is not None:
             figures[f"published {value['set']} {value['component']}"] = abs(value["ratio"] - 1.0)
     return figures
@@ -86,14 +79,14 @@ def read_verdicts(path):
     required = {"case": str, "method": str, "precision": str, "status": str}
     records = []
     for key in ("records", "published"):
-        for entry in entries_of(path, document, key, required):
-            kappa = entry.get("kappa")
+        for _, one in entries_of(path, document, key, required):
+            kappa = one.get("kappa")
             if kappa is not None:
-                kappa = "auto" if entry.get("kappa_is_auto") else f"{kappa:g}"
-            parts = (entry["case"], entry["method"], kappa and f"kappa {kappa}", entry["precision"])
+                kappa = "auto" if one.get("kappa_is_auto") else f"{kappa:g}"
+            parts = (one["case"], one["method"], kappa and f"kappa {kappa}", one["precision"])
             # Where a run that failed stopped is chance.
-            ok = entry["status"] == "ok"
-            figures = {"status": "ok", **_errors(entry)} if ok else {"status": "failed"}
+            ok = one["status"] == "ok"
+            figures = {"status": "ok", **_errors(one)} if ok else {"status": "failed"}
             records.append(Record("accuracy", ", ".join(filter(None, parts)), figures))
     return unique(path, records), document
 
@@ -104,9 +97,9 @@ def read_flops(path):
     counts = ("add", "mul", "div", "special", "bytes")
     required = {"method": str, "law": str, "form": str, "part": str} | dict.fromkeys(counts, int)
     records = []
-    for entry in entries_of(path, document, "records", required):
-        name = ", ".join(entry[key] for key in ("method", "law", "form", "part"))
-        records.append(Record("operations", name, {count: entry[count] for count in counts}))
+    for _, one in entries_of(path, document, "records", required):
+        name = ", ".join(one[key] for key in ("method", "law", "form", "part"))
+        records.append(Record("operations", name, {count: one[count] for count in counts}))
     # A law's table repeats a part of the method at whose point it is counted.
     return unique(path, list({(r.area, r.name): r for r in records}.values())), document
 
@@ -115,6 +108,6 @@ def read_bits(path):
     """Records of bits and their document, as collect.py writes them. Raises InputError."""
     document = read_json(path)
     records = []
-    for entry in entries_of(path, document, "records", {"name": str, "differs": str}):
-        records.append(Record("bits", entry["name"], {"differs": entry["differs"]}))
+    for _, one in entries_of(path, document, "records", {"name": str, "differs": str}):
+        records.append(Record("bits", one["name"], {"differs": one["differs"]}))
     return unique(path, records), document

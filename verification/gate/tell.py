@@ -7,8 +7,9 @@ from collections import Counter
 from itertools import groupby
 from pathlib import Path
 
+from common.files import write_whole
+
 from .compare import BETTER, BROKEN, FAILING, NEW, NOISY, SAME, UNGATED, VANISHED, WORSE
-from .files import write_whole
 
 VERDICTS = (WORSE, BROKEN, VANISHED, NOISY, NEW, UNGATED, BETTER, SAME)
 HEADINGS = ("verdict", "area", "what", "figure", "baseline", "found", "")

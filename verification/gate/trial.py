@@ -14,15 +14,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from common.command import exit_code
+from common.errors import ComputationError
+from common.files import write_whole
+from common.program import ROOT
+
 from . import collect
 from .baseline import Baseline, accept
 from .bench import read_bench
 from .compare import NOISY, SAME, compare
-from .files import ComputationError, InputError, write_whole
 from .records import Run, read_flops, read_verdicts
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
 FOLDER = ROOT / "build" / "gate-trial"
 MARKS = ("<!-- trial -->", "<!-- end of trial -->")
 RUNS = 20
@@ -86,11 +89,12 @@ def program(binary, switches=()):
 
 
 def shell(*command, cwd):
-    """Runs a command. Raises ComputationError with its last words."""
+    """What a command prints. Raises ComputationError with its last words."""
     done = subprocess.run(command, cwd=cwd, capture_output=True, text=True)
     if done.returncode:
+        told = f"{done.stdout[-500:]}{done.stderr[-500:]}"
         raise ComputationError(
-            f"{' '.join(map(str, command))}: {done.stdout[-500:]}{done.stderr[-500:]}"
+            f"`{' '.join(map(str, command))}` ended with {done.returncode}: {told}"
         )
     return done.stdout
 
@@ -232,21 +236,21 @@ def trial():
     return "\n".join(rows)
 
 
+def tabulate():
+    """Puts the table into README.md, and prints it. Raises InputError or ComputationError."""
+    readme = HERE / "README.md"
+    table = trial()
+    before, after = readme.read_text(encoding="utf-8").split(MARKS[0])
+    after = after.split(MARKS[1])[1]
+    write_whole(readme, f"{before}{MARKS[0]}\n{table}\n{MARKS[1]}{after}")
+    print(table)
+
+
 def main(given=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(prog="ci/gate-trial", description=__doc__.splitlines()[0])
     parser.parse_args(given)
-    readme = HERE / "README.md"
-    try:
-        table = trial()
-        before, after = readme.read_text(encoding="utf-8").split(MARKS[0])
-        after = after.split(MARKS[1])[1]
-        write_whole(readme, f"{before}{MARKS[0]}\n{table}\n{MARKS[1]}{after}")
-    except (InputError, ComputationError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2 if isinstance(error, InputError) else 3
-    print(table)
-    return 0
+    return exit_code(tabulate)
 
 
 if __name__ == "__main__":

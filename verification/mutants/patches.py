@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
 EQUIVALENT = "Equivalent: "
 
 

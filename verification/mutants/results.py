@@ -3,11 +3,11 @@
 import collections
 import datetime
 import json
-import os
 import re
-import tempfile
 
-from patches import FOLDER, ROOT
+from common.files import write_json, write_whole
+from common.program import ROOT
+from patches import FOLDER
 
 STORE = ROOT / "build" / "mutant-results"
 TABLE = FOLDER / "RESULTS.md"
@@ -15,19 +15,10 @@ COLUMNS = ("mutant", "mistake", "verdict", "by", "s", "revision")
 CLEAN = "clean"
 
 
-def write_atomically(path, text):
-    """Writes a text file beside `path` and renames it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.chmod(temporary, 0o644)
-    os.replace(temporary, path)
-
-
 def store(name, result):
     """Keeps a result, a dict, under a mutant's name."""
-    write_atomically(STORE / f"{name}.json", json.dumps(result, indent=1) + "\n")
+    STORE.mkdir(parents=True, exist_ok=True)
+    write_json(STORE / f"{name}.json", result)
 
 
 def stored(name):
@@ -81,5 +72,5 @@ def write_table(patches, revision):
     text += "\nEach row names the first test that failed; programs run in order of their cost.\n\n"
     text += "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|\n"
     text += "".join("| " + " | ".join(row) + " |\n" for row in rows)
-    write_atomically(TABLE, text)
+    write_whole(TABLE, text)
     return rows

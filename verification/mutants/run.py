@@ -16,9 +16,16 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent.parent))
 
 import results
-from patches import ROOT, read_patches
+from common.command import exit_code
+from common.errors import InputError
+from common.program import ROOT
+from patches import read_patches
 from worker import OutOfTime, Stopped, Worker
 
 
@@ -111,22 +118,27 @@ def is_finished(patch, tree):
 
 
 def chosen_patches(names):
-    """The patches whose names begin with one of the names given; all without names."""
+    """The patches whose names begin with one of those given, or all. Raises InputError."""
     patches = read_patches()
     if not names:
         return patches
     for name in names:
         if not any(patch.name.startswith(name) for patch in patches):
-            raise UsageError(f"no mutant begins with '{name}' in verification/mutants")
+            raise InputError(f"NAME: no mutant begins with '{name}' in verification/mutants")
     return [patch for patch in patches if patch.name.startswith(tuple(names))]
 
 
-class UsageError(Exception):
-    """Bad usage."""
+def conclude(verdicts, stopped):
+    """Prints how often each verdict was given; the exit code that they stand for."""
+    for verdict in sorted(set(verdicts)):
+        print(f"{verdicts.count(verdict):4} {verdict}")
+    if stopped or {"broken", "no verdict", "not run"} & set(verdicts):
+        return 3
+    return 1 if "survived" in verdicts else 0
 
 
 def run(options, stop):
-    """Everything; returns the exit code."""
+    """Everything; returns the exit code. Raises InputError."""
     patches = chosen_patches(options.names)
     tree, revision = tree_digest(), git("rev-parse", "--short=12", "HEAD").strip()
     todo = queue.Queue()
@@ -163,12 +175,8 @@ def run(options, stop):
         print(f"error: {error}", file=sys.stderr)
     if errors:
         return 1
-    verdicts = [row[2] for row in rows if row[0] in {patch.name for patch in patches}]
-    for verdict in sorted(set(verdicts)):
-        print(f"{verdicts.count(verdict):4} {verdict}")
-    if stop.is_set() or {"broken", "no verdict", "not run"} & set(verdicts):
-        return 3
-    return 1 if "survived" in verdicts else 0
+    names = {patch.name for patch in patches}
+    return conclude([row[2] for row in rows if row[0] in names], stop.is_set())
 
 
 def main():
@@ -184,11 +192,7 @@ def main():
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    try:
-        return run(options, stop)
-    except UsageError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
+    return exit_code(run, options, stop)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from patches import ROOT
+from common.program import ROOT
 
 PRESET = "mutants"
 MEMORY = 8 << 30  # bytes that a test program may take: a mistake may allocate without end
@@ -24,11 +24,12 @@ SHORTEST_LIMIT = 120  # s
 # Folders of Python tests, with the folders whose modules they use; SOLVER is the built program.
 SOLVER = "solver"
 PYTHON_FOLDERS = {
-    "bench": ("bench", "exchange", "reference", SOLVER),
-    "exchange": ("exchange", SOLVER),
-    "reference": ("reference", SOLVER),
-    "reports": ("reports",),
-    "verification": ("verification", SOLVER),
+    "bench": ("bench", "common", "exchange", "reference", SOLVER),
+    "common": ("common",),
+    "exchange": ("common", "exchange", SOLVER),
+    "reference": ("common", "reference", SOLVER),
+    "reports": ("common", "reports"),
+    "verification": ("common", "verification", SOLVER),
 }
 PYTHON = "/usr/bin/python3"
 

@@ -1,13 +1,7 @@
 """A folder of files that the gate is called with, before and after its first baseline."""
 
-import sys
-from pathlib import Path
-
+import gate_documents
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent))
-
-import gate_documents  # noqa: E402 (the path must be set first)
 
 
 @pytest.fixture

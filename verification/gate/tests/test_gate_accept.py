@@ -5,9 +5,10 @@ import json
 import pytest
 from gate import baseline as baselines
 from gate.compare import FLOOR, RELATIVE
-from gate.files import InputError, write_whole
 from gate_documents import ORIGIN, verdict
 from gate_regressions import add_a_multiplication, change_error, lose_a_figure
+
+from common.errors import InputError
 
 
 def test_accepting_writes_down_why_and_what(accepted):
@@ -82,14 +83,14 @@ def test_accepting_needs_enough_processes(folder):
     assert not (folder.path / "baseline.json").exists()
 
 
-def test_files_appear_whole_or_not_at_all(tmp_path, monkeypatch):
-    file = tmp_path / "x.json"
-    write_whole(file, "old")
+def test_a_baseline_appears_whole_or_not_at_all(accepted, monkeypatch):
+    file = accepted.path / "baseline.json"
+    before = file.read_text()
 
     def refuse(*_):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.replace", refuse)
-    with pytest.raises(InputError, match="x.json: cannot write: No space left"):
-        write_whole(file, "new")
-    assert file.read_text() == "old" and list(tmp_path.iterdir()) == [file]
+    with pytest.raises(InputError, match="baseline.json: cannot be written: No space left"):
+        baselines.write(file, baselines.Baseline())
+    assert file.read_text() == before

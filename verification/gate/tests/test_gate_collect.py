@@ -91,7 +91,7 @@ def test_program_that_fails_is_exit_code_3(play, capsys):
     for source in ("accuracy", "operations", "speed"):
         options = ["--baseline", str(folder / "baseline.json"), "-o", str(folder)]
         assert command.main([source, *options]) == 3
-        assert "exit code 3: error: no such thing" in capsys.readouterr().err
+        assert "ended with 3: no such thing" in capsys.readouterr().err
 
 
 def test_operations_of_the_program_itself(tmp_path, capsys):

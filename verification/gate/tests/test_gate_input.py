@@ -5,7 +5,7 @@ from gate import __main__ as command
 
 
 def wrong_option(folder):
-    return ["--most", "1"], "--most: 1: "
+    return ["--most", "1"], "--most = 1 must be 12 or more"
 
 
 def lonely_reason(folder):
@@ -13,7 +13,7 @@ def lonely_reason(folder):
 
 
 def no_verdicts(folder):
-    return ["--verdicts", str(folder.path / "none.json")], "none.json: cannot read: No such file"
+    return ["--verdicts", str(folder.path / "none.json")], "none.json: cannot be read: No such file"
 
 
 def broken_json(folder):
@@ -22,21 +22,21 @@ def broken_json(folder):
 
 
 def a_list(folder):
-    return ["--flops", folder.write("x.json", [])], "an object is required, not list"
+    return ["--flops", folder.write("x.json", [])], "x.json: must be an object, not list"
 
 
 def no_records(folder):
-    return ["--flops", folder.write("x.json", {})], "x.json: records = None: a list is required"
+    return ["--flops", folder.write("x.json", {})], "x.json: records is missing; it must be a list"
 
 
 def missing_key(folder):
     del folder.flops["records"][0]["mul"]
-    return [], "f.json: records 0: mul is missing"
+    return [], "f.json: records[0].mul is missing; it must be a whole number"
 
 
 def wrong_kind(folder):
     folder.verdicts["records"][0]["case"] = 3
-    return [], "v.json: records 0: case = 3: a text is required"
+    return [], "v.json: records[0].case = 3 must be a text"
 
 
 def twice(folder):
@@ -46,29 +46,29 @@ def twice(folder):
 
 def no_time(folder):
     folder.bench[1]["records"][2]["ns_best"] = None
-    return [], "b1.json: records 2: ns_best = None: a number is required"
+    return [], "b1.json: records[2].ns_best = None must be a number"
 
 
 def two_machines(folder):
     folder.bench[1]["processor"] = "Abacus 4"
-    return [], "one machine and one revision are required"
+    return [], "must be of one machine and one revision"
 
 
 def two_revisions(folder):
     folder.verdicts["revision"] = "ba9876543210"
-    return [], "revision = 0123456789ab: ba9876543210 as before is required"
+    return [], "revision = '0123456789ab' must be 'ba9876543210', as of the others"
 
 
 def unknown_baseline(folder):
     folder.write("baseline.json", {"format": 7})
-    return [], "baseline.json: format = 7: 1 is required"
+    return [], "baseline.json: format = 7 must be 1"
 
 
 def unknown_area(folder):
     document = folder.baseline()
     document["records"][0]["area"] = "taste"
     folder.write("baseline.json", document)
-    return [], "areas: accuracy, operations"
+    return [], "records[0].area = 'taste' is not known; known: accuracy, operations"
 
 
 def half_an_interval(folder):
@@ -76,7 +76,7 @@ def half_an_interval(folder):
     (records,) = document["machines"].values()
     records[-1]["over pace"] = [1.0, 2.0]
     folder.write("baseline.json", document)
-    return [], "low, median, high are required"
+    return [], "over pace = [1.0, 2.0] must be low, median and high"
 
 
 WRONG = (wrong_option, lonely_reason, no_verdicts, broken_json, a_list, no_records, missing_key)
@@ -99,7 +99,7 @@ def test_unknown_source_is_refused(folder):
 
 def test_no_baseline_is_refused_unless_accepted(folder):
     code, text = folder.call()
-    assert code == 2 and "baseline.json: cannot read" in text
+    assert code == 2 and "baseline.json: cannot be read" in text
 
 
 def test_no_program_is_told(folder, monkeypatch):

@@ -1,7 +1,11 @@
-"""What the tests of the command line share."""
+"""What the tests of several folders share."""
+
+import logging
 
 import command_line
 import pytest
+
+logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""What all Python folders share; see README.md."""

@@ -1,0 +1,106 @@
+"""Storing and reading goldens and truths (HDF5). A file is written whole or not at all."""
+
+import math
+import shutil
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from common.errors import InputError
+from common.files import new_file
+
+FOLDER = Path(__file__).resolve().parent
+KINDS = ("golden", "truth")
+
+# Every root attribute of such a file, with its type.
+ATTRIBUTES = {
+    "case": str,
+    "case_hash": str,
+    "mesh_hash": str,
+    "kind": str,
+    "element": str,
+    "refinements": int,
+    "quadrature": str,
+    "law": str,
+    "mirror_planes": str,
+    "boundary_rule": str,
+    "largest_imposed": float,  # where nothing is moved: the largest displacement
+    "load_steps": int,
+    "newton_iterations": int,
+    "residual": float,
+    "newton_tolerance": float,
+    "last_correction": float,
+    "dolfinx_version": str,
+    "wall_seconds": float,
+    "discretisation_error_max": float,
+    "discretisation_error_rms": float,
+    "discretisation_error_note": str,
+    "own_error_max": float,  # distance from the limit of refinement: convergence.py
+    "own_error_rms": float,
+    "own_error_order": float,
+    "own_error_note": str,
+}
+
+# What a new one knows of its distance from that limit.
+NOT_ESTIMATED = {
+    "own_error_max": math.nan,
+    "own_error_rms": math.nan,
+    "own_error_order": math.nan,
+    "own_error_note": "not estimated: reference/convergence.py has not been run",
+}
+
+
+def path_of(kind, name):
+    """Where the golden or truth of a case is stored. kind: out of KINDS. name: of the case."""
+    return FOLDER / kind / f"{name}.h5"
+
+
+def stored(kind):
+    """The names of the cases that have a golden or truth, sorted."""
+    return sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
+
+
+def write_reference(path, points, displacement, attributes):
+    """Writes a golden or truth.
+
+    points, displacement: (n, 3) float64, m, in the numbering of the mesh file. attributes: dict
+    with exactly the keys of ATTRIBUTES. Raises InputError when the file cannot be written.
+    """
+    assert set(attributes) == set(ATTRIBUTES), set(attributes) ^ set(ATTRIBUTES)
+    with new_file(path) as temporary, h5py.File(temporary, "w") as file:
+        for name, data in (("displacement", displacement), ("points", points)):
+            file.create_dataset(
+                name, data=np.asarray(data, dtype=np.float64), shuffle=True, compression="gzip"
+            )
+        for name, kind in ATTRIBUTES.items():
+            file.attrs[name] = kind(attributes[name])
+
+
+def write_estimate(path, estimate):
+    """Replaces the attributes of NOT_ESTIMATED in a stored file; its datasets keep their bytes.
+
+    estimate: dict with those keys. Raises InputError when the file cannot be written.
+    """
+    assert set(estimate) == set(NOT_ESTIMATED), set(estimate) ^ set(NOT_ESTIMATED)
+    with new_file(path) as temporary:
+        shutil.copy(path, temporary)
+        with h5py.File(temporary, "r+") as file:
+            for name, value in estimate.items():
+                file.attrs[name] = ATTRIBUTES[name](value)
+
+
+def read_reference(path):
+    """Reads a golden or truth: (points (n, 3), displacement (n, 3), m, attributes dict).
+
+    Raises InputError when the file is missing, damaged or lacks an attribute.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            points, displacement = file["points"][...], file["displacement"][...]
+            attributes = {name: kind(file.attrs[name]) for name, kind in ATTRIBUTES.items()}
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
+    except KeyError as error:
+        raise InputError(f"{path}: is no golden or truth: {error.args[0]}") from error
+    return points, displacement, attributes

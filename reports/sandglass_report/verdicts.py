@@ -1,0 +1,141 @@
+"""Reading verdicts.json: what ran, how near it came, and which limits hold."""
+
+from dataclasses import dataclass
+
+from common.errors import InputError
+from common.files import read_json
+from common.records import NUMBER, as_dataclass, entries, entry, facts, key
+from sandglass_report.accuracy import Accuracy
+
+REFERENCES = ("golden", "truth")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One method on one case; `golden` and `truth` are its accuracies, None without a figure."""
+
+    case: str
+    method: str
+    kappa: float | None
+    kappa_is_auto: bool
+    precision: str
+    status: str
+    finding: str | None  # how it went wrong, or "good"; None without a golden to tell by
+    golden: Accuracy | None
+    truth: Accuracy | None
+    operations: int  # per element and step
+    stable_step: float  # s, at rest
+    steps: int
+    residual: float
+    hourglass_energy_ratio: float  # of the strain energy
+    ns_per_element_step: float
+    wall_seconds: float
+
+    @property
+    def ok(self):
+        """Whether the run came to rest."""
+        return self.status == "ok"
+
+    @property
+    def is_main(self):
+        """Whether this is the method as it comes, not a point of its kappa curve."""
+        return self.kappa is None or self.kappa_is_auto
+
+    @property
+    def label(self):
+        """The method's name, with its kappa where it has one."""
+        if self.kappa is None:
+            return self.method
+        return f"{self.method} κ {'auto' if self.kappa_is_auto else f'{self.kappa:g}'}"
+
+    @property
+    def file_name(self):
+        """Name of the result file that `sandglass verify --results` writes for this run."""
+        kappa = "" if self.is_main else f".{self.kappa!r}"
+        return f"{self.case}.{self.method}{kappa}.h5"
+
+
+@dataclass(frozen=True)
+class Tip:
+    """One method on one variant of a case with a published value; ratios are None without one."""
+
+    family: str
+    variant: str
+    method: str
+    ok: bool
+    finding: str
+    source: str
+    to_published: float | None = key("ratio")
+    to_truth: float | None = key("ratio_to_truth")
+
+
+@dataclass(frozen=True)
+class Limit:
+    """One expectation of a case and what came of it; figures are fractions."""
+
+    case: str
+    method: str
+    kappa: str
+    reference: str
+    figure: str
+    below: float | None
+    above: float | None
+    found: float | None
+    at_kappa: float | None
+    holds: bool
+    reason: str
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """The contents of verdicts.json."""
+
+    provenance: dict
+    runs: tuple
+    limits: tuple
+    tips: tuple = ()
+
+    @property
+    def case_names(self):
+        """Names of the cases, in the order of the file."""
+        return tuple(dict.fromkeys(run.case for run in self.runs))
+
+    @property
+    def methods(self):
+        """Names of the methods, in the order of the file, which is the solver's."""
+        return tuple(dict.fromkeys(run.method for run in self.runs))
+
+
+def read_verdicts(path):
+    """Verdicts of a verdicts.json. Raises InputError when it is missing or not one."""
+    document = read_json(path, f"sandglass verify --json {path} --results FOLDER")
+    runs = tuple(as_dataclass(Run, *found) for found in entries(path, document, "records"))
+    if not runs:
+        raise InputError(f"{path}: records = [] must not be empty: nothing ran")
+    limits = tuple(_limit(*found) for found in entries(path, document, "limits"))
+    published = entries(path, document, "published") if "published" in document else []
+    tips = tuple(tip for found in published for tip in _tips(*found))
+    return Verdicts(facts(document), runs, limits, tips)
+
+
+def _tips(where, record):
+    """The tips of a record, one for each published value; none for points of a kappa curve."""
+    kappa = entry(where, record, "kappa", NUMBER, none_allowed=True)
+    if kappa is not None and not entry(where, record, "kappa_is_auto", bool):
+        return []
+    known = {
+        "variant": " ".join(entry(where, record, "variants", list)),
+        "ok": entry(where, record, "status", str) == "ok",
+        "finding": entry(where, record, "finding", str, none_allowed=True) or "",
+    }
+    values = [value for _, value in entries(where, record, "values")]
+    return [as_dataclass(Tip, where, record | value, **known) for value in values]
+
+
+def _limit(where, record):
+    """A limit of the verdicts. Raises InputError."""
+    limit = as_dataclass(Limit, where, record)
+    if limit.reference not in (*REFERENCES, "published"):
+        allowed = "golden, truth or published"
+        raise InputError(f"{where}.reference = {limit.reference!r} must be {allowed}")
+    return limit
