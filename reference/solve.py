@@ -9,6 +9,7 @@ import logging
 import math
 import sys
 import time
+from dataclasses import replace
 
 import dolfinx
 import numpy as np
@@ -31,10 +32,11 @@ NEWTON_TOLERANCE = 1e-10
 BOUNDARY_RULE = "trace of Q1: every vertex, edge and face whose vertices are all prescribed"
 
 
-def solve_case(kind, case, mesh, refinements, load_steps):
+def solve_case(kind, case, mesh, refinements, load_steps, pair=None):
     """Solve a case on its mesh and on that mesh split once, twice, ... `refinements` times.
 
     kind: "golden" or "truth". case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh.
+    pair: ElementPair, that of the kind unless told.
     Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
     the last mesh; axes of the mirror planes used, as text). Raises DivergenceError.
     """
@@ -44,7 +46,7 @@ def solve_case(kind, case, mesh, refinements, load_steps):
     displacements, coarse = [], None
     for level in range(refinements + 1):
         part = refine(part) if level else part
-        problem = MixedProblem(part, PAIRS[kind], case.law, case.material)
+        problem = MixedProblem(part, pair or PAIRS[kind], case.law, case.material)
         if coarse:
             problem.start_from(coarse)
         outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE, guessed=bool(coarse))
@@ -69,15 +71,14 @@ def run(arguments):
     case = read_case(arguments.case, arguments.variant)
     mesh, file = load_case_mesh(case, arguments.mesh)
     require_writable(arguments.output)
-    displacements, outcome, mirrors = solve_case(
-        kind, case, mesh, refinements, arguments.load_steps or load_steps_of(kind, case)
-    )
+    pair = replace(PAIRS[kind], gauss_points=arguments.gauss or PAIRS[kind].gauss_points)
+    load_steps = arguments.load_steps or load_steps_of(kind, case)
+    displacements, outcome, mirrors = solve_case(kind, case, mesh, refinements, load_steps, pair)
     unit = mesh.largest_imposed() or np.linalg.norm(displacements[-1], axis=1).max()
     errors, note = (math.nan, math.nan), "not estimated"
     if refinements:
         errors = relative_errors(displacements[-2], displacements[-1], unit)
         note = f"difference to the same element on the mesh split {refinements - 1} times"
-    pair = PAIRS[kind]
     write_result(
         arguments.output,
         mesh.points,
@@ -130,6 +131,9 @@ def main(arguments=None):
     )
     parser.add_argument(
         "--load-steps", type=_count, metavar="N", help=f"default: {LOAD_STEPS}, halved on failure"
+    )
+    parser.add_argument(
+        "--gauss", type=_count, metavar="N", help="Gauss points per direction; default: 2 and 4"
     )
     parsed = parser.parse_args(arguments)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
