@@ -15,10 +15,8 @@ from readme_commands import commands, inline, not_taken
 
 LISTED = tomllib.loads((ROOT / "verification/commands.toml").read_text())
 PROGRAM = ("build/release/sandglass", "sandglass")
-SKIPPED = ("build", ".git")
-PLACES = [
-    place for top in ROOT.iterdir() if top.name not in SKIPPED for place in [top, *top.rglob("*")]
-]
+TOPS = [top for top in ROOT.iterdir() if top.name not in ("build", ".git")]
+PLACES = [place for top in TOPS for place in (top, *top.rglob("*"))]
 DOCUMENTS = {
     str(place.relative_to(ROOT)): place.read_text()
     for place in sorted(PLACES)
@@ -49,8 +47,8 @@ def test_what_is_listed_is_shown():
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory):
-    """A folder that looks like a clone with its program built, the README's case, and a stored truth
-    in place of one that takes minutes."""
+    """A folder like a clone with its program built, the README's case in it, and a stored truth in
+    place of one that takes minutes."""
     tree = tmp_path_factory.mktemp("clone")
     unwanted = shutil.ignore_patterns("__pycache__", ".pytest_cache")
     for folder in ("cases", "reference", "reports", "exchange"):
