@@ -144,6 +144,15 @@ def test_files_and_functions_that_a_readme_names_are_there(document):
             assert re.search(rf"\b{name.split('::')[-1]}\b[^;]*[({{]", code), name
 
 
+def test_citation_and_licence_are_those_of_the_project():
+    citation = (ROOT / "CITATION.cff").read_text()
+    version = re.search(r"^version: (.*)$", citation, re.MULTILINE)[1]
+    licence = re.search(r"^license: (.*)$", citation, re.MULTILINE)[1]
+    assert f"project(sandglass VERSION {version} " in (ROOT / "CMakeLists.txt").read_text()
+    assert (ROOT / "LICENSE").read_text().startswith(licence.replace("-", " ", 1).split("-")[0])
+    assert f"Licence: {licence}" in (ROOT / "README.md").read_text()
+
+
 def test_every_test_is_in_the_table_of_the_suite():
     folder = ROOT / "verification"
     text = (folder / "README.md").read_text()
