@@ -26,16 +26,23 @@ LAYERS = [
 ]
 
 
-def wrong_includes(solver: pathlib.Path) -> list[str]:
-    """Lines 'file:line: layer may not include layer' for every include that points to the right."""
-    found = []
+def includes(solver: pathlib.Path):
+    """(file, line number, layer, included layer) of every include of a layer, in order."""
     for file in sorted(solver.rglob("*.[ch]pp")):
         layer = file.relative_to(solver).parts[0]
         for number, line in enumerate(file.read_text().splitlines(), start=1):
             match = re.match(r'#include "(\w+)/', line)
-            if match and LAYERS.index(match[1]) > LAYERS.index(layer):
-                found.append(f"{file}:{number}: {layer} may not include {match[1]}")
-    return found
+            if match:
+                yield file, number, layer, match[1]
+
+
+def wrong_includes(solver: pathlib.Path) -> list[str]:
+    """Lines 'file:line: layer may not include layer' for every include that points to the right."""
+    return [
+        f"{file}:{number}: {layer} may not include {included}"
+        for file, number, layer, included in includes(solver)
+        if LAYERS.index(included) > LAYERS.index(layer)
+    ]
 
 
 if __name__ == "__main__":

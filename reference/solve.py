@@ -9,6 +9,7 @@ import logging
 import math
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import dolfinx
@@ -37,10 +38,11 @@ NEWTON_TOLERANCE = 1e-10
 BOUNDARY_RULE = "trace of Q1: every vertex, edge and face whose vertices are all prescribed"
 
 
-def solve_case(kind, case, mesh, refinements, load_steps):
+def solve_case(kind, case, mesh, refinements, load_steps, pair=None):
     """Solve a case on its mesh and on that mesh split once, twice, ... `refinements` times.
 
     kind: "golden" or "truth". case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh.
+    pair: ElementPair, that of the kind unless told.
     Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
     the last mesh; axes of the mirror planes used, as text). Raises ComputationError.
     """
@@ -50,7 +52,7 @@ def solve_case(kind, case, mesh, refinements, load_steps):
     displacements, coarse = [], None
     for level in range(refinements + 1):
         part = refine(part) if level else part
-        problem = MixedProblem(part, PAIRS[kind], case.law, case.material)
+        problem = MixedProblem(part, pair or PAIRS[kind], case.law, case.material)
         if coarse:
             problem.start_from(coarse)
         try:
@@ -74,14 +76,14 @@ def load_steps_of(kind, case):
 def run(options):
     """Reads, solves, stores. Raises InputError or ComputationError."""
     started = time.perf_counter()
-    kind, refinements, pair = options.kind, options.refine, PAIRS[options.kind]
+    kind, refinements = options.kind, options.refine
     case = read_case(options.case, options.variant)
     mesh, file = load_case_mesh(case, options.mesh)
     require_writable(options.output)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
-    displacements, outcome, mirrors = solve_case(
-        kind, case, mesh, refinements, options.load_steps or load_steps_of(kind, case)
-    )
+    pair = replace(PAIRS[kind], gauss_points=options.gauss or PAIRS[kind].gauss_points)
+    load_steps = options.load_steps or load_steps_of(kind, case)
+    displacements, outcome, mirrors = solve_case(kind, case, mesh, refinements, load_steps, pair)
     unit = mesh.largest_imposed() or np.linalg.norm(displacements[-1], axis=1).max()
     attributes = {
         "case": case.name,
@@ -149,6 +151,12 @@ def main(arguments=None):
         type=whole_number(1),
         metavar="N",
         help=f"default: {LOAD_STEPS}, halved on failure",
+    )
+    add(
+        "--gauss",
+        type=whole_number(1),
+        metavar="N",
+        help="Gauss points per direction; default: 2, 4",
     )
     return exit_code(run, parser.parse_args(arguments))
 

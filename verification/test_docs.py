@@ -144,6 +144,30 @@ def test_files_and_functions_that_a_readme_names_are_there(document):
             assert re.search(rf"\b{name.split('::')[-1]}\b[^;]*[({{]", code), name
 
 
+def test_citation_and_licence_are_those_of_the_project():
+    citation = (ROOT / "CITATION.cff").read_text()
+    version = re.search(r"^version: (.*)$", citation, re.MULTILINE)[1]
+    licence = re.search(r"^license: (.*)$", citation, re.MULTILINE)[1]
+    assert f"project(sandglass VERSION {version} " in (ROOT / "CMakeLists.txt").read_text()
+    assert (ROOT / "LICENSE").read_text().startswith(licence.replace("-", " ", 1).split("-")[0])
+    assert f"Licence: {licence}" in (ROOT / "README.md").read_text()
+
+
+def test_every_test_is_in_the_table_of_the_suite():
+    folder = ROOT / "verification"
+    text = (folder / "README.md").read_text()
+    tests = [*folder.glob("*_test.cpp"), *folder.glob("test_*.py")]
+    assert [test.name for test in tests if f"`{test.name}`" not in text] == []
+
+
+def test_operations_of_the_control_are_those_that_are_counted():
+    text = (ROOT / "solver/element/README.md").read_text()
+    ours, papers = re.search(r"takes (\d+) operations in place of the paper's (\d+)", text).groups()
+    counted = subprocess.run([BINARY, "flops"], capture_output=True, text=True).stdout
+    for form, total in (("kernel", ours), ("paper", papers)):
+        assert re.search(rf"^tl-perturbation +{form} +hourglass .* {total} *$", counted, re.M), form
+
+
 def test_every_equation_of_the_paper_is_in_the_theory():
     text = "".join((ROOT / document).read_text() for document in THEORY)
     rows = "".join(re.findall(r"^\| (\(.*?)[a-z]", text, re.MULTILINE))

@@ -99,14 +99,23 @@ def test_own_mesh_of_the_top_readme(example, tmp_path):
 
 @needs_ccx
 @pytest.mark.parametrize(
-    "text, title", [(TOP, "## Your own result"), (README, "## Scoring another")]
+    "text, title",
+    [(TOP, "## Your own result"), (README, "## Scoring another")],
+    ids=["top", "exchange"],
 )
 def test_scoring_calculix(tmp_path, text, title):
-    commands = commands_of(text, title)[:3]
-    assert [words[0] for words in commands] == ["sandglass", "ccx", "sandglass"]
-    for words in commands:
+    commands = commands_of(text, title)
+    assert [words[0] for words in commands[:3]] == ["sandglass", "ccx", "sandglass"]
+    for words in commands[:3]:
         said = run(words, tmp_path)
     assert "against the golden" in said and "against the truth" in said
+    for words in commands[3:4]:  # what ci/verify leaves, for this case, and the score beside it
+        verify = "sandglass verify column --json build/verdicts.json --results build/verify"
+        (tmp_path / "build").mkdir()
+        run(verify.split(), tmp_path)
+        run(words, tmp_path)
+        records = json.loads((tmp_path / "build/verdicts.json").read_text())["records"]
+        assert "ccx C3D8R" in [record["method"] for record in records]
 
 
 def table():

@@ -7,14 +7,27 @@ from blocks import CASE, distorted_block, write_mesh
 from reference_file import read_reference
 
 
-def _run(folder, kind="golden", mesh="mesh.h5"):
+def _run(folder, kind="golden", mesh="mesh.h5", options=()):
     """Exit code of the command line on the files of the folder."""
     before = {path.name for path in folder.iterdir()}
     arguments = [kind, folder / "block.toml", "--mesh", folder / mesh, "-o", folder / "out.h5"]
+    arguments += options
     code = solve.main([str(argument) for argument in arguments])
     new = {path.name for path in folder.iterdir()} - before
     assert new == ({"out.h5"} if code == 0 else set())
     return code
+
+
+def test_other_gauss_points(folder):
+    """The file says how many, and on a distorted mesh the answer tells."""
+    answers = []
+    for options in ((), ("--gauss", "2"), ("--gauss", "3")):
+        assert _run(folder, options=options) == 0
+        _, displacement, attributes = read_reference(folder / "out.h5")
+        answers.append((attributes["quadrature"], displacement))
+        (folder / "out.h5").unlink()
+    assert [words for words, _ in answers] == [f"Gauss-Legendre {n}x{n}x{n}" for n in (2, 2, 3)]
+    assert (answers[0][1] == answers[1][1]).all() and (answers[0][1] != answers[2][1]).any()
 
 
 def test_good_input(folder):
