@@ -171,9 +171,9 @@ def _oriented(mesh, block, cells, path, warn):
             for e, centre in zip(tangled[:SHOWN], centres)
         ]
         raise InputError(
-            f"{path}: {tangled.size} of {len(cells)} elements are tangled or flat: in no order of their "
-            "vertices that VTK, Gmsh and Abaqus share is det J of one sign at the eight Gauss "
-            f"points: {', '.join(told)}{', ...' if tangled.size > SHOWN else ''}{hint}"
+            f"{path}: {tangled.size} of {len(cells)} elements are tangled or flat: in no order of "
+            "their vertices that VTK, Gmsh and Abaqus share is det J of one sign at the Gauss points: "
+            f"{', '.join(told)}{', ...' if tangled.size > SHOWN else ''}{hint}"
         )
     mirrored = np.flatnonzero(state == orientation.MIRRORED)
     if mirrored.size:
