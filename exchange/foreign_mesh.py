@@ -172,7 +172,7 @@ def _oriented(mesh, block, cells, path, warn):
         ]
         raise InputError(
             f"{path}: {tangled.size} of {len(cells)} elements are tangled or flat: in no order of "
-            "their vertices that VTK, Gmsh and Abaqus share is det J of one sign at the Gauss points: "
+            "their vertices that VTK, Gmsh and Abaqus share is det J of one sign at Gauss points: "
             f"{', '.join(told)}{', ...' if tangled.size > SHOWN else ''}{hint}"
         )
     mirrored = np.flatnonzero(state == orientation.MIRRORED)
