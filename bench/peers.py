@@ -67,7 +67,7 @@ SHARED = (
     ("element", "element", str),
     ("solve", "solve", str),
     ("seconds (range)", "seconds_of_runs", spread),
-    ("CPU, s", "processor_seconds", "{:.3g}".format),
+    ("CPU, s (range)", "processor_seconds_of_runs", spread),
     ("steps", "steps", str),
 )
 COLUMNS_AT_REST = (
@@ -82,7 +82,7 @@ COLUMNS_AT_REST = (
 COLUMNS_IN_MOTION = (
     *SHARED,
     ("us a step", "seconds_per_step", lambda seconds: f"{1e6 * seconds:.3g}"),
-    ("ns per element and step", "ns_per_element_step", "{:.4g}".format),
+    ("ns per element and step (range)", "ns_of_rounds", spread),
     (f"to {TWIN}", "to_twin", percent),
     ("nearest", "nearest", lambda found: f"{found['method']}, {percent(found['difference'])}"),
     ("failed", "failure", str),
@@ -115,12 +115,14 @@ class Row:
         """The row as a dict of plain figures; None for what is not known."""
         record = {key: None for _, key, _ in (*COLUMNS_AT_REST, *COLUMNS_IN_MOTION)}
         record |= {"program": self.program, "element": self.element, "solve": self.solve}
-        record |= {"seconds": None, "failure": self.failure}
+        record |= dict.fromkeys(("seconds", "processor_seconds", "ns_per_element_step"))
+        record["failure"] = self.failure
         if not self.failure:
             answers = self.clocked["answer"]
             record["seconds_of_runs"] = [run.seconds for run in answers]
             record["seconds"] = statistics.median(record["seconds_of_runs"])
-            record["processor_seconds"] = statistics.median(r.processor_seconds for r in answers)
+            record["processor_seconds_of_runs"] = [run.processor_seconds for run in answers]
+            record["processor_seconds"] = statistics.median(record["processor_seconds_of_runs"])
             record["steps"] = answers[0].steps
             record["iterations"] = answers[0].iterations or None
             record["seconds_per_step"] = record["processor_seconds"] / answers[0].steps
@@ -128,11 +130,11 @@ class Row:
         return record
 
     def per_step(self):
-        """Processor seconds per step, median of rounds: the longer run's excess over the other."""
-        return statistics.median(
+        """Processor seconds per step, of each round: the longer run's excess over the other."""
+        return [
             (long.processor_seconds - short.processor_seconds) / (long.steps - short.steps)
             for short, long in zip(self.clocked["answer"], self.clocked["longer"], strict=True)
-        )
+        ]
 
 
 def rows_at_rest(bench, options):
@@ -193,8 +195,9 @@ def records_in_motion(bench, motion, rows):
                 method = min(others, key=others.get)
                 more["nearest"] = {"method": method, "difference": others[method]}
             more["to_twin"] = far.get(TWIN)
-            more["seconds_per_step"] = row.per_step()
-            more["ns_per_element_step"] = 1e9 * row.per_step() / len(bench.mesh.cells)
+            more["seconds_per_step"] = statistics.median(row.per_step())
+            more["ns_of_rounds"] = [1e9 * s / len(bench.mesh.cells) for s in row.per_step()]
+            more["ns_per_element_step"] = statistics.median(more["ns_of_rounds"])
         records.append(row.record(**more))
     return records
 

@@ -7,6 +7,7 @@ import pytest
 
 import calculix
 import peers
+from peer_runs import Run
 from test_time_to_rest import BLOCK
 
 SMALL = ["--repetitions", "1", "--steps", "60", "--methods", "tl-perturbation", "tl-full"]
@@ -47,12 +48,13 @@ def test_the_same_element_gives_the_same_answers(block, capsys):
     assert motion["C3D8"]["nearest"]["difference"] < 5.77 / 2 / 60**2
     assert motion["C3D8"]["to_twin"] > 0.05
     for record in document["in_motion"]:
-        assert record["steps"] == 60 and record["ns_per_element_step"] > 0
+        assert record["steps"] == 60 and record["ns_of_rounds"] == [record["ns_per_element_step"]]
         assert record["golden"] is record["truth"] is None  # there is none of a motion
     for record in (*document["at_rest"], *document["in_motion"]):
         (seconds,) = record["seconds_of_runs"]
         assert 0 < record["processor_seconds"] < seconds + 0.02  # one thread; clocks tick at 10 ms
         assert record["seconds"] == seconds
+        assert record["processor_seconds_of_runs"] == [record["processor_seconds"]]
     assert document["versions"]["ccx"] and document["versions"]["sandglass"]
     assert page.read_text() == capsys.readouterr().out
 
@@ -104,3 +106,21 @@ def test_what_has_a_load_is_not_moved(block, capsys):
 def test_files_that_cannot_be_written(block, capsys):
     assert peers.main([str(block), "--markdown", str(block.parent / "none" / "a.md")]) == 2
     assert "does not exist" in capsys.readouterr().err
+
+
+def test_a_step_costs_what_the_longer_run_takes_more():
+    """Whatever comes before the first step does not count; rounds are kept apart."""
+    short = iter(
+        [Run(9.0, 1.0, 10, 0, None), Run(5.0, 2.0, 10, 0, None), Run(7.0, 3.0, 10, 0, None)]
+    )
+    longer = iter(
+        [Run(1.0, 3.0, 30, 0, None), Run(1.0, 5.0, 30, 0, None), Run(1.0, 10, 30, 0, None)]
+    )
+    row = peers.Row("P", "E", "S", {"answer": short.__next__, "longer": longer.__next__})
+    for _ in range(3):
+        row.round()
+    assert row.per_step() == [2 / 20, 3 / 20, 7 / 20]
+    record = row.record()
+    assert record["seconds_of_runs"] == [9.0, 5.0, 7.0] and record["seconds"] == 7.0
+    assert record["processor_seconds"] == 2.0 and record["seconds_per_step"] == 0.2
+    assert peers.spread(record["seconds_of_runs"]) == "7 (5 to 9)"
