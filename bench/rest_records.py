@@ -102,11 +102,14 @@ COLUMNS = (
 )
 
 
-def table(records):
-    """A Markdown table of records of one case, one line each, columns aligned; "-" for None."""
-    rows = [[heading for heading, _, _ in COLUMNS]]
+def table(records, columns=COLUMNS):
+    """A Markdown table of records, one line each, columns aligned; "-" for None.
+
+    columns: (heading, key, function that makes a text of the figure) of each.
+    """
+    rows = [[heading for heading, _, _ in columns]]
     for one in records:
-        rows.append(["-" if one[key] is None else show(one[key]) for _, key, show in COLUMNS])
+        rows.append(["-" if one[key] is None else show(one[key]) for _, key, show in columns])
     widths = [max(map(len, column)) for column in zip(*rows)]
     lines = [
         "| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths)) + " |"

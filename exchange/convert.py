@@ -90,7 +90,11 @@ def _ending(path, allowed):
         with open(path, "rb"):
             pass
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        geometry = path.with_suffix(".geo")
+        told = ""
+        if path.suffix.lower() == ".msh" and geometry.exists() and not path.exists():
+            told = f"; `gmsh -3 {geometry} -o {path}` makes it"
+        raise InputError(f"{path}: cannot be read: {error.strerror}{told}") from error
     return path.suffix.lower()
 
 

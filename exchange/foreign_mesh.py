@@ -10,6 +10,7 @@ from exchange import orientation
 
 HEXAHEDRON = "hexahedron"
 SHOWN = 3  # of what is wrong, in a message
+LARGEST = 20.0  # m; what is larger was perhaps meant in millimetres
 
 
 @dataclass(frozen=True)
@@ -24,12 +25,16 @@ class Block:
 
 @dataclass
 class ForeignMesh:
-    """Nodes (n,) with points (n, 3), blocks of elements, and node sets: name -> ids of nodes."""
+    """Nodes (n,) with points (n, 3), blocks of elements, and node sets: name -> ids of nodes.
+
+    hint: how the program makes hexahedra and saves them, for those whose file has others or none.
+    """
 
     node_ids: np.ndarray
     points: np.ndarray
     blocks: list
     sets: dict = field(default_factory=dict)
+    hint: str = ""
 
 
 @dataclass(frozen=True)
@@ -67,6 +72,9 @@ def to_hexahedra(mesh, path, warn):
         )
     points = mesh.points[used]
     _warn_of_seams(points, mesh.node_ids[used], warn)
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    if size > LARGEST:
+        warn(f"the mesh is {size:.3g} m from corner to corner: coordinates are taken as metres")
     sets = {}
     for name, ids in mesh.sets.items():
         nodes = np.intersect1d(used, _find(mesh, order, ids, f"{path}: set '{name}'"))
@@ -111,12 +119,12 @@ def _hexahedra(mesh, path):
         raise InputError(
             f"{path}: has elements that are no hexahedra: {told}, beside "
             f"{sum(len(block.ids) for block in found)} hexahedra; allowed are hexahedra of eight "
-            "nodes; elements of lower dimension only name sets"
+            f"nodes; elements of lower dimension only name sets{mesh.hint}"
         )
     if not found:
         lower = sorted({block.kind for block in mesh.blocks if len(block.ids)})
         told = f"only {', '.join(lower)}" if lower else "no elements"
-        raise InputError(f"{path}: has {told}; hexahedra of eight nodes are required")
+        raise InputError(f"{path}: has {told}; hexahedra of eight nodes are required{mesh.hint}")
     ids = np.concatenate([block.ids for block in found])
     nodes = np.concatenate([block.nodes for block in found])
     kept = np.sort(np.unique(np.column_stack([ids, nodes]), axis=0, return_index=True)[1])
@@ -164,9 +172,9 @@ def _oriented(mesh, block, cells, path, warn):
             for e, centre in zip(tangled[:SHOWN], centres)
         ]
         raise InputError(
-            f"{path}: {tangled.size} of {len(cells)} elements are tangled: in no order of their "
-            "vertices that VTK, Gmsh and Abaqus share is det J of one sign at the eight Gauss "
-            f"points: {', '.join(told)}{', ...' if tangled.size > SHOWN else ''}{hint}"
+            f"{path}: {tangled.size} of {len(cells)} elements are tangled or flat: in no order of "
+            "their vertices that VTK, Gmsh and Abaqus share is det J of one sign at Gauss points: "
+            f"{', '.join(told)}{', ...' if tangled.size > SHOWN else ''}{hint}"
         )
     mirrored = np.flatnonzero(state == orientation.MIRRORED)
     if mirrored.size:

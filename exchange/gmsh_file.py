@@ -34,6 +34,11 @@ KINDS = {
     14: ("pyramid of 14 nodes", 3, 14),
 }
 DIMENSIONS = ("point", "curve", "surface", "volume")
+HINT = (
+    "; Gmsh makes them by Recombine Surface with Transfinite Volume, or by Extrude with Layers and "
+    "Recombine, meshes volumes with `gmsh -3`, and saves only what is in a physical group where "
+    "there is one: Physical Volume"
+)
 
 
 def read(path):
@@ -158,7 +163,7 @@ class _Elements:
         """The ForeignMesh."""
         none = np.empty(0, dtype=np.int64)
         sets = {name: np.unique(np.concatenate([none, *n])) for name, n in self.groups.items()}
-        return ForeignMesh(node_ids.astype(np.int64), points, self.blocks, sets)
+        return ForeignMesh(node_ids.astype(np.int64), points, self.blocks, sets, HINT)
 
 
 def _read_2(numbers, names):
@@ -224,7 +229,7 @@ def _read_4(numbers, names, has_entities):
         (count,) = source.take(1, "size")
         ids.append(source.take(count, "size"))
         width = 3 + (dimension if parametric else 0)
-        points.append(source.take(width * count, "f8").reshape(count, -1)[:, :3])
+        points.append(source.take(width * count, "f8").reshape(count, width)[:, :3])
     source = numbers("Elements")
     for _ in range(source.take(4, "size")[0]):
         dimension, entity, number = source.take(3)

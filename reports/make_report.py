@@ -26,7 +26,9 @@ def make(options):
     """Reads all inputs and writes the page. Raises InputError."""
     start = time.monotonic()
     verdicts = read_verdicts(options.verdicts)
-    subjects = read_subjects(verdicts, options.cases, options.reference, options.results)
+    subjects = read_subjects(
+        verdicts, options.cases, options.reference, options.results, options.case
+    )
     files = options.bench, options.flops, options.rest
     found = read_measured(*files, options.curves, options.maps, options.kept_maps)
     evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
@@ -44,6 +46,7 @@ def main(arguments=None):
     add("--verdicts", type=Path, default="build/verdicts.json", help="of sandglass verify --json")
     add("--results", type=Path, default="build/verify", help="of sandglass verify --results")
     add("--cases", type=Path, default="cases", help="folder of case files")
+    add("--case", type=Path, nargs="+", default=[], help="case files beside those of the folder")
     add("--reference", type=Path, default="reference", help="folder with golden/ and truth/")
     add("--bench", type=Path, default="build/bench.json", help="of sandglass bench --json")
     add("--flops", type=Path, default="build/flops.json", help="of sandglass flops --json")

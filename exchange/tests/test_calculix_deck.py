@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from exchange import abaqus_file
-from exchange.calculix_deck import deck
 from common.errors import InputError
+from exchange.calculix_deck import Explicit, deck
 from exchange.foreign_mesh import HexMesh
 
 CORNERS = np.array(
@@ -87,3 +87,34 @@ def test_deck_of_a_law_that_ccx_lacks():
 def test_numbers_have_no_more_than_the_20_characters_that_are_read(value, text):
     assert abaqus_file.number(value) == text and len(text) <= 20
     assert abs(float(text) - value) <= 5e-13 * abs(value)  # 13 digits or more
+
+
+def test_deck_of_a_motion():
+    prescribed, values = FREE.copy(), np.ones((8, 3))
+    prescribed[2, 1] = True
+    explicit = Explicit(density=1200.0, time_step=0.25, steps=6, ramp_steps=4)
+    text = deck("one", BRICK, "neo-hookean", MATERIAL, prescribed, values, explicit=explicit)
+    # (10 - 15 t + 6 t^2) t^3 at quarters: 53/512, 1/2, 459/512.
+    assert text.endswith(
+        """\
+*HYPERELASTIC, NEO HOOKE
+750.0, 0.002
+*DENSITY
+1200.0
+*SOLID SECTION, ELSET=ALL, MATERIAL=SOLID
+*AMPLITUDE, NAME=RAMP
+0.0, 0.0
+0.25, 0.103515625
+0.5, 0.5
+0.75, 0.896484375
+1.0, 1.0
+*STEP, NLGEOM, INC=60
+*DYNAMIC, EXPLICIT, ALPHA=0.
+0.25, 1.5, 2.5e-07, 0.25
+*BOUNDARY, AMPLITUDE=RAMP
+3, 2, 2, 1.0
+*NODE FILE, FREQUENCY=60
+U
+*END STEP
+"""
+    )

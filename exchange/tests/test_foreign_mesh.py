@@ -103,6 +103,13 @@ def test_flat_elements_are_refused(tmp_path, capsys):
         read(capsys, write(tmp_path / "a.vtu", POINTS * [1, 1, 0]))
 
 
+def test_a_mesh_in_millimetres_is_told(tmp_path, capsys):
+    *_, warnings = read(capsys, write(tmp_path / "a.vtu", 20 * POINTS))
+    assert "the mesh is 49 m from corner to corner: coordinates are taken as metres" in warnings
+    *_, warnings = read(capsys, write(tmp_path / "a.vtu", 8 * POINTS))  # 19.6 m
+    assert not warnings
+
+
 def test_ids_of_the_file_are_told(tmp_path, capsys):
     text = CUBES.replace("\n2, 5, 6, 7, 8, 9, 10, 11, 12", "\n777, 9, 10, 11, 12, 5, 6, 7, 8")
     (tmp_path / "a.inp").write_text(text)

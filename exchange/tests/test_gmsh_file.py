@@ -96,6 +96,31 @@ def test_group_without_nodes_of_hexahedra_is_left_out(tmp_path, capsys):
     assert "set 'nothing' has no node of a hexahedron: left out" in warnings
 
 
+def test_an_entity_may_have_no_nodes(tmp_path, capsys):
+    """Gmsh writes such blocks, of one- and two-dimensional meshes at least."""
+    old, new = b"$Nodes\n27 36 ", b"$Nodes\n28 36 "
+    path = edited(tmp_path, "4.1", (old, new), (b"$EndNodes", b"3 9 0 0\n$EndNodes"))
+    points, _, sets, _ = read(capsys, path)
+    assert len(points) == 36 and sets == expected_sets(points)
+
+
+@pytest.mark.parametrize(
+    "other, told", [(True, "type 'hexahedron of 20"), (False, "has only line")]
+)
+def test_how_gmsh_makes_hexahedra_is_told(tmp_path, capsys, other, told):
+    """Where a file has none: other elements of volume, or none because no group saves them."""
+    text = (DATA / "block-2.2.msh").read_bytes().decode()
+    begin, end = text.index("$Elements"), text.index("$EndElements")
+    lines = text[begin:end].splitlines()[2:]
+    kept = [line for line in lines if line.split()[1] != "5"]
+    if other:
+        kept.append("9 17 2 10 25 " + " ".join(map(str, range(1, 21))))
+    elements = "\n".join(["$Elements", str(len(kept)), *kept, ""])
+    (tmp_path / "a.msh").write_text(text[:begin] + elements + text[end:])
+    with pytest.raises(Refused, match=told + ".*Transfinite Volume.*`gmsh -3`.*Physical Volume"):
+        read(capsys, tmp_path / "a.msh")
+
+
 def test_names_keep_spaces_and_letters_but_no_slashes(tmp_path, capsys):
     path = edited(tmp_path, "4.1", (b'"foot"', "\"Fuß/left 'a'\"".encode()))
     _, _, sets, warnings = read(capsys, path)

@@ -102,6 +102,11 @@ def test_files_that_are_no_mesh(tmp_path):
     refused(
         "run", case, *output, told=f"{case}: mesh.file: {tmp_path}/own.msh: cannot be read: No such"
     )
+    (tmp_path / "own.geo").touch()
+    refused(
+        "run", case, *output, told=f"; `gmsh -3 {tmp_path}/own.geo -o {tmp_path}/own.msh` makes"
+    )
+    (tmp_path / "own.geo").unlink()
     (tmp_path / "own.msh").write_bytes((DATA / "block-4.1.msh").read_bytes()[:1500])
     for command in ("run", "mesh"):
         refused(
@@ -126,6 +131,24 @@ def test_a_set_that_the_file_lacks(tmp_path):
     refused(
         "run", case_of(tmp_path, "block-4.1.msh"), told="'head' is not a node set of this case; "
     )
+
+
+def test_a_file_without_sets(tmp_path):
+    write(tmp_path / "own.vtu")
+    told = "'foot' is not a node set of this case, which has none: [sets] gives rules for them"
+    refused("run", case_of(tmp_path, "own.vtu"), told=told)
+
+
+def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
+    (tmp_path / "own.geo").touch()
+    case = case_of(tmp_path, "own.geo")
+    refused(
+        "run", case, told="own.geo: is not a complete HDF5 file (truncated, or of another kind); "
+    )
+    refused("run", case, told="must end in .msh (Gmsh), .inp (Abaqus) or .vtu")
+    case.write_text(case.read_text().replace("file =", "fiel ="))
+    told = "mesh.generator is missing; this key or mesh.file must be given, but there is only fiel"
+    refused("run", case, told=told)
 
 
 @pytest.mark.parametrize(

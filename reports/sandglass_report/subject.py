@@ -67,25 +67,26 @@ class Subject:
         return accuracy(self.golden.displacement, self.truth.displacement, self.unit, nodes)
 
 
-def read_subjects(verdicts, cases, references, results):
+def read_subjects(verdicts, cases, references, results, files=()):
     """A Subject for every case of the verdicts.
 
     cases: folder of case files. references: folder with golden/ and truth/. results: folder with
-    the result files of the runs. Raises InputError when a file is missing, broken or of others.
+    the result files of the runs. files: case files from elsewhere, before those of the folder where
+    they have the same name. Raises InputError when a file is missing, broken or of others.
     """
-    case_files = _case_files(Path(cases))
+    case_files = _case_files(Path(cases), files)
     return tuple(
         _read_subject(verdicts, name, case_files, Path(references), Path(results))
         for name in verdicts.case_names
     )
 
 
-def _case_files(folder):
-    """name of a case -> (path, tables) for every case file in the folder."""
+def _case_files(folder, files=()):
+    """name of a case -> (path, tables) for every case file in the folder, and for others."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder of cases")
     found = {}
-    for path in sorted(folder.glob("*.toml")):
+    for path in (*sorted(folder.glob("*.toml")), *files):
         tables = read_toml(path)
         found[tables.get("case", {}).get("name")] = (path, tables)
     return found

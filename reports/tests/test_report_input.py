@@ -54,6 +54,19 @@ def test_a_case_without_a_file(data, capsys):
     refused(data, capsys, "'column'", "no case file")
 
 
+def test_a_case_from_elsewhere(data, capsys):
+    """It is taken, before one of the folder with the same name; one that is not there is told."""
+    own, there = data.folder / "own.toml", data.folder / "cases/column.toml"
+    own.write_text(there.read_text().replace("[case]", '[case]\nx = "own"', 1))
+    there.unlink()
+    refused(data, capsys, "'column'", "no case file")
+    there.write_text('[case]\nname = "column"\n')
+    assert main([*data.arguments, "--case", str(own)]) == 0
+    capsys.readouterr()
+    assert main([*data.arguments, "--case", str(data.folder / "none.toml")]) == 2
+    assert "none.toml: cannot be read" in capsys.readouterr().err
+
+
 def test_no_folder_of_cases(data, capsys):
     (data.folder / "cases").rename(data.folder / "elsewhere")
     refused(data, capsys, "cases", "no such folder")

@@ -32,6 +32,12 @@ void read_mesh(TableReader& reader, Case& scene) {
   if (const auto file = table.optional<std::string>("file")) {
     scene.mesh = MeshFile{scene.file.parent_path() / *file};
   } else {
+    const auto keys = table.keys();
+    if (std::find(keys.begin(), keys.end(), "generator") == keys.end()) {
+      table.fail("generator",
+                 fmt::format("is missing; this key or mesh.file must be given, but there {}",
+                             keys.empty() ? "is no key" : fmt::format("is only {}", fmt::join(keys, ", "))));
+    }
     scene.mesh = read_listed<Generators>(table, "generator");
   }
   table.finish();
@@ -261,7 +267,11 @@ MeshWithSets read_mesh_of(const Case& scene, const MeshFile& file) {
   try {
     return is_foreign_mesh(file.path) ? read_foreign_mesh(file.path) : read_mesh_file(file.path);
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: mesh.file: {}", scene.file.string(), error.what()));
+    const std::string ending = file.path.extension().string();
+    const bool ours = is_foreign_mesh(file.path) || ending == ".h5" || ending == ".hdf5";
+    throw InputError(
+        fmt::format("{}: mesh.file: {}{}", scene.file.string(), error.what(),
+                    ours ? "" : "; what is no HDF5 file must end in .msh (Gmsh), .inp (Abaqus) or .vtu"));
   }
 }
 

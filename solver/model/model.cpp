@@ -27,6 +27,12 @@ std::vector<std::string> names(const NodeSets& sets) {
 const std::vector<int>& find_set(const Case& scene, const NodeSets& sets, const std::string& key,
                                  const std::string& name) {
   const auto found = sets.find(name);
+  if (found == sets.end() && sets.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} = '{}' is not a node set of this case, which has none: [sets] gives rules for them, a "
+        "mesh from a file brings its physical groups (Gmsh), NSETs (Abaqus) or point arrays (VTK)",
+        scene.file.string(), key, name));
+  }
   if (found == sets.end()) {
     throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}", scene.file.string(), key,
                                  name, suggestion(name, names(sets))));

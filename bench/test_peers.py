@@ -1,0 +1,126 @@
+"""The comparison with CalculiX: both solve the same problem; failures; files; exit codes."""
+
+import json
+import shutil
+
+import pytest
+
+import calculix
+import peers
+from peer_runs import Run
+from test_time_to_rest import BLOCK
+
+SMALL = ["--repetitions", "1", "--steps", "60", "--methods", "tl-perturbation", "tl-full"]
+needs_ccx = pytest.mark.skipif(
+    shutil.which(calculix.PROGRAM) is None, reason="ccx is not installed (package calculix-ccx)"
+)
+
+
+@pytest.fixture
+def block(tmp_path):
+    """A small case in a folder of its own."""
+    file = tmp_path / "block.toml"
+    file.write_text(BLOCK)
+    return file
+
+
+def _compare(case, *options):
+    """Exit code and stored document (None without one) of the command line."""
+    output = case.parent / "peers.json"
+    code = peers.main([str(case), "--json", str(output), *SMALL, *options])
+    return code, json.loads(output.read_text()) if output.exists() else None
+
+
+@needs_ccx
+def test_the_same_element_gives_the_same_answers(block, capsys):
+    page = block.parent / "peers.md"
+    code, document = _compare(block, "--elements", "C3D8", "C3D8R", "--markdown", str(page))
+    assert code == 0
+    rest = {record["element"]: record for record in document["at_rest"]}
+    assert set(rest) == {"C3D8", "C3D8R", "tl-perturbation", "tl-full"}
+    # Six digits are written, and both stop at residuals of 1e-8 of the reactions.
+    assert abs(rest["C3D8"]["twin"] - rest["tl-full"]["twin"]) < 1e-5
+    assert rest["C3D8"]["twin"] > 0.1 > 10 * rest["C3D8R"]["twin"]  # one of them locks
+    motion = {record["element"]: record for record in document["in_motion"]}
+    assert motion["C3D8"]["nearest"]["method"] == "tl-full"
+    # Both are of second order: they may differ by half a squared step, of 60, times the largest
+    # acceleration of the loading curve, 5.77 of what is imposed over the squared ramp.
+    assert motion["C3D8"]["nearest"]["difference"] < 5.77 / 2 / 60**2
+    assert motion["C3D8"]["to_twin"] > 0.05
+    for record in document["in_motion"]:
+        assert record["steps"] == 60 and record["ns_of_rounds"] == [record["ns_per_element_step"]]
+        assert record["golden"] is record["truth"] is None  # there is none of a motion
+    for record in (*document["at_rest"], *document["in_motion"]):
+        (seconds,) = record["seconds_of_runs"]
+        assert 0 < record["processor_seconds"] < seconds + 0.02  # one thread; clocks tick at 10 ms
+        assert record["seconds"] == seconds
+        assert record["processor_seconds_of_runs"] == [record["processor_seconds"]]
+    assert document["versions"]["ccx"] and document["versions"]["sandglass"]
+    assert page.read_text() == capsys.readouterr().out
+
+
+@needs_ccx
+def test_an_element_that_fails_is_told_and_the_others_kept(block, monkeypatch, capsys):
+    there = calculix.solve
+
+    def fail(text, *rest):
+        if "TYPE=C3D8I" in text:
+            raise peers.ComputationError("no equilibrium")
+        return there(text, *rest)
+
+    monkeypatch.setattr(calculix, "solve", fail)
+    code, document = _compare(block, "--solves", "rest", "--elements", "C3D8I", "C3D8R")
+    assert code == 3
+    found = {record["element"]: record["failure"] for record in document["at_rest"]}
+    assert found["C3D8I"] == "no equilibrium" and found["C3D8R"] is found["tl-full"] is None
+    assert "error: CalculiX C3D8I, Newton: no equilibrium" in capsys.readouterr().err
+
+
+def test_without_ccx_there_is_no_comparison(block, monkeypatch, capsys):
+    monkeypatch.setattr(peers.shutil, "which", lambda name: None)
+    assert _compare(block) == (2, None)
+    assert "package calculix-ccx: bash ci/setup bench" in capsys.readouterr().err
+
+
+@needs_ccx
+@pytest.mark.parametrize(
+    "old, new, told",
+    [
+        ("quasi-static", "dynamic", "must be 'quasi-static'"),
+        ('"neo-hookean"', '"st-venant-kirchhoff"', "CalculiX has no such law"),
+    ],
+)
+def test_cases_that_calculix_cannot_do(block, capsys, old, new, told):
+    block.write_text(BLOCK.replace(old, new))
+    assert _compare(block) == (2, None)
+    assert told in capsys.readouterr().err
+
+
+@needs_ccx
+def test_what_has_a_load_is_not_moved(block, capsys):
+    block.write_text(BLOCK + '\n[[force]]\nset = "head"\ntotal = [0.0, 0.0, 1.0]\n')
+    assert _compare(block)[0] == 2
+    assert "only [[displacement]] can be moved" in capsys.readouterr().err
+
+
+def test_files_that_cannot_be_written(block, capsys):
+    assert peers.main([str(block), "--markdown", str(block.parent / "none" / "a.md")]) == 2
+    assert "does not exist" in capsys.readouterr().err
+
+
+def test_a_step_costs_what_the_longer_run_takes_more():
+    """Whatever comes before the first step does not count; rounds are kept apart."""
+    short = iter(
+        [Run(9.0, 1.0, 10, 0, None), Run(5.0, 2.0, 10, 0, None), Run(7.0, 3.0, 10, 0, None)]
+    )
+    longer = iter(
+        [Run(1.0, 3.0, 30, 0, None), Run(1.0, 5.0, 30, 0, None), Run(1.0, 10, 30, 0, None)]
+    )
+    row = peers.Row("P", "E", "S", {"answer": short.__next__, "longer": longer.__next__})
+    for _ in range(3):
+        row.round()
+    assert row.per_step() == [2 / 20, 3 / 20, 7 / 20]
+    record = row.record()
+    assert record["seconds_of_runs"] == [9.0, 5.0, 7.0] and record["seconds"] == 7.0
+    assert record["processor_seconds"] == 2.0 and record["seconds_per_step"] == 0.2
+    assert peers.spread(record["seconds_of_runs"]) == "7 (5 to 9)"
