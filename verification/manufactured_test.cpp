@@ -117,14 +117,23 @@ TYPED_TEST(ManufacturedTest, converges_on_randomly_distorted_meshes) {
   this->expect_orders(distortion);
 }
 
-/// The field is what it is said to be: displacement gradients of 0.2 to 0.33 somewhere, no inversion, on a
-/// grid of 21^3 points.
-TEST(Manufactured, field_is_of_finite_strain) {
-  double largest = 0.0, smallest_J = 2.0, largest_J = 0.0;
+/// The displacement gradients of a field on a grid of 21^3 points.
+template <class Field>
+std::vector<Tensor<double>> gradients_of(const Field& field) {
+  std::vector<Tensor<double>> gradients;
   for (int n = 0; n < 21 * 21 * 21; ++n) {
     Triple<double> X{};
     for (int i = 0, rest = n; i < 3; ++i, rest /= 21) X(i, 0) = 0.05 * (rest % 21);
-    const Tensor<double> H = field_gradient(WaveField{}, X);
+    gradients.push_back(field_gradient(field, X));
+  }
+  return gradients;
+}
+
+/// The fields are what they are said to be. Waves: displacement gradients of 0.2 to 0.33 somewhere, no
+/// inversion.
+TEST(Manufactured, waves_are_of_finite_strain) {
+  double largest = 0.0, smallest_J = 2.0, largest_J = 0.0;
+  for (const auto& H : gradients_of(WaveField{})) {
     largest = std::max(largest, std::sqrt(double_dot(H, H)));
     smallest_J = std::min(smallest_J, 1.0 + jacobian_minus_one(H));
     largest_J = std::max(largest_J, 1.0 + jacobian_minus_one(H));
@@ -132,6 +141,18 @@ TEST(Manufactured, field_is_of_finite_strain) {
   EXPECT_NEAR(largest, 0.33, 0.005);
   EXPECT_NEAR(smallest_J, 0.955, 0.002);
   EXPECT_NEAR(largest_J, 1.040, 0.002);
+}
+
+/// Flexure: the ring's inner face, r^2 = a^2 - a, is shortened to sqrt(1 - 1/a), and no volume changes but by
+/// the rounding of some ten terms of order one.
+TEST(Manufactured, flexure_shortens_the_inner_face_and_keeps_the_volume) {
+  double shortest = 2.0;
+  for (const auto& H : gradients_of(FlexureField{})) {
+    EXPECT_NEAR(jacobian_minus_one(H), 0.0, 0x1p-48);
+    const Tensor<double> F = identity<double>() + H;
+    shortest = std::min(shortest, std::hypot(F(0, 0), F(2, 0)));
+  }
+  EXPECT_NEAR(shortest, std::sqrt(0.5), 0x1p-48);
 }
 
 /// Body force and tractions of the exact stress balance: their sum is zero to what three Gauss points leave,
