@@ -2,12 +2,13 @@
 ///   element/METHOD/NUMBER            the arithmetic of elements in a strip: no gather, no scatter
 ///   forces/METHOD/NUMBER/ELEMENTS    internal forces of a box
 ///   step/METHOD/NUMBER/ELEMENTS      the whole explicit step
-/// Times are per call; ns per element stand in the counter `ns/element`. Options: --help. Methods are
-/// compared by `sandglass bench`, which checks their forces and times all in turn.
+/// Times are per call; those per element stand in the counter `per_element`. Options: --help. Methods are
+/// compared by `sandglass bench`, which times all in turn.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "element/methods.hpp"
 #include "math/lanes.hpp"
@@ -83,9 +84,25 @@ void element(State& state) {
   count_elements(state, blocks * static_cast<std::size_t>(Lanes<Number>::width));
 }
 
+NodalField forces_of(const Scene& scene, const MethodChoice& choice) {
+  const Model model(scene, choice);
+  return std::visit([&](const auto& elements) { return forces_on_the_way(*elements, wavy_field(scene)); },
+                    model.internal_force());
+}
+
+/// Whether a kernel's forces are those of the method's scalar double kernel: a wrong result gets no time.
+bool right(State& state, const Scene& scene, const MethodChoice& choice) {
+  const NodalField reference = forces_of(scene, {.method = choice.method, .kernel = KernelWidth::scalar});
+  const std::string status = force_status(relative_difference(forces_of(scene, choice), reference),
+                                          force_limit(choice.precision, scene.description.law));
+  if (status != "ok") state.SkipWithError(status.c_str());
+  return status == "ok";
+}
+
 /// Internal forces of a wavy box.
 void forces(State& state, const MethodChoice& choice, int elements) {
   const Scene scene = box_scene(elements);
+  if (!right(state, scene, choice)) return;
   const Model model(scene, choice);
   std::visit(
       [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& internal) {
@@ -104,6 +121,7 @@ void forces(State& state, const MethodChoice& choice, int elements) {
 
 void step(State& state, const MethodChoice& choice, int elements) {
   const Scene scene = box_scene(elements);
+  if (!right(state, scene, choice)) return;
   const auto model = make_stepped_model(scene, choice);
   model->restart();
   for ([[maybe_unused]] auto _ : state) model->step();

@@ -5,29 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "io/mesh_file.hpp"
+#include "support/case_text.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sandglass::verification {
 namespace {
 
-const std::string good = R"([case]
-name = "good"
-requirement = "A block is pulled."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [1.0, 2.0, 3.0]
-elements = [1, 2, 3]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.49
-density = 1000.0
-
-[sets]
+const std::string good = box_case("good", "[1.0, 2.0, 3.0]", "[1, 2, 3]") + R"([sets]
 bottom = { z = [0.0, 0.0] }
 top = { z = [3.0, 3.0] }
 
@@ -59,12 +44,11 @@ below = 0.01
 reason = "a test"
 )";
 
-/// `good` with one piece of text replaced.
 std::string with(const std::string& old, const std::string& replacement) {
-  const auto at = good.find(old);
-  if (at == std::string::npos) throw std::logic_error("not in the good case: " + old);
-  return std::string(good).replace(at, old.size(), replacement);
+  return replaced(good, old, replacement);
 }
+
+const std::string own_mesh = "generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]";
 
 /// `good` in motion.
 const std::string moving = with("\"quasi-static\"", "\"dynamic\"") + "[dynamics]\nduration = 2.0\n";
@@ -215,9 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
                 with("young_modulus = ", "young_moduls = "),
                 {"material.young_moduls", "did you mean 'young_modulus'?"}},
         BadCase{"missing_key", with("density = 1000.0\n", ""), {"material.density is missing"}},
-        BadCase{"missing_table",
-                with("[mesh]\ngenerator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]\n", ""),
-                {"mesh is missing"}},
+        BadCase{"missing_table", with("[mesh]\n" + own_mesh + "\n", ""), {"mesh is missing"}},
         BadCase{"text_for_a_number",
                 with("young_modulus = 3000.0", "young_modulus = \"soft\""),
                 {"bad.toml:13: material.young_modulus = 'soft' must be a number"}},
@@ -360,11 +342,16 @@ TEST(CaseFile, missing_file_is_named) {
       contains(input_error([&] { read_scene(folder / "none.toml"); }), "none.toml: no such case file"));
 }
 
+/// `good` with mesh and sets from a file.
+std::string with_mesh_file() {
+  std::string text = with(own_mesh, "file = \"mesh.h5\"");
+  const auto sets_at = text.find("[sets]");
+  return text.erase(sets_at, text.find("[[displacement]]") - sets_at);
+}
+
 TEST(CaseFile, missing_mesh_file_is_named) {
   const TemporaryFolder folder;
-  const auto file = folder.write(
-      "bad.toml",
-      with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"none.h5\""));
+  const auto file = folder.write("bad.toml", with(own_mesh, "file = \"none.h5\""));
   EXPECT_TRUE(contains(input_error([&] { read_scene(file); }), "none.h5: no such file"));
 }
 
@@ -375,9 +362,7 @@ TEST(CaseFile, inverted_elements_of_a_mesh_file_are_named) {
     for (std::size_t n = 0; n < 4; ++n) std::swap(cell[n], cell[n + 4]);
   }
   write_mesh_file(scene, folder / "mesh.h5");
-  const auto file = folder.write(
-      "bad.toml",
-      with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"mesh.h5\""));
+  const auto file = folder.write("bad.toml", with(own_mesh, "file = \"mesh.h5\""));
   const std::string text = input_error([&] { read_scene(file); });
   EXPECT_TRUE(contains(text, "bad.toml"));
   EXPECT_TRUE(contains(text, "6 of 6 elements are inverted"));
@@ -390,10 +375,7 @@ TEST(CaseFile, empty_sets_of_a_mesh_file_move_nothing) {
   const std::string set = scene.description.displacements.front().set;
   scene.sets.at(set).clear();
   write_mesh_file(scene, folder / "mesh.h5");
-  auto text = with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"mesh.h5\"");
-  const auto sets_at = text.find("[sets]");
-  text.erase(sets_at, text.find("[[displacement]]") - sets_at);
-  const auto file = folder.write("bad.toml", text);
+  const auto file = folder.write("bad.toml", with_mesh_file());
   EXPECT_TRUE(contains(input_error([&] { read_scene(file); }),
                        "displacement.set = '" + set + "' has no node in the mesh"));
 }
@@ -403,11 +385,7 @@ TEST(CaseFile, mesh_file_gives_the_same_scene) {
   const TemporaryFolder folder;
   const Scene scene = read_scene(folder.write("good.toml", good));
   write_mesh_file(scene, folder / "mesh.h5");
-  const auto text =
-      with("generator = \"box\"\nsize = [1.0, 2.0, 3.0]\nelements = [1, 2, 3]", "file = \"mesh.h5\"");
-  const auto sets_at = text.find("[sets]");
-  const auto no_rules = std::string(text).erase(sets_at, text.find("[[displacement]]") - sets_at);
-  const Scene again = read_scene(folder.write("again.toml", no_rules));
+  const Scene again = read_scene(folder.write("again.toml", with_mesh_file()));
   EXPECT_EQ(again.mesh.points, scene.mesh.points);
   EXPECT_EQ(again.mesh.cells, scene.mesh.cells);
   EXPECT_EQ(again.sets, scene.sets);

@@ -17,13 +17,6 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-template <class T>
-Tensor<T> converted(const Tensor<double>& a) {
-  Tensor<T> result{};
-  for (std::size_t n = 0; n < 9; ++n) result.entries[n] = static_cast<T>(a.entries[n]);
-  return result;
-}
-
 /// The stress of linear elasticity.
 template <class Law>
 Tensor<double> linear_stress(const Law& law, const Tensor<double>& H) {
@@ -175,7 +168,7 @@ TYPED_TEST(LawTest, single_precision_is_accurate_near_rest) {
   for (const double size : {0.3, 1e-2, 1e-4, 1e-6}) {
     for (int n = 0; n < this->samples; ++n) {
       const auto law = this->law(n);
-      const auto H = converted<float>(this->random.tensor(size));
+      const auto H = from_double<float>(this->random.tensor(size));
       Tensor<double> same{};
       for (std::size_t k = 0; k < 9; ++k) same.entries[k] = static_cast<double>(H.entries[k]);
       const auto exact = law.piola(same);

@@ -11,13 +11,6 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-template <class T>
-Tensor<T> converted(const Tensor<double>& a) {
-  Tensor<T> result{};
-  for (std::size_t n = 0; n < 9; ++n) result.entries[n] = static_cast<T>(a.entries[n]);
-  return result;
-}
-
 double neo_hookean_lateral(const NeoHookean& law, double stretch) {
   // The lateral stretch without lateral stress: bisection, the stress grows with it.
   double low = 0.1;
@@ -119,7 +112,7 @@ TEST(NeoHookean, agrees_with_the_textbook_form_in_long_double) {
     for (int n = 0; n < 100; ++n) {
       const auto law = sample_law<NeoHookean>(poisson_ratios[static_cast<std::size_t>(n) % 4]);
       const auto H = random.tensor(size);
-      const auto F = identity<Real>() + converted<Real>(H);
+      const auto F = identity<Real>() + from_double<Real>(H);
       const Real J = determinant(F);
       const Real I1 = double_dot(F, F);
       const Real scale = static_cast<Real>(law.shear_modulus()) / std::cbrt(J * J);

@@ -1,9 +1,10 @@
 """READMEs are true: their steps are followed literally in a copy, and what they name is there.
 
-A law and a control are compiled alone, into the tests that need no kernels: half a minute each.
-`ci/docs` follows the same steps and builds the whole solver.
+A law, a control and a number type are compiled alone, into the tests that need no kernels: half a
+minute each. `ci/docs` follows all steps and builds the whole solver.
 """
 
+import difflib
 import os
 import re
 import shutil
@@ -13,13 +14,15 @@ import pytest
 from command_line import BINARY, PATIENCE, ROOT
 from follow import changed, commands, follow, section
 
+FOLDERS = ["bench", "cases", "reference", "solver", "verification"]
 THEORY = ["solver/element/README.md", "solver/material/README.md", "solver/stepping/README.md"]
 
 
 def followed(document, heading, tree, *folders):
     """A copy of some folders in which the steps of a section were taken; its commands and files."""
+    results = shutil.ignore_patterns("__pycache__", "*.h5", "build")
     for folder in folders:
-        shutil.copytree(ROOT / folder, tree / folder, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / folder, tree / folder, ignore=results)
     text = section((ROOT / document).read_text(), heading)
     return commands(text), follow(text, tree)
 
@@ -27,7 +30,7 @@ def followed(document, heading, tree, *folders):
 def only_last(file, name):
     """Leaves the last entry in a list of types: what was added."""
     text = file.read_text()
-    found = re.search(rf"using {name} =\s+TypeList<[^>]*?(\w+)>;", text)
+    found = re.search(rf"using {name} =\s+TypeList<[^;]*?(\w+)>;", text)
     file.write_text(text.replace(found[0], f"using {name} = TypeList<{found[1]}>;"))
     return found[1]
 
@@ -117,6 +120,46 @@ def test_a_new_hourglass_control(tmp_path):
     assert run_test(tmp_path, "formulation_test", "*tl_mean_sampling*") >= 7
 
 
+def test_a_new_number_type(tmp_path):
+    shown, touched = followed(
+        "solver/math/README.md", "A new number type", tmp_path, "solver", "verification"
+    )
+    assert [file.split("/")[-1] for file in touched] == ["rounded.hpp", "number_types.hpp"]
+    assert shown == [
+        "ci/build release vocabulary_test && build/release/verification/vocabulary_test"
+    ]
+    assert only_last(tmp_path / "verification/support/number_types.hpp", "NumberTypes") == "Rounded"
+    assert run_test(tmp_path, "vocabulary_test", "*") >= 4
+
+
+WAYS = {
+    "case": ("cases/README.md", "A new case"),
+    "material law": ("solver/material/README.md", "A new law"),
+    "hourglass control": ("solver/element/README.md", "A new hourglass control"),
+    "number type": ("solver/math/README.md", "A new number type"),
+    "exact solution": ("verification/README.md", "A new exact solution"),
+    "benchmark": ("bench/README.md", "A new benchmark"),
+}
+
+
+def test_what_a_new_thing_costs_is_what_contributing_says(tmp_path):
+    """Its row has, after promise and file of the steps: new files; files changed, lines added."""
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    rows = re.findall(r"^\| ([^|]+) \| [^|]+ \| `([^`]+)` \| (\d) \| (\d), (\d+) \|$", text, re.M)
+    assert [row[0] for row in rows] == list(WAYS)
+    for name, document, *said in rows:
+        assert document == WAYS[name][0]
+        _, touched = followed(*WAYS[name], tmp_path / name, *FOLDERS)
+        changed_files = [file for file in touched if (ROOT / file).exists()]
+        added = 0
+        for file in changed_files:
+            old, new = ((tree / file).read_text() for tree in (ROOT, tmp_path / name))
+            lines = difflib.unified_diff(old.splitlines(), new.splitlines(), n=0)
+            added += sum(line.startswith("+") and not line.startswith("+++") for line in lines)
+        measured = [len(touched) - len(changed_files), len(changed_files), added]
+        assert measured == [int(number) for number in said], name
+
+
 def test_a_step_that_does_not_fit_is_an_error(tmp_path):
     (tmp_path / "there").write_text("a\nb\n")
     with pytest.raises(ValueError, match="not once"):
@@ -129,7 +172,7 @@ def test_a_step_that_does_not_fit_is_an_error(tmp_path):
     assert (tmp_path / "there").read_text() == "a\nc\n"
 
 
-@pytest.mark.parametrize("document", THEORY + ["cases/README.md"])
+@pytest.mark.parametrize("document", THEORY + sorted({document for document, _ in WAYS.values()}))
 def test_files_and_functions_that_a_readme_names_are_there(document):
     """Names in tables stand in the file of their row, or in one of the README's folder."""
     folder = (ROOT / document).parent

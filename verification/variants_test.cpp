@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/case_file.hpp"
+#include "support/case_text.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -10,22 +11,8 @@ namespace sandglass::verification {
 namespace {
 
 /// A file with two axes; "size" stands first in the file, though last in the alphabet.
-const std::string varied = R"([case]
-name = "bar"
-requirement = "A bar is pulled."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [1.0, 1.0, 3.0]
-elements = [1, 1, 1]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-density = 1000.0
-
-[sets]
+const std::string varied =
+    replaced(box_case("bar", "[1.0, 1.0, 3.0]", "[1, 1, 1]"), "poisson_ratio = 0.49\n", "") + R"([sets]
 bottom = { z = [0.0, 0.0] }
 top = { z = [3.0, 3.0] }
 
@@ -61,9 +48,7 @@ force = [{ set = "top", total = [0.0, 0.0, -1.0] }]
 )";
 
 std::string with(const std::string& old, const std::string& replacement) {
-  const auto at = varied.find(old);
-  if (at == std::string::npos) throw std::logic_error("not in the file: " + old);
-  return std::string(varied).replace(at, old.size(), replacement);
+  return replaced(varied, old, replacement);
 }
 
 TEST(Variants, every_combination_is_a_case_with_its_own_keys) {

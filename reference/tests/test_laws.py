@@ -19,17 +19,33 @@ from laws import LAWS, VISCOELASTIC, parameters
 from mesh_file import load_case_mesh, make_mesh
 from problem import GOLDEN, MixedProblem
 
-MATERIALS = {
-    "neo-hookean": "young_modulus = 3000.0\npoisson_ratio = 0.45",
-    # Nearer to 0.5 the element that averages the pressure gives way; see the solver's header.
-    "st-venant-kirchhoff": "young_modulus = 3000.0\npoisson_ratio = 0.1",
-    "mooney-rivlin": "c10 = 350.0\nc01 = 150.0\nbulk_modulus = 1e4",
-    "yeoh": "c1 = 500.0\nc2 = -50.0\nc3 = 40.0\nbulk_modulus = 1e4",
-    "fibre-neo-hookean": "young_modulus = 3000.0\npoisson_ratio = 0.45\nfibre_modulus = 5000.0\n"
-    "fibre_direction = [1.0, -0.5, 2.0]",
+# Numbers of soft tissue, by parameter; what a law that is new here has beside them is guessed.
+NUMBERS = {
+    "young_modulus": "3000.0",
+    "poisson_ratio": "0.45",
+    "bulk_modulus": "1e4",
+    "c10": "350.0",
+    "c01": "150.0",
+    "c1": "500.0",
+    "c2": "-50.0",
+    "c3": "40.0",
+    "fibre_modulus": "5000.0",
+    "fibre_direction": "[1.0, -0.5, 2.0]",
+    "relaxation_1": "0.25",
+    "time_1": "0.5",
+    "relaxation_2": "0.15",
+    "time_2": "50.0",
 }
-RELAXATION = "relaxation_1 = 0.25\ntime_1 = 0.5\nrelaxation_2 = 0.15\ntime_2 = 50.0"
-MATERIALS |= {f"{VISCOELASTIC}{law}": f"{text}\n{RELAXATION}" for law, text in MATERIALS.items()}
+# Nearer to 0.5 the element that averages the pressure gives way; see the solver's header.
+OF_LAW = {"st-venant-kirchhoff": {"poisson_ratio": "0.1"}}
+
+
+def _material(law):
+    """The keys of a law's table, but for `law` and `density`."""
+    numbers = NUMBERS | OF_LAW.get(law.removeprefix(VISCOELASTIC), {})
+    guess = {name: "1000.0" if name.endswith("modulus") else "1.0" for name in parameters(law)}
+    return "\n".join(f"{name} = {numbers.get(name, guess[name])}" for name in guess)
+
 
 # Stretched by a third, sheared by as much, with free sides: every part of a law takes part.
 CASE = (
@@ -65,7 +81,7 @@ tolerance = 1e-11
 
 def _case(folder, law):
     path = folder / "block.toml"
-    path.write_text(CASE.format(law=law, material=MATERIALS[law]))
+    path.write_text(CASE.format(law=law, material=_material(law)))
     return path
 
 
@@ -102,12 +118,6 @@ def _energy(problem, law, material):
     density = LAWS[law](ufl.Identity(3) + ufl.grad(u), p, **numbers)
     measure = ufl.dx(metadata={"quadrature_rule": "default", "quadrature_degree": 3})
     return fem.assemble_scalar(fem.form(density * measure))
-
-
-def test_every_law_names_its_parameters():
-    for law, material in MATERIALS.items():
-        assert {line.split(" = ")[0] for line in material.splitlines()} == set(parameters(law))
-    assert MATERIALS.keys() == LAWS.keys()
 
 
 @pytest.mark.parametrize(

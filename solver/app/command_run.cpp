@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
+#include "io/case_keys.hpp"
 #include "io/result_file.hpp"
 #include "model/method_entry.hpp"
 #include "stepping/central_difference.hpp"
@@ -223,13 +224,68 @@ void require_rest(const RunOptions& options, const Case& description) {
   if (options.sleep) refuse("--sleep", "what sleeps is known of");
 }
 
+/// What a run has found, at rest or in motion.
+struct Answer {
+  NodalField u;
+  std::string status;  ///< "complete", or why not
+  long steps = 0;
+  double seconds = 0.0;
+  double adaption_seconds = 0.0;
+};
+
+void print_outcome(const Model& model, const std::string& what) {
+  fmt::print("{} {} {}: {}\n", model.scene().description.name, model.choice().method, kappa_text(model),
+             what);
+}
+
 /// A static answer, of the whole or of what moves.
-Relaxation answer(const Model& model, const std::optional<double>& sleep, Observer& observer,
-                  const Checkpoint* from) {
+Relaxation relax_as_asked(const Model& model, const std::optional<double>& sleep, Observer& observer,
+                          const Checkpoint* from) {
   if (!sleep) return relax(model, observer, from);
   LocalRelaxation local = relax_awake(model.scene(), model.choice(), *sleep, observer);
   fmt::print("awake: {} of {} elements\n", local.elements, model.scene().mesh.cells.size());
   return std::move(local.relaxation);
+}
+
+Answer answer_at_rest(const Model& model, const std::optional<double>& sleep, Observer& observer,
+                      const Checkpoint* from) {
+  Relaxation found = relax_as_asked(model, sleep, observer, from);
+  const Precision precision = model.choice().precision;
+  const std::string ending = outcome(found, precision);
+  print_outcome(model,
+                fmt::format("{} after {} steps, residual {:.2e}", ending, found.steps, found.residual));
+  return {std::move(found.u), at_rest(found, precision) ? "complete" : ending, found.steps, found.seconds,
+          found.adaption_seconds};
+}
+
+Answer answer_in_motion(const Model& model, Observer& observer, const Checkpoint* from) {
+  Motion found = integrate(model, observer, from);
+  const std::string status =
+      found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete";
+  print_outcome(model, fmt::format("{} s in {} steps of at least {:.4g} s, {}", found.time, found.steps,
+                                   found.smallest_step, status));
+  return {std::move(found.u), status, found.steps, found.seconds, found.adaption_seconds};
+}
+
+/// Computes and prints an answer; `writer` and `keeper` may be null.
+Answer compute(const RunOptions& options, const Given& given, const Model& model, ResultWriter* writer,
+               CheckpointKeeper* keeper) {
+  const Scene& scene = model.scene();
+  const bool quasi_static = scene.description.quasi_static;
+  const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
+  if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
+  watch_for_interrupt();
+  RunObserver observer(scene.description.name, writer, keeper);
+  Answer answer = quasi_static ? answer_at_rest(model, given.sleep, observer, from)
+                               : answer_in_motion(model, observer, from);
+  print_energies(scene, observer.last());
+  print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
+  if (quasi_static && answer.status == "complete") {
+    print_accuracy(scene, answer.u);
+    if (options.estimate) print_estimate(model, answer.u);
+  }
+  print_time(answer.seconds, answer.steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
+  return answer;
 }
 
 int run_case(const RunOptions& options) {
@@ -240,54 +296,19 @@ int run_case(const RunOptions& options) {
   const Model model(scene, choose_method(options, given, scene.description));
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
-  const Checkpoint* from = keeper ? keeper->from() : nullptr;
-  if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
-  std::string status;
-  long steps = 0;
-  double seconds = 0.0, adaption_seconds = 0.0;
-  watch_for_interrupt();
-  {
-    RunObserver observer(scene.description.name, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr);
-    NodalField u;
-    if (scene.description.quasi_static) {
-      Relaxation relaxation = answer(model, given.sleep, observer, from);
-      u = std::move(relaxation.u);
-      steps = relaxation.steps;
-      seconds = relaxation.seconds;
-      adaption_seconds = relaxation.adaption_seconds;
-      const std::string ending = outcome(relaxation, model.choice().precision);
-      status = at_rest(relaxation, model.choice().precision) ? "complete" : ending;
-      fmt::print("{} {} {}: {} after {} steps, residual {:.2e}\n", scene.description.name,
-                 model.choice().method, kappa_text(model), ending, steps, relaxation.residual);
-    } else {
-      Motion motion = integrate(model, observer, from);
-      u = std::move(motion.u);
-      steps = motion.steps;
-      seconds = motion.seconds;
-      adaption_seconds = motion.adaption_seconds;
-      status = motion.interrupted ? fmt::format("interrupted at step {}", steps) : "complete";
-      fmt::print("{} {} {}: {} s in {} steps of at least {:.4g} s, {}\n", scene.description.name,
-                 model.choice().method, kappa_text(model), motion.time, steps, motion.smallest_step, status);
-    }
-    print_energies(scene, observer.last());
-    print_levels(model.choice().method, observer.levels(), adaption_seconds / seconds);
-    if (scene.description.quasi_static && status == "complete") {
-      print_accuracy(scene, u);
-      if (options.estimate) print_estimate(model, u);
-    }
-  }
-  print_time(seconds, steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
+  const std::string status =
+      compute(options, given, model, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr).status;
   if (writer) {
     writer->commit(status);
     fmt::print("wrote {}\n", options.output);
   }
-  if (keeper && status == "complete") keeper->finish();
   if (status != "complete") {
     throw ComputationError(fmt::format("{}: {}; what was complete is {}", scene.description.name, status,
                                        writer ? "in " + options.output : "not kept (no --output)"));
   }
+  if (keeper) keeper->finish();
   return 0;
 }
 

@@ -8,20 +8,16 @@
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "io/case_file.hpp"
+#include "io/project_folder.hpp"
 
 namespace sandglass {
 
-namespace {
 namespace fs = std::filesystem;
-}
 
 fs::path case_folder() {
   if (const char* folder = std::getenv("SANDGLASS_CASES")) return folder;
   std::error_code ignored;
-  if (fs::is_directory("cases", ignored)) return "cases";
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path installed = (program.parent_path() / SANDGLASS_INSTALLED_CASES).lexically_normal();
-  return fs::is_directory(installed, ignored) ? installed : fs::path(SANDGLASS_CASES);
+  return fs::is_directory("cases", ignored) ? "cases" : project_folder("cases");
 }
 
 namespace {

@@ -45,8 +45,7 @@ void read_mesh(TableReader& reader, Case& scene) {
 
 void read_material(TableReader table, Case& scene) {
   scene.law = read_listed<Laws>(table, "law");
-  scene.density = table.required<double>("density");
-  table.require_in_range("density", scene.density, Range::positive());
+  scene.density = table.required<double>("density", Range::positive());
   table.finish();
 }
 
@@ -54,8 +53,7 @@ CylinderRegion read_cylinder(TableReader table) {
   CylinderRegion region;
   region.axis = table.required_choice("axis", {"x", "y", "z"})[0] - 'x';
   region.center = table.required<std::array<double, 2>>("center");
-  region.semi_axes = table.required<std::array<double, 2>>("semi_axes");
-  for (const double a : region.semi_axes) table.require_in_range("semi_axes", a, Range::positive());
+  region.semi_axes = table.required<std::array<double, 2>>("semi_axes", Range::positive());
   table.finish();
   return region;
 }
@@ -81,8 +79,7 @@ NodeSetRule read_set(TableReader table, const std::string& name) {
 ImposedDisplacement read_displacement(TableReader table) {
   ImposedDisplacement imposed;
   imposed.set = table.required<std::string>("set");
-  imposed.value = table.required<Vector>("value");
-  for (const double d : imposed.value) table.require_in_range("value", d, Range::any());
+  imposed.value = table.required<Vector>("value", Range::any());
   if (const auto components = table.optional<std::string>("components")) {
     imposed.components = {};
     for (const char c : *components) {
@@ -105,8 +102,7 @@ Vector read_axis(TableReader& table) {
     axis[static_cast<std::size_t>(table.required_choice("axis", {"x", "y", "z"})[0] - 'x')] = 1.0;
     return axis;
   }
-  axis = table.required<Vector>("axis");
-  for (const double a : axis) table.require_in_range("axis", a, Range::any());
+  axis = table.required<Vector>("axis", Range::any());
   const double length = std::hypot(axis[0], axis[1], axis[2]);
   if (length == 0.0) table.fail("axis", "= [0, 0, 0] must not be zero: it is a direction");
   for (double& a : axis) a /= length;
@@ -117,13 +113,9 @@ ImposedRotation read_rotation(TableReader table) {
   ImposedRotation turned;
   turned.set = table.required<std::string>("set");
   turned.axis = read_axis(table);
-  const auto degrees = table.required<double>("angle");
-  table.require_in_range("angle", degrees, Range::any());
-  turned.angle = degrees / 180.0 * std::numbers::pi;
-  turned.center = table.optional<Vector>("center");
-  for (const double c : turned.center.value_or(Vector{})) table.require_in_range("center", c, Range::any());
-  turned.displacement = table.optional<Vector>("displacement").value_or(Vector{});
-  for (const double d : turned.displacement) table.require_in_range("displacement", d, Range::any());
+  turned.angle = table.required<double>("angle", Range::any()) / 180.0 * std::numbers::pi;
+  turned.center = table.optional<Vector>("center", Range::any());
+  turned.displacement = table.optional<Vector>("displacement", Range::any()).value_or(Vector{});
   table.finish();
   return turned;
 }
@@ -136,12 +128,11 @@ std::vector<std::string> directions() {
 ImposedForce read_force(TableReader table) {
   ImposedForce force;
   force.set = table.required<std::string>("set");
-  const auto total = table.optional<Vector>("total"), moment = table.optional<Vector>("moment");
+  const auto total = table.optional<Vector>("total", Range::any());
+  const auto moment = table.optional<Vector>("moment", Range::any());
   if (!total && !moment) table.fail("total", "or moment must be given, or both");
   force.total = total.value_or(Vector{});
   force.moment = moment.value_or(Vector{});
-  for (const double f : force.total) table.require_in_range("total", f, Range::any());
-  for (const double m : force.moment) table.require_in_range("moment", m, Range::any());
   table.finish();
   return force;
 }
@@ -149,16 +140,13 @@ ImposedForce read_force(TableReader table) {
 InitialVelocity read_velocity(TableReader table) {
   InitialVelocity velocity;
   velocity.set = table.optional<std::string>("set");
-  const auto value = table.optional<Vector>("value"), spin = table.optional<Vector>("spin");
+  const auto value = table.optional<Vector>("value", Range::any());
+  const auto spin = table.optional<Vector>("spin", Range::any());
   if (!value && !spin) table.fail("value", "or spin must be given, or both");
   velocity.value = value.value_or(Vector{});
   velocity.spin = spin.value_or(Vector{});
-  for (const double v : velocity.value) table.require_in_range("value", v, Range::any());
-  for (const double w : velocity.spin) table.require_in_range("spin", w, Range::any());
-  if (const auto half_waves = table.optional<std::array<int, 3>>("half_waves")) {
-    for (const int n : *half_waves) table.require_in_range("half_waves", n, Range::at_least(0.0));
-    velocity.half_waves = *half_waves;
-  }
+  velocity.half_waves =
+      table.optional<std::array<int, 3>>("half_waves", Range::at_least(0.0)).value_or(velocity.half_waves);
   table.finish();
   return velocity;
 }
@@ -167,8 +155,7 @@ PublishedValue read_published(TableReader table) {
   PublishedValue published;
   published.set = table.required<std::string>("set");
   published.component = table.required_choice("component", directions());
-  published.value = table.required<double>("value");
-  table.require_in_range("value", published.value, Range::any());
+  published.value = table.required<double>("value", Range::any());
   if (published.value == 0.0) table.fail("value", "= 0 must not be zero: results are told as shares of it");
   published.source = table.required<std::string>("source");
   table.finish();
@@ -184,11 +171,8 @@ Profile read_profile(TableReader table) {
 
 /// A kappa as written: a number, "auto" (also when absent) or "best".
 std::string read_kappa(TableReader& table) {
-  if (table.holds_number("kappa")) {
-    const auto kappa = table.required<double>("kappa");
-    table.require_in_range("kappa", kappa, Range::at_least(0.0));
-    return fmt::to_string(kappa);
-  }
+  if (table.holds_number("kappa"))
+    return fmt::to_string(table.required<double>("kappa", Range::at_least(0.0)));
   return table.optional<std::string>("kappa") ? table.required_choice("kappa", {"auto", "best"}) : "auto";
 }
 
@@ -198,8 +182,7 @@ std::optional<double> read_strength(TableReader& table, const std::string& metho
     if (table.optional<std::string>("kappa")) table.required_choice("kappa", {"auto"});
     return std::nullopt;
   }
-  const auto kappa = table.required<double>("kappa");
-  table.require_in_range("kappa", kappa, Range::at_least(0.0));
+  const auto kappa = table.required<double>("kappa", Range::at_least(0.0));
   if (!method_named(method).takes_kappa) {
     table.fail("kappa", fmt::format("= {} was given, but method '{}' has no such parameter", kappa, method));
   }
@@ -215,10 +198,9 @@ MethodChoice read_method(TableReader table) {
   };
   if (is("kappa_modulus", {"p-wave", "shear"}, "shear")) choice.kappa_modulus = KappaModulus::shear;
   if (is("precision", {"double", "float"}, "float")) choice.precision = Precision::single_precision;
-  if (const auto accuracy = table.optional<double>("accuracy")) {
+  if (const auto accuracy = table.optional<double>("accuracy", Range::positive())) {
     if (!method_named(choice.method).adapts())
       table.fail("accuracy", "is for an adaptive method alone; leave it out");
-    if (!(*accuracy > 0.0)) table.fail("accuracy", "must be positive");
     choice.accuracy = *accuracy;
   }
   table.finish();
@@ -246,8 +228,7 @@ Expectation read_expectation(TableReader table) {
 }
 
 void read_comparison(TableReader table, Case& scene) {
-  scene.kappas = table.optional<std::vector<double>>("kappas").value_or(std::vector<double>{});
-  for (const double kappa : scene.kappas) table.require_in_range("kappas", kappa, Range::at_least(0.0));
+  scene.kappas = table.optional<std::vector<double>>("kappas", Range::at_least(0.0)).value_or(scene.kappas);
   const auto folder = scene.file.parent_path();
   if (const auto golden = table.optional<std::string>("golden")) scene.golden = folder / *golden;
   if (const auto truth = table.optional<std::string>("truth")) scene.truth = folder / *truth;
@@ -273,38 +254,6 @@ MeshWithSets read_mesh_of(const Case& scene, const MeshFile& file) {
         fmt::format("{}: mesh.file: {}{}", scene.file.string(), error.what(),
                     ours ? "" : "; what is no HDF5 file must end in .msh (Gmsh), .inp (Abaqus) or .vtu"));
   }
-}
-
-/// Lines about the parameters of one aggregate, for people.
-template <class Aggregate>
-std::string described(const std::string& table) {
-  const Aggregate defaults{};
-  std::string text;
-  std::apply(
-      [&](const auto&... p) {
-        const auto line = [&](const auto& parameter) {
-          using Value = std::remove_cvref_t<decltype(defaults.*(parameter.member))>;
-          std::string fallback = "required";
-          if constexpr (std::is_arithmetic_v<Value>) {
-            if (!parameter.required) fallback = fmt::format("default {}", defaults.*(parameter.member));
-          }
-          text += fmt::format(
-              "  {:<28} {:<6} {:<12} {:<16} {}\n", fmt::format("{}.{}", table, parameter.name),
-              fmt::format("[{}]", parameter.unit), parameter.range.text(), fallback, parameter.meaning);
-        };
-        (line(p), ...);
-      },
-      Aggregate::parameters());
-  return text;
-}
-
-template <class... Types>
-std::string described_list(TypeList<Types...> /*list*/, const std::string& table, const std::string& key) {
-  std::string text;
-  ((text += fmt::format("\n{}.{} = \"{}\": {}\n{}", table, key, Types::name, Types::summary,
-                        described<Types>(table))),
-   ...);
-  return text;
 }
 
 /// `read_mesh(reader, case)` says where its mesh is from.
@@ -390,53 +339,6 @@ MethodChoice method_of(const Case& description, const std::optional<std::string>
   MethodChoice choice = description.method.value_or(MethodChoice{.method = "tl-perturbation"});
   if (named && *named != choice.method) choice = {.method = *named, .precision = choice.precision};
   return choice;
-}
-
-std::string describe_case_keys() {
-  std::string text =
-      "Keys of a case file (TOML). Tables and their parameters: name, unit, range, default, meaning.\n"
-      "\n[case] name, requirement: texts; answer: \"quasi-static\" or \"dynamic\"\n";
-  text += described_list(Generators{}, "mesh", "generator");
-  text +=
-      "\nmesh.file = \"FILE\": instead of a generator, a mesh of hexahedra, in m: .h5 as `sandglass mesh` "
-      "writes it, .msh of\n  Gmsh (2.2, 4.1), .inp of Abaqus or CalculiX (C3D8...), .vtu. Its physical "
-      "groups, its NSETs and ELSETs, its point\n  arrays of 0 and 1 are node sets by their names; rules of "
-      "[sets] add others, and replace those of the same name\n";
-  text += described_list(Laws{}, "material", "law");
-  text += fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", "material.density", "[kg/m^3]",
-                      Range::positive().text(), "required", "mass density at rest");
-  text +=
-      "\n[sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = \"z\", "
-      "center = [x, y], "
-      "semi_axes = [a, b] } }\n  all conditions must hold; lengths in m; inf and -inf are allowed\n"
-      "\n[[displacement]] set = NAME, value = [x, y, z] in m, components = \"xyz\" (default: all)\n"
-      "[[rotation]] set = NAME, axis = \"x\", \"y\", \"z\" or [x, y, z], angle in degrees, by the right-hand "
-      "rule:\n  the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis "
-      "(default: the mean of\n  the set's nodes), displacement = [x, y, z] in m, added (default: none)\n"
-      "[[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the "
-      "faces:\n"
-      "  a dead load on the boundary faces within the set\n"
-      "[[published]] set = NAME, component = \"x\", ... or \"around-x\", ..., value in m or rad: mean "
-      "displacement "
-      "or rotation of the set,\n  source: a text\n"
-      "[[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in "
-      "rad/s about the\n  set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the "
-      "set,\n  value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several "
-      "add "
-      "up\n"
-      "[profile] set = NAME, order = \"x\" | \"y\" | \"z\" | \"around-x\" | \"around-y\" | \"around-z\"\n"
-      "[method] name, kappa (number or \"auto\"), kappa_modulus (\"p-wave\" or \"shear\"), accuracy\n"
-      "  (of an adaptive method), precision (\"double\" or \"float\"): what `sandglass run` takes unless its "
-      "options\n  say otherwise; `sandglass choose` writes it\n"
-      "[comparison] kappas = [numbers], golden = \"FILE.h5\", truth = \"FILE.h5\"\n"
-      "[[expect]] method, kappa (number, \"auto\" or \"best\"), reference (\"golden\", \"truth\" or "
-      "\"published\"),\n  figure, below or above, reason\n"
-      "[[variants.AXIS]] name, and any of these keys: every combination of one variant of each axis is a "
-      "case\n";
-  text +=
-      "\n[relaxation]: how a quasi-static answer is found\n" + described<RelaxationSettings>("relaxation");
-  text += "\n[dynamics]: how a dynamic answer is found\n" + described<DynamicsSettings>("dynamics");
-  return text;
 }
 
 }  // namespace sandglass

@@ -31,7 +31,4 @@ Scene read_scene(const std::string& text, MeshWithSets mesh);
 /// named, it says no more than the precision.
 MethodChoice method_of(const Case& description, const std::optional<std::string>& named = {});
 
-/// Every key that a case file may have, with type, unit, range, default and meaning.
-std::string describe_case_keys();
-
 }  // namespace sandglass

@@ -15,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "io/new_file.hpp"
+#include "io/project_folder.hpp"
 
 namespace sandglass {
 
@@ -93,18 +94,10 @@ int run_program(std::vector<std::string> words, std::string& said) {
   return status;
 }
 
-/// The folder exchange/: of an installed program beside it, else that of the source.
-std::string exchange_folder() {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path installed = (program.parent_path() / SANDGLASS_INSTALLED_EXCHANGE).lexically_normal();
-  return fs::is_directory(installed, ignored) ? installed.string() : SANDGLASS_EXCHANGE;
-}
-
 /// Runs exchange/convert.py; `path` is the file of the user that is converted. Throws InputError with what it
 /// says of wrong input, ComputationError when it fails.
 void convert(std::vector<std::string> arguments, const fs::path& path) {
-  const fs::path program = fs::path(setting("SANDGLASS_EXCHANGE", exchange_folder())) / "convert.py";
+  const fs::path program = fs::path(setting("SANDGLASS_EXCHANGE", project_folder("exchange"))) / "convert.py";
   std::error_code ignored;
   if (!fs::is_regular_file(program, ignored)) {
     throw InputError(

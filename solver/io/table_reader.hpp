@@ -36,6 +36,21 @@ class TableReader {
     fail_missing(key);
   }
 
+  /// The same of a number, or of numbers, that must lie in a range.
+  template <class T>
+  std::optional<T> optional(const std::string& key, const Range& range) {
+    auto value = optional<T>(key);
+    if (value) require_in_range(key, *value, range);
+    return value;
+  }
+
+  template <class T>
+  T required(const std::string& key, const Range& range) {
+    T value = required<T>(key);
+    require_in_range(key, value, range);
+    return value;
+  }
+
   /// Whether the key is there and holds a number, or a text.
   bool holds_number(const std::string& key);
   bool holds_text(const std::string& key);
@@ -63,9 +78,6 @@ class TableReader {
     }
   }
 
-  /// Throws when a value is out of range.
-  void require_in_range(const std::string& key, double value, const Range& range) const;
-
   /// Throws when the table has a key that was not asked for; suggests the nearest that was.
   void finish() const;
 
@@ -82,17 +94,21 @@ class TableReader {
   template <class T>
   T convert(const toml::node& node, const std::string& key) const;
 
+  void require_in_range(const std::string& key, double value, const Range& range) const;
+  template <class Values>
+  requires(!std::is_arithmetic_v<Values>) void require_in_range(const std::string& key, const Values& values,
+                                                                const Range& range) const {
+    for (const auto value : values) require_in_range(key, static_cast<double>(value), range);
+  }
+
   template <class Aggregate, class Value>
   void read(Aggregate& aggregate, const Parameter<Aggregate, Value>& parameter) {
     const std::string key(parameter.name);
-    const auto value = parameter.required ? required<Value>(key) : optional<Value>(key);
-    if (!value) return;
-    if constexpr (std::is_arithmetic_v<Value>) {
-      require_in_range(key, static_cast<double>(*value), parameter.range);
-    } else {
-      for (const auto entry : *value) require_in_range(key, static_cast<double>(entry), parameter.range);
+    if (parameter.required) {
+      aggregate.*(parameter.member) = required<Value>(key, parameter.range);
+    } else if (const auto value = optional<Value>(key, parameter.range)) {
+      aggregate.*(parameter.member) = *value;
     }
-    aggregate.*(parameter.member) = *value;
   }
 
   const toml::table& table_;

@@ -10,44 +10,6 @@
 /// follow from it by derivatives.
 namespace sandglass::verification {
 
-inline double sine(double x) {
-  return std::sin(x);
-}
-inline double cosine(double x) {
-  return std::cos(x);
-}
-template <class T>
-Dual<T> cosine(const Dual<T>& x);
-template <class T>
-Dual<T> sine(const Dual<T>& x) {
-  return {sine(x.value), cosine(x.value) * x.slope};
-}
-template <class T>
-Dual<T> cosine(const Dual<T>& x) {
-  return {cosine(x.value), -(sine(x.value) * x.slope)};
-}
-
-/// Three waves, u = sum_m a_m sin(k_m . X + phase_m), in m on a body of about a metre. They are almost
-/// transverse: displacement gradients reach 0.33 in their Frobenius norm while det F stays between 0.955 and
-/// 1.040, so that nearly incompressible laws bear it, too. Nothing in it is symmetric or a polynomial.
-struct WaveField {
-  double amplitude = 1.0;
-
-  template <class T>
-  Triple<T> operator()(const Triple<T>& X) const {
-    constexpr Tensor<double> k{{2.1, 1.2, -0.9, -1.1, 1.8, 1.3, 1.4, -0.8, 2.0}};  // 1/m, a wave in each row
-    constexpr Tensor<double> a{{0.03, -0.015, 0.06, 0.06, -0.01, 0.06, 0.03, 0.06, 0.0}};  // m
-    constexpr std::array<double, 3> phase{0.3, 1.1, -0.4};
-    Triple<T> u = from_double<T>(Triple<double>{});
-    for (int m = 0; m < 3; ++m) {
-      const T angle = T(k(m, 0)) * X(0, 0) + T(k(m, 1)) * X(1, 0) + T(k(m, 2)) * X(2, 0);
-      const T wave = sine(angle + T(phase[index(m)]));
-      for (int i = 0; i < 3; ++i) u(i, 0) = u(i, 0) + T(amplitude * a(m, i)) * wave;
-    }
-    return u;
-  }
-};
-
 /// X with the slope 1 in component j.
 template <class T>
 Triple<Dual<T>> moving_along(const Triple<T>& X, int j) {

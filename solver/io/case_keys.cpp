@@ -1,0 +1,105 @@
+#include "io/case_keys.hpp"
+
+#include <fmt/format.h>
+
+#include "mesh/generators.hpp"
+#include "model/case.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// A key and all that is said of it, in columns.
+std::string key_line(const std::string& key, std::string_view unit, const Range& range,
+                     const std::string& fallback, std::string_view meaning) {
+  return fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", key, fmt::format("[{}]", unit), range.text(),
+                     fallback, meaning);
+}
+
+/// Lines about the parameters of one aggregate, for people.
+template <class Aggregate>
+std::string described(const std::string& table) {
+  const Aggregate defaults{};
+  std::string text;
+  std::apply(
+      [&](const auto&... p) {
+        const auto line = [&](const auto& parameter) {
+          using Value = std::remove_cvref_t<decltype(defaults.*(parameter.member))>;
+          std::string fallback = "required";
+          if constexpr (std::is_arithmetic_v<Value>) {
+            if (!parameter.required) fallback = fmt::format("default {}", defaults.*(parameter.member));
+          }
+          text += key_line(fmt::format("{}.{}", table, parameter.name), parameter.unit, parameter.range,
+                           fallback, parameter.meaning);
+        };
+        (line(p), ...);
+      },
+      Aggregate::parameters());
+  return text;
+}
+
+template <class... Types>
+std::string described_list(TypeList<Types...> /*list*/, const std::string& table, const std::string& key) {
+  std::string text;
+  ((text += fmt::format("\n{}.{} = \"{}\": {}\n{}", table, key, Types::name, Types::summary,
+                        described<Types>(table))),
+   ...);
+  return text;
+}
+
+constexpr std::string_view before_generators =
+    R"(Keys of a case file (TOML). Tables and their parameters: name, unit, range, default, meaning.
+
+[case] name, requirement: texts; answer: "quasi-static" or "dynamic"
+)";
+
+constexpr std::string_view mesh_file = R"(
+mesh.file = "FILE": instead of a generator, a mesh of hexahedra, in m: .h5 as `sandglass mesh` writes it,
+  .msh of Gmsh (2.2, 4.1), .inp of Abaqus or CalculiX (C3D8...), .vtu. Its physical groups, its NSETs and
+  ELSETs, its point arrays of 0 and 1 are node sets by their names; rules of [sets] add others, and replace
+  those of the same name
+)";
+
+constexpr std::string_view sets_and_loads = R"(
+[sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = "z",
+  center = [x, y], semi_axes = [a, b] } }
+  all conditions must hold; lengths in m; inf and -inf are allowed
+
+[[displacement]] set = NAME, value = [x, y, z] in m, components = "xyz" (default: all)
+[[rotation]] set = NAME, axis = "x", "y", "z" or [x, y, z], angle in degrees, by the right-hand rule:
+  the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis
+  (default: the mean of the set's nodes), displacement = [x, y, z] in m, added (default: none)
+[[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the faces:
+  a dead load on the boundary faces within the set
+[[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
+  rotation of the set, source: a text
+[[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in rad/s about
+  the set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the set,
+  value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several add up
+[profile] set = NAME, order = "x" | "y" | "z" | "around-x" | "around-y" | "around-z"
+[method] name, kappa (number or "auto"), kappa_modulus ("p-wave" or "shear"), accuracy
+  (of an adaptive method), precision ("double" or "float"): what `sandglass run` takes unless its options
+  say otherwise; `sandglass choose` writes it
+[comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
+[[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth" or "published"),
+  figure, below or above, reason
+[[variants.AXIS]] name, and any of these keys: every combination of one variant of each axis is a case
+)";
+
+}  // namespace
+
+std::string describe_case_keys() {
+  std::string text(before_generators);
+  text += described_list(Generators{}, "mesh", "generator");
+  text += mesh_file;
+  text += described_list(Laws{}, "material", "law");
+  text += key_line("material.density", "kg/m^3", Range::positive(), "required", "mass density at rest");
+  text += sets_and_loads;
+  text += "\n[relaxation]: how a quasi-static answer is found\n";
+  text += described<RelaxationSettings>("relaxation");
+  text += "\n[dynamics]: how a dynamic answer is found\n";
+  text += described<DynamicsSettings>("dynamics");
+  return text;
+}
+
+}  // namespace sandglass

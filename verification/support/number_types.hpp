@@ -1,0 +1,27 @@
+#pragma once
+
+#include "base/type_list.hpp"
+#include "math/counted.hpp"
+#include "math/dual.hpp"
+#include "math/pack.hpp"
+
+namespace sandglass::verification {
+
+/// The number types that kernels run on: vocabulary_test.cpp asks of each what scalar.hpp promises.
+using NumberTypes = TypeList<double, float, Pack<double>, Pack<float>, Dual<double>, Counted>;
+
+/// What a number is worth without what its type adds: a slope, a tally, the other lanes.
+template <class Number>
+double plain_value(const Number& x) {
+  if constexpr (requires { x.lanes; }) {
+    return static_cast<double>(x.lanes[0]);
+  } else if constexpr (requires { x.value(); }) {
+    return x.value();
+  } else if constexpr (requires { x.value; }) {
+    return plain_value(x.value);
+  } else {
+    return static_cast<double>(x);
+  }
+}
+
+}  // namespace sandglass::verification
