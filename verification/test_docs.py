@@ -132,6 +132,20 @@ def test_a_new_number_type(tmp_path):
     assert run_test(tmp_path, "vocabulary_test", "*") >= 4
 
 
+def test_a_new_exact_solution(tmp_path):
+    """Compiled and run by ci/docs: it needs every kernel."""
+    shown, touched = followed(
+        "verification/README.md", "A new exact solution", tmp_path, "verification"
+    )
+    assert touched == ["verification/support/exact_fields.hpp"]
+    assert shown == [
+        "ci/build release manufactured_test && "
+        "build/release/verification/manufactured_test --gtest_filter='*torsion*'"
+    ]
+    field = only_last(tmp_path / touched[0], "ExactFields")
+    assert field == "TorsionField" and f"struct {field} " in (tmp_path / touched[0]).read_text()
+
+
 WAYS = {
     "case": ("cases/README.md", "A new case"),
     "material law": ("solver/material/README.md", "A new law"),
