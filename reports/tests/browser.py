@@ -39,10 +39,7 @@ class Browser:
     def open(self, path):
         """Opens a file and waits until it is loaded: until then the page before it answers."""
         loader = self._call("Page.navigate", url=f"file://{path}")["loaderId"]
-        end = time.monotonic() + PATIENCE
-        while self._call("Page.getFrameTree")["frameTree"]["frame"]["loaderId"] != loader:
-            assert time.monotonic() < end, f"{path} never came"
-            time.sleep(0.05)
+        self._wait(lambda: self._loader() == loader, f"{path} never came")
         self.until("document.readyState === 'complete'")
 
     def run(self, expression):
@@ -56,9 +53,16 @@ class Browser:
 
     def until(self, expression):
         """Waits until an expression is true, and fails where it never becomes so."""
+        self._wait(lambda: self.run(expression), f"never true: {expression}")
+
+    def _loader(self):
+        """Which loading of a page the window shows."""
+        return self._call("Page.getFrameTree")["frameTree"]["frame"]["loaderId"]
+
+    def _wait(self, comes_true, told):
         end = time.monotonic() + PATIENCE
-        while not self.run(expression):
-            assert time.monotonic() < end, f"never true: {expression}; console: {self.complaints}"
+        while not comes_true():
+            assert time.monotonic() < end, f"{told}; console: {self.complaints}"
             time.sleep(0.05)
 
     def picture(self, path, selector=None):
