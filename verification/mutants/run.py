@@ -67,13 +67,13 @@ def result_of(worker, patch, programs, timeout):
 def clean_runs(worker, wanted, tree, revision):
     """Runs all tests of the clean tree until it has had `wanted` runs; earlier ones count.
 
-    Raises RuntimeError when a test has failed in every run, of two at least: no verdict on mutants
-    would count. What failed once is a false alarm, and told as one.
+    A single run with failures is followed by another, which tells false alarms from a broken tree.
+    Raises RuntimeError when a test has failed in every run: no verdict on mutants would count.
     """
     known = results.stored(results.CLEAN)
     if known is None or known["tree"] != tree:
         known = {"tree": tree, "revision": revision, "alarms": [], "seconds": {}}
-    while len(known["alarms"]) < wanted:
+    while len(known["alarms"]) < wanted or (len(known["alarms"]) == 1 and known["alarms"][0]):
         alarms = []
         for program in worker.programs():
             failed, known["seconds"][program.name] = worker.failures(program)
@@ -84,7 +84,7 @@ def clean_runs(worker, wanted, tree, revision):
         failed = f"{', '.join(alarms)} failed, " if alarms else ""
         print(f"clean tree: run {len(known['alarms'])}, {failed}{total:.0f} s", flush=True)
     always = set.intersection(*map(set, known["alarms"]))
-    if always and len(known["alarms"]) > 1:
+    if always:
         raise RuntimeError(f"the clean tree fails: {', '.join(sorted(always))}")
 
 
