@@ -150,7 +150,12 @@ TEST(Golden, column) {
   const Verdict controlled = judge(scene, references, {"tl-perturbation", {}}, u);
   ASSERT_TRUE(controlled.ok()) << controlled.status;
   EXPECT_LT(controlled.golden->max_relative_error, 0.002);  // the case's own limit
-  EXPECT_EQ(controlled.kappa, auto_kappa("tl-perturbation", scene.description.law));
+  const auto automatic = [&](KappaModulus modulus) {
+    return method_named("tl-perturbation").auto_kappa(scene.description.law, modulus);
+  };
+  EXPECT_EQ(controlled.kappa, automatic(KappaModulus::p_wave));
+  const MethodChoice by_shear{.method = "tl-perturbation", .kappa_modulus = KappaModulus::shear};
+  EXPECT_EQ(judge(scene, references, by_shear, u).kappa, automatic(KappaModulus::shear));
   const Verdict uncontrolled = judge(scene, references, {"tl-none", {}}, u);
   EXPECT_GT(uncontrolled.golden->max_relative_error, 0.05);
 }

@@ -14,8 +14,9 @@ CURVES = "ci/curves"
 MAPS = "sandglass stability CASE --json build/stability/CASE.json"
 
 OWN_MESH = "own mesh"
-# What `choose` measures against when no stored reference is asked for is the golden's own element.
-REFERENCE_NAMES = {"golden": "golden", "truth": "truth", "tl-mean-dilatation": "golden"}
+# What `choose` measures against when no stored reference is asked for: the golden's own element.
+STAND_IN = "tl-mean-dilatation"
+REFERENCE_NAMES = {"golden": "golden", "truth": "truth", STAND_IN: "golden"}
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ class Rung:
 
     case: str
     reference: str  # golden or truth
+    stands_in: bool  # for the golden stands its own element among the methods
     tolerance: float  # that was asked for, a fraction
     method: str
     kappa: float | None  # None: as it comes
@@ -155,6 +157,7 @@ def rungs_of(path, document):
     known = {
         "case": entry(path, document, "case", str),
         "reference": REFERENCE_NAMES.get(name, name),
+        "stands_in": name == STAND_IN,
         "tolerance": entry(path, document, "tolerance", NUMBER),
     }
     return [as_dataclass(Rung, *found, **known) for found in entries(path, document, "rungs")]

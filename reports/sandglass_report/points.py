@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, field
 
 from sandglass_report import style
 from sandglass_report.verdicts import REFERENCES
-from sandglass_report.measured import OWN_MESH
+from sandglass_report.measured import OWN_MESH, STAND_IN
 from sandglass_report.style import exact_percent
 
 FIGURES = ("max", "profile", "rms")
@@ -38,6 +38,7 @@ class Point:
     finding: str
     ok: bool
     golden: dict = field(default_factory=dict)
+    golden_is: str | None = None  # the method that stands for a golden that is not stored
     truth: dict = field(default_factory=dict)
     step: float | None = None
     simulated: float | None = None
@@ -60,7 +61,7 @@ class Point:
         beyond = max((t for t in told if told[t]), default=None)
         if beyond is not None:
             words.append(f"not for {exact_percent(beyond)}: {told[beyond]}")
-        return ", ".join(words) + f" ({name})"
+        return ", ".join(words) + f" ({self.golden_is or name})"
 
     def as_record(self):
         """The point as the page's script reads it: without what is not known, rounded."""
@@ -76,6 +77,7 @@ def make_points(runs, elements, measured):
     measured: what other commands left.
     """
     points = {}
+    with_golden = {run.case for run in runs if run.golden is not None}
     for run in runs:
         kappa = None if run.is_main else run.kappa
         points[run.case, run.method, kappa, run.precision, OWN_MESH, None] = _of_run(
@@ -85,7 +87,10 @@ def make_points(runs, elements, measured):
     for rung in measured.rungs:
         if rung.case in elements and rung.reference in REFERENCES:
             key = rung.case, rung.method, rung.kappa, rung.precision, rung.mesh, rung.accuracy
-            _add_rung(points.setdefault(key, _of_rung(rung)), rung)
+            point = points.setdefault(key, _of_rung(rung))
+            _add_rung(point, rung)
+            if rung.stands_in and rung.case not in with_golden:
+                point.golden_is = STAND_IN
     _bring_to_one_scale(points, loaded)
     for rest in measured.rests:
         point = points.get((rest.case, rest.method, None, rest.precision, OWN_MESH, None))

@@ -68,7 +68,19 @@ def test_other_meshes_and_precisions_are_points_of_their_own(data):
 
 def test_the_golden_elements_answer_counts_as_the_golden(data):
     ladder = data.ladder([data.rung("t4", 1e-6, 0.5)], "tl-mean-dilatation")
-    assert points_of(data, ladder)[0]["t4"].golden == {"max": 0.5}
+    point = points_of(data, ladder)[0]["t4"]
+    assert point.golden == {"max": 0.5}
+    assert "golden_is" not in point.as_record()  # the case has one
+
+
+def test_what_stands_for_a_golden_that_is_not_there_is_named(data):
+    for record in data.records:
+        record["golden"] = None
+    data.write_verdicts()
+    ladder = data.ladder([data.rung("t4", 1e-6, 0.5)], "tl-mean-dilatation")
+    record = points_of(data, ladder)[0]["t4"].as_record()
+    assert record["golden_is"] == "tl-mean-dilatation"
+    assert record["finding"].endswith("(tl-mean-dilatation)")
 
 
 def test_a_refusal_names_the_tolerance_that_it_is_for(data):

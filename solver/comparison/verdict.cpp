@@ -54,12 +54,14 @@ std::optional<double> golden_to_truth(const Scene& scene, const References& refe
 }
 
 Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
+  const MethodEntry& method = method_named(choice.method);
+  const AnyLaw& law = scene.description.law;
   Verdict verdict{.case_name = scene.description.name,
                   .method = choice.method,
-                  .kappa = choice.kappa ? choice.kappa : auto_kappa(choice.method, scene.description.law),
-                  .kappa_is_auto = method_named(choice.method).takes_kappa && !choice.kappa,
+                  .kappa = choice.kappa ? choice.kappa : method.auto_kappa(law, choice.kappa_modulus),
+                  .kappa_is_auto = method.takes_kappa && !choice.kappa,
                   .precision = std::string(name_of(choice.precision)),
-                  .operations = method_named(choice.method).operations(scene.description.law).total.total(),
+                  .operations = method.operations(law).total.total(),
                   .family = scene.description.family,
                   .variants = scene.description.variants,
                   .published = published_results(scene, references.truth)};

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "material/quadratic_volume.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 
@@ -82,5 +83,42 @@ TangentBound<T> first_invariant_tangent_bound(const T& mu, const Tensor<T>& H) {
   return {.volumetric = m * (T(2.0 / 3.0) * deviation - T(2.0 / 9.0) * trace_b),
           .gradient = m * (T(2.0 / 3.0) * trace_b + T(std::sqrt(2.0 / 3.0) + 2.0 / 3.0) * deviation)};
 }
+
+/// The same of w(I1bar) with a modulus mu = 2 w' that grows or falls at w'' (Pa): d^2 w = w' d^2 x + w''
+/// (dx)^2, and dx = 2 J^(-2/3) dev b : L sees no more than the deviator of L, |dev L|^2 = |L|^2 - (tr L)^2
+/// / 3.
+template <class T>
+TangentBound<T> first_invariant_tangent_bound(const T& mu, const T& second_derivative, const Tensor<T>& H) {
+  const Tensor<T> d = deviator(left_cauchy_green_minus_identity(H));
+  const T r = volume_change(H).inverse_root;
+  const T r2 = r * r;
+  const T steepening = max(second_derivative, T(0)) * (T(4) * r2 * r2 * double_dot(d, d));
+  return first_invariant_tangent_bound(mu, H) +
+         TangentBound<T>{.volumetric = T(-1.0 / 3.0) * steepening, .gradient = steepening};
+}
+
+/// What the laws of such an energy have in common. A law derives from FirstInvariant of itself, adds
+/// bulk_modulus(), isochoric_energy(H), isochoric_tangent_bound(H) by one of the two above, and
+/// current_modulus(H, change), the shear modulus 2 w'(I1bar) in Pa, and has the functions below.
+template <class Law>
+struct FirstInvariant : QuadraticVolume<Law> {
+  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
+  /// p (Pa, tension positive) that need not be the law's own.
+  template <class T>
+  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
+    return first_invariant_piola(V * law().current_modulus(H, change), V * p, H, change);
+  }
+
+  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on.
+  template <class T>
+  Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+                               const T& p) const {
+    return first_invariant_kirchhoff(V * law().current_modulus(H, change), V * p,
+                                     left_cauchy_green_minus_identity(H), change);
+  }
+
+ private:
+  constexpr const Law& law() const { return static_cast<const Law&>(*this); }
+};
 
 }  // namespace sandglass

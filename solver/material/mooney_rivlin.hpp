@@ -80,15 +80,6 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
   }
 
  private:
-  /// cof F - I = tr H I - H^T + cof H.
-  template <class T>
-  static Tensor<T> cofactor_minus_identity(const Tensor<T>& H) {
-    Tensor<T> D = cofactor(H) - transpose(H);
-    const T tr = trace(H);
-    for (int i = 0; i < 3; ++i) D(i, i) = D(i, i) + tr;
-    return D;
-  }
-
   /// V (2 c10 J^(-2/3) dev b - 2 c01 J^(-4/3) dev(J^2 b^-1)), the Kirchhoff stress without pressure. With e =
   /// b - I Cayley and Hamilton give dev(J^2 b^-1) = dev(e e - (1 + tr e) e): no constant that cancels near
   /// rest.

@@ -5,7 +5,6 @@
 
 #include "base/parameter.hpp"
 #include "material/first_invariant.hpp"
-#include "material/quadratic_volume.hpp"
 
 namespace sandglass {
 
@@ -13,7 +12,7 @@ namespace sandglass {
 ///   W = mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2,
 /// written in the displacement gradient H = F - I so that nothing cancels near rest. Energies in J/m^3,
 /// stresses in Pa, per reference volume.
-struct NeoHookean : QuadraticVolume<NeoHookean> {
+struct NeoHookean : FirstInvariant<NeoHookean> {
   static constexpr std::string_view name = "neo-hookean";
   static constexpr std::string_view summary = "isochoric neo-Hookean with a quadratic volumetric energy";
 
@@ -36,19 +35,10 @@ struct NeoHookean : QuadraticVolume<NeoHookean> {
     return T(1.5 * shear_modulus()) * third_of_first_invariant_growth(H);
   }
 
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
-  /// p (Pa, tension positive) that need not be the law's own.
+  /// The same at all strains, Pa.
   template <class T>
-  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
-    return first_invariant_piola(T(shear_modulus()) * V, V * p, H, change);
-  }
-
-  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on.
-  template <class T>
-  Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
-                               const T& p) const {
-    return first_invariant_kirchhoff(T(shear_modulus()) * V, V * p, left_cauchy_green_minus_identity(H),
-                                     change);
+  T current_modulus(const Tensor<T>& /*H*/, const VolumeChange<T>& /*change*/) const {
+    return T(shear_modulus());
   }
 
   /// Bound of the isochoric tangent in the current configuration; see TangentBound.

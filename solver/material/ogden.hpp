@@ -63,13 +63,8 @@ struct Ogden : QuadraticVolume<Ogden> {
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
     const T r = change.inverse_root;
     Tensor<T> sigma = (V * (r * r * r)) * isochoric_kirchhoff(H);
-    Tensor<T> cof_F = cofactor(H) - transpose(H);
-    const T diagonal = T(1) + trace(H);
-    for (int i = 0; i < 3; ++i) {
-      sigma(i, i) = sigma(i, i) + V * p;
-      cof_F(i, i) = cof_F(i, i) + diagonal;
-    }
-    return sigma * cof_F;
+    for (int i = 0; i < 3; ++i) sigma(i, i) = sigma(i, i) + V * p;
+    return sigma * deformation_cofactor(H);
   }
 
   /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on, with p J I in it.

@@ -66,7 +66,7 @@ class ViscoelasticPoint : public Law {
   /// V P as of an elastic law, and one step in time: P = F (S_iso - sum_i Q_i) + p cof F.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
-    const Tensor<T> cof_F = cofactor_of_gradient(H);
+    const Tensor<T> cof_F = deformation_cofactor(H);
     const Tensor<T> P = elastic().weighted_piola(T(1), H, change, T(0));
     const Tensor<T> Q = relax(P, cof_F, change);
     const Tensor<T> HQ = H * Q;
@@ -165,15 +165,6 @@ class ViscoelasticPoint : public Law {
   template <class T>
   Symmetric<T> spring_stress(std::size_t i) const {
     return T(terms_[i].share) * memory_.S - memory_.relaxed[i];
-  }
-
-  /// cof F = (1 + tr H) I - H^T + cof H.
-  template <class T>
-  static Tensor<T> cofactor_of_gradient(const Tensor<T>& H) {
-    Tensor<T> c = cofactor(H) - transpose(H);
-    const T diagonal = T(1) + trace(H);
-    for (int i = 0; i < 3; ++i) c(i, i) = c(i, i) + diagonal;
-    return c;
   }
 
   /// F Q F^T for symmetric Q.

@@ -7,14 +7,13 @@
 
 #include "base/parameter.hpp"
 #include "material/first_invariant.hpp"
-#include "material/quadratic_volume.hpp"
 
 namespace sandglass {
 
 /// The law of Yeoh (Rubber Chemistry and Technology 66, 1993, 754-771) with an isochoric first invariant,
 ///   W = c1 x + c2 x^2 + c3 x^3 + K/2 (J - 1)^2,  x = J^(-2/3) tr(F^T F) - 3.
 /// With c2 < 0 < c3 it softens first and stiffens later, as rubber and many tissues do.
-struct Yeoh : QuadraticVolume<Yeoh> {
+struct Yeoh : FirstInvariant<Yeoh> {
   static constexpr std::string_view name = "yeoh";
   static constexpr std::string_view summary =
       "cubic in the isochoric first invariant: softens, then stiffens";
@@ -50,32 +49,17 @@ struct Yeoh : QuadraticVolume<Yeoh> {
     return x * (T(c1) + x * (T(c2) + x * T(c3)));
   }
 
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
-  /// p (Pa, tension positive) that need not be the law's own.
+  /// The shear modulus at this strain, Pa.
   template <class T>
-  Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
-    return first_invariant_piola(V * modulus(first_invariant_growth(H, change)), V * p, H, change);
+  T current_modulus(const Tensor<T>& H, const VolumeChange<T>& change) const {
+    return modulus(first_invariant_growth(H, change));
   }
 
-  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on.
-  template <class T>
-  Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
-                               const T& p) const {
-    return first_invariant_kirchhoff(V * modulus(first_invariant_growth(H, change)), V * p,
-                                     left_cauchy_green_minus_identity(H), change);
-  }
-
-  /// Bound of the isochoric tangent; see TangentBound. d^2 w(x) = w' d^2 x + w'' (dx)^2, and
-  /// dx = 2 J^(-2/3) dev b : L sees no more than the deviator of L, |dev L|^2 = |L|^2 - (tr L)^2 / 3.
+  /// Bound of the isochoric tangent; see TangentBound.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
-    const VolumeChange<T> change = volume_change(H);
-    const T x = first_invariant_growth(H, change);
-    const Tensor<T> d = deviator(left_cauchy_green_minus_identity(H));
-    const T r2 = change.inverse_root * change.inverse_root;
-    const T steepening = max(T(2.0 * c2) + T(6.0 * c3) * x, T(0)) * (T(4) * r2 * r2 * double_dot(d, d));
-    return first_invariant_tangent_bound(modulus(x), H) +
-           TangentBound<T>{.volumetric = T(-1.0 / 3.0) * steepening, .gradient = steepening};
+    const T x = first_invariant_growth(H, volume_change(H));
+    return first_invariant_tangent_bound(modulus(x), T(2.0 * c2) + T(6.0 * c3) * x, H);
   }
 
  private:

@@ -66,11 +66,6 @@ struct Pack {
   friend Mask operator>(Pack a, Pack b) { return a.lanes > b.lanes; }
 
   friend Pack select(Mask mask, Pack a, Pack b) { return of(mask ? a.lanes : b.lanes); }
-  friend bool any(Mask mask) {
-    bool found = false;
-    for (int l = 0; l < W; ++l) found = found || mask[l] != 0;
-    return found;
-  }
   friend Pack max(Pack a, Pack b) { return select(a < b, b, a); }
   friend Pack min(Pack a, Pack b) { return select(b < a, b, a); }
   friend Pack abs(Pack a) { return select(a < Pack(T(0)), -a, a); }

@@ -50,9 +50,4 @@ T select(bool mask, T a, T b) {
   return mask ? a : b;
 }
 
-/// Whether the mask is true anywhere.
-inline bool any(bool mask) {
-  return mask;
-}
-
 }  // namespace sandglass

@@ -27,6 +27,24 @@ constexpr VolumeChange<T> volume_change(const Tensor<T>& H) {
   return {J_minus_one, inverse_cube_root(T(1) + J_minus_one)};
 }
 
+/// cof F - I = tr H I - H^T + cof H.
+template <class T>
+constexpr Tensor<T> cofactor_minus_identity(const Tensor<T>& H) {
+  Tensor<T> D = cofactor(H) - transpose(H);
+  const T tr = trace(H);
+  for (int i = 0; i < 3; ++i) D(i, i) = D(i, i) + tr;
+  return D;
+}
+
+/// cof F of the deformation gradient F = I + H.
+template <class T>
+constexpr Tensor<T> deformation_cofactor(const Tensor<T>& H) {
+  Tensor<T> c = cofactor(H) - transpose(H);
+  const T diagonal = T(1) + trace(H);
+  for (int i = 0; i < 3; ++i) c(i, i) = c(i, i) + diagonal;
+  return c;
+}
+
 /// F F^T - I = H + H^T + H H^T, the left Cauchy-Green tensor without its unit part.
 template <class T>
 constexpr Tensor<T> left_cauchy_green_minus_identity(const Tensor<T>& H) {

@@ -30,8 +30,4 @@ const MethodEntry& method_named(std::string_view name, std::string_view key) {
   return *found;
 }
 
-std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law, KappaModulus modulus) {
-  return method_named(method).auto_kappa(law, modulus);
-}
-
 }  // namespace sandglass

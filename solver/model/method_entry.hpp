@@ -69,10 +69,6 @@ std::vector<std::string> method_names();
 /// The method of that name. Throws InputError when there is none, naming the key, and the nearest known.
 const MethodEntry& method_named(std::string_view name, std::string_view key = "method");
 
-/// The number that `auto` stands for, or none when the method takes no kappa.
-std::optional<double> auto_kappa(std::string_view method, const AnyLaw& law,
-                                 KappaModulus modulus = KappaModulus::p_wave);
-
 /// The golden's own element: eight points and one pressure, what every other method is held against.
 inline constexpr std::string_view golden_method = "tl-mean-dilatation";
 

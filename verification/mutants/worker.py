@@ -15,7 +15,7 @@ from pathlib import Path
 
 from common.program import ROOT
 
-PRESET = "mutants"
+PRESET = "quick"
 MEMORY = 8 << 30  # bytes that a test program may take: a mistake may allocate without end
 # What takes long to compile has a large object file: seconds for any file, and for each megabyte.
 SECONDS_TO_COMPILE = (3, 5)

@@ -1,0 +1,121 @@
+/// The four-point element between one point and eight, and the constants of the levels of an adaptive method.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "support/random_hexahedra.hpp"
+#include "support/sample_law.hpp"
+#include "support/single_element.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+using Law = NeoHookean;
+using OnePointKernel = FormulationOf<TlModalSampling, Law>;
+using FourPointKernel = FormulationOf<TlFourPoint, Law>;
+using EightPointKernel = FormulationOf<TlMeanDilatation, Law>;
+
+Law law() {
+  return sample_law<NeoHookean>(0.45);
+}
+
+template <class Kernel>
+double energy_of(const NodalVectors<double>& X, const NodalVectors<double>& u) {
+  SingleElement<Kernel, Law> element(X, law());
+  element.to(u);
+  const auto energy = element.energy();
+  return energy.strain + energy.hourglass;
+}
+
+/// A cube of 2 m in which every corner stands at its signs, deformed by F and by amplitudes of the four
+/// hourglass modes.
+NodalVectors<double> cube() {
+  return corner_signs;
+}
+NodalVectors<double> displaced(const NodalVectors<double>& X, const Tensor<double>& F,
+                               const HourglassModes<double>& amplitudes) {
+  return X * transpose(F - identity<double>()) + hourglass_base_vectors() * amplitudes;
+}
+
+/// On a parallelepiped the energies of four and of eight points agree to second order in the first three
+/// hourglass modes, at any mean deformation: halving the modes divides the difference by eight, or by more.
+TEST(FourPoint, knows_the_second_variation_of_eight_points) {
+  RandomGeometry random(11);
+  for (int n = 0; n < 20; ++n) {
+    const NodalVectors<double> X = cube() * transpose(random.deformation(0.5, 2.0));
+    const Tensor<double> F = random.deformation(0.8, 1.25);
+    HourglassModes<double> q{};
+    for (int a = 0; a < 3; ++a) {
+      for (int i = 0; i < 3; ++i) q(a, i) = random.uniform(-0.02, 0.02);
+    }
+    const double none = energy_of<EightPointKernel>(X, displaced(X, F, {}));
+    const auto difference = [&](double share) {
+      const auto u = displaced(X, F, share * q);
+      return energy_of<FourPointKernel>(X, u) - energy_of<EightPointKernel>(X, u);
+    };
+    const double second_order = energy_of<EightPointKernel>(X, displaced(X, F, q)) - none;
+    EXPECT_LT(std::abs(difference(1.0)), 0.1 * std::abs(second_order));
+    // A third-order difference, with a fourth-order one of a few percent beside it at this size.
+    EXPECT_LT(std::abs(difference(0.5)), std::abs(difference(1.0)) / 8.0 * 1.3 + 1e-12 * second_order);
+  }
+}
+
+/// Numbered so that the other four corners come first, an element has an energy that differs to third order.
+TEST(FourPoint, other_corners_differ_to_third_order) {
+  const std::array<int, 8> turned{1, 2, 3, 0, 5, 6, 7, 4};
+  RandomGeometry random(13);
+  for (int n = 0; n < 20; ++n) {
+    const NodalVectors<double> X = cube() * transpose(random.deformation(0.5, 2.0));
+    const Tensor<double> F = random.deformation(0.8, 1.25);
+    HourglassModes<double> q{};
+    for (auto& entry : q.entries) entry = random.uniform(-0.02, 0.02);
+    const auto difference = [&](double share) {
+      const auto u = displaced(X, F, share * q);
+      return energy_of<FourPointKernel>(reordered(X, turned), reordered(u, turned)) -
+             energy_of<FourPointKernel>(X, u);
+    };
+    EXPECT_NE(difference(1.0), 0.0);
+    EXPECT_NEAR(difference(0.5) / difference(1.0), 0.125, 0.03);  // odd: a fifth-order term stands beside it
+  }
+}
+
+/// The last mode on a cube of edge a: |d(xi eta zeta)/dX|^2 has the mean 3 (2/a)^2 / 9, so that an amplitude
+/// A holds the energy 10/9 mu/2 a^3 (4/3)/a^2 A^2 = 20/27 mu a A^2.
+TEST(FourPoint, last_mode_of_a_cube_in_closed_form) {
+  const double edge = 0.3, amplitude = 1e-3;
+  HourglassModes<double> q{};
+  q(3, 1) = amplitude;
+  const NodalVectors<double> X = 0.5 * edge * cube();
+  const double energy = energy_of<FourPointKernel>(X, displaced(X, identity<double>(), q));
+  EXPECT_NEAR(energy / (20.0 / 27.0 * law().shear_modulus() * edge * amplitude * amplitude), 1.0, 1e-9);
+}
+
+template <class Kernel>
+void expect_same_constants(const NodalVectors<double>& X) {
+  using Element = typename Kernel::template Element<double>;
+  using Numbers = std::array<double, sizeof(Element) / sizeof(double)>;
+  const auto set_up = std::bit_cast<Numbers>(Kernel::precompute(X, law(), {}));
+  const auto anew = std::bit_cast<Numbers>(Kernel::constants(to_modes(X), law(), {}));
+  double largest = 0.0;
+  for (const double number : set_up) largest = std::max(largest, std::abs(number));
+  for (std::size_t n = 0; n < set_up.size(); ++n) {
+    // Roundoff of the closed form, whose terms are as large as an element's edges squared over its volume.
+    EXPECT_NEAR(anew[n], set_up[n], 1e-11 * std::max(std::abs(set_up[n]), 1e-3 * largest)) << n;
+  }
+}
+
+TEST(Levels, constants_from_coordinates_are_those_of_the_set_up) {
+  RandomGeometry random(5);
+  for (int n = 0; n < 10; ++n) {
+    NodalVectors<double> X = cube();
+    for (auto& x : X.entries) x += random.uniform(-0.3, 0.3);
+    expect_same_constants<OnePointKernel>(X);
+    expect_same_constants<FourPointKernel>(X);
+    expect_same_constants<EightPointKernel>(X);
+  }
+}
+
+}  // namespace
+}  // namespace sandglass::verification
