@@ -6,28 +6,18 @@
 #include "stepping/central_difference.hpp"
 #include "stepping/error_estimate.hpp"
 #include "stepping/relaxation.hpp"
-#include "support/orderings.hpp"
+#include "support/level_kernels.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 #include "support/single_element.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
 
-using Law = NeoHookean;
-using OnePointKernel = FormulationOf<TlModalSampling, Law>;
-using FourPointKernel = FormulationOf<TlFourPoint, Law>;
-using EightPointKernel = FormulationOf<TlMeanDilatation, Law>;
-
-Law law() {
-  return sample_law<NeoHookean>(0.45);
-}
-
 /// A block of distorted elements, large enough for several chunks, pressed hard on a part of its top.
 Scene pressed_block(double press, const std::array<int, 3>& elements = {6, 6, 8}) {
-  Case description = plain_case(law());
+  Case description = plain_case(level_law());
   Mesh mesh = box({0.06, 0.06, 0.08}, elements);
   RandomGeometry random(3);
   const auto inner = [](double x, double size) { return x > 1e-9 && x < size - 1e-9; };
@@ -114,7 +104,7 @@ TEST(Adaptive, every_level_by_itself_is_its_method) {
 /// Nodal forces of one element.
 template <class Kernel>
 NodalVectors<double> element_force(const Scene& scene, const NodalField& u, std::size_t e) {
-  SingleElement<Kernel, Law> element(gather(scene.mesh.points, scene.mesh.cells[e]), law());
+  SingleElement<Kernel, LevelLaw> element(gather(scene.mesh.points, scene.mesh.cells[e]), level_law());
   return element.to(gather(u, scene.mesh.cells[e]));
 }
 NodalVectors<double> element_force(const Scene& scene, const NodalField& u, std::size_t e, int level) {
@@ -315,7 +305,7 @@ TEST(Adaptive, answers_rest_at_their_levels) {
 /// that of a fixed method, whose energy swings by the square of the step, and half a step's change of
 /// velocities where forces change at once, 2.7 times as much together.
 TEST(Adaptive, motion_keeps_its_energy) {
-  Case description = plain_case(law());
+  Case description = plain_case(level_law());
   const Mesh mesh = box({0.02, 0.02, 0.1}, {3, 3, 12});
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
                       {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.099; })}};

@@ -210,12 +210,7 @@ TYPED_TEST(DynamicsTest, work_of_driven_nodes_balances_energies) {
     const Model model(scene, {this->method(), {}});
     Recorder recorder;
     integrate(model, recorder);
-    double largest = 0.0;
-    for (const auto& row : recorder.rows) {
-      largest = std::max(largest, std::abs(row.external_work - total_energy(row)));
-    }
-    EXPECT_GT(recorder.rows.back().external_work, 0.0);
-    return largest / recorder.rows.back().external_work;
+    return energy_imbalance(recorder.rows);
   };
   const double coarse = imbalance(0.4);
   const double fine = imbalance(0.2);

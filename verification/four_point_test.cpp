@@ -4,26 +4,17 @@
 
 #include <bit>
 
+#include "support/level_kernels.hpp"
+#include "support/orderings.hpp"
 #include "support/random_hexahedra.hpp"
-#include "support/sample_law.hpp"
 #include "support/single_element.hpp"
-#include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
 
-using Law = NeoHookean;
-using OnePointKernel = FormulationOf<TlModalSampling, Law>;
-using FourPointKernel = FormulationOf<TlFourPoint, Law>;
-using EightPointKernel = FormulationOf<TlMeanDilatation, Law>;
-
-Law law() {
-  return sample_law<NeoHookean>(0.45);
-}
-
 template <class Kernel>
 double energy_of(const NodalVectors<double>& X, const NodalVectors<double>& u) {
-  SingleElement<Kernel, Law> element(X, law());
+  SingleElement<Kernel, LevelLaw> element(X, level_law());
   element.to(u);
   const auto energy = element.energy();
   return energy.strain + energy.hourglass;
@@ -89,15 +80,15 @@ TEST(FourPoint, last_mode_of_a_cube_in_closed_form) {
   q(3, 1) = amplitude;
   const NodalVectors<double> X = 0.5 * edge * cube();
   const double energy = energy_of<FourPointKernel>(X, displaced(X, identity<double>(), q));
-  EXPECT_NEAR(energy / (20.0 / 27.0 * law().shear_modulus() * edge * amplitude * amplitude), 1.0, 1e-9);
+  EXPECT_NEAR(energy / (20.0 / 27.0 * level_law().shear_modulus() * edge * amplitude * amplitude), 1.0, 1e-9);
 }
 
 template <class Kernel>
 void expect_same_constants(const NodalVectors<double>& X) {
   using Element = typename Kernel::template Element<double>;
   using Numbers = std::array<double, sizeof(Element) / sizeof(double)>;
-  const auto set_up = std::bit_cast<Numbers>(Kernel::precompute(X, law(), {}));
-  const auto anew = std::bit_cast<Numbers>(Kernel::constants(to_modes(X), law(), {}));
+  const auto set_up = std::bit_cast<Numbers>(Kernel::precompute(X, level_law(), {}));
+  const auto anew = std::bit_cast<Numbers>(Kernel::constants(to_modes(X), level_law(), {}));
   double largest = 0.0;
   for (const double number : set_up) largest = std::max(largest, std::abs(number));
   for (std::size_t n = 0; n < set_up.size(); ++n) {

@@ -204,12 +204,7 @@ TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
     settings.check_interval = 1;
     Recorder recorder;
     integrate(Model(scene, this->method()), recorder);
-    double largest = 0.0;
-    for (const auto& row : recorder.rows) {
-      largest = std::max(largest, std::abs(row.external_work - total_energy(row)));
-    }
-    EXPECT_GT(recorder.rows.back().external_work, 0.0);
-    return largest / recorder.rows.back().external_work;
+    return energy_imbalance(recorder.rows);
   };
   const double coarse = imbalance(0.4);
   EXPECT_LT(coarse, 0.02);

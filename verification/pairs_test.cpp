@@ -52,13 +52,7 @@ TEST(Pairs, uniform_strain_gives_the_stress_of_the_law) {
     for (int n = 0; n < 5; ++n) {
       const NodalVectors<double> X = fitting_hexahedron<FormulationOf<Method, NeoHookean>>(random);
       const Tensor<double> H = random.deformation(0.7, 1.4) - identity<double>();
-      Mesh mesh;
-      mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
-      NodalField u;
-      for (int I = 0; I < 8; ++I) {
-        mesh.points.push_back({X(I, 0), X(I, 1), X(I, 2)});
-        u.push_back(linear(H, mesh.points.back()));
-      }
+      const auto [mesh, u] = one_strained_element(X, H);
       const Law law = law_at_rest<Law>(0.45);
       const Scene scene = make_scene(plain_case(law), mesh);
       const NodalField force = internal_forces(Model(scene, choice<MethodWithLaw<Method, Law>>()), u);

@@ -180,11 +180,7 @@ TYPED_TEST(RotationTest, work_in_motion_balances_energies) {
     const Model model(scene, this->method());
     Recorder recorder;
     integrate(model, recorder);
-    double largest = 0.0;
-    for (const auto& row : recorder.rows) {
-      largest = std::max(largest, std::abs(row.external_work - total_energy(row)));
-    }
-    return largest / recorder.rows.back().external_work;
+    return energy_imbalance(recorder.rows);
   };
   const double coarse = imbalance(0.4), fine = imbalance(0.2);
   EXPECT_LT(coarse, 0.02);

@@ -43,13 +43,7 @@ TYPED_TEST(RelaxingBodyTest, uniform_strain_relaxes_as_the_law) {
     const Law law = sample_law<Law>(0.45);
     const NodalVectors<double> X = fitting_hexahedron<FormulationOf<TypeParam, Law>>(random);
     const Tensor<double> H = random.deformation(0.7, 1.5) - identity<double>();
-    Mesh mesh;
-    mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
-    NodalField u;
-    for (int I = 0; I < 8; ++I) {
-      mesh.points.push_back({X(I, 0), X(I, 1), X(I, 2)});
-      u.push_back(linear(H, mesh.points.back()));
-    }
+    const auto [mesh, u] = one_strained_element(X, H);
     const Scene scene = make_scene(plain_case(law), mesh);
     const auto bounds = std::get<0>(make_internal_force(mesh, law, {this->method()}));
     std::array<double, 1> bound{};

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -51,6 +54,19 @@ inline Vector linear(const Tensor<double>& H, const Vector& X) {
   return u;
 }
 
+/// A mesh of one element with its corners at X (m), and displacements H X (m) of them.
+inline std::pair<Mesh, NodalField> one_strained_element(const NodalVectors<double>& X,
+                                                        const Tensor<double>& H) {
+  Mesh mesh;
+  mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+  NodalField u;
+  for (int I = 0; I < 8; ++I) {
+    mesh.points.push_back({X(I, 0), X(I, 1), X(I, 2)});
+    u.push_back(linear(H, mesh.points.back()));
+  }
+  return {std::move(mesh), std::move(u)};
+}
+
 /// The nodes where `condition(X)` holds.
 inline std::vector<int> nodes_where(const NodalField& points,
                                     const std::function<bool(const Vector&)>& condition) {
@@ -76,6 +92,16 @@ class Recorder final : public Observer {
 /// All that a row of history counts as stored or moving, J.
 inline double total_energy(const HistoryRow& row) {
   return row.kinetic + row.strain + row.hourglass;
+}
+
+/// The largest difference of the work done and the energy that is there, over all the work in the end, which
+/// must be positive.
+inline double energy_imbalance(const std::vector<HistoryRow>& rows) {
+  const double work = rows.back().external_work;
+  EXPECT_GT(work, 0.0);
+  double largest = 0.0;
+  for (const auto& row : rows) largest = std::max(largest, std::abs(row.external_work - total_energy(row)));
+  return largest / work;
 }
 
 }  // namespace sandglass::verification
