@@ -187,3 +187,22 @@ def test_without_scripts_the_static_pictures_show(page):
 
         assert height("details.static svg") > 100
         assert height("#chart") == 0 and height(".no-script") > 0
+
+
+def test_a_method_that_stands_for_the_golden_is_named(tmp_path, browser):
+    data = DataSet(tmp_path)
+    (tmp_path / "reference" / "golden" / "column.h5").unlink()
+    for record in data.records:
+        record |= {"golden": None, "finding": None}
+    data.write_verdicts()
+    rungs = [data.rung("tl-perturbation", 2e-6, 0.004), data.rung("t4", 1e-6, 0.03)]
+    data.write("curves/a.json", data.ladder(rungs, "tl-mean-dilatation"))
+    data.make()
+    with Browser() as other:
+        other.open(data.page)
+        other.until(DRAWN)
+        told = "document.querySelector('#chart [name=reference]').options[0].textContent"
+        assert other.run(told) == "tl-mean-dilatation (no golden)"
+        axis = "document.querySelector('#chart .plot').layout.yaxis.title.text"
+        assert other.run(axis) == "error to tl-mean-dilatation, largest of all nodes"
+        assert browser.run(axis).startswith("error to the golden, ")

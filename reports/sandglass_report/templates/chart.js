@@ -22,8 +22,9 @@ function startChart(Plotly) {
     own: get("own").checked, double: get("double").checked, curves: get("curves").checked,
     tolerance: 10 ** get("tolerance").value, budget: 10 ** get("budget").value,
   });
-  /** What the golden is on a case: a stored one, or a method that stands for it. */
-  const golden = (name) => data.points.find((p) => p.case === name && p.golden_is)?.golden_is ?? "golden";
+  /** What the errors of a case are to: the golden, or a method that stands for one that is not there, or the truth. */
+  const standIn = (name) => data.points.find((p) => p.case === name && p.golden_is)?.golden_is;
+  const named = (reference, name) => (reference === "truth" ? "the truth" : (standIn(name) ?? "the golden"));
   const errorOf = (p, view) => p[view.reference]?.[view.figure];
 
   /** Positions of the points that a view shows. */
@@ -44,8 +45,8 @@ function startChart(Plotly) {
       [p.kappa !== undefined && `κ ${digits(p.kappa)}${p.as_it_comes ? " (auto)" : ""}`, p.accuracy && `asked for ${percent(p.accuracy)}`,
         p.precision].filter(Boolean).join(", "),
       `${escaped(p.mesh)}${p.elements ? `, ${p.elements} elements` : ""}`,
-      `to the ${golden(p.case)}: ${errors("golden")}`,
-      `to the truth: ${errors("truth")}`,
+      `to ${named("golden", p.case)}: ${errors("golden")}`,
+      `to ${named("truth", p.case)}: ${errors("truth")}`,
       `cost: ${costs.join(", ") || "not known"}`,
       `finding: ${escaped(p.finding).replace(/(.{60,90}?) /g, "$1<br>   ")}`,
       `cost measured by ${p.measured_by}`,
@@ -109,7 +110,7 @@ function startChart(Plotly) {
       xaxis: { ...axis, ...ticks(costs, seconds), range: range(costs, 0.12), title: { text: costWords, font: { color: muted, size: 13 } } },
       yaxis: {
         ...axis, ...ticks(errors, percent), range: range(errors, 0.18),
-        title: { text: `error to the ${view.reference === "golden" ? golden(view.case) : view.reference}, ${words[view.figure]}`, font: { color: muted, size: 13 } },
+        title: { text: `error to ${named(view.reference, view.case)}, ${words[view.figure]}`, font: { color: muted, size: 13 } },
       },
       shapes: [
         limit({ xref: "paper", x0: 0, x1: 1, y0: view.tolerance, y1: view.tolerance }),
@@ -150,8 +151,7 @@ function startChart(Plotly) {
     const positions = shown(view);
     get("tolerance").nextElementSibling.textContent = percent(view.tolerance);
     get("budget").nextElementSibling.textContent = seconds(view.budget);
-    get("reference").options[0].textContent =
-      golden(view.case) === "golden" ? "the golden (mixed element, same mesh)" : `${golden(view.case)} (this case has no golden)`;
+    get("reference").options[0].textContent = standIn(view.case) ? `${standIn(view.case)} (no golden)` : "the golden (mixed element, same mesh)";
     tell(view, positions);
     const key = [view.case, view.reference, view.figure, view.cost, view.own ? "own" : "all", view.double ? "double" : "all"].join("|");
     const inView = new Set(positions);
