@@ -35,6 +35,27 @@ bool concerns(const Expectation& expected, const Verdict& verdict) {
   return !verdict.kappa_is_auto && fmt::to_string(*verdict.kappa) == expected.kappa;
 }
 
+/// Brings the scene to rest: its displacements (m), what a verdict says of the way there, and the energy (J)
+/// in the body, which is returned. Throws ComputationError.
+double fill_relaxed(const Scene& scene, const MethodChoice& choice, Verdict& verdict, NodalField& u) {
+  const Model model(scene, choice);
+  verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
+  Observer silent;
+  Relaxation relaxation = relax(model, silent);
+  u = std::move(relaxation.u);
+  const StrainEnergies energies = relaxation.energies;
+  verdict.status = at_rest(relaxation, choice.precision)
+                       ? "ok"
+                       : fmt::format("failed: {}, residual {:.1e}", outcome(relaxation, choice.precision),
+                                     relaxation.residual);
+  verdict.steps = relaxation.steps;
+  verdict.residual = relaxation.residual;
+  verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;
+  verdict.wall_seconds = relaxation.seconds;
+  verdict.ns_per_element_step = 1e9 * relaxation.step_seconds / static_cast<double>(scene.mesh.cells.size());
+  return energies.strain + energies.hourglass;
+}
+
 }  // namespace
 
 References read_references(const Scene& scene) {
@@ -67,23 +88,7 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
                   .published = published_results(scene, references.truth)};
   double energy = 0.0;
   try {
-    const Model model(scene, choice);
-    verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
-    Observer silent;
-    Relaxation relaxation = relax(model, silent);
-    u = std::move(relaxation.u);
-    const StrainEnergies energies = relaxation.energies;
-    energy = energies.strain + energies.hourglass;
-    verdict.status = at_rest(relaxation, choice.precision)
-                         ? "ok"
-                         : fmt::format("failed: {}, residual {:.1e}", outcome(relaxation, choice.precision),
-                                       relaxation.residual);
-    verdict.steps = relaxation.steps;
-    verdict.residual = relaxation.residual;
-    verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;
-    verdict.wall_seconds = relaxation.seconds;
-    verdict.ns_per_element_step =
-        1e9 * relaxation.step_seconds / static_cast<double>(scene.mesh.cells.size());
+    energy = fill_relaxed(scene, choice, verdict, u);
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
