@@ -41,23 +41,18 @@ struct FourPoint {
   /// What the force needs of the displacements, at each point.
   template <class T>
   struct Deformation {
-    std::array<Tensor<T>, 4> H;
-    std::array<T, 4> inverse_root;
-    std::array<T, 4> J_minus_one;
     HourglassModes<T> q;  ///< hourglass displacements, m
+    std::array<Tensor<T>, 4> H;
+    std::array<VolumeChange<T>, 4> change;
   };
 
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
-    Deformation<T> now;
     const Tensor<T> H = OnePoint::mean_gradient(motion.u, element);
-    now.q = OnePoint::hourglass_displacements(motion.u, H, element);
-    now.H = point_gradients(H, now.q, element);
-    for (std::size_t p = 0; p < 4; ++p) {
-      const VolumeChange<T> change = volume_change(now.H[p]);
-      now.J_minus_one[p] = change.J_minus_one;
-      now.inverse_root[p] = change.inverse_root;
-    }
+    // In place: what is assigned is computed elsewhere and copied.
+    Deformation<T> now{.q = OnePoint::hourglass_displacements(motion.u, H, element),
+                       .H = point_gradients(H, now.q, element),
+                       .change = volume_changes(now.H)};
     return now;
   }
 
@@ -66,12 +61,11 @@ struct FourPoint {
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
                         const typename Hourglass::template Element<T>& control, NoHistory<T>& /*history*/,
                         const Law& law) {
-    const T p = law.pressure(mean(now.J_minus_one));
+    const T p = law.pressure(mean_dilatation(now.change));
     const T quarter = T(0.25) * element.V;
     std::array<Tensor<T>, 4> P;  // times the reference volume of a point
     for (std::size_t q = 0; q < 4; ++q) {
-      const VolumeChange<T> change{now.J_minus_one[q], now.inverse_root[q]};
-      P[q] = at_point(law, q).weighted_piola(quarter, now.H[q], change, p);
+      P[q] = at_point(law, q).weighted_piola(quarter, now.H[q], now.change[q], p);
     }
     // The transpose of `point_gradients`.
     const Tensor<T> lower = P[0] + P[1], upper = P[2] + P[3];
@@ -96,7 +90,7 @@ struct FourPoint {
     const Deformation<T> now = deformation<Hourglass>(motion, element);
     T W = T(0);
     for (std::size_t q = 0; q < 4; ++q) W = W + T(0.25) * at_point(law, q).isochoric_energy(now.H[q]);
-    ElementEnergy<T> energy{element.V * (W + law.volumetric_energy(mean(now.J_minus_one))), T(0)};
+    ElementEnergy<T> energy{element.V * (W + law.volumetric_energy(mean_dilatation(now.change))), T(0)};
     if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now.q, control);
     return energy;
   }
@@ -109,13 +103,14 @@ struct FourPoint {
 
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    const auto J_minus_one = dilatations(motion, element);
-    return T(1) + min(min(J_minus_one[0], J_minus_one[1]), min(J_minus_one[2], J_minus_one[3]));
+    const auto change = deformation<void>(motion, element).change;
+    return T(1) + min(min(change[0].J_minus_one, change[1].J_minus_one),
+                      min(change[2].J_minus_one, change[3].J_minus_one));
   }
 
   template <class T>
   static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + mean(dilatations(motion, element));
+    return T(1) + mean_dilatation(deformation<void>(motion, element).change);
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness.
@@ -128,16 +123,9 @@ struct FourPoint {
     const Matrix<T, 8, 4> gamma = OnePoint::gamma(h, element);
     std::array<T, 4> weight, dilatation;
     weight.fill(T(0.25) * element.V);
-    dilatation.fill(mean(now.J_minus_one));
+    dilatation.fill(mean_dilatation(now.change));
     const auto spatial_gradient = [&](std::size_t p) {
-      Matrix<T, 4, 3> fluctuation;  // of a unit of each hourglass displacement
-      for (int a = 0; a < 4; ++a) {
-        HourglassModes<T> unit{};
-        unit(a, 0) = T(1);
-        const Tensor<T> G = point_gradients(Tensor<T>{}, unit, element)[p];
-        for (int j = 0; j < 3; ++j) fluctuation(a, j) = G(0, j);
-      }
-      return (h + gamma * fluctuation) * inverse(identity<T>() + now.H[p]);
+      return (h + gamma * fluctuation(p, element)) * inverse(identity<T>() + now.H[p]);
     };
     const T body = point_bound<true>(now.H, dilatation, weight, element.V, spatial_gradient, law);
     if constexpr (Hourglass::active) return body + Hourglass::stiffness_bound(gamma, control);
@@ -152,8 +140,15 @@ struct FourPoint {
   }
 
   template <class T>
-  static T mean(const std::array<T, 4>& values) {
-    return T(0.25) * ((values[0] + values[1]) + (values[2] + values[3]));
+  static std::array<VolumeChange<T>, 4> volume_changes(const std::array<Tensor<T>, 4>& H) {
+    return {volume_change(H[0]), volume_change(H[1]), volume_change(H[2]), volume_change(H[3])};
+  }
+
+  /// The mean of J - 1.
+  template <class T>
+  static T mean_dilatation(const std::array<VolumeChange<T>, 4>& change) {
+    return T(0.25) * ((change[0].J_minus_one + change[1].J_minus_one) +
+                      (change[2].J_minus_one + change[3].J_minus_one));
   }
 
   /// Displacement gradients at the four points: H + xi A_xi + eta A_eta + zeta A_zeta, where the gradient
@@ -162,31 +157,45 @@ struct FourPoint {
   static std::array<Tensor<T>, 4> point_gradients(const Tensor<T>& H, const HourglassModes<T>& q,
                                                   const Element<T>& element) {
     const auto modes = scale<T>() * q;
-    const auto along = [&](int b, int j, int c, int k) {
-      Tensor<T> A;
-      for (int i = 0; i < 3; ++i) {
-        for (int l = 0; l < 3; ++l) A(i, l) = modes(b, i) * element.h(j, l) + modes(c, i) * element.h(k, l);
-      }
-      return A;
+    const auto along = [&](int i, int l, int b, int j, int c, int k) {
+      return modes(b, i) * element.h(j, l) + modes(c, i) * element.h(k, l);
     };
-    const Tensor<T> xi = along(2, 1, 1, 2), eta = along(2, 0, 0, 2), zeta = along(1, 0, 0, 1);
-    const Tensor<T> sum = xi + eta, difference = xi - eta;
-    const Tensor<T> lower = H - zeta, upper = H + zeta;
-    return {lower - sum, lower + sum, upper + difference, upper - difference};
+    std::array<Tensor<T>, 4> at;
+    for (int i = 0; i < 3; ++i) {
+      for (int l = 0; l < 3; ++l) {
+        const T xi = along(i, l, 2, 1, 1, 2), eta = along(i, l, 2, 0, 0, 2), zeta = along(i, l, 1, 0, 0, 1);
+        const T sum = xi + eta, difference = xi - eta;
+        const T lower = H(i, l) - zeta, upper = H(i, l) + zeta;
+        at[0](i, l) = lower - sum;
+        at[1](i, l) = lower + sum;
+        at[2](i, l) = upper + difference;
+        at[3](i, l) = upper - difference;
+      }
+    }
+    return at;
+  }
+
+  /// What a unit of each hourglass displacement adds to the gradient at a point, as in `point_gradients`;
+  /// 1/m.
+  template <class T>
+  static Matrix<T, 4, 3> fluctuation(std::size_t point, const Element<T>& element) {
+    constexpr std::array<std::array<double, 3>, 4> signs{{{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}}};
+    const T xi = T(signs[point][0]) * scale<T>(), eta = T(signs[point][1]) * scale<T>(),
+            zeta = T(signs[point][2]) * scale<T>();
+    Matrix<T, 4, 3> G;
+    for (int l = 0; l < 3; ++l) {
+      G(0, l) = eta * element.h(2, l) + zeta * element.h(1, l);
+      G(1, l) = xi * element.h(2, l) + zeta * element.h(0, l);
+      G(2, l) = xi * element.h(1, l) + eta * element.h(0, l);
+      G(3, l) = T(0);
+    }
+    return G;
   }
 
   /// sum_j P_ij dxi_k/dX_j.
   template <class T>
   static T row_dot(const Tensor<T>& P, int i, const Element<T>& element, int k) {
     return P(i, 0) * element.h(k, 0) + P(i, 1) * element.h(k, 1) + P(i, 2) * element.h(k, 2);
-  }
-
-  template <class T>
-  static std::array<T, 4> dilatations(const ElementMotion<T>& motion, const Element<T>& element) {
-    const Tensor<T> H = OnePoint::mean_gradient(motion.u, element);
-    const auto at = point_gradients(H, OnePoint::hourglass_displacements(motion.u, H, element), element);
-    return {jacobian_minus_one(at[0]), jacobian_minus_one(at[1]), jacobian_minus_one(at[2]),
-            jacobian_minus_one(at[3])};
   }
 };
 

@@ -53,7 +53,13 @@ struct HourglassMatrixControl {
   /// K r, in N.
   template <class T>
   static HourglassModes<T> resistance(const HourglassModes<T>& r, const Element<T>& element) {
-    return {(element.K * Matrix<T, 12, 1>{r.entries}).entries};
+    HourglassModes<T> Q;
+    for (int row = 0; row < 12; ++row) {
+      T sum = element.K(row, 0) * r.entries[0];
+      for (int n = 1; n < 12; ++n) sum = sum + element.K(row, n) * r.entries[static_cast<std::size_t>(n)];
+      Q.entries[static_cast<std::size_t>(row)] = sum;
+    }
+    return Q;
   }
 
   /// r K r / 2, in J.

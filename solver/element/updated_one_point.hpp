@@ -38,16 +38,14 @@ struct UpdatedOnePoint {
 
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
-    Deformation<T> now;
-    now.x = motion.X + motion.u;
-    now.current = OnePoint::geometry(now.x);
-    now.H = displacement_gradient(motion.u, now.current);
-    now.change = volume_change(now.H);
-    if constexpr (Hourglass::active) {
-      now.L = OnePoint::mean_gradient(motion.increment, now.current);
-      now.rate = OnePoint::hourglass_displacements(motion.increment, now.L, now.current);
-      now.inverse_step = motion.inverse_step;
-    }
+    // In place: what is assigned is computed elsewhere and copied.
+    Deformation<T> now{.x = motion.X + motion.u,
+                       .current = OnePoint::geometry(now.x),
+                       .H = displacement_gradient(motion.u, now.current),
+                       .change = volume_change(now.H),
+                       .L = OnePoint::mean_gradient(motion.increment, now.current),
+                       .rate = OnePoint::hourglass_displacements(motion.increment, now.L, now.current),
+                       .inverse_step = motion.inverse_step};
     return now;
   }
 
