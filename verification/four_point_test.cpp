@@ -30,6 +30,26 @@ NodalVectors<double> displaced(const NodalVectors<double>& X, const Tensor<doubl
   return X * transpose(F - identity<double>()) + hourglass_base_vectors() * amplitudes;
 }
 
+/// The gradient at each point is the mean one and what the hourglass displacements add. Roundoff of either
+/// way is below 100 eps of the largest gradient, which is of order one.
+TEST(FourPoint, gradients_are_the_mean_and_what_hourglass_displacements_add) {
+  RandomGeometry random(23);
+  for (int n = 0; n < 20; ++n) {
+    const NodalVectors<double> X = random.hexahedron();
+    const auto element = FourPoint::precompute(X);
+    ElementMotion<double> motion{};
+    motion.u = to_modes(random.displacements(X, 0.7, 1.4, 0.2));
+    const auto now = FourPoint::deformation<LastModeControl>(motion, element);
+    const Tensor<double> mean = 0.25 * ((now.H[0] + now.H[1]) + (now.H[2] + now.H[3]));
+    for (std::size_t p = 0; p < 4; ++p) {
+      const Tensor<double> added = transpose(now.q) * FourPoint::fluctuation(p, element);
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) EXPECT_NEAR(now.H[p](i, j), mean(i, j) + added(i, j), 1e-13);
+      }
+    }
+  }
+}
+
 /// On a parallelepiped the energies of four and of eight points agree to second order in the first three
 /// hourglass modes, at any mean deformation: halving the modes divides the difference by eight, or by more.
 TEST(FourPoint, knows_the_second_variation_of_eight_points) {

@@ -132,6 +132,22 @@ struct FourPoint {
     return body;
   }
 
+  /// What a unit of each hourglass displacement adds to the gradient at a point, 1/m.
+  template <class T>
+  static Matrix<T, 4, 3> fluctuation(std::size_t point, const Element<T>& element) {
+    constexpr std::array<std::array<double, 3>, 4> signs{{{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}}};
+    const T xi = T(signs[point][0]) * scale<T>(), eta = T(signs[point][1]) * scale<T>(),
+            zeta = T(signs[point][2]) * scale<T>();
+    Matrix<T, 4, 3> G;
+    for (int l = 0; l < 3; ++l) {
+      G(0, l) = eta * element.h(2, l) + zeta * element.h(1, l);
+      G(1, l) = xi * element.h(2, l) + zeta * element.h(0, l);
+      G(2, l) = xi * element.h(1, l) + eta * element.h(0, l);
+      G(3, l) = T(0);
+    }
+    return G;
+  }
+
  private:
   /// A point's coordinate. Modes are sums over the nodes, eight times amplitudes; h has an eighth for it.
   template <class T>
@@ -173,23 +189,6 @@ struct FourPoint {
       }
     }
     return at;
-  }
-
-  /// What a unit of each hourglass displacement adds to the gradient at a point, as in `point_gradients`;
-  /// 1/m.
-  template <class T>
-  static Matrix<T, 4, 3> fluctuation(std::size_t point, const Element<T>& element) {
-    constexpr std::array<std::array<double, 3>, 4> signs{{{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}}};
-    const T xi = T(signs[point][0]) * scale<T>(), eta = T(signs[point][1]) * scale<T>(),
-            zeta = T(signs[point][2]) * scale<T>();
-    Matrix<T, 4, 3> G;
-    for (int l = 0; l < 3; ++l) {
-      G(0, l) = eta * element.h(2, l) + zeta * element.h(1, l);
-      G(1, l) = xi * element.h(2, l) + zeta * element.h(0, l);
-      G(2, l) = xi * element.h(1, l) + eta * element.h(0, l);
-      G(3, l) = T(0);
-    }
-    return G;
   }
 
   /// sum_j P_ij dxi_k/dX_j.

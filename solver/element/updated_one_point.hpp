@@ -38,13 +38,15 @@ struct UpdatedOnePoint {
 
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
-    // In place: what is assigned is computed elsewhere and copied.
+    // In place: what is assigned is computed elsewhere and copied. Who controls nothing needs no rates.
+    constexpr bool rates = Hourglass::active;
     Deformation<T> now{.x = motion.X + motion.u,
                        .current = OnePoint::geometry(now.x),
                        .H = displacement_gradient(motion.u, now.current),
                        .change = volume_change(now.H),
-                       .L = OnePoint::mean_gradient(motion.increment, now.current),
-                       .rate = OnePoint::hourglass_displacements(motion.increment, now.L, now.current),
+                       .L = rates ? OnePoint::mean_gradient(motion.increment, now.current) : Tensor<T>{},
+                       .rate = rates ? OnePoint::hourglass_displacements(motion.increment, now.L, now.current)
+                                     : HourglassModes<T>{},
                        .inverse_step = motion.inverse_step};
     return now;
   }
