@@ -19,6 +19,7 @@ VERIFY = Function("verify", "solver/app/command_verify.cpp")
 SCENES = Function("read_static_scenes", "solver/app/workspace.cpp")
 SUBJECTS = Function("read_subjects", VERIFY.file)
 JUDGE = Function("judge", "solver/comparison/verdict.cpp")
+RELAXED = Function("fill_relaxed", JUDGE.file)
 STEP = Function("step", "solver/stepping/equilibrium.cpp", "equilibrium_.step(")
 PAGE = Function("make", "reports/make_report.py")
 
@@ -60,7 +61,7 @@ WAY = (
     Step(
         "Compute each element's constants",
         (
-            JUDGE,
+            RELAXED,
             Function("Model", "solver/model/model.cpp", "Model model("),
             Function("make_internal_force", "solver/model/internal_force.cpp"),
             Function("assemble", "solver/model/assemble.hpp", "method.assemble_packed_double("),
@@ -74,6 +75,7 @@ WAY = (
             VERIFY,
             Function("run_all", VERIFY.file),
             JUDGE,
+            RELAXED,
             Function("relax", "solver/stepping/relaxation.cpp"),
             Function("run", "solver/stepping/relaxation.cpp", "Search<Real>(model, *elements, obs"),
             Function("solve", "solver/stepping/relaxation.cpp"),
