@@ -35,7 +35,7 @@ struct NeoHookean : FirstInvariant<NeoHookean> {
     return T(1.5 * shear_modulus()) * third_of_first_invariant_growth(H);
   }
 
-  /// The same at all strains, Pa.
+  /// The shear modulus, the same at all strains, Pa.
   template <class T>
   T current_modulus(const Tensor<T>& /*H*/, const VolumeChange<T>& /*change*/) const {
     return T(shear_modulus());
