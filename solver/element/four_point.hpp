@@ -103,14 +103,13 @@ struct FourPoint {
 
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    const auto change = deformation<void>(motion, element).change;
-    return T(1) + min(min(change[0].J_minus_one, change[1].J_minus_one),
-                      min(change[2].J_minus_one, change[3].J_minus_one));
+    const std::array<T, 4> at = dilatations(motion, element);
+    return T(1) + min(min(at[0], at[1]), min(at[2], at[3]));
   }
 
   template <class T>
   static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + mean_dilatation(deformation<void>(motion, element).change);
+    return T(1) + mean(dilatations(motion, element));
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness.
@@ -160,11 +159,25 @@ struct FourPoint {
     return {volume_change(H[0]), volume_change(H[1]), volume_change(H[2]), volume_change(H[3])};
   }
 
+  template <class T>
+  static T mean(const std::array<T, 4>& at) {
+    return T(0.25) * ((at[0] + at[1]) + (at[2] + at[3]));
+  }
+
   /// The mean of J - 1.
   template <class T>
   static T mean_dilatation(const std::array<VolumeChange<T>, 4>& change) {
-    return T(0.25) * ((change[0].J_minus_one + change[1].J_minus_one) +
-                      (change[2].J_minus_one + change[3].J_minus_one));
+    return mean<T>(
+        {change[0].J_minus_one, change[1].J_minus_one, change[2].J_minus_one, change[3].J_minus_one});
+  }
+
+  /// J - 1 at the points.
+  template <class T>
+  static std::array<T, 4> dilatations(const ElementMotion<T>& motion, const Element<T>& element) {
+    const Tensor<T> H = OnePoint::mean_gradient(motion.u, element);
+    const auto at = point_gradients(H, OnePoint::hourglass_displacements(motion.u, H, element), element);
+    return {jacobian_minus_one(at[0]), jacobian_minus_one(at[1]), jacobian_minus_one(at[2]),
+            jacobian_minus_one(at[3])};
   }
 
   /// Displacement gradients at the four points: H + xi A_xi + eta A_eta + zeta A_zeta, where the gradient

@@ -54,10 +54,9 @@ struct HourglassMatrixControl {
   template <class T>
   static HourglassModes<T> resistance(const HourglassModes<T>& r, const Element<T>& element) {
     HourglassModes<T> Q;
+    const auto flat = [&](int n) { return r.entries[static_cast<std::size_t>(n)]; };
     for (int row = 0; row < 12; ++row) {
-      T sum = element.K(row, 0) * r.entries[0];
-      for (int n = 1; n < 12; ++n) sum = sum + element.K(row, n) * r.entries[static_cast<std::size_t>(n)];
-      Q.entries[static_cast<std::size_t>(row)] = sum;
+      Q.entries[static_cast<std::size_t>(row)] = row_product(element.K, row, flat);
     }
     return Q;
   }

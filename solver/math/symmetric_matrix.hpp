@@ -42,15 +42,19 @@ constexpr Matrix<T, N, N> dense(const SymmetricMatrix<T, N>& s) {
   return a;
 }
 
+/// Row i of a times a column, which is read where it lies: column(n) is its entry n.
+template <class T, int N, class Column>
+constexpr T row_product(const SymmetricMatrix<T, N>& a, int i, const Column& column) {
+  T sum = a(i, 0) * column(0);
+  for (int n = 1; n < N; ++n) sum = sum + a(i, n) * column(n);
+  return sum;
+}
+
 template <class T, int N, int C>
 constexpr Matrix<T, N, C> operator*(const SymmetricMatrix<T, N>& a, const Matrix<T, N, C>& b) {
   Matrix<T, N, C> c;
   for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < C; ++j) {
-      T sum = a(i, 0) * b(0, j);
-      for (int n = 1; n < N; ++n) sum = sum + a(i, n) * b(n, j);
-      c(i, j) = sum;
-    }
+    for (int j = 0; j < C; ++j) c(i, j) = row_product(a, i, [&](int n) { return b(n, j); });
   }
   return c;
 }
