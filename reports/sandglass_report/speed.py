@@ -79,13 +79,13 @@ def _panel(subject, palette, reference, figure, words, limits, costs):
         helpers.percent_scale(axes.yaxis, limits)
         axes.set_xlabel("ns per element and step")
         axes.figure.canvas.draw()  # the layout must stand before labels are pushed apart
-        labels = []  # x, y, text, colour, method
+        labels = []  # x, y, colour, text, and what of it stays where names do not fit
         for method in dict.fromkeys(run.method for run in found):
             of_method = [run for run in found if run.method == method]
             labels += _draw_method(axes, of_method, palette, reference, figure, limits)
         crowded = len(labels) > MOST_LABELS
-        shown = [one[:4] for one in labels if not crowded or one[2] != one[4]]
-        helpers.label_points(axes, shown[:MOST_LABELS])
+        texts = [(x, y, short if crowded else text, c) for x, y, c, text, short in labels]
+        helpers.label_points(axes, [one for one in texts if one[2]][:MOST_LABELS])
         _name_missing(axes, subject, reference)
 
     return Panel(
@@ -119,7 +119,9 @@ def _draw_method(axes, runs, palette, reference, figure, limits):
         axes.plot([early, late], [y, y], color=colour, linewidth=1.6, alpha=0.45)
         error = getattr(getattr(run, reference), figure)
         hidden = error < lowest
-        text = f"{run.method} {style.percent(error, 1)}" if hidden else run.method
+        value = style.percent(error, 1) if hidden else ""
+        text = f"{run.method} {value}".rstrip()
+        failed = f"{text} (failed)"
         axes.plot(
             x,
             y,
@@ -131,7 +133,7 @@ def _draw_method(axes, runs, palette, reference, figure, limits):
             linestyle="",
             zorder=4,
         )
-        labels.append((late, y, text if run.ok else f"{text} (failed)", colour, run.method))
+        labels.append((late, y, colour, *((text, value) if run.ok else (failed, failed))))
     return labels
 
 
@@ -148,7 +150,7 @@ def _name_missing(axes, subject, reference):
             ha="right",
             va="bottom",
             color=style.BAD[0],
-            fontsize=7.5,
+            fontsize=6.8,
         )
 
 
