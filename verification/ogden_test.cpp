@@ -1,8 +1,5 @@
 /// Ogden's law against closed forms, other laws, and its textbook form in long double.
 
-// GCC 12 warns of its own AVX-512 headers when Eigen uses them.
-#define EIGEN_DONT_VECTORIZE
-
 #include "material/ogden.hpp"
 
 #include <gtest/gtest.h>

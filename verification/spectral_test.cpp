@@ -1,9 +1,6 @@
 /// Exponentials and logarithms that packs compute, principal frames, and isotropic functions of tensors with
 /// their derivatives.
 
-// GCC 12 warns of its own AVX-512 headers when Eigen uses them.
-#define EIGEN_DONT_VECTORIZE
-
 #include "math/spectral.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,5 @@
 #pragma once
 
-#define EIGEN_DONT_VECTORIZE  // GCC 12 warns of its own AVX-512 headers when Eigen uses them
-
 #include <Eigen/Dense>
 
 #include "model/model.hpp"

@@ -1,6 +1,3 @@
-// GCC 12 warns of its own AVX-512 headers when Eigen uses them; these matrices are too small to need them.
-#define EIGEN_DONT_VECTORIZE
-
 #include "support/eigenvalues.hpp"
 
 #include <Eigen/Eigenvalues>
