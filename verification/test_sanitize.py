@@ -36,8 +36,7 @@ def test_says_that_all_is_clean(sanitize):
     assert "ci/sanitize: address clean after" in done.stdout
 
 
-@pytest.mark.parametrize("which", ["--exclude-regex", "--tests-regex"])
-def test_a_failed_test_fails_it_though_later_ones_pass(sanitize, which):
-    done = sanitize(f'[[ " $* " != *" {which} "* ]]')
+def test_a_failed_test_fails_it_though_later_ones_pass(sanitize):
+    done = sanitize("exit 1")
     assert done.returncode == 1
     assert "clean" not in done.stdout
