@@ -16,7 +16,9 @@ def sanitize(tmp_path):
             (tmp_path / folder).mkdir()
         shutil.copy(ROOT / "ci/sanitize", tmp_path / "ci")
         for script in ("ci/setup", "ci/build", "bin/ctest"):
-            (tmp_path / script).write_text(f"#!/bin/bash\n{ctest if 'ctest' in script else 'exit 0'}\n")
+            (tmp_path / script).write_text(
+                f"#!/bin/bash\n{ctest if 'ctest' in script else 'exit 0'}\n"
+            )
             (tmp_path / script).chmod(0o755)
         (tmp_path / "verification/test_it.py").write_text("def test_it():\n    pass\n")
         return subprocess.run(
