@@ -6,20 +6,17 @@
 
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "io/toml_text.hpp"
 
 namespace sandglass {
 
 namespace {
 
 std::string written(const toml::node& node) {
-  std::ostringstream stream;
-  node.visit([&](const auto& value) {
-    if constexpr (toml::is_table<decltype(value)>) {
-      stream << "a table";
-    } else {
-      stream << value;
-    }
-  });
+  if (node.is_table()) return "a table";
+  if (!node.is_string()) return value_text(node);
+  std::ostringstream stream;  // in the quotes of all messages, with escapes
+  stream << *node.as_string();
   return stream.str();
 }
 

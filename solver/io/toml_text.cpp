@@ -47,6 +47,8 @@ std::string number_text(double value) {
   return text;
 }
 
+}  // namespace
+
 std::string value_text(const toml::node& node) {
   if (const auto* number = node.as_floating_point()) return number_text(number->get());
   if (const auto* text = node.as_string()) return quoted(text->get());
@@ -67,6 +69,8 @@ std::string value_text(const toml::node& node) {
   });
   return out.str();
 }
+
+namespace {
 
 std::string lines_text(const toml::table& table) {
   std::string text;
