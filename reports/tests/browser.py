@@ -18,7 +18,7 @@ class Browser:
     def __init__(self, width=1280, height=900, dark=False, phone=False, script=True):
         self.complaints, self.requests = [], []
         self._waiting, self._number = b"", 0
-        self._folder = tempfile.TemporaryDirectory(prefix="browser.")
+        self._folder = tempfile.mkdtemp(prefix="browser.")
         self._start()
         target = self._call("Target.createTarget", url="about:blank")["targetId"]
         session = self._call("Target.attachToTarget", targetId=target, flatten=True)
@@ -87,14 +87,19 @@ class Browser:
         self._process.wait()
         os.close(self._out)
         os.close(self._in)
-        self._folder.cleanup()
+        self._wait(self._forgotten, f"{self._folder} cannot be removed")
+
+    def _forgotten(self):
+        """Whether the profile is gone: helpers of a killed browser write on for a moment."""
+        shutil.rmtree(self._folder, ignore_errors=True)
+        return not os.path.exists(self._folder)
 
     def _start(self):
         """The browser reads from descriptor 3 and writes to 4."""
         read_theirs, self._out = os.pipe()
         self._in, write_theirs = os.pipe()
         flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe"]
-        flags += ["--disable-dev-shm-usage", f"--user-data-dir={self._folder.name}"]
+        flags += ["--disable-dev-shm-usage", f"--user-data-dir={self._folder}"]
         words = " ".join(f"'{word}'" for word in (CHROMIUM, *flags, "about:blank"))
         self._process = subprocess.Popen(
             ["bash", "-c", f"exec {words} 3<&{read_theirs} 4>&{write_theirs}"],
