@@ -74,10 +74,11 @@ std::size_t most_bytes_per_byte(const Identifier& set) {
   return own ? 1 : 0;
 }
 
-/// Whether a type is a number of at most eight bytes.
+/// Whether a type is a number of at most eight bytes. In damaged files it may have none.
 bool is_number(const Identifier& type) {
   const H5T_class_t kind = H5Tget_class(type.get());
-  return (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Tget_size(type.get()) <= 8;
+  const std::size_t bytes = H5Tget_size(type.get());
+  return (kind == H5T_INTEGER || kind == H5T_FLOAT) && bytes > 0 && bytes <= 8;
 }
 
 /// Whether an attribute holds one value, not a list and not nothing.
