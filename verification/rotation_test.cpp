@@ -311,7 +311,7 @@ TEST(RotationInput, bad_ones_are_told) {
   const TemporaryFolder folder;
   const std::vector<std::array<std::string, 3>> bad{
       {"[0.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]", "rotation.axis = [0, 0, 0] must not be zero"},
-      {"[0.0, 0.0, 2.0]", "[0.0, 2.0]", "rotation.axis = [ 0.0, 2.0 ] must be a list of 3"},
+      {"[0.0, 0.0, 2.0]", "[0.0, 2.0]", "rotation.axis = [0.0, 2.0] must be a list of 3"},
       {"[0.0, 0.0, 2.0]", "\"w\"", "rotation.axis = 'w' is not known"},
       {"[0.0, 0.0, 2.0]", "[0.0, 0.0, inf]", "rotation.axis = inf must be in (-inf, inf)"},
       {"angle = 90.0", "angle = inf", "rotation.angle = inf must be in (-inf, inf)"},
