@@ -106,8 +106,9 @@ def test_axes_are_described():
 def test_the_workflow_has_a_job_for_each_case_and_method(tmp_path):
     """A case whose name has a dot, as methods' files have between case and method, too."""
     settings = (f"sandglass={BINARY}", f"folder={tmp_path}", "cases=column bending-2-nu0.49")
-    plan = ["snakemake", "-s", "verification/stability/Snakefile", "-n", "--config", *settings]
-    outcome = subprocess.run(plan, cwd=ROOT, capture_output=True, text=True, timeout=100)
+    workflow = ROOT / "verification/stability/Snakefile"
+    plan = ["snakemake", "-s", workflow, "-n", "--config", *settings]
+    outcome = subprocess.run(plan, cwd=tmp_path, capture_output=True, text=True, timeout=100)
     assert outcome.returncode == 0, outcome.stderr[:1000]
     jobs = dict(line.split()[:2] for line in outcome.stdout.splitlines() if len(line.split()) == 4)
     methods = len(sandglass("methods").stdout.splitlines())
