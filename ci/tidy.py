@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""clang-tidy, as ccache remembers it: what was clean and has not changed is not looked at again.
+
+    ci/tidy.py BUILD SOURCE...    checks the sources as BUILD/compile_commands.json compiles them
+
+ccache remembers objects, so this file is also the "compiler" that it calls (FLAGS -c SOURCE -o
+OBJECT, or -E to hash what is included): one whose object says that clang-tidy found nothing.
+Findings are not remembered.
+"""
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+REMEMBERS = {
+    "CCACHE_BASEDIR": str(ROOT),  # what one clone has checked, the next need not
+    "CCACHE_COMMENTS": "1",  # NOLINT is one
+    "CCACHE_COMPILERCHECK": "clang-tidy --version",
+    "CCACHE_COMPILERTYPE": "gcc",
+    "CCACHE_EXTRAFILES": f"{ROOT / '.clang-tidy'}:{Path(__file__).resolve()}",
+}
+
+
+def check(command, directory):
+    """Exit status of clang-tidy for a compile command (words), from memory where it was 0."""
+    compiler, *flags = command
+    with tempfile.TemporaryDirectory() as folder:
+        flags[flags.index("-o") + 1] = f"{folder}/clean"
+        return subprocess.run(
+            ["ccache", Path(__file__).resolve(), *flags],
+            cwd=directory,
+            env=os.environ | REMEMBERS | {"TIDY_PREPROCESSOR": compiler},
+        ).returncode
+
+
+def as_compiler(arguments):
+    """Preprocesses, or checks the source and writes the object. Returns the exit status."""
+    if "-E" in arguments:
+        return subprocess.run([os.environ["TIDY_PREPROCESSOR"], *arguments]).returncode
+    clean = arguments[arguments.index("-o") + 1]
+    tidy = ["clang-tidy", "--quiet", "--warnings-as-errors=*"]
+    tidy += ["--extra-arg=-Wno-unknown-warning-option", arguments[-1], "--", *arguments]
+    done = subprocess.run(tidy, stderr=subprocess.PIPE, text=True)
+    kept = [line for line in done.stderr.splitlines() if "warnings generated" not in line]
+    print(*kept, sep="\n", end="\n" if kept else "", file=sys.stderr)
+    if done.returncode == 0:
+        Path(clean).write_text("clean\n")  # ccache keeps no empty object
+    return done.returncode
+
+
+def main(build, *sources):
+    """Checks the sources on all cores: 1 where one has a finding or is not compiled, else 0."""
+    entries = json.loads((Path(build) / "compile_commands.json").read_text())
+    compiled = {entry["file"]: entry for entry in entries}
+    unknown = [source for source in sources if str(Path(source).resolve()) not in compiled]
+    if unknown:
+        print(f"ci/tidy.py: {build} compiles none of: {' '.join(unknown)}", file=sys.stderr)
+        return 1
+    chosen = [compiled[str(Path(source).resolve())] for source in sources]
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as cores:
+        results = cores.map(lambda e: check(shlex.split(e["command"]), e["directory"]), chosen)
+    return int(any(results))
+
+
+if __name__ == "__main__":
+    compiling = "-c" in sys.argv or "-E" in sys.argv
+    sys.exit(as_compiler(sys.argv[1:]) if compiling else main(*sys.argv[1:]))
