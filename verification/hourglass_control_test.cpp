@@ -47,7 +47,8 @@ TEST(HourglassFluctuation, completes_the_mean_gradient) {
       const double roundoff =
           256 * eps * largest_entry(point.gradient) * (largest_entry(u) + largest_entry(X));
       EXPECT_LT(largest_entry(sum - exact), roundoff);
-      EXPECT_EQ(fluctuation.weight[p], point.measure);
+      // The same six products of three sums of eight, which the compiler may contract differently.
+      EXPECT_NEAR(fluctuation.weight[p], point.measure, 256 * eps * std::pow(largest_entry(X), 3));
     }
   }
 }
