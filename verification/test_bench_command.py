@@ -4,6 +4,9 @@ No time is judged: only that figures exist, are positive and follow from each ot
 """
 
 import json
+import os
+import re
+import subprocess
 
 import pytest
 from command_line import BLOCK, dynamic, methods, sandglass
@@ -106,6 +109,20 @@ def test_json_tells_where_it_comes_from(tiny):
         assert document[name]
     assert document["machine"]["processors"] >= 1
     assert document["repetitions"] == 1
+
+
+def test_json_tells_the_width_of_packs(tiny):
+    """As the compiler has it: machines of one name and "-march=native" may differ in it."""
+    flags = tiny[1]["build_flags"]
+    arch = re.search(r"-march=[^;]+", flags).group()
+    macros = subprocess.run(
+        ["c++", arch, "-dM", "-E", "-x", "c++", os.devnull],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    width = 8 if "__AVX512F__" in macros else 4 if "__AVX__" in macros else 2
+    assert flags.endswith(f"; packs of {width} doubles")
 
 
 def test_table_shows_every_method(tiny):

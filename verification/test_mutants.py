@@ -4,10 +4,13 @@ What kills them is the work of `ci/mutants`, which takes hours.
 """
 
 import subprocess
+import threading
+from types import SimpleNamespace
 
 import patches
 import pytest
 import results
+from clean_runs import CleanRuns
 from command_line import ROOT
 
 PATCHES = patches.read_patches()
@@ -55,3 +58,60 @@ def test_patch_without_a_sentence_is_refused(tmp_path):
     path.write_text("--- a/x\n+++ b/x\n@@ -1 +1 @@\n-a\n+b\n")
     with pytest.raises(ValueError, match="needs a sentence"):
         patches.read_patch(path)
+
+
+class FakeWorker:
+    """A copy of the tree with one program, whose runs fail as told, then no more."""
+
+    def __init__(self, *failures):
+        self.failures_left = list(failures)
+        self.runs = 0
+
+    def programs(self):
+        return [SimpleNamespace(name="all_test")]
+
+    def failures(self, program):
+        self.runs += 1
+        return (self.failures_left.pop(0) if self.failures_left else []), 1.0
+
+
+@pytest.fixture
+def empty_store(tmp_path, monkeypatch):
+    monkeypatch.setattr(results, "STORE", tmp_path / "store")
+
+
+def clean_runs(wanted, tree="tree"):
+    return CleanRuns(wanted, tree, "0123456789ab")
+
+
+def test_workers_share_the_clean_runs(empty_store):
+    runs, workers = clean_runs(7), [FakeWorker(), FakeWorker()]
+    threads = [threading.Thread(target=runs.work, args=(worker,)) for worker in workers]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert runs.is_done()
+    assert sum(worker.runs for worker in workers) == 7
+    assert results.stored(results.CLEAN)["alarms"] == [[]] * 7
+
+
+def test_clean_runs_of_the_same_tree_count_and_of_another_do_not(empty_store):
+    clean_runs(2).work(FakeWorker())
+    assert clean_runs(3).missing() == 1
+    assert clean_runs(3, "another tree").missing() == 3
+
+
+def test_a_single_failing_run_is_followed_by_another(empty_store):
+    runs, worker = clean_runs(1), FakeWorker(["a"])
+    runs.work(worker)
+    assert worker.runs == 2
+    runs.conclude()  # a false alarm: the second run had none
+    assert results.stored(results.CLEAN)["alarms"] == [["a"], []]
+
+
+def test_what_fails_in_every_run_is_a_broken_tree(empty_store):
+    runs = clean_runs(2)
+    runs.work(FakeWorker(["a", "b"], ["b"]))
+    with pytest.raises(RuntimeError, match="the clean tree fails: b$"):
+        runs.conclude()

@@ -1,10 +1,13 @@
 #include "app/machine.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 #include "app/build_info.hpp"
 #include "base/error.hpp"
 #include "io/file_hash.hpp"
+#include "math/pack.hpp"
 
 namespace sandglass {
 
@@ -19,13 +22,19 @@ std::string processor() {
   return "unknown";
 }
 
+/// What the program is compiled with. "-march=native" says another thing on each machine, whose name may be
+/// the same: memory, bits and speed go with the width of packs.
+std::string build_flags() {
+  return fmt::format("{}; packs of {} doubles", build_info::flags, native_width<double>);
+}
+
 }  // namespace
 
 Provenance build_provenance() {
   return {{"version", std::string(build_info::version)},
           {"revision", std::string(build_info::revision)},
           {"compiler", std::string(build_info::compiler)},
-          {"build_flags", std::string(build_info::flags)},
+          {"build_flags", build_flags()},
           {"processor", processor()}};
 }
 
@@ -37,7 +46,7 @@ Identity program_identity() {
   }
   return {{"revision", std::string(build_info::revision)},
           {"compiler", std::string(build_info::compiler)},
-          {"build_flags", std::string(build_info::flags)},
+          {"build_flags", build_flags()},
           {"program_hash", program}};
 }
 

@@ -22,6 +22,7 @@ if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent.parent))
 
 import results
+from clean_runs import CleanRuns
 from common.command import exit_code
 from common.errors import InputError
 from common.program import ROOT
@@ -62,30 +63,6 @@ def result_of(worker, patch, programs, timeout):
             result["by"] = failure.by + (" (timeout)" if hangs else "")
             result["program"] = failure.program
     return result | {"seconds": time.monotonic() - started}
-
-
-def clean_runs(worker, wanted, tree, revision):
-    """Runs all tests of the clean tree until it has had `wanted` runs; earlier ones count.
-
-    A single run with failures is followed by another, which tells false alarms from a broken tree.
-    Raises RuntimeError when a test has failed in every run: no verdict on mutants would count.
-    """
-    known = results.stored(results.CLEAN)
-    if known is None or known["tree"] != tree:
-        known = {"tree": tree, "revision": revision, "alarms": [], "seconds": {}}
-    while len(known["alarms"]) < wanted or (len(known["alarms"]) == 1 and known["alarms"][0]):
-        alarms = []
-        for program in worker.programs():
-            failed, known["seconds"][program.name] = worker.failures(program)
-            alarms += failed
-        known["alarms"].append(alarms)
-        results.store(results.CLEAN, known)
-        total = sum(known["seconds"].values())
-        failed = f"{', '.join(alarms)} failed, " if alarms else ""
-        print(f"clean tree: run {len(known['alarms'])}, {failed}{total:.0f} s", flush=True)
-    always = set.intersection(*map(set, known["alarms"]))
-    if always:
-        raise RuntimeError(f"the clean tree fails: {', '.join(sorted(always))}")
 
 
 def work(worker, todo, options, tree, revision):
@@ -147,15 +124,16 @@ def run(options, stop):
             todo.put(patch)
     errors = []
 
-    def one_worker(first):
+    clean = CleanRuns(max(1, options.clean), tree, revision)
+
+    def one_worker():
         try:
             with Worker(revision, stop) as worker:
-                if first:
-                    clean_runs(worker, max(1, options.clean), tree, revision)
-                    clean_is_known.set()
-                while not clean_is_known.wait(0.2):
-                    if stop.is_set():
+                clean.work(worker)
+                while not clean.is_done():
+                    if stop.wait(0.2):
                         return
+                clean.conclude()
                 work(worker, todo, options, tree, revision)
         except Stopped:
             pass
@@ -163,9 +141,8 @@ def run(options, stop):
             errors.append(error)
             stop.set()
 
-    clean_is_known = threading.Event()
-    count = max(1, min(options.jobs, todo.qsize()))
-    threads = [threading.Thread(target=one_worker, args=(n == 0,)) for n in range(count)]
+    count = max(1, min(options.jobs, todo.qsize() + clean.missing()))
+    threads = [threading.Thread(target=one_worker) for n in range(count)]
     for thread in threads:
         thread.start()
     for thread in threads:
