@@ -88,7 +88,7 @@ def find(options, baseline):
             run.add(file, *read(file))
     if "speed" in options.sources:
         files = options.bench or bench_files(options, baseline, folder)
-        records, run.machine, document = read_bench(files)
+        records, _, document = read_bench(files)
         run.add(files[0], records, document)
     return run
 

@@ -12,7 +12,7 @@ from common.records import entries, entry
 
 from .compare import NOISY, SAME, compare
 from .interval import Interval
-from .records import AREAS, OF_MACHINE, Record
+from .records import AREAS, MAY_DIFFER, OF_MACHINE, Record
 
 FORMAT = 1
 DIGITS = 6  # of errors and ratios: a thousandth of what the rules tell apart
@@ -20,28 +20,58 @@ DIGITS = 6  # of errors and ratios: a thousandth of what the rules tell apart
 
 @dataclass
 class Baseline:
-    """Accepted records, those of OF_MACHINE by machine, and the history of their acceptance."""
+    """Accepted records and the history of their acceptance.
+
+    records: of all machines, as found on `machine`, the first. machines: by name of a machine, its
+    own records: those of OF_MACHINE, and where they are not the first machine's, of MAY_DIFFER.
+    """
 
     history: list = field(default_factory=list)
     records: list = field(default_factory=list)
     machines: dict = field(default_factory=dict)
+    machine: str | None = None
+
+    def knows(self, area, machine):
+        """Whether what was accepted of an area holds on a machine."""
+        if area not in (*OF_MACHINE, *MAY_DIFFER):
+            return True
+        if area in MAY_DIFFER and machine in (None, self.machine):
+            return True
+        return bool(_figures(area, self.machines.get(machine, [])))
 
     def of(self, area, machine):
-        """All records of an area on a machine; a machine that is not known has none."""
-        source = self.machines.get(machine, []) if area in OF_MACHINE else self.records
-        return {record.name: record.figures for record in source if record.area == area}
+        """All records of an area on a machine; a machine that is not known has none of its own."""
+        common = () if area in OF_MACHINE else self.records
+        return _figures(area, [*common, *self.machines.get(machine, [])])
 
     def replace(self, area, machine, figures_by_name):
         """Puts other records in the place of those of an area."""
-        of_machine = area in OF_MACHINE
-        source = self.machines.get(machine, []) if of_machine else self.records
-        kept = [record for record in source if record.area != area]
-        kept += [Record(area, name, figures) for name, figures in figures_by_name.items()]
-        kept.sort(key=lambda record: (AREAS.index(record.area), record.name))
-        if of_machine:
-            self.machines[machine] = kept
-        else:
-            self.records = kept
+        if area in OF_MACHINE:
+            self._replace_own(area, machine, figures_by_name)
+        elif area not in MAY_DIFFER or machine in (None, self.machine):
+            self.records = _replaced(self.records, area, figures_by_name)
+        else:  # what the first machine found stays
+            first = _figures(area, self.records)
+            common = {name: first.get(name, here) for name, here in figures_by_name.items()}
+            own = {n: here for n, here in figures_by_name.items() if _differ(common[n], here)}
+            self.records = _replaced(self.records, area, common)
+            self._replace_own(area, machine, own)
+
+    def _replace_own(self, area, machine, figures_by_name):
+        own = self.machines.get(machine, [])
+        self.machines[machine] = _replaced(own, area, figures_by_name)
+
+
+def _figures(area, records):
+    """Figures by name of an area; later records take the place of earlier ones."""
+    return {record.name: record.figures for record in records if record.area == area}
+
+
+def _replaced(records, area, figures_by_name):
+    """The records with others in the place of those of an area."""
+    kept = [record for record in records if record.area != area]
+    kept += [Record(area, name, figures) for name, figures in figures_by_name.items()]
+    return sorted(kept, key=lambda record: (AREAS.index(record.area), record.name))
 
 
 def _record(where, found):
@@ -69,6 +99,7 @@ def read(path):
     if document.get("format") != FORMAT:
         raise InputError(f"{path}: format = {document.get('format')!r} must be {FORMAT}")
     machines = entry(path, document, "machines", dict)
+    machine = entry(path, document, "machine", str) if "machine" in document else None
     return Baseline(
         entry(path, document, "history", list),
         [_record(*found) for found in entries(path, document, "records")],
@@ -76,6 +107,7 @@ def read(path):
             name: [_record(*found) for found in entries(f"{path}: machines", machines, name)]
             for name in machines
         },
+        machine,
     )
 
 
@@ -110,8 +142,9 @@ def text_of(baseline):
     inner = (
         "{\n" + ",\n".join("  " + machine for machine in machines) + "\n }" if machines else "{}"
     )
+    first = f' "machine": {_line(baseline.machine)},\n' if baseline.machine else ""
     return (
-        f'{{\n "format": {FORMAT},\n'
+        f'{{\n "format": {FORMAT},\n{first}'
         f' "history": {_list([_line(entry) for entry in baseline.history], 1)},\n'
         f' "records": {_list([_line(_entry(record)) for record in baseline.records], 1)},\n'
         f' "machines": {inner}\n}}\n'
@@ -153,6 +186,8 @@ def accept(baseline, run, areas, reason, date):
         for figure, value in record.figures.items():
             if isinstance(value, Interval) and value.low == 0.0:
                 raise InputError(f"{record.name}: {figure}: too few processes to accept; use more")
+    if set(areas) & set(MAY_DIFFER):
+        baseline.machine = baseline.machine or run.machine
     outcomes = {}
     for outcome in compare(baseline, run, areas):
         outcomes.setdefault((outcome.area, outcome.name), {})[outcome.figure] = outcome
@@ -177,7 +212,7 @@ def accept(baseline, run, areas, reason, date):
             changed[area] = told
         baseline.replace(area, run.machine, after)
     entry = {"date": date, "revision": run.revision, "reason": reason.strip(), "changed": changed}
-    if run.machine and set(areas) & set(OF_MACHINE):
+    if run.machine and set(areas) & {*OF_MACHINE, *MAY_DIFFER}:
         entry["machine"] = run.machine
     baseline.history.append(entry)
     return changed

@@ -12,7 +12,7 @@ from common.files import read_json
 from common.records import NUMBER, entry
 
 from .interval import Interval
-from .records import Record, entries_of, unique
+from .records import Record, entries_of, machine_of, unique
 
 # A method is held against the geometric mean of these, itself left out: the time of a single method
 # is an unsteady measure, and nothing would be held against it.
@@ -36,12 +36,6 @@ TWINS = {  # Updated Lagrangian methods and the same control in Total Lagrangian
 REQUIRED = {"case": str, "elements": int, "method": str, "kernel": str, "precision": str}
 REQUIRED |= {"threads": int, "status": str}
 FIGURES = ("ns_best", "bytes_per_element_step")
-
-
-def _machine(path, document):
-    """What times depend on besides the code: processor, compiler, flags."""
-    keys = ("processor", "compiler", "build_flags")
-    return "; ".join(entry(path, document, key, str) for key in keys)
 
 
 def _variants(path, document):
@@ -122,7 +116,7 @@ def read_bench(paths):
     Raises InputError, also when the processes are not of one program on one machine.
     """
     documents = [read_json(path) for path in paths]
-    origins = {(_machine(p, d), d.get("revision")) for p, d in zip(paths, documents)}
+    origins = {(machine_of(p, d), d.get("revision")) for p, d in zip(paths, documents)}
     if len(origins) > 1:
         told = " and ".join(sorted(f"'{machine}' at {revision}" for machine, revision in origins))
         raise InputError(f"{paths[0]} and others: {told}; must be of one machine and one revision")

@@ -124,15 +124,17 @@ def compare_records(area, name, baseline, found, known_machine):
             verdict, reason = VANISHED, "was in the baseline"
         else:
             verdict, reason = judge(area, name, figure, old, new)
+            if verdict == WORSE and not known_machine:
+                reason += "; accepted on another machine"
         outcomes.append(Outcome(area, name, figure, verdict, old, new, reason))
     return outcomes
 
 
 def compare(baseline, run, areas):
     """Outcomes of all figures of `areas`, regressions first. A Baseline and a Run."""
-    known = run.machine in baseline.machines
     outcomes = []
     for area in areas:
+        known = baseline.knows(area, run.machine)
         old = baseline.of(area, run.machine)
         new = {record.name: record.figures for record in run.records if record.area == area}
         for name in dict.fromkeys([*old, *new]):

@@ -6,9 +6,12 @@ from common.errors import InputError
 from common.files import read_json
 from common.records import entries, entry
 
-# Where figures come from; those of the last two hold for one machine only.
+# Where figures come from; those of the last two hold for one machine only, and those of the first
+# may differ on another: instruction sets round otherwise, and adaptive elements rise by packs.
 AREAS = ("accuracy", "operations", "bits", "forces", "memory", "speed")
 OF_MACHINE = ("memory", "speed")
+MAY_DIFFER = ("accuracy",)
+ORIGIN = ("processor", "compiler", "build_flags")
 
 
 @dataclass(frozen=True)
@@ -26,17 +29,26 @@ class Run:
 
     records: list = field(default_factory=list)
     revision: str | None = None
-    machine: str | None = None  # processor, compiler and flags; None where nothing was timed
+    machine: str | None = None  # see machine_of; None where no file tells
 
     def add(self, path, records, document):
-        """Takes the records of a file. Raises InputError when another revision made it."""
-        revision = document.get("revision")
-        if revision and self.revision not in (revision, None):
-            raise InputError(
-                f"{path}: revision = {revision!r} must be {self.revision!r}, as of the others"
-            )
-        self.revision = revision or self.revision
+        """Takes the records of a file. Raises InputError when of another program or machine."""
+        machine = machine_of(path, document) if "processor" in document else None
+        self.revision = _agreed(path, "revision", document.get("revision"), self.revision)
+        self.machine = _agreed(path, "machine", machine, self.machine)
         self.records = unique(path, self.records + records)
+
+
+def machine_of(path, document):
+    """What bytes and times depend on besides the code: processor, compiler, flags."""
+    return "; ".join(entry(path, document, key, str) for key in ORIGIN)
+
+
+def _agreed(path, what, found, known):
+    """What a file tells and what others told; either may be None. Raises InputError."""
+    if found and known not in (found, None):
+        raise InputError(f"{path}: {what} = {found!r} must be {known!r}, as of the others")
+    return found or known
 
 
 def entries_of(path, document, key, required):

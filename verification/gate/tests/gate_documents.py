@@ -81,6 +81,11 @@ class Folder:
         self.bits = {"records": [{"name": "column, tl-full", "differs": ""}]}
         self.bench = [process(number) for number in range(PROCESSES)]
 
+    def move_to(self, processor):
+        """What is found from here on, another processor finds."""
+        for document in (self.verdicts, *self.bench):
+            document["processor"] = processor
+
     def write(self, name, document):
         file = self.path / name
         file.write_text(json.dumps(document))

@@ -4,7 +4,7 @@ import json
 
 import pytest
 from gate import baseline as baselines
-from gate.compare import FLOOR, RELATIVE
+from gate.compare import FLOOR, RELATIVE, UNGATED
 from gate_documents import ORIGIN, verdict
 from gate_regressions import add_a_multiplication, change_error, lose_a_figure
 
@@ -49,11 +49,64 @@ def test_errors_cannot_creep(accepted):
 
 
 def test_accepting_on_another_machine_adds_it(accepted):
-    for document in accepted.bench:
-        document["processor"] = "Abacus 4"
+    accepted.move_to("Abacus 4")
     accepted.accept()
     names = ["Abacus 3; GNU 12.2.0; Release", "Abacus 4; GNU 12.2.0; Release"]
     assert list(accepted.baseline()["machines"]) == names
+    assert accepted.call()[0] == 0
+
+
+def accuracy(records):
+    """Names of the records of accuracy and their largest errors against the golden."""
+    return {r["name"]: r.get("golden max") for r in records if r["area"] == "accuracy"}
+
+
+def test_errors_that_another_machine_finds_are_its_own(accepted):
+    """Whoever comes back to the first machine finds what was accepted there."""
+    change_error(accepted)  # column, tl-full
+    accepted.move_to("Abacus 4")
+    code, text = accepted.call()
+    assert code == 1 and "; accepted on another machine" in text
+    before = accepted.baseline()
+    accepted.accept()
+    after = accepted.baseline()
+    assert after["records"] == before["records"]
+    assert after["machine"] == "Abacus 3; GNU 12.2.0; Release"
+    changed = accepted.verdicts["records"][0]["golden"]["max_relative_error"]
+    own = after["machines"]["Abacus 4; GNU 12.2.0; Release"]
+    assert accuracy(own) == {"column, tl-full, double": changed}
+    assert accepted.call()[0] == 0
+    accepted.move_to("Abacus 3")
+    code, text = accepted.call()
+    assert code == 1 and "accepted on another machine" not in text
+
+
+def test_what_comes_and_goes_on_another_machine_does_so_on_all(accepted):
+    accepted.verdicts["records"] = [verdict("twist")]
+    accepted.move_to("Abacus 4")
+    accepted.accept()
+    assert list(accuracy(accepted.baseline()["records"])) == [
+        "cook-2, tl-full, double",
+        "twist, tl-full, double",
+    ]
+    accepted.move_to("Abacus 3")
+    assert accepted.call()[0] == 0
+
+
+def test_errors_of_a_machine_do_not_make_its_times_known(accepted):
+    change_error(accepted)
+    accepted.move_to("Abacus 4")
+    accepted.accept(sources=["accuracy"])
+    code, text = accepted.call()
+    assert code == 0 and UNGATED in text.strip().splitlines()[-1]
+
+
+def test_operations_are_those_of_all_machines(accepted):
+    """No machine changes a count, so that another one's takes the place of the first's."""
+    add_a_multiplication(accepted)
+    accepted.move_to("Abacus 4")
+    accepted.accept()
+    accepted.move_to("Abacus 3")
     assert accepted.call()[0] == 0
 
 

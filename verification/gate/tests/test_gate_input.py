@@ -54,6 +54,11 @@ def two_machines(folder):
     return [], "must be of one machine and one revision"
 
 
+def errors_of_another_machine(folder):
+    folder.verdicts["processor"] = "Abacus 4"
+    return [], "machine = 'Abacus 3; GNU 12.2.0; Release' must be 'Abacus 4; GNU"
+
+
 def two_revisions(folder):
     folder.verdicts["revision"] = "ba9876543210"
     return [], "revision = '0123456789ab' must be 'ba9876543210', as of the others"
@@ -80,7 +85,8 @@ def half_an_interval(folder):
 
 
 WRONG = (wrong_option, lonely_reason, no_verdicts, broken_json, a_list, no_records, missing_key)
-WRONG += (wrong_kind, twice, no_time, two_machines, two_revisions, unknown_baseline, unknown_area)
+WRONG += (wrong_kind, twice, no_time, two_machines, errors_of_another_machine, two_revisions)
+WRONG += (unknown_baseline, unknown_area)
 WRONG += (half_an_interval,)
 
 

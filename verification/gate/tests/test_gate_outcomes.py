@@ -120,8 +120,7 @@ def test_disturbed_processes_do_not_matter(accepted):
 def test_other_machines_are_not_gated_in_speed_and_bytes(accepted):
     slow_a_method(accepted)
     move_a_byte(accepted)
-    for document in accepted.bench:
-        document["processor"] = "Abacus 4"
+    accepted.move_to("Abacus 4")
     code, text = accepted.call()
     assert code == 0 and UNGATED in text.strip().splitlines()[-1]
     (case, *_) = accepted.junit().findall("./testsuite[@name='speed']/testcase")
