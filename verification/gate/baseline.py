@@ -33,11 +33,8 @@ class Baseline:
 
     def knows(self, area, machine):
         """Whether what was accepted of an area holds on a machine."""
-        if area not in (*OF_MACHINE, *MAY_DIFFER):
-            return True
-        if area in MAY_DIFFER and machine in (None, self.machine):
-            return True
-        return bool(_figures(area, self.machines.get(machine, [])))
+        own = _figures(area, self.machines.get(machine, []))
+        return bool(own) or self._is_common(area, machine)
 
     def of(self, area, machine):
         """All records of an area on a machine; a machine that is not known has none of its own."""
@@ -46,16 +43,22 @@ class Baseline:
 
     def replace(self, area, machine, figures_by_name):
         """Puts other records in the place of those of an area."""
-        if area in OF_MACHINE:
-            self._replace_own(area, machine, figures_by_name)
-        elif area not in MAY_DIFFER or machine in (None, self.machine):
+        if self._is_common(area, machine):
             self.records = _replaced(self.records, area, figures_by_name)
+        elif area in OF_MACHINE:
+            self._replace_own(area, machine, figures_by_name)
         else:  # what the first machine found stays
             first = _figures(area, self.records)
             common = {name: first.get(name, here) for name, here in figures_by_name.items()}
             own = {n: here for n, here in figures_by_name.items() if _differ(common[n], here)}
             self.records = _replaced(self.records, area, common)
             self._replace_own(area, machine, own)
+
+    def _is_common(self, area, machine):
+        """Whether what a machine finds of an area is that of all machines."""
+        if area in MAY_DIFFER:
+            return machine in (None, self.machine)
+        return area not in OF_MACHINE
 
     def _replace_own(self, area, machine, figures_by_name):
         own = self.machines.get(machine, [])
