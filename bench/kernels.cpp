@@ -8,11 +8,11 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "assembly/internal_force.hpp"
 #include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "element/methods.hpp"
 #include "math/lanes.hpp"
-#include "model/internal_force.hpp"
 
 namespace sandglass {
 namespace {

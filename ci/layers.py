@@ -1,51 +1,40 @@
-"""Checks that includes between the solver's layers point one way only.
-
-A layer may include itself and the layers before it. Exit code 1 names every include that points the
-other way.
+"""Checks that includes point one way only: the program sees the suite, the suite the library, and in
+each a layer itself and the layers before it. Exit code 1 names every include that points the other way.
 """
 
 import pathlib
 import re
 import sys
 
-LAYERS = [
-    "base",
-    "math",
-    "material",
-    "element",
-    "mesh",
-    "model",
-    "stepping",
-    "io",
-    "sandglass",
-    "comparison",
-    "stability",
-    "benchmark",
-    "choice",
-    "app",
-]
+TARGETS = {
+    "solver": ["base", "math", "material", "mesh", "element", "assembly", "problem", "solve", "io", "sandglass"],
+    "suite": ["comparison", "stability", "benchmark", "choice"],
+    "app": ["app"],
+}
+LAYERS = [layer for layers in TARGETS.values() for layer in layers]
 
 
-def includes(solver: pathlib.Path):
+def includes(root: pathlib.Path):
     """(file, line number, layer, included layer) of every include of a layer, in order."""
-    for file in sorted(solver.rglob("*.[ch]pp")):
-        layer = file.relative_to(solver).parts[0]
-        for number, line in enumerate(file.read_text().splitlines(), start=1):
-            match = re.match(r'#include "(\w+)/', line)
-            if match:
-                yield file, number, layer, match[1]
+    for target in TARGETS:
+        for file in sorted((root / target).rglob("*.[ch]pp")):
+            layer = file.relative_to(root if target == "app" else root / target).parts[0]
+            for number, line in enumerate(file.read_text().splitlines(), start=1):
+                match = re.match(r'#include "(\w+)/', line)
+                if match:
+                    yield file, number, layer, match[1]
 
 
-def wrong_includes(solver: pathlib.Path) -> list[str]:
+def wrong_includes(root: pathlib.Path) -> list[str]:
     """Lines 'file:line: layer may not include layer' for every include that points to the right."""
     return [
         f"{file}:{number}: {layer} may not include {included}"
-        for file, number, layer, included in includes(solver)
+        for file, number, layer, included in includes(root)
         if LAYERS.index(included) > LAYERS.index(layer)
     ]
 
 
 if __name__ == "__main__":
-    wrong = wrong_includes(pathlib.Path(__file__).parent.parent / "solver")
+    wrong = wrong_includes(pathlib.Path(__file__).parent.parent)
     print("\n".join(wrong) or "ci/layers: every include points left")
     sys.exit(1 if wrong else 0)

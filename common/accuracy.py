@@ -1,4 +1,4 @@
-"""The accuracy figures of the project, by the formulas of solver/comparison/accuracy.cpp."""
+"""The accuracy figures of the project, by the formulas of suite/comparison/accuracy.cpp."""
 
 import numpy as np
 

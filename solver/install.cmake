@@ -2,10 +2,9 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS sandglass_library sandglass_solver EXPORT sandglassTargets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
-install(TARGETS sandglass_cli RUNTIME DESTINATION bin)
 install(FILES sandglass/simulation.hpp DESTINATION include/sandglass)
 install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION include/sandglass FILES_MATCHING PATTERN "*.hpp"
-  PATTERN app EXCLUDE PATTERN sandglass EXCLUDE)
+  PATTERN sandglass EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cases DESTINATION ${SANDGLASS_SHARE} FILES_MATCHING PATTERN "*.toml")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/reference/golden ${PROJECT_SOURCE_DIR}/reference/truth
   DESTINATION ${SANDGLASS_SHARE}/reference FILES_MATCHING PATTERN "*.h5")

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "stepping/adaption.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/error_estimate.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/adaption.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/error_estimate.hpp"
+#include "solve/relaxation.hpp"
 #include "support/level_kernels.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"

@@ -5,12 +5,12 @@
 
 #include <set>
 
+#include "assembly/strips.hpp"
 #include "base/error.hpp"
 #include "element/methods.hpp"
 #include "math/pack.hpp"
 #include "mesh/generators.hpp"
-#include "mesh/strips.hpp"
-#include "stepping/central_difference.hpp"
+#include "solve/central_difference.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"
 #include "support/random_hexahedra.hpp"

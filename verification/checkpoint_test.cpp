@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "io/checkpoint_file.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/relaxation.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/typed_lists.hpp"

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "assembly/method_entry.hpp"
 #include "choice/candidates.hpp"
 #include "choice/choose.hpp"
 #include "io/case_file.hpp"
-#include "model/method_entry.hpp"
 #include "stability/answer.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "assembly/method_entry.hpp"
 #include "comparison/verdict_json.hpp"
 #include "io/case_file.hpp"
-#include "model/method_entry.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -4,8 +4,8 @@
 
 #include "app/allocations.hpp"
 #include "base/error.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/layered_cholesky.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/layered_cholesky.hpp"
 #include "support/distorted_bar.hpp"
 #include "support/temporary_folder.hpp"
 

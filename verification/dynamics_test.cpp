@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "element/hexahedron.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/stable_step.hpp"
+#include "mesh/hexahedron.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/stable_step.hpp"
 #include "support/derivatives.hpp"
 #include "support/exact_stress.hpp"
 #include "support/random_hexahedra.hpp"

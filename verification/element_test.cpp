@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "element/hexahedron.hpp"
 #include "element/hourglass_perturbation.hpp"
+#include "mesh/hexahedron.hpp"
 #include "support/derivatives.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"

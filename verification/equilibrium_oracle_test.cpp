@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "stepping/equilibrium.hpp"
-#include "stepping/load_levels.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/equilibrium.hpp"
+#include "solve/load_levels.hpp"
+#include "solve/relaxation.hpp"
 #include "support/balance.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"

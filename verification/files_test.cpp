@@ -9,8 +9,8 @@
 #include "io/reference_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
-#include "stepping/body.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/body.hpp"
+#include "solve/relaxation.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 

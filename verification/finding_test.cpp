@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "stepping/relaxation.hpp"
+#include "solve/relaxation.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 

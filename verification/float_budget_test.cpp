@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "io/case_file.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/relaxation.hpp"
-#include "stepping/stable_step.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/relaxation.hpp"
+#include "solve/stable_step.hpp"
 #include "support/scenes.hpp"
 
 namespace sandglass::verification {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "model/model.hpp"
+#include "problem/model.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/tangent.hpp"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "stepping/relaxation.hpp"
+#include "solve/relaxation.hpp"
 #include "support/exact_fields.hpp"
 #include "support/softening.hpp"
 #include "support/typed_lists.hpp"

@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "base/error.hpp"
-#include "element/hexahedron.hpp"
 #include "io/case_file.hpp"
 #include "mesh/generators.hpp"
 #include "mesh/hash.hpp"
+#include "mesh/hexahedron.hpp"
 #include "mesh/node_set.hpp"
 #include "mesh/quality.hpp"
 #include "support/scenes.hpp"

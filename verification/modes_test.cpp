@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "element/hexahedron.hpp"
+#include "mesh/hexahedron.hpp"
 #include "support/random_hexahedra.hpp"
 
 namespace sandglass::verification {

@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "comparison/finding.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/relaxation.hpp"
 #include "support/exact_stress.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/scenes.hpp"

@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "material/small_strain.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/relaxation.hpp"
 #include "support/exact_stress.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/random_hexahedra.hpp"

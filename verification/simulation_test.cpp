@@ -5,8 +5,8 @@
 #include "app/allocations.hpp"
 #include "io/case_file.hpp"
 #include "sandglass/mesh_arrays.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/relaxation.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,12 +1,12 @@
 /// What sleeps: distances and parts of meshes in exact numbers, and that what is neglected is within the
 /// bound.
 
-#include "stepping/sleep.hpp"
+#include "solve/sleep.hpp"
 
 #include <gtest/gtest.h>
 
-#include "base/error.hpp"
 #include "mesh/distances.hpp"
+#include "base/error.hpp"
 #include "mesh/mesh_part.hpp"
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"

@@ -1,11 +1,11 @@
 /// The stable step: bounds that hold, and that are worth having.
 
-#include "stepping/stable_step.hpp"
+#include "solve/stable_step.hpp"
 
 #include <gtest/gtest.h>
 
 #include "material/small_strain.hpp"
-#include "stepping/central_difference.hpp"
+#include "solve/central_difference.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/sample_law.hpp"
 #include "support/scenes.hpp"

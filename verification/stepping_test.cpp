@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/health.hpp"
-#include "stepping/relaxation.hpp"
-#include "stepping/stable_step.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/health.hpp"
+#include "solve/relaxation.hpp"
+#include "solve/stable_step.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"

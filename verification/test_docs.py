@@ -15,7 +15,7 @@ from command_line import BINARY, PATIENCE, ROOT
 from follow import changed, commands, follow, section
 
 FOLDERS = ["bench", "cases", "reference", "solver", "verification"]
-THEORY = ["solver/element/README.md", "solver/material/README.md", "solver/stepping/README.md"]
+THEORY = ["solver/element/README.md", "solver/material/README.md", "solver/solve/README.md"]
 
 
 def followed(document, heading, tree, *folders):

@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "element/operation_count.hpp"
-#include "stepping/relaxation.hpp"
-#include "stepping/stable_step.hpp"
+#include "solve/relaxation.hpp"
+#include "solve/stable_step.hpp"
 #include "support/derivatives.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/fitting_elements.hpp"

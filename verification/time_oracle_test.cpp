@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "io/case_file.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/stable_step.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/stable_step.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 #include "support/semi_discrete.hpp"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "model/method_entry.hpp"
-#include "stepping/relaxation.hpp"
+#include "assembly/method_entry.hpp"
+#include "solve/relaxation.hpp"
 #include "support/derivatives.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/orderings.hpp"

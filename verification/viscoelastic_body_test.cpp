@@ -6,9 +6,9 @@
 
 #include "io/case_file.hpp"
 #include "mesh/lattice.hpp"
-#include "stepping/central_difference.hpp"
-#include "stepping/relaxation.hpp"
-#include "stepping/stable_step.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/relaxation.hpp"
+#include "solve/stable_step.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/path.hpp"
 #include "support/random_hexahedra.hpp"

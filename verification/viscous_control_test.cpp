@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "element/methods.hpp"
-#include "stepping/central_difference.hpp"
+#include "solve/central_difference.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 #include "support/scenes.hpp"

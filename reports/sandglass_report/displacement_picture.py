@@ -15,12 +15,12 @@ ROOT = Path(__file__).resolve().parents[2]
 WIDTH, TOP, ROW, BOX = 1000, 64, 100, 78
 FILES, STEPS = 20, 330  # left edges of the two columns
 
-VERIFY = Function("verify", "solver/app/command_verify.cpp")
-SCENES = Function("read_static_scenes", "solver/app/workspace.cpp")
+VERIFY = Function("verify", "app/command_verify.cpp")
+SCENES = Function("read_static_scenes", "app/workspace.cpp")
 SUBJECTS = Function("read_subjects", VERIFY.file)
-JUDGE = Function("judge", "solver/comparison/verdict.cpp")
+JUDGE = Function("judge", "suite/comparison/verdict.cpp")
 RELAXED = Function("fill_relaxed", JUDGE.file)
-STEP = Function("step", "solver/stepping/equilibrium.cpp", "equilibrium_.step(")
+STEP = Function("step", "solver/solve/equilibrium.cpp", "equilibrium_.step(")
 PAGE = Function("make", "reports/make_report.py")
 
 
@@ -55,18 +55,18 @@ WAY = (
         (
             SCENES,
             Function("read_scene", "solver/io/case_file.cpp"),
-            Function("make_scene", "solver/model/model.cpp"),
+            Function("make_scene", "solver/problem/model.cpp"),
         ),
     ),
     Step(
         "Compute each element's constants",
         (
             RELAXED,
-            Function("Model", "solver/model/model.cpp", "Model model("),
-            Function("make_internal_force", "solver/model/internal_force.cpp"),
-            Function("assemble", "solver/model/assemble.hpp", "method.assemble_packed_double("),
-            Function("ElementAssembly", "solver/model/element_assembly.hpp", "<AssemblyOf<"),
-            Function("element_block", "solver/model/element_block.hpp", "element_block<"),
+            Function("Model", "solver/problem/model.cpp", "Model model("),
+            Function("make_internal_force", "solver/assembly/internal_force.cpp"),
+            Function("assemble", "solver/assembly/assemble.hpp", "method.assemble_packed_double("),
+            Function("ElementAssembly", "solver/assembly/element_assembly.hpp", "<AssemblyOf<"),
+            Function("element_block", "solver/assembly/element_block.hpp", "element_block<"),
         ),
     ),
     Step(
@@ -76,9 +76,9 @@ WAY = (
             Function("run_all", VERIFY.file),
             JUDGE,
             RELAXED,
-            Function("relax", "solver/stepping/relaxation.cpp"),
-            Function("run", "solver/stepping/relaxation.cpp", "Search<Real>(model, *elements, obs"),
-            Function("solve", "solver/stepping/relaxation.cpp"),
+            Function("relax", "solver/solve/relaxation.cpp"),
+            Function("run", "solver/solve/relaxation.cpp", "Search<Real>(model, *elements, obs"),
+            Function("solve", "solver/solve/relaxation.cpp"),
             STEP,
         ),
     ),
@@ -86,10 +86,10 @@ WAY = (
         "Sum the elements' forces",
         (
             STEP,
-            Function("evaluate", "solver/stepping/equilibrium.cpp"),
-            Function("evaluate_forces", "solver/stepping/body.cpp"),
-            Function("evaluate", "solver/model/element_assembly.hpp", "elements_.evaluate("),
-            Function("add_chunk", "solver/model/element_assembly.hpp"),
+            Function("evaluate", "solver/solve/equilibrium.cpp"),
+            Function("evaluate_forces", "solver/solve/body.cpp"),
+            Function("evaluate", "solver/assembly/element_assembly.hpp", "elements_.evaluate("),
+            Function("add_chunk", "solver/assembly/element_assembly.hpp"),
             Function("force", "solver/element/formulation.hpp", "Kernel::force("),
         ),
     ),
@@ -98,13 +98,13 @@ WAY = (
         (
             JUDGE,
             Function("accuracy_of", JUDGE.file),
-            Function("accuracy", "solver/comparison/accuracy.cpp"),
+            Function("accuracy", "suite/comparison/accuracy.cpp"),
         ),
         reads=(GOLDEN,),
     ),
     Step(
         "Write the verdicts",
-        (VERIFY, Function("to_json", "solver/comparison/verdict_json.cpp")),
+        (VERIFY, Function("to_json", "suite/comparison/verdict_json.cpp")),
         writes=VERDICTS,
     ),
     Step(
@@ -127,7 +127,7 @@ WAY = (
 BESIDE = (
     (
         Function("read_scene", "solver/io/case_file.cpp"),
-        Function("generate_mesh", "solver/model/model.cpp"),
+        Function("generate_mesh", "solver/problem/model.cpp"),
     ),
     (
         SUBJECTS,

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "element/hexahedron.hpp"
 #include "element/modes.hpp"
+#include "mesh/hexahedron.hpp"
 
 /// Gradients of a trilinear field at the corners of its parent cube, from its modes and back by additions.
 namespace sandglass {

@@ -2,10 +2,10 @@
 
 #include <array>
 
-#include "element/hexahedron.hpp"
 #include "material/laws.hpp"
 #include "math/dual.hpp"
 #include "math/symmetric_matrix.hpp"
+#include "mesh/hexahedron.hpp"
 
 /// What one point does not see of a deformation: the part of the displacement gradient whose mean vanishes.
 /// Set-up only, in double.

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "element/element_motion.hpp"
-#include "element/hexahedron.hpp"
 #include "element/hourglass_settings.hpp"
 #include "material/laws.hpp"
 #include "math/symmetric_matrix.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 

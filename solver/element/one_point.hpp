@@ -4,9 +4,9 @@
 
 #include "element/element_motion.hpp"
 #include "element/following.hpp"
-#include "element/hexahedron.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "element/hexahedron.hpp"
+#include "mesh/hexahedron.hpp"
 
 /// A hexahedron cut into tetrahedra, both ways at once.
 namespace sandglass {

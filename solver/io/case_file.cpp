@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "io/case_variants.hpp"
 #include "io/foreign_file.hpp"
 #include "io/mesh_file.hpp"
 #include "io/table_reader.hpp"
-#include "model/method_entry.hpp"
 
 namespace sandglass {
 

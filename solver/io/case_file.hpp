@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/mesh_file.hpp"
-#include "model/model.hpp"
+#include "problem/model.hpp"
 
 namespace sandglass {
 

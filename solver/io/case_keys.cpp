@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "mesh/generators.hpp"
-#include "model/case.hpp"
+#include "problem/case.hpp"
 
 namespace sandglass {
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "io/case_variants.hpp"
 #include "io/toml_text.hpp"
 #include "mesh/variations.hpp"
-#include "model/method_entry.hpp"
 
 namespace sandglass {
 

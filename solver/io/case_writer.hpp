@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "model/case.hpp"
+#include "problem/case.hpp"
 
 namespace sandglass {
 

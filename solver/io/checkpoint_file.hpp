@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "stepping/observer.hpp"
+#include "solve/observer.hpp"
 
 namespace sandglass {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "io/hdf5_file.hpp"
-#include "model/model.hpp"
+#include "problem/model.hpp"
 
 namespace sandglass {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "model/model.hpp"
+#include "problem/model.hpp"
 
 namespace sandglass {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "io/hdf5_file.hpp"
-#include "model/model.hpp"
-#include "stepping/observer.hpp"
+#include "problem/model.hpp"
+#include "solve/observer.hpp"
 
 namespace sandglass {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh/strips.hpp"
+#include "mesh/node_elements.hpp"
 
 namespace sandglass {
 

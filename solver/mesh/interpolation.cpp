@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "element/hexahedron.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "element/hexahedron.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 

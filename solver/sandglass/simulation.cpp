@@ -8,9 +8,9 @@
 #include "base/names.hpp"
 #include "io/case_file.hpp"
 #include "sandglass/mesh_arrays.hpp"
-#include "stepping/adaption.hpp"
-#include "stepping/leapfrog.hpp"
-#include "stepping/stable_step.hpp"
+#include "solve/adaption.hpp"
+#include "solve/leapfrog.hpp"
+#include "solve/stable_step.hpp"
 
 namespace sandglass {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "assembly/method_facts.hpp"
 #include "element/methods.hpp"
-#include "model/method_facts.hpp"
 
 namespace sandglass {
 

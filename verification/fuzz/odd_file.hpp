@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <span>
 
-#include "model/model.hpp"
+#include "problem/model.hpp"
 
 namespace sandglass::verification {
 

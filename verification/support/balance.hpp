@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 
-#include "model/model.hpp"
+#include "problem/model.hpp"
 #include "support/newton_krylov.hpp"
 #include "support/plain_assembly.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "stepping/condensed_response.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/condensed_response.hpp"
+#include "solve/relaxation.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 

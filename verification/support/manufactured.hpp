@@ -1,6 +1,6 @@
 #pragma once
 
-#include "element/hexahedron.hpp"
+#include "mesh/hexahedron.hpp"
 #include "support/derivatives.hpp"
 #include "support/exact_stress.hpp"
 #include "support/random_hexahedra.hpp"

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "model/internal_force.hpp"
+#include "assembly/internal_force.hpp"
 
 namespace sandglass::verification {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "element/element_motion.hpp"
-#include "element/hexahedron.hpp"
 #include "element/hourglass_settings.hpp"
 #include "material/memory.hpp"
+#include "mesh/hexahedron.hpp"
 #include "support/derivatives.hpp"
 #include "support/scenes.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "element/hexahedron.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass::verification {
 

@@ -9,8 +9,8 @@
 
 #include "element/methods.hpp"
 #include "mesh/lattice.hpp"
-#include "model/model.hpp"
-#include "stepping/observer.hpp"
+#include "problem/model.hpp"
+#include "solve/observer.hpp"
 #include "support/sample_law.hpp"
 
 /// Small scenes made in code, without case files.

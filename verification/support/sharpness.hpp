@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "mesh/quality.hpp"
-#include "stepping/stable_step.hpp"
+#include "solve/stable_step.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/mesh_tangent.hpp"
 #include "support/random_hexahedra.hpp"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "element/hexahedron.hpp"
 #include "material/small_strain.hpp"
+#include "mesh/hexahedron.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/typed_lists.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <array>
 
+#include "assembly/assemble.hpp"
+#include "assembly/method_facts.hpp"
 #include "element/methods.hpp"
-#include "model/assemble.hpp"
-#include "model/method_facts.hpp"
 
 namespace sandglass {
 

@@ -6,8 +6,8 @@
 
 #include <thread>
 
-#include "stepping/central_difference.hpp"
-#include "stepping/relaxation.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/relaxation.hpp"
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"
 

@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "app/allocations.hpp"
+#include "app/bench_table.hpp"
+#include "app/commands.hpp"
+#include "app/execution_options.hpp"
+#include "app/machine.hpp"
+#include "app/progress.hpp"
+#include "app/workspace.hpp"
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "base/names.hpp"
+#include "benchmark/bench.hpp"
+#include "benchmark/bench_json.hpp"
+#include "benchmark/rest.hpp"
+#include "benchmark/stepped_model.hpp"
+#include "io/case_file.hpp"
+#include "io/new_file.hpp"
+#include "io/text_file.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr int most_elements = 100'000'000;
+
+struct BenchOptions {
+  std::vector<std::string> names;
+  std::vector<int> elements;
+  std::vector<std::string> methods;
+  std::vector<std::string> precisions{"double", "float"};
+  std::vector<int> threads;
+  int repetitions = MeasureSettings{}.repetitions;
+  bool rest = false;
+  std::string json;
+};
+
+template <class Value>
+std::vector<Value> without_repeats(const std::vector<Value>& values) {
+  std::vector<Value> kept;
+  for (const auto& value : values) {
+    if (std::find(kept.begin(), kept.end(), value) == kept.end()) kept.push_back(value);
+  }
+  return kept;
+}
+
+BenchPlan make_plan(const BenchOptions& options) {
+  BenchPlan plan;
+  for (const auto& name : options.methods) method_named(name, "--methods");
+  plan.methods = options.methods.empty() ? method_names() : without_repeats(options.methods);
+  for (const auto& precision : options.precisions) plan.precisions.push_back(parse_precision(precision));
+  plan.precisions = without_repeats(plan.precisions);
+  for (const int threads : options.threads) require_threads(threads);
+  plan.threads = without_repeats(options.threads);
+  if (plan.threads.empty()) plan.threads = available_processors() > 1 ? std::vector{1, 2} : std::vector{1};
+  require_count("--repetitions", options.repetitions, 1'000'000);
+  plan.settings.repetitions = options.repetitions;
+  plan.settings.allocations = allocations;
+  return plan;
+}
+
+/// What a scene is made of; scenes are made one after another, for large ones fill the memory.
+struct Subject {
+  std::optional<Case> description;  ///< none for a box
+  int elements = 0;
+};
+
+std::vector<Subject> find_subjects(const BenchOptions& options) {
+  std::vector<Subject> subjects;
+  for (const auto& name : options.names) subjects.push_back({find_case(name)});
+  for (const int elements : options.elements) {
+    require_count("--elements", elements, most_elements);
+    subjects.push_back({{}, elements});
+  }
+  if (subjects.empty()) subjects.push_back({find_case("ellipsoid-indentation")});
+  return subjects;
+}
+
+int run_bench(const BenchOptions& options) {
+  const BenchPlan plan = make_plan(options);
+  const auto subjects = find_subjects(options);
+  watch_for_interrupt();
+  MachineSpeed machine;
+  std::vector<BenchRecord> records;
+  for (std::size_t n = 0; n < subjects.size(); ++n) {
+    const Subject& subject = subjects[n];
+    const Scene scene = subject.description ? read_scene(*subject.description) : box_scene(subject.elements);
+    std::vector<BenchRecord> found;
+    {
+      Progress progress("bench");
+      found = bench(scene, plan, machine, [&](double share) {
+        progress.show((static_cast<double>(n) + share) / static_cast<double>(subjects.size()),
+                      fmt::format("{}, {} elements", scene.description.name, scene.mesh.cells.size()));
+        return !interrupted();
+      });
+    }
+    fmt::print("{}\n", bench_table(found));
+    records.insert(records.end(), found.begin(), found.end());
+  }
+  fmt::print("{}", machine_lines(plan, machine));
+  if (!options.json.empty()) {
+    write_text_file(options.json, to_json(build_provenance(), plan, machine, records));
+  }
+  return std::none_of(records.begin(), records.end(), is_wrong) ? 0 : 1;
+}
+
+/// The variants that --rest times: packs only, and by default one thread and the two methods to compare, with
+/// one point and with eight.
+std::vector<MethodChoice> rest_variants(BenchOptions options) {
+  if (options.methods.empty()) options.methods = {"tl-perturbation", std::string(golden_method)};
+  if (options.threads.empty()) options.threads = {1};
+  auto variants = variants_of(make_plan(options));
+  std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });
+  return variants;
+}
+
+int run_rest(const BenchOptions& options) {
+  const auto variants = rest_variants(options);
+  auto scenes = read_static_scenes(options.names, "rest to come to");
+  if (options.names.empty()) {  // small cases with published values are made for accuracy, not for time
+    std::erase_if(scenes, [](const Scene& scene) { return !scene.description.published.empty(); });
+  }
+  watch_for_interrupt();
+  std::vector<RestRecord> records;
+  for (const auto& scene : scenes) {
+    std::vector<RestRecord> found;
+    {
+      Progress progress("bench");
+      for (const auto& choice : variants) {
+        found.push_back(time_to_rest(scene, choice, [&](double share) {
+          const auto done = static_cast<double>(records.size() + found.size()) + share;
+          progress.show(done / static_cast<double>(scenes.size() * variants.size()),
+                        fmt::format("{}, {}", scene.description.name, choice.method));
+          return !interrupted();
+        }));
+      }
+    }
+    fmt::print("{}\n", rest_table(scene, found));
+    records.insert(records.end(), found.begin(), found.end());
+  }
+  if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), records));
+  const auto failed = std::count_if(records.begin(), records.end(), [](const auto& r) { return !r.times; });
+  if (failed > 0)
+    throw ComputationError(fmt::format("bench: {} of {} did not come to rest", failed, records.size()));
+  return 0;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = app.add_subcommand(
+      "bench",
+      "time of every method per element and step, beside what the machine can do.\n"
+      "All variants are timed in turn in one process, after their forces were compared with those of the\n"
+      "scalar double kernel; one that is wrong gets no time, and the exit code is 1. Traffic counts every\n"
+      "constant and row of a step once. Above 100 % of memory a mesh stays in a cache; the roofline holds "
+      "it\n"
+      "against the triad over arrays of its own size.\n"
+      "With --rest: wall time from the model to rest, the median of three runs. Further runs, stopped after\n"
+      "fewer force evaluations, find by bisection after how many of them all displacements are within 1 %\n"
+      "and 0.1 % of the largest imposed one from those at rest; their seconds are that share of the median");
+  command->add_option(
+      "CASE", options->names,
+      "names or files of cases; ellipsoid-indentation when neither case nor --elements is given, with --rest "
+      "all canonical quasi-static ones");
+  auto* rest = command->add_flag("--rest", options->rest, "time quasi-static cases until they are at rest");
+  command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides")
+      ->excludes(rest);
+  command->add_option("-t,--threads", options->threads,
+                      "numbers of threads; 1 and 2 where there are two, with --rest 1");
+  command->add_option("-m,--methods", options->methods,
+                      "methods, see `sandglass methods`; all when left out, with --rest tl-perturbation and "
+                      "tl-mean-dilatation");
+  command->add_option("-p,--precision", options->precisions, "double, float or both")->capture_default_str();
+  command
+      ->add_option("-r,--repetitions", options->repetitions,
+                   "batches of about 0.5 ms for each variant, twice")
+      ->excludes(rest)
+      ->capture_default_str();
+  command->add_option("--json", options->json, "write every figure to this file");
+  command->callback([options, &exit_code] {
+    if (!options->json.empty()) require_place(options->json);
+    exit_code = options->rest ? run_rest(*options) : run_bench(*options);
+  });
+}
+
+}  // namespace sandglass

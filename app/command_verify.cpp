@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "app/accuracy_text.hpp"
+#include "app/commands.hpp"
+#include "app/execution_options.hpp"
+#include "app/machine.hpp"
+#include "app/progress.hpp"
+#include "app/task_pool.hpp"
+#include "app/workspace.hpp"
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "comparison/published_table.hpp"
+#include "comparison/verdict.hpp"
+#include "comparison/verdict_json.hpp"
+#include "io/new_file.hpp"
+#include "io/result_file.hpp"
+#include "io/text_file.hpp"
+#include "solve/body.hpp"
+
+namespace sandglass {
+
+namespace {
+
+struct VerifyOptions {
+  std::vector<std::string> names;
+  std::string json;
+  std::string results;
+  std::string precision = "double";
+  int threads = 0;
+};
+
+/// A scene with the answers it is compared with.
+struct Subject {
+  Scene scene;
+  References references;
+};
+
+/// One run to be made.
+struct Task {
+  const Subject* subject;
+  MethodChoice choice;
+};
+
+std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
+  std::deque<Subject> subjects;  // a deque, because tasks point into it
+  for (auto& scene : read_static_scenes(names, "golden to be compared with")) {
+    References references = read_references(scene);
+    subjects.push_back({std::move(scene), std::move(references)});
+  }
+  return subjects;
+}
+
+/// Every method of the list on every scene; those with a kappa that matters at `auto` and along the case's
+/// curve.
+std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision) {
+  std::vector<Task> tasks;
+  for (const auto& subject : subjects) {
+    for (const MethodEntry& method : methods()) {
+      tasks.push_back({&subject, {std::string(method.name), {}, precision}});
+      // A condensed method's curve is that of the method it condenses.
+      if (!method.kappa_matters_at_rest || method.is_condensed) continue;
+      for (const double kappa : subject.scene.description.kappas) {
+        tasks.push_back({&subject, {std::string(method.name), kappa, precision}});
+      }
+    }
+  }
+  return tasks;
+}
+
+/// The final state of a run as a result file, for pictures.
+void write_result(const Task& task, const NodalField& u, const std::string& folder) {
+  const Model model(task.subject->scene, task.choice);
+  const std::string kappa = task.choice.kappa ? fmt::format(".{}", *task.choice.kappa) : "";
+  const auto path =
+      std::filesystem::path(folder) /
+      fmt::format("{}.{}{}.h5", task.subject->scene.description.name, task.choice.method, kappa);
+  ResultWriter writer(model, path, build_provenance());
+  writer.frame(static_frame(model, 0.0, NodalField(u.size())));
+  writer.frame(static_frame(model, 1.0, u));
+  writer.commit("complete");
+}
+
+/// What came of the tasks, in their order.
+struct Outcome {
+  std::vector<Verdict> verdicts;
+  std::vector<NodalField> answers;  // empty where there is none
+};
+
+/// Runs all tasks on a few threads. Every run is by itself and deterministic; only their order in time is
+/// not.
+Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
+  Outcome outcome{std::vector<Verdict>(tasks.size()), std::vector<NodalField>(tasks.size())};
+  const bool complete = run_tasks("verify", tasks.size(), options.threads, [&](std::size_t n) {
+    outcome.verdicts[n] =
+        judge(tasks[n].subject->scene, tasks[n].subject->references, tasks[n].choice, outcome.answers[n]);
+  });
+  if (!complete) throw ComputationError("verify: interrupted; nothing was written");
+  return outcome;
+}
+
+/// Whether `a` is nearer to its reference than `b`: to the golden where there is one.
+bool nearer(const Verdict& a, const Verdict& b) {
+  const auto error = [](const Verdict& v) {
+    const auto& accuracy = v.golden ? v.golden : v.truth;
+    return accuracy && v.ok() ? accuracy->max_relative_error : std::numeric_limits<double>::infinity();
+  };
+  return error(a) < error(b);
+}
+
+/// What is shown of a case: every method as it comes, and below it the best of its kappa curve.
+std::vector<const Verdict*> rows_of(const std::vector<Verdict>& verdicts) {
+  std::vector<const Verdict*> rows;
+  const Verdict* best = nullptr;
+  for (const auto& v : verdicts) {
+    const bool on_curve = v.kappa && !v.kappa_is_auto;
+    if (!on_curve && best != nullptr) rows.push_back(std::exchange(best, nullptr));
+    if (!on_curve) {
+      rows.push_back(&v);
+    } else if (best == nullptr || nearer(v, *best)) {
+      best = &v;
+    }
+  }
+  if (best != nullptr) rows.push_back(best);
+  return rows;
+}
+
+void print_verdict(const Verdict& v) {
+  const std::string kappa =
+      v.kappa ? fmt::format("{} {:.3g}", v.kappa_is_auto ? "auto" : "best", *v.kappa) : "";
+  const std::string_view finding = v.finding ? name_of(*v.finding) : "";
+  fmt::print("{:<24}{:>13} |{}|{}|{:>8}{:>10.3g}{:>7}{:>8.0f}{:>8}{:>9.2f}  {}{}\n", v.method, kappa,
+             percents(v.golden), percents(v.truth), percent(v.hourglass_energy_ratio), 1e3 * v.stable_step,
+             v.operations, v.ns_per_element_step, v.steps, v.wall_seconds, finding,
+             v.ok() ? "" : fmt::format("{}{}", finding.empty() ? "" : "; ", v.status));
+}
+
+void print_verdicts(const std::vector<Verdict>& verdicts) {
+  const auto in_tables = [](const Verdict& v) { return !v.published.empty(); };
+  if (std::all_of(verdicts.begin(), verdicts.end(), in_tables)) return;
+  fmt::print(
+      "errors in % of the imposed displacement: max over all nodes, max over the profile, rms; stable step "
+      "at "
+      "rest; operations and time\nper element and evaluation, other runs beside; finding: good means at most "
+      "1 "
+      "%, or the golden's own distance from the truth\n");
+  const std::string* case_name = nullptr;
+  for (const Verdict* v : rows_of(verdicts)) {
+    if (in_tables(*v)) continue;
+    if (case_name == nullptr || *case_name != v->case_name) {
+      case_name = &v->case_name;
+      fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>10}{:>7}{:>8}{:>8}{:>9}  {}\n", *case_name, "kappa",
+                 "against the golden", "against the truth", "hg/int%", "step ms", "ops", "ns", "evals",
+                 "wall s", "finding");
+    }
+    print_verdict(*v);
+  }
+}
+
+void print_limits(const std::vector<LimitCheck>& limits) {
+  if (limits.empty()) return;
+  fmt::print("\nlimits of the cases\n");
+  for (const auto& check : limits) {
+    const auto& e = check.expectation;
+    const std::string found = check.figure ? fmt::format("{} %", percent(check.figure)) : "no figure";
+    const std::string at =
+        check.kappa && e.kappa == "best" ? fmt::format(" (kappa {:.4g})", *check.kappa) : "";
+    fmt::print("{} {} {} kappa {}: {} against the {} = {}{}, must be {} {} %\n",
+               check.holds ? "holds " : "BROKEN", check.case_name, e.method, e.kappa, e.figure, e.reference,
+               found, at, e.below ? "at most" : "above", percent(e.below ? e.below : e.above));
+  }
+}
+
+int verify(const VerifyOptions& options) {
+  const Precision precision = parse_precision(options.precision);
+  watch_for_interrupt();
+  const auto subjects = read_subjects(options.names);
+  if (!options.json.empty()) require_place(options.json);
+  if (!options.results.empty()) make_folder(options.results);
+  const auto tasks = make_tasks(subjects, precision);
+  const auto [verdicts, answers] = run_all(tasks, options);
+  std::vector<LimitCheck> limits;
+  for (const auto& subject : subjects) {
+    if (precision != Precision::double_precision) break;
+    const auto checks = check_limits(subject.scene, verdicts);
+    limits.insert(limits.end(), checks.begin(), checks.end());
+  }
+  print_verdicts(verdicts);
+  fmt::print("{}", published_tables(verdicts));
+  print_limits(limits);
+  if (precision != Precision::double_precision) {
+    fmt::print("\nlimits of the cases are for double: none was checked in {}\n", options.precision);
+  }
+  if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), verdicts, limits));
+  for (std::size_t n = 0; n < tasks.size() && !options.results.empty(); ++n) {
+    if (!answers[n].empty()) write_result(tasks[n], answers[n], options.results);
+  }
+  return std::all_of(limits.begin(), limits.end(), [](const auto& check) { return check.holds; }) ? 0 : 1;
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<VerifyOptions>();
+  CLI::App* command =
+      app.add_subcommand("verify", "all methods against the references; exit code 1 when a limit is broken");
+  command->add_option("CASE", options->names, "names or files of cases; all canonical ones when left out");
+  command->add_option("--json", options->json, "write every figure to this file");
+  command->add_option("--results", options->results, "write the final state of every run to this folder");
+  command
+      ->add_option("-p,--precision", options->precision,
+                   "numbers to compute in, 'double' or 'float'; limits are checked in double only")
+      ->capture_default_str();
+  command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = verify(*options); });
+}
+
+}  // namespace sandglass

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "assembly/internal_force.hpp"
+#include "base/error.hpp"
+
+namespace sandglass {
+
+/// The value of --precision. Throws InputError for anything but "double" and "float".
+inline Precision parse_precision(const std::string& text) {
+  if (text == "double") return Precision::double_precision;
+  if (text == "float") return Precision::single_precision;
+  throw InputError(fmt::format("--precision = '{}' must be 'double' or 'float'", text));
+}
+
+/// A positive number, and the unit behind it.
+struct Quantity {
+  double value;
+  std::string unit;
+};
+
+inline std::optional<Quantity> parse_quantity(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !(value > 0.0) || !std::isfinite(value)) return std::nullopt;
+  return Quantity{value, std::string(end, text.data() + text.size())};
+}
+
+/// The value of an option that is a share of something. Throws InputError for anything else.
+inline double parse_share(const char* option, const std::string& text) {
+  const auto quantity = parse_quantity(text);
+  if (quantity && (quantity->unit.empty() || quantity->unit == "%")) {
+    const double share = quantity->unit.empty() ? quantity->value : quantity->value / 100.0;
+    if (share <= 1.0) return share;
+  }
+  throw InputError(fmt::format("{} = '{}' must be a share in (0, 1], such as 0.01, or in percent, such as 1%",
+                               option, text));
+}
+
+/// Throws InputError unless `value`, given by `option`, lies in [1, most].
+inline void require_count(const char* option, int value, int most) {
+  if (value >= 1 && value <= most) return;
+  throw InputError(fmt::format("{} = {} must be in [1, {}]", option, value, most));
+}
+
+/// More threads than any machine has processors are a slip.
+inline void require_threads(int threads) {
+  require_count("--threads", threads, 1024);
+}
+
+}  // namespace sandglass

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <vector>
+
+#include "assembly/layout.hpp"
+#include "base/error.hpp"
+#include "element/hourglass_settings.hpp"
+#include "math/lanes.hpp"
+
+namespace sandglass {
+
+namespace detail {
+
+/// Throws InputError when the kernel cannot be made of an element with coordinates X (m).
+template <class Kernel>
+void require_accepted(const NodalVectors<double>& X) {
+  if (Kernel::accepts(X)) return;
+  Vector centre{};
+  for (int I = 0; I < 8; ++I) {
+    for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
+  }
+  throw InputError(
+      fmt::format("mesh: the element with centre ({:.6g}, {:.6g}, {:.6g}) does not suit the method; {}; "
+                  "mend the mesh or choose another method",
+                  centre[0], centre[1], centre[2], Kernel::demand));
+}
+
+}  // namespace detail
+
+/// The constants of the elements between a face of the groups and the next, computed in double and rounded,
+/// one element per lane.
+template <class Kernel, class Number, class Law>
+typename Kernel::template Element<Number> element_block(const Mesh& mesh, const ElementGroups& groups,
+                                                        const std::vector<int>& node_of_row, std::size_t face,
+                                                        const Law& law, const HourglassSettings& settings) {
+  using Element = typename Kernel::template Element<double>;
+  using Block = typename Kernel::template Element<Number>;
+  constexpr std::size_t numbers = sizeof(Element) / sizeof(double);
+  static_assert(sizeof(Block) == numbers * sizeof(Number),
+                "an element's constants must all be of its number type");
+  std::array<Number, numbers> block;
+  for (int lane = 0; lane < Lanes<Number>::width; ++lane) {
+    NodalVectors<double> X;
+    for (int I = 0; I < 8; ++I) {
+      const auto corner = static_cast<std::size_t>(I);
+      const auto row = static_cast<std::size_t>(groups.places(face + corner / 4, corner % 4)[lane]) / 4;
+      const Vector& point = mesh.points[static_cast<std::size_t>(node_of_row[row])];
+      for (int i = 0; i < 3; ++i) X(I, i) = point[static_cast<std::size_t>(i)];
+    }
+    detail::require_accepted<Kernel>(X);
+    const auto constants = std::bit_cast<std::array<double, numbers>>(Kernel::precompute(X, law, settings));
+    for (std::size_t n = 0; n < numbers; ++n) {
+      Lanes<Number>::set(block[n], lane, static_cast<typename Lanes<Number>::Scalar>(constants[n]));
+    }
+  }
+  return std::bit_cast<Block>(block);
+}
+
+}  // namespace sandglass

@@ -1,0 +1,82 @@
+#include "assembly/internal_force.hpp"
+
+#include <fmt/format.h>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+
+namespace sandglass {
+
+namespace {
+
+void require_sensible(const MethodChoice& choice, const MethodEntry& method) {
+  if (choice.kappa && !method.takes_kappa) {
+    throw InputError(fmt::format("kappa: {} was given, but method '{}' has no such parameter; leave it out",
+                                 *choice.kappa, choice.method));
+  }
+  if (choice.kappa && !(*choice.kappa >= 0.0)) {
+    throw InputError(fmt::format("kappa: {} must be in [0, inf), or 'auto'", *choice.kappa));
+  }
+  if (!(choice.accuracy > 0.0)) {
+    throw InputError(fmt::format("accuracy: {} must be positive", choice.accuracy));
+  }
+  if (choice.threads < 1) {
+    throw InputError(fmt::format("threads: {} must be at least 1", choice.threads));
+  }
+  if (choice.kernel == KernelWidth::scalar && choice.precision == Precision::single_precision) {
+    throw InputError("kernel: the scalar kernel is there for comparison in double precision only");
+  }
+}
+
+}  // namespace
+
+AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+                                     double density) {
+  const MethodEntry& method = method_named(choice.method);
+  require_sensible(choice, method);
+  const HourglassSettings settings{choice.kappa, density, choice.kappa_modulus};
+  if (choice.kernel == KernelWidth::scalar) {
+    return method.assemble_scalar_double(mesh, law, settings, choice.threads);
+  }
+  if (choice.precision == Precision::double_precision) {
+    return method.assemble_packed_double(mesh, law, settings, choice.threads);
+  }
+  return method.assemble_packed_float(mesh, law, settings, choice.threads);
+}
+
+template <class Real>
+Rows<Real> to_rows(const NodalField& field, const Layout& layout) {
+  Rows<Real> rows(layout.rows());
+  for (std::size_t r = 0; r < layout.nodes; ++r) {
+    const Vector& value = field[static_cast<std::size_t>(layout.node_of_row[r])];
+    for (std::size_t i = 0; i < 3; ++i) rows[r][i] = static_cast<Real>(value[i]);
+  }
+  return rows;
+}
+
+template <class Real>
+NodalField to_field(const Rows<Real>& rows, const Layout& layout) {
+  NodalField field(layout.nodes);
+  for (std::size_t r = 0; r < layout.nodes; ++r) {
+    Vector& value = field[static_cast<std::size_t>(layout.node_of_row[r])];
+    for (std::size_t i = 0; i < 3; ++i) value[i] = static_cast<double>(rows[r][i]);
+  }
+  return field;
+}
+
+template <class Real>
+State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u) {
+  State<Real> state = elements.rest();
+  state.u = to_rows<Real>(u, elements.layout());
+  state.increment = state.u;
+  return state;
+}
+
+template Rows<double> to_rows(const NodalField&, const Layout&);
+template Rows<float> to_rows(const NodalField&, const Layout&);
+template NodalField to_field(const Rows<double>&, const Layout&);
+template NodalField to_field(const Rows<float>&, const Layout&);
+template State<double> state_at(const InternalForce<double>&, const NodalField&);
+template State<float> state_at(const InternalForce<float>&, const NodalField&);
+
+}  // namespace sandglass

@@ -1,0 +1,235 @@
+#include "assembly/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "assembly/strips.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::size_t at(int n) {
+  return static_cast<std::size_t>(n);
+}
+
+/// Elements that fit into a processor's second cache with their nodes.
+constexpr std::size_t elements_per_chunk = 2048;
+/// Meshes below this size stay in one chunk: cutting them up would cost more than threads bring.
+constexpr std::size_t smallest_cut_mesh = 256;
+
+/// Elements sorted along the longest side of the mesh; those of one layer, equal up to roundoff, keep their
+/// order.
+std::vector<int> sorted_along_the_mesh(const Mesh& mesh) {
+  const auto [low, high] = bounding_box(mesh.points);
+  std::size_t axis = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
+  }
+  const double grain = 1e-6 * (high[axis] - low[axis]);
+  std::vector<double> position(mesh.cells.size());
+  for (std::size_t e = 0; e < position.size(); ++e) {
+    double sum = 0.0;
+    for (const int node : mesh.cells[e]) sum += mesh.points[at(node)][axis] - low[axis];
+    position[e] = std::round(sum / 8.0 / grain);
+  }
+  std::vector<int> order(mesh.cells.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return position[at(a)] < position[at(b)]; });
+  return order;
+}
+
+/// Where chunk c of n begins in a list of `size`.
+std::size_t chunk_begin(std::size_t size, std::size_t n, std::size_t c) {
+  return size * c / n;
+}
+
+/// Whether slabs two apart share no node.
+bool neighbours_only_touch(const Mesh& mesh, const std::vector<int>& order, std::size_t n) {
+  std::vector<std::size_t> lowest(mesh.points.size(), n);
+  for (std::size_t c = 0; c < n; ++c) {
+    for (std::size_t k = chunk_begin(order.size(), n, c); k < chunk_begin(order.size(), n, c + 1); ++k) {
+      for (const int node : mesh.cells[at(order[k])]) {
+        lowest[at(node)] = std::min(lowest[at(node)], c);
+        if (lowest[at(node)] + 1 < c) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// An even number of slabs, as many as their size and the mesh allow.
+std::size_t choose_chunks(const Mesh& mesh, const std::vector<int>& order) {
+  if (order.size() < smallest_cut_mesh) return 1;
+  std::size_t n = std::max<std::size_t>(4, order.size() / elements_per_chunk / 2 * 2);
+  while (n > 2 && !neighbours_only_touch(mesh, order, n)) n = std::max<std::size_t>(2, n * 3 / 8 * 2);
+  return n;
+}
+
+std::size_t longest(const std::vector<Strip>& strips) {
+  std::size_t most = 0;
+  for (const auto& strip : strips) most = std::max(most, strip.length());
+  return most;
+}
+
+/// Puts strips side by side.
+class Grouping {
+ public:
+  Grouping(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
+
+  /// The strips in pieces of at most so many elements. row_of(node) is called for the nodes of each group in
+  /// turn; lanes to spare run along the rows from `spare_row` on.
+  template <class RowOf>
+  void add(std::vector<Strip> open, std::size_t most_levels, std::size_t spare_row, const RowOf& row_of) {
+    while (!open.empty()) add_group(choose(open, most_levels), spare_row, row_of);
+  }
+
+  std::size_t groups() const { return groups_.groups.size(); }
+
+  /// Whether a group from number `first` on has a lane without a strip.
+  bool has_spare_lanes(std::size_t first) const {
+    if (first >= groups()) return false;
+    const auto level = static_cast<std::ptrdiff_t>(groups_.groups[first].first_level * at(groups_.width));
+    return std::find(groups_.elements.begin() + level, groups_.elements.end(), -1) != groups_.elements.end();
+  }
+
+  ElementGroups finish() { return std::move(groups_); }
+
+ private:
+  /// The greatest length that allows `width` pieces, or 1 when elements are too few.
+  std::size_t piece_length(const std::vector<Strip>& open, std::size_t most) const {
+    for (std::size_t length = std::min(most, longest(open)); length > 1; --length) {
+      std::size_t pieces = 0;
+      for (const auto& strip : open) pieces += strip.length() / length;
+      if (pieces >= at(groups_.width)) return length;
+    }
+    return 1;
+  }
+
+  /// Takes up to `width` pieces of equal length off the open strips: first such that share no node, for a
+  /// processor waits when lanes add to one row in turn; then any.
+  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_levels) {
+    const std::size_t length = piece_length(open, most_levels);
+    std::vector<Strip> chosen;
+    ++round_;
+    for (const bool apart : {true, false}) {
+      for (auto& strip : open) {
+        while (strip.length() >= length && chosen.size() < at(groups_.width)) {
+          if (apart && !is_free(strip, length)) break;
+          chosen.push_back(cut(strip, length));
+          if (apart) break;
+        }
+      }
+    }
+    std::erase_if(open, [](const Strip& strip) { return strip.length() == 0; });
+    return chosen;
+  }
+
+  /// Whether no node of the strip's first elements has been chosen in this round; marks them if so.
+  bool is_free(const Strip& strip, std::size_t length) {
+    for (std::size_t k = 0; k <= length; ++k) {
+      for (const int node : strip.faces[k]) {
+        if (taken_by_[at(node)] == round_) return false;
+      }
+    }
+    for (std::size_t k = 0; k <= length; ++k) {
+      for (const int node : strip.faces[k]) taken_by_[at(node)] = round_;
+    }
+    return true;
+  }
+
+  /// Takes the first elements off a strip.
+  static Strip cut(Strip& strip, std::size_t length) {
+    const auto n = static_cast<std::ptrdiff_t>(length);
+    Strip piece{{strip.faces.begin(), strip.faces.begin() + n + 1},
+                {strip.elements.begin(), strip.elements.begin() + n}};
+    strip.faces.erase(strip.faces.begin(), strip.faces.begin() + n);
+    strip.elements.erase(strip.elements.begin(), strip.elements.begin() + n);
+    return piece;
+  }
+
+  template <class RowOf>
+  void add_group(const std::vector<Strip>& strips, std::size_t spare_row, const RowOf& row_of) {
+    const std::size_t length = strips.front().length(), width = at(groups_.width);
+    groups_.groups.push_back({groups_.levels(), groups_.face_places.size() / (4 * width), length});
+    for (const auto& strip : strips) {
+      for (const auto& face : strip.faces) {
+        for (const int node : face) row_of(node);
+      }
+    }
+    std::vector<Place>& places = groups_.face_places;
+    for (std::size_t k = 0; k <= length; ++k) {
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        for (const auto& strip : strips) places.push_back(place_of_row(row_of(strip.faces[k][corner])));
+        places.resize(places.size() + width - strips.size(), place_of_row(spare_row + 4 * k + corner));
+      }
+    }
+    for (std::size_t k = 0; k < length; ++k) {
+      for (const auto& strip : strips) groups_.elements.push_back(strip.elements[k]);
+      groups_.elements.resize(groups_.elements.size() + width - strips.size(), -1);
+    }
+  }
+
+  ElementGroups groups_;
+  std::vector<int> taken_by_;  // round in which a node was last chosen
+  int round_ = -1;
+};
+
+}  // namespace
+
+std::vector<int> Layout::elements_of(const Chunk& chunk) const {
+  std::vector<int> found;
+  for (std::size_t g = chunk.first; g < chunk.last; ++g) {
+    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_level * at(width));
+    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].levels * at(width)),
+                 std::back_inserter(found), [](int e) { return e >= 0; });
+  }
+  return found;
+}
+
+Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
+  const NodeElements neighbours(mesh);
+  const std::vector<int> order = sorted_along_the_mesh(mesh);
+  const std::size_t n = choose_chunks(mesh, order);
+  Layout layout;
+  layout.nodes = mesh.points.size();
+  layout.row_of_node.assign(layout.nodes, -1);
+  const auto number = [&](int node) {
+    int& row = layout.row_of_node[at(node)];
+    if (row < 0) {
+      row = static_cast<int>(layout.rows());
+      layout.node_of_row.push_back(node);
+    }
+    return at(row);
+  };
+  std::vector<int> spare;  // nodes whose coordinates the spare rows take: the longest strip of each chunk
+  Grouping grouping(width, layout.nodes);
+  for (std::size_t c = 0; c < n; ++c) {
+    const std::size_t begin = chunk_begin(order.size(), n, c), end = chunk_begin(order.size(), n, c + 1);
+    const auto strips = cut_into_strips(mesh, neighbours, std::span(order).subspan(begin, end - begin));
+    const std::size_t first = grouping.groups(), first_row = layout.rows(),
+                      spare_row = layout.nodes + spare.size(), spare_levels = longest(strips);
+    grouping.add(strips, spare_levels, spare_row, number);
+    layout.chunks.push_back({first, grouping.groups(), first_row, layout.rows(), spare_row, spare_levels});
+    if (spare_rows == SpareRows::where_needed && !grouping.has_spare_lanes(first)) continue;
+    const auto longest_strip = std::find_if(
+        strips.begin(), strips.end(), [&](const Strip& strip) { return strip.length() == spare_levels; });
+    for (const auto& face : longest_strip->faces) spare.insert(spare.end(), face.begin(), face.end());
+  }
+  for (std::size_t node = 0; node < layout.nodes; ++node) number(static_cast<int>(node));  // in no element
+  layout.node_of_row.insert(layout.node_of_row.end(), spare.begin(), spare.end());
+  static_cast<ElementGroups&>(layout) = grouping.finish();
+  return layout;
+}
+
+ElementGroups groups_within(const Layout& layout, const Layout::Chunk& chunk, const Mesh& mesh,
+                            const NodeElements& neighbours, std::span<const int> elements) {
+  Grouping grouping(layout.width, layout.nodes);
+  grouping.add(cut_into_strips(mesh, neighbours, elements), chunk.spare_levels, chunk.spare_row,
+               [&](int node) { return at(layout.row_of_node[at(node)]); });
+  return grouping.finish();
+}
+
+}  // namespace sandglass

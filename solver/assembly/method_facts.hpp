@@ -1,0 +1,28 @@
+#pragma once
+
+#include <type_traits>
+
+#include "assembly/method_entry.hpp"
+#include "element/hourglass_none.hpp"
+#include "element/method_traits.hpp"
+
+namespace sandglass {
+
+/// What an entry says of a method without its kernels.
+template <class Method>
+MethodEntry method_facts() {
+  using Hourglass = typename Method::Hourglass;
+  return {
+      .name = Method::name,
+      .summary = Method::summary,
+      .integration_points = Method::integration_points,
+      .controls_hourglass = Method::integration_points > 1 || !std::is_same_v<Hourglass, NoHourglassControl>,
+      .damps_only = DampsOnly<Hourglass>,
+      .takes_kappa = Hourglass::takes_kappa,
+      .kappa_matters_at_rest = kappa_matters_at_rest<Method>,
+      .is_linear = is_linear<Method>,
+      .is_condensed = is_condensed<Method>,
+      .levels = level_names<Method>()};
+}
+
+}  // namespace sandglass

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace sandglass {
+
+/// For each node the elements around it.
+class NodeElements {
+ public:
+  explicit NodeElements(const Mesh& mesh);
+  std::span<const int> around(int node) const;
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<int> elements_;
+};
+
+}  // namespace sandglass

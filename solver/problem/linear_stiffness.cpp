@@ -1,0 +1,49 @@
+#include "problem/linear_stiffness.hpp"
+
+#include "base/error.hpp"
+#include "element/methods.hpp"
+
+namespace sandglass {
+
+namespace {
+
+template <class Kernel, class Law>
+ElementStiffness stiffness_of(const typename Kernel::template Element<double>& element, const Law& law) {
+  ElementStiffness K;
+  for (std::size_t column = 0; column < 24; ++column) {
+    NodalVectors<double> unit{};
+    unit.entries[column] = 1.0;
+    const NodalVectors<double> force = Kernel::force(unit, element, law);
+    for (std::size_t row = 0; row < 24; ++row) K.entries[24 * row + column] = force.entries[row];
+  }
+  return K;
+}
+
+}  // namespace
+
+void for_each_stiffness(const Model& model,
+                        const std::function<void(const Hexahedron&, const ElementStiffness&)>& visit) {
+  const MethodChoice& choice = model.choice();
+  const Mesh& mesh = model.scene().mesh;
+  with_named_type(Methods{}, choice.method, [&]<class Method>() {
+    if constexpr (is_linear<Method>) {
+      std::visit(
+          [&]<class Law>(const Law& law) {
+            if constexpr (knows_law<Method, Law>) {  // others were refused when the model was made
+              using Kernel = NodalForm<FormulationOf<Method, Law>>;
+              const HourglassSettings settings{.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
+              for (const auto& cell : mesh.cells) {
+                const auto element = Kernel::precompute(gather(mesh.points, cell), law, settings);
+                visit(cell, stiffness_of<Kernel>(element, law));
+              }
+            }
+          },
+          model.scene().description.law);
+    } else {
+      throw InputError(fmt::format("method '{}' has no constant stiffness; allowed: the linear methods, '{}'",
+                                   Method::name, LinearPerturbation::name));
+    }
+  });
+}
+
+}  // namespace sandglass

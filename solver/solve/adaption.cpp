@@ -1,0 +1,67 @@
+#include "solve/adaption.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "assembly/method_entry.hpp"
+#include "mesh/hexahedron.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// For each node 1 / (mu sum over elements of the integral of |grad N|^2), in m/N; 0 for a node without
+/// elements.
+std::vector<double> nodal_mobilities(const Scene& scene) {
+  const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, scene.description.law);
+  std::vector<double> stiffness(scene.mesh.points.size(), 0.0);
+  for (const auto& cell : scene.mesh.cells) {
+    const auto X = gather(scene.mesh.points, cell);
+    for (const auto& xi : gauss_points()) {
+      const PointGradient point = point_gradient(X, xi);
+      for (int I = 0; I < 8; ++I) {
+        double square = 0.0;
+        for (int i = 0; i < 3; ++i) square += point.gradient(I, i) * point.gradient(I, i);
+        stiffness[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])] += mu * point.measure * square;
+      }
+    }
+  }
+  for (double& k : stiffness) k = k > 0.0 ? 1.0 / k : 0.0;
+  return stiffness;
+}
+
+}  // namespace
+
+template <class Real>
+Adaption<Real>::Adaption(const Model& model, const Body<Real>& body)
+    : active_(method_named(model.choice().method).adapts()),
+      accuracy_(model.choice().accuracy),
+      imposed_(largest_imposed(model.scene())) {
+  if (active_) mobility_ = body.on_free_components(nodal_mobilities(model.scene()));
+}
+
+template <class Real>
+Adaptation Adaption<Real>::apply(Body<Real>& body, Demotion demotion) {
+  if (!active_) return {};
+  const auto start = std::chrono::steady_clock::now();
+  const double unit = imposed_ > 0.0 ? imposed_ : largest_displacement(body);
+  const double length = 0.5 * accuracy_ * unit;
+  const double share = demotion == Demotion::never ? 0.0 : demotion == Demotion::reluctant ? 0.5 : 1.0;
+  const Adaptation changes = body.adapt(mobility_, length, share * length);
+  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return changes;
+}
+
+template <class Real>
+double Adaption<Real>::largest_displacement(const Body<Real>& body) const {
+  double largest = 0.0;
+  for (const auto& u : body.state().u) {
+    largest = std::max(largest, length(Vector{u[0], u[1], u[2]}));
+  }
+  return largest;
+}
+
+template class Adaption<double>;
+template class Adaption<float>;
+
+}  // namespace sandglass

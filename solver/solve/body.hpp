@@ -1,0 +1,138 @@
+#pragma once
+
+#include <span>
+
+#include "problem/model.hpp"
+#include "solve/observer.hpp"
+
+namespace sandglass {
+
+/// A model as the time loop sees it: its state in rows, the forces on it, and what the constraints impose and
+/// carry.
+template <class Real>
+class Body {
+ public:
+  Body(const Model& model, const InternalForce<Real>& elements);
+
+  const State<Real>& state() const { return state_; }
+  State<Real>& state() { return state_; }
+
+  /// Internal forces less the loads (N) of the last evaluation; zero on constrained components.
+  const Rows<Real>& free_forces() const { return force_; }
+
+  /// Internal forces less the loads (N) on constrained components, in the order of the scene's constraints:
+  /// the reactions of a body at rest.
+  const std::vector<double>& reactions() const { return reactions_; }
+
+  /// Evaluates the internal forces of the state. The imposed increments have done their work then and are
+  /// cleared, so that an update of increments need not know of constraints.
+  void evaluate_forces();
+
+  /// |free forces| over the norm of reactions and loads together; the plain norm of the free forces (N) where
+  /// these are zero.
+  double residual() const;
+
+  /// The same where the square of the free forces' norm (N^2) is known already.
+  double residual(double free_square) const;
+
+  /// Goes to displacements `target` (m); `impose` sets the constrained components afterwards.
+  void move_to(const Rows<Real>& target);
+
+  /// Sets constrained components to where their paths are at a load factor, and their increments to the
+  /// change; from now on loads are `factor` times their final value.
+  void impose(double factor);
+
+  /// Sets constrained components, in the order of the scene's constraints, to `displacements` (m) and their
+  /// increments to the change; from now on loads are `factor` times their final value.
+  void impose(std::span<const double> displacements, double factor);
+
+  /// The present factor of the loads.
+  double load_factor() const { return load_factor_; }
+
+  /// Sum over the nodes of final load times displacement, J: for each change of it the loads do the work of
+  /// their factor times that.
+  double load_path() const;
+
+  /// One value for each node as rows, zero on constrained components and in spare rows: with inverse masses
+  /// a component moves where it may, without a branch.
+  Rows<Real> on_free_components(const std::vector<double>& nodal) const;
+
+  /// The order of its rows.
+  const Layout& layout() const { return elements_.layout(); }
+
+  /// Rows in the numbering of the mesh.
+  NodalField field(const Rows<Real>& rows) const { return to_field(rows, layout()); }
+
+  StrainEnergies energies() const { return elements_.energies(state_); }
+  Frame frame(double time, NodalField v) const;
+
+  /// Throws ComputationError when a displacement is not finite or an element is inverted.
+  void require_healthy(long step);
+
+  /// Whether all displacements are finite and no element is inverted.
+  bool healthy();
+
+  /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
+  const std::vector<double>& stiffness_bounds();
+
+  /// See InternalForce::adapt.
+  Adaptation adapt(const Rows<Real>& mobility, double length, double demoting_length) {
+    return elements_.adapt(state_, mobility, length, demoting_length);
+  }
+
+  int threads() const { return threads_; }
+
+  /// What the next step or level reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("displacement", state_.u);
+    archive("increment", state_.increment);
+    archive("element history", state_.history);
+    archive("element level", state_.levels);
+    elements_.regroup(state_);
+    archive("increment step", state_.step);
+    archive("free force", force_);
+    archive("body reaction", reactions_);
+    archive("load factor", load_factor_);
+  }
+
+ private:
+  struct RowConstraint {
+    std::size_t row;
+    std::size_t component;
+    std::array<Real, 3> share;  // of the terms of its path, m
+    std::size_t angle;
+  };
+
+  struct RowLoad {
+    std::size_t row;
+    std::array<Real, 3> force;  // final, N
+  };
+
+  void impose(const RowConstraint& constraint, Real displacement) {
+    Real& u = state_.u[constraint.row][constraint.component];
+    state_.increment[constraint.row][constraint.component] += displacement - u;
+    u = displacement;
+  }
+
+  const InternalForce<Real>& elements_;
+  int threads_;
+  const std::vector<double>& angles_;       // of paths, rad
+  std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the present factor
+  std::vector<RowConstraint> constraints_;
+  std::vector<RowLoad> loads_;
+  double load_square_ = 0.0;  // of the norm of the final loads, N^2
+  double load_factor_ = 0.0;
+  State<Real> state_;
+  Rows<Real> force_;
+  std::vector<double> reactions_;
+  std::vector<double> per_element_;
+};
+
+/// A frame of a model at rest at displacements u (m), reached in one step.
+Frame static_frame(const Model& model, double time, const NodalField& u);
+
+extern template class Body<double>;
+extern template class Body<float>;
+
+}  // namespace sandglass

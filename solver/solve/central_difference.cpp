@@ -1,0 +1,253 @@
+#include "solve/central_difference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "problem/loading.hpp"
+#include "solve/adaption.hpp"
+#include "solve/field.hpp"
+#include "solve/leapfrog.hpp"
+#include "solve/stable_step.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// The recipe's quantities, one function each; the order of calls is in `integrate_body`.
+template <class Real>
+class CentralDifference {
+ public:
+  CentralDifference(const Model& model, const InternalForce<Real>& elements)
+      : model_(model),
+        settings_(model.scene().description.dynamics),
+        leapfrog_(model, elements, settings_.damping),
+        body_(leapfrog_.body()),
+        reactions_(model.scene().constraints.size(), 0.0),
+        moved_(model.scene().angles.size()),
+        accelerations_(moved_.size()) {}
+
+  Body<Real>& body() { return body_; }
+  double time() const { return leapfrog_.time(); }
+  long step() const { return leapfrog_.step(); }
+  double step_size() const { return leapfrog_.step_size(); }
+  double external_work() const { return work_; }
+  double adaption_energy() const { return adaption_energy_; }
+
+  /// What the next step reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    leapfrog_.keep(archive);
+    archive("reaction", reactions_);
+    archive("next step", next_step_);
+    archive("load path", load_path_);
+    archive("work", work_);
+    archive("adaption energy", adaption_energy_);
+  }
+
+  /// Starts from the initial velocities.
+  void set_initial_velocities() { leapfrog_.set_initial_velocities(model_.scene().initial_velocities); }
+
+  /// The next step: the user's, refused when unsafe, or a share of the stable one.
+  void choose_step() {
+    const StableStep stable = stable_step(model_, body_.stiffness_bounds());
+    if (settings_.time_step > 0.0) {
+      require_stable(stable);
+      next_step_ = settings_.time_step;
+    } else {
+      next_step_ = settings_.step_fraction * stable.step;
+    }
+  }
+
+  /// Whether the end is reached, up to the rounding of a sum of steps.
+  bool finished() const { return time() >= settings_.duration * (1.0 - 1e-12); }
+
+  /// The next step. The last one is cut so that the run ends at its duration.
+  void advance() {
+    next_step_ = std::min(next_step_, settings_.duration - time());
+    leapfrog_.advance(next_step_, [this](Body<Real>& body) { body.impose(loading(time())); });
+  }
+
+  /// Work of imposed displacements and forces over the last step, from the mean of the forces at its ends.
+  void update_external_work() {
+    const double now = loading(time()), before = loading(time() - step_size());
+    follow_paths(before, now);
+    const auto& constraints = model_.scene().constraints;
+    for (std::size_t k = 0; k < constraints.size(); ++k) {
+      const ImposedPath& path = constraints[k].path;
+      const double force = constraint_force(k);
+      for (std::size_t i = 0; i < 3; ++i) {
+        work_ += 0.5 * (reactions_[k] + force) * moved_[path.angle][i] * path.share[i];
+      }
+      reactions_[k] = force;
+    }
+    const double path = body_.load_path();
+    work_ += 0.5 * (before + now) * (path - load_path_);
+    load_path_ = path;
+  }
+
+  /// New levels for the elements, which from now on pull with the forces of these: the energy that they store
+  /// more where they stand is none that anything did work for. `before` are the energies as they stand.
+  /// Returns whether there were any.
+  bool adapt(Adaption<Real>& adaption, const StrainEnergies& before) {
+    if (adaption.apply(body_, Demotion::never).promoted == 0) return false;
+    body_.evaluate_forces();
+    const StrainEnergies now = body_.energies();
+    adaption_energy_ += now.strain + now.hourglass - before.strain - before.hourglass;
+    for (std::size_t k = 0; k < reactions_.size(); ++k) reactions_[k] = constraint_force(k);
+    return true;
+  }
+
+  /// Velocities (m/s) at the time of the displacements; those of driven nodes by their paths.
+  NodalField velocities() const {
+    NodalField v = leapfrog_.free_velocities();
+    for (const auto& [node, component, path] : model_.scene().constraints) {
+      const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], loading(time())));
+      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
+          loading_rate(time()) * by_factor;
+    }
+    return v;
+  }
+
+ private:
+  double ramp_time() const { return settings_.ramp_time > 0.0 ? settings_.ramp_time : settings_.duration; }
+  double loading(double time) const { return loading_curve(time / ramp_time()); }
+  double loading_rate(double time) const { return loading_curve_rate(time / ramp_time()) / ramp_time(); }
+
+  /// How the terms of paths changed over the last step, from one load factor to another, and their second
+  /// derivatives by relative time.
+  void follow_paths(double before, double now) {
+    const double rate = loading_curve_rate(time() / ramp_time());
+    const double acceleration = loading_curve_acceleration(time() / ramp_time());
+    for (std::size_t m = 0; m < moved_.size(); ++m) {
+      const double angle = model_.scene().angles[m];
+      const PathTerms from = path_terms(angle, before), to = path_terms(angle, now);
+      const PathTerms first = path_rates(angle, now), second = path_accelerations(angle, now);
+      for (std::size_t i = 0; i < 3; ++i) {
+        moved_[m][i] = to[i] - from[i];
+        accelerations_[m][i] = acceleration * first[i] + rate * rate * second[i];
+      }
+    }
+  }
+
+  /// Force (N) that a constraint exerts: it holds against the body and accelerates the lumped mass.
+  double constraint_force(std::size_t k) const {
+    return body_.reactions()[k] + inertia(model_.scene().constraints[k]);
+  }
+
+  /// Force (N) that accelerates the lumped mass of a driven component.
+  double inertia(const Constraint& constraint) const {
+    const double mass = model_.masses()[static_cast<std::size_t>(constraint.node)], T = ramp_time();
+    double force = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      force += mass * constraint.path.share[i] * accelerations_[constraint.path.angle][i];
+    }
+    return force / (T * T);
+  }
+
+  void require_stable(const StableStep& stable) const {
+    if (settings_.time_step <= stable.step) return;
+    const std::string text = fmt::format(
+        "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by element {} at step {}; "
+        "allowed: at most the stable step, or 0 to let the program choose",
+        settings_.time_step, stable.step, stable.element, step());
+    if (step() == 0) throw InputError(fmt::format("{}: {}", model_.scene().description.file.string(), text));
+    throw ComputationError(text);
+  }
+
+  const Model& model_;
+  const DynamicsSettings& settings_;
+  Leapfrog<Real> leapfrog_;
+  Body<Real>& body_;
+  std::vector<double> reactions_;
+  std::vector<PathTerms> moved_, accelerations_;  // of paths of each angle
+  double next_step_ = 0.0;
+  double load_path_ = 0.0;
+  double work_ = 0.0;
+  double adaption_energy_ = 0.0;
+};
+
+template <class Real>
+Motion integrate_body(const Model& model, const InternalForce<Real>& elements, Observer& observer,
+                      const Checkpoint* from) {
+  const DynamicsSettings& settings = model.scene().description.dynamics;
+  CentralDifference<Real> scheme(model, elements);
+  Body<Real>& body = scheme.body();
+  Adaption<Real> adaption(model, body);
+  Judgements judgements;
+  Motion motion;
+  int frames = 0;
+  StrainEnergies energies;  // of the last report
+
+  const auto frame_due = [&] {
+    return scheme.finished() || scheme.time() >= frames * settings.duration / settings.frames;
+  };
+  const auto report = [&] {
+    NodalField v = scheme.velocities();
+    energies = body.energies();
+    observer.history({scheme.time(), 0.5 * weighted_dot(model.masses(), v, v), energies.strain,
+                      energies.hourglass, scheme.external_work(), body.residual(), scheme.step_size(),
+                      scheme.adaption_energy()});
+    if (frame_due()) {
+      observer.frame(body.frame(scheme.time(), std::move(v)));
+      ++frames;
+    }
+    motion.interrupted = !observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
+  };
+
+  const auto keep = [&](auto archive) {
+    scheme.keep(archive);
+    archive("frames", frames);
+    judgements.keep(archive);
+    archive("smallest step", motion.smallest_step);
+  };
+  const auto checkpoint = [&] {
+    Checkpoint state;
+    keep(CheckpointWriter(state));
+    return state;
+  };
+
+  const auto start = std::chrono::steady_clock::now();
+  if (from != nullptr) {
+    keep(CheckpointReader(*from));
+  } else {
+    scheme.choose_step();
+    motion.smallest_step = settings.duration;
+    body.evaluate_forces();
+    scheme.set_initial_velocities();
+    report();
+    observer.resumable(checkpoint);
+  }
+  while (!scheme.finished() && !motion.interrupted) {
+    scheme.advance();
+    scheme.update_external_work();
+    motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
+    if (scheme.step() % settings.check_interval == 0 || frame_due()) {
+      body.require_healthy(scheme.step());
+      report();
+      if (adaption.active() && judgements.due()) judgements.done(scheme.adapt(adaption, energies));
+      scheme.choose_step();
+      observer.resumable(checkpoint);
+    }
+  }
+  motion.u = body.field(body.state().u);
+  motion.v = scheme.velocities();
+  motion.time = scheme.time();
+  motion.steps = scheme.step();
+  motion.adaption_seconds = adaption.seconds();
+  motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return motion;
+}
+
+}  // namespace
+
+Motion integrate(const Model& model, Observer& observer, const Checkpoint* from) {
+  require_steps(model);
+  return std::visit([&](const auto& elements) { return integrate_body(model, *elements, observer, from); },
+                    model.internal_force());
+}
+
+}  // namespace sandglass

@@ -1,0 +1,116 @@
+#include "solve/condensed_answer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "solve/body.hpp"
+#include "solve/condensed_response.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// What rotated sets, which no handle moves, do to the other nodes by going to their final places: forces
+/// (N).
+NodalField forces_of_rotations(const Model& model, const Handles& handles) {
+  const Scene& scene = model.scene();
+  NodalField u(scene.mesh.points.size());
+  if (scene.description.rotations.empty()) return u;
+  for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
+    const Constraint& c = scene.constraints[k];
+    if (handles.of_constraint[k] >= 0) continue;
+    u[static_cast<std::size_t>(c.node)][static_cast<std::size_t>(c.component)] = final_value(scene, c);
+  }
+  const Model exact(scene, {.method = model.choice().method, .kappa = model.choice().kappa});
+  NodalField forces = internal_forces(exact, u);
+  for (auto& force : forces) {
+    for (double& component : force) component = -component;
+  }
+  return forces;
+}
+
+/// Displacements (m) of all nodes at the full load, and how long it takes to superpose them (s), the best of
+/// a few times.
+template <class Real>
+std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layout) {
+  const Scene& scene = model.scene();
+  const Handles handles = handles_of_sets(scene);
+  std::vector<NodalField> loads;
+  if (!scene.loads.empty() || !scene.description.rotations.empty()) {
+    loads.push_back(forces_of_rotations(model, handles));
+    for (const auto& [node, force] : scene.loads) {
+      for (std::size_t i = 0; i < 3; ++i) loads[0][static_cast<std::size_t>(node)][i] += force[i];
+    }
+  }
+  const CondensedResponse<Real> response(model, handles, all_nodes(scene), loads);
+  std::vector<Vector> d;
+  for (const auto& displacement : scene.description.displacements) d.push_back(displacement.value);
+  std::vector<typename CondensedResponse<Real>::Displacement> u(layout.nodes);
+  const std::vector<double> full_loads(loads.size(), 1.0);
+  double seconds = std::numeric_limits<double>::infinity();
+  for (int repetition = 0; repetition < 5; ++repetition) {
+    const auto start = std::chrono::steady_clock::now();
+    response.displacements(d, u, model.choice().threads, full_loads);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    seconds = std::min(seconds, time.count());
+  }
+  Rows<Real> rows(layout.rows());
+  for (std::size_t r = 0; r < layout.nodes; ++r) {
+    const auto& value = u[static_cast<std::size_t>(layout.node_of_row[r])];
+    for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value[i];
+  }
+  return {std::move(rows), seconds};
+}
+
+/// Work (J) of the imposed displacements on the way from rest; a linear body stores the same on every way.
+double work_of(const Scene& scene, const std::vector<double>& reactions) {
+  double work = 0.0;
+  for (std::size_t k = 0; k < reactions.size(); ++k) {
+    work += 0.5 * reactions[k] * final_value(scene, scene.constraints[k]);
+  }
+  return work;
+}
+
+template <class Real>
+Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Observer& observer) {
+  const Scene& scene = model.scene();
+  const RelaxationSettings& settings = scene.description.relaxation;
+  const NodalField no_velocity(scene.mesh.points.size());
+  Body<Real> body(model, elements);
+  observer.frame(body.frame(0.0, no_velocity));
+  observer.history({});
+  constexpr auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  Relaxation result;
+  if (settings.max_steps > 0) {
+    const auto [u, seconds] = superposed<Real>(model, elements.layout());
+    body.move_to(u);
+    result.step_seconds = seconds;
+  }
+  body.impose(1.0);
+  body.evaluate_forces();
+  body.require_healthy(1);
+  result.u = body.field(body.state().u);
+  result.energies = body.energies();
+  result.residual = body.residual();
+  if (settings.max_steps > 0) {
+    result.steps = 1;
+    result.converged = result.residual < settings.tolerance;
+    result.stagnated = !result.converged && result.residual < 1e4 * epsilon;  // as Stagnation has it
+    result.interrupted = !observer.proceed(1, 1.0, result.residual);
+  }
+  observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,
+                    work_of(scene, body.reactions()) + 0.5 * body.load_path(), result.residual, 1.0});
+  observer.frame(body.frame(1.0, no_velocity));
+  return result;
+}
+
+}  // namespace
+
+Relaxation condensed_answer(const Model& model, Observer& observer) {
+  return std::visit([&](const auto& elements) { return answer_of(model, *elements, observer); },
+                    model.internal_force());
+}
+
+}  // namespace sandglass

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "solve/body.hpp"
+#include "solve/conjugate_gradient.hpp"
+#include "solve/preconditioner.hpp"
+
+namespace sandglass {
+
+/// The search for balanced forces of a body at fixed imposed displacements, by preconditioned conjugate
+/// gradients. One evaluation of the forces and two passes over the rows per step: the first reads the forces
+/// f, g and p, the second f, g, p and u, and writes g, p and u; both read the preconditioner's blocks.
+template <class Real>
+class Equilibrium {
+ public:
+  Equilibrium(const Model& model, const InternalForce<Real>& elements);
+
+  /// The body; its forces and displacements are those of the last evaluation. Who moves it says so in its
+  /// increment.
+  Body<Real>& body() { return body_; }
+  const Body<Real>& body() const { return body_; }
+
+  /// Takes the tangent of the body, no element of which may be inverted, for preconditioner; begins where the
+  /// body is. One evaluation.
+  void start();
+
+  /// The same where the forces are known already.
+  void restart();
+
+  /// One evaluation; false when the forces are no numbers however short the step.
+  bool step();
+
+  /// That of the last evaluation.
+  double residual() const { return residual_; }
+
+  /// Evaluations of the forces since construction.
+  long evaluations() const { return evaluations_; }
+
+  /// What `start` reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("evaluations", evaluations_);
+    body_.keep(archive);
+  }
+
+ private:
+  void begin();
+  void evaluate();
+  void compare();
+  void advance();
+  void retry();
+
+  Body<Real> body_;
+  bool tells_increment_;
+  Preconditioner<Real> preconditioner_;
+  ConjugateGradient method_;
+  ConjugateGradient::TrialSums sums_;  // of the last evaluation
+  Rows<Real> g_;                       // force at the start of the step, moved there along secants
+  Rows<Real> p_;                       // direction
+  double length_ = 0.0;                // of the last trial, in p_
+  CoarseVector coarse_g_;              // Z^T g
+  CoarseVector coarse_d_;
+  CoarseVector solved_g_;  // A^-1 Z^T g
+  CoarseVector solved_d_;
+  double residual_ = 0.0;
+  long evaluations_ = 0;
+};
+
+extern template class Equilibrium<double>;
+extern template class Equilibrium<float>;
+
+}  // namespace sandglass

@@ -1,0 +1,38 @@
+#include "solve/error_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "solve/equilibrium.hpp"
+
+namespace sandglass {
+
+ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
+  constexpr double share_left = 0.01;
+  const Scene& scene = model.scene();
+  const Model exact(scene, {.method = std::string(golden_method), .threads = model.choice().threads});
+  const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(exact.internal_force());
+  Equilibrium<double> search(exact, elements);
+  search.body().state() = state_at(elements, u);
+  search.body().impose(1.0);
+  if (!search.body().healthy()) {
+    throw ComputationError("the mean-dilatation element is inverted at this answer: no estimate");
+  }
+  search.start();
+  const double enough = std::max(share_left * search.residual(), scene.description.relaxation.tolerance);
+  while (search.residual() > enough) {
+    if (!search.step()) {
+      throw ComputationError("the mean-dilatation element found no way on from this answer: no estimate");
+    }
+  }
+  const NodalField better = search.body().field(search.body().state().u);
+  double squares = 0.0;
+  for (std::size_t n = 0; n < u.size(); ++n) squares += std::pow(distance(better[n], u[n]), 2);
+  return {.largest = largest_distance(better, u),
+          .rms = std::sqrt(squares / static_cast<double>(u.size())),
+          .evaluations = search.evaluations()};
+}
+
+}  // namespace sandglass

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "solve/explicit_step.hpp"
+
+namespace sandglass {
+
+/// Throws InputError when the model's method takes no steps but superposes static answers.
+void require_steps(const Model& model);
+
+/// Central differences with lumped masses and steps that may change. Displacements stand at `time`,
+/// velocities half a step before, as increments over the time in which they came about. A copy goes its own
+/// way on the same model.
+template <class Real>
+class Leapfrog {
+ public:
+  /// At rest. `damping` is mass-proportional, 1/s.
+  Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping)
+      : explicit_step_(model, elements), damping_(damping) {}
+
+  Body<Real>& body() { return explicit_step_.body(); }
+  const Body<Real>& body() const { return explicit_step_.body(); }
+
+  double time() const { return time_; }  ///< s, of the displacements
+  long step() const { return step_; }
+  double step_size() const { return step_size_; }  ///< s, the step that led here
+
+  /// Starts from velocities (m/s), or from rest where there are none: before the first step they are
+  /// increments over 1 s. Imposed components do not obey them.
+  void set_initial_velocities(const NodalField& v);
+
+  /// v(t + dt/2) from v(t - dt_old/2), u(t + dt) with it, and the forces there: the two half steps share the
+  /// acceleration and the damping at t. `impose(body)` sets constrained components and loads at the new time.
+  template <class Impose>
+  void advance(double next_step, const Impose& impose) {
+    const double dt = 0.5 * (step_size_ + next_step);
+    const double c = 0.5 * damping_ * dt;
+    const double keep = (1.0 - c) / (1.0 + c) * next_step / increment_time_;
+    const double gain = dt / (1.0 + c) * next_step;
+    step_size_ = next_step;
+    increment_time_ = next_step;
+    time_ += step_size_;
+    ++step_;
+    explicit_step_.take(step_size_, keep, gain, impose);
+  }
+
+  /// Velocities (m/s) at the time of the displacements: the mean of the half steps before and after, damping
+  /// included. Those of constrained components are zero.
+  NodalField free_velocities() const;
+
+  /// What the next step reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    body().keep(archive);
+    archive("time", time_);
+    archive("step", step_);
+    archive("step size", step_size_);
+    archive("increment time", increment_time_);
+  }
+
+ private:
+  ExplicitStep<Real> explicit_step_;
+  double damping_;
+  double time_ = 0.0;
+  long step_ = 0;
+  double step_size_ = 0.0;
+  double increment_time_ = 1.0;  // s
+};
+
+extern template class Leapfrog<double>;
+extern template class Leapfrog<float>;
+
+}  // namespace sandglass

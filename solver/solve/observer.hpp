@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+
+#include "mesh/mesh.hpp"
+#include "solve/checkpoint.hpp"
+
+namespace sandglass {
+
+/// One row of the dense history.
+struct HistoryRow {
+  double time;            ///< s; relative load in quasi-static runs, growing beyond 1 while relaxing
+  double kinetic;         ///< J; zero in quasi-static runs
+  double strain;          ///< J
+  double hourglass;       ///< J
+  double external_work;   ///< J, done by imposed displacements and forces
+  double residual;        ///< |force on free components| / |reactions and loads|, -
+  double step_size;       ///< s; in quasi-static runs the increment of the load
+  double adaption = 0.0;  ///< J, that changes of levels brought in motion; see Adaption
+};
+
+/// A state worth keeping, in the numbering of the mesh.
+struct Frame {
+  double time;
+  NodalField u;                                    ///< m
+  NodalField v;                                    ///< m/s, at the same time as u
+  std::vector<double> jacobians;                   ///< volume ratio of each element
+  std::vector<double> hourglass_energy_densities;  ///< J/m^3, per reference volume of each element
+  std::vector<double> levels;                      ///< of each element; empty where a method has but one
+};
+
+/// What a stepper tells while it runs. The base class listens to nothing.
+class Observer {
+ public:
+  Observer() = default;
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
+  virtual ~Observer() = default;
+
+  virtual void frame(const Frame& /*frame*/) {}
+
+  virtual void history(const HistoryRow& /*row*/) {}
+
+  /// Called wherever the run could go on as if it had never stopped, after all that was told so far.
+  /// `checkpoint` copies where it stands; call it within this call or not at all.
+  virtual void resumable(const std::function<Checkpoint()>& /*checkpoint*/) {}
+
+  /// Called at every check with the share of the work done; returning false ends the run cleanly.
+  virtual bool proceed(long /*step*/, double /*share*/, double /*residual*/) { return true; }
+};
+
+}  // namespace sandglass

@@ -1,0 +1,251 @@
+#include "solve/relaxation.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "solve/adaption.hpp"
+#include "solve/condensed_answer.hpp"
+#include "solve/equilibrium.hpp"
+#include "solve/load_levels.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// The search through all levels, as it is told to the observer.
+template <class Real>
+class Search {
+ public:
+  Search(const Model& model, const InternalForce<Real>& elements, Observer& observer)
+      : model_(model),
+        settings_(model.scene().description.relaxation),
+        observer_(observer),
+        equilibrium_(model, elements),
+        adaption_(model, equilibrium_.body()),
+        levels_(model, equilibrium_.body()),
+        no_velocity_(model.masses().size()),
+        reactions_(model.scene().constraints.size(), 0.0) {}
+
+  Relaxation run(const Checkpoint* from) {
+    if (from != nullptr) {
+      keep(CheckpointReader(*from));
+    } else {
+      observer_.frame(body().frame(0.0, no_velocity_));
+      report();
+    }
+    while (!ended_) {
+      observer_.resumable([this] {
+        Checkpoint checkpoint;
+        keep(CheckpointWriter(checkpoint));
+        return checkpoint;
+      });
+      levels_.predict(body());
+      if (body().healthy() && solve()) {
+        finish_level();
+      } else if (!ended_) {
+        retry_level();
+      }
+    }
+    result_.u = body().field(body().state().u);
+    result_.energies = body().energies();
+    result_.steps = equilibrium_.evaluations();
+    result_.residual = equilibrium_.residual();
+    result_.adaption_seconds = adaption_.seconds();
+    observer_.frame(body().frame(time(), no_velocity_));
+    return std::move(result_);
+  }
+
+ private:
+  /// On the way to the full load this residual is good enough to predict from.
+  static constexpr double tolerance_on_the_way = 0.1;
+
+  /// At this residual elements may choose their levels: what is left moves none of them from one to another
+  /// that does not show it again at the end.
+  static constexpr double tolerance_of_levels = 1e-3;
+
+  /// Evaluations after which a level begins anew from where it is, with a new preconditioner; then twice as
+  /// many. So it does once when the residual stagnates, which frees it from the rounding of the secants.
+  static constexpr long first_renewal = 500;
+
+  static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
+
+  Body<Real>& body() { return equilibrium_.body(); }
+
+  /// What the next level reads; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive archive) {
+    equilibrium_.keep(archive);
+    levels_.keep(archive, body());
+    archive("reaction", reactions_);
+    archive("load path", load_path_);
+    archive("work", work_);
+  }
+
+  double tolerance() const {
+    if (!levels_.full()) return std::max(settings_.tolerance, tolerance_on_the_way);
+    if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_of_levels);
+    return settings_.tolerance;
+  }
+
+  /// Relative time: the load gone through, and at the end the evaluations over those that led there.
+  double time() const {
+    if (!levels_.full()) return levels_.travelled();
+    const auto before = static_cast<double>(std::max(1L, first_evaluation_));
+    return levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
+  }
+
+  /// Whether the forces at this load are in balance, within the tolerance or the rounding, and no element is
+  /// inverted.
+  bool solve() {
+    first_evaluation_ = equilibrium_.evaluations();
+    long renewal = first_renewal;
+    int stagnations = 0;
+    Stagnation stagnation(epsilon);
+    equilibrium_.start();
+    while (!(equilibrium_.residual() < tolerance()) || settle()) {
+      check();
+      if (ended_) return false;
+      const bool late = equilibrium_.evaluations() - first_evaluation_ >= renewal;
+      if (stagnation.reached() && ++stagnations > 1) {
+        if (!settle()) break;
+        stagnations = 0;
+        stagnation = Stagnation(epsilon);
+      }
+      if ((late || stagnation.reached()) && body().healthy()) {
+        if (late) renewal *= 2;
+        stagnation = Stagnation(epsilon);
+        equilibrium_.restart();
+      }
+      if (!equilibrium_.step()) return false;
+      stagnation.take(equilibrium_.residual());
+    }
+    result_.stagnated = !(equilibrium_.residual() < tolerance());
+    return body().healthy();
+  }
+
+  /// Lets elements choose their levels for the displacements as they stand; whether the search goes on. At
+  /// the full load they do so until they are settled at a moderate residual, where they may go down the first
+  /// time, and once more at the end; going up only, that ends.
+  bool settle() {
+    if (!levels_.full()) {
+      adaption_.apply(body(), Demotion::reluctant);
+      return false;
+    }
+    const Adaptation changes = adaption_.apply(body(), lowered_ ? Demotion::never : Demotion::where_enough);
+    lowered_ = true;
+    if (changes.promoted + changes.demoted == 0) return !std::exchange(settled_, true) && adaption_.active();
+    equilibrium_.start();
+    return true;
+  }
+
+  void finish_level() {
+    result_.converged = levels_.full() && !result_.stagnated;
+    ended_ = levels_.full();
+    add_work();
+    report();
+    if (ended_) return;
+    observer_.frame(body().frame(levels_.travelled(), no_velocity_));
+    levels_.solved(body());
+  }
+
+  void retry_level() {
+    const State<Real> failed = body().state();
+    if (levels_.failed(body())) return;
+    body().state() = failed;
+    body().require_healthy(equilibrium_.evaluations());
+    throw ComputationError(
+        "the forces found no balance, however short the way; remedy: impose less, or refine the mesh",
+        Breakdown::no_balance);
+  }
+
+  /// Ends the run when the observer wants it or the evaluations are used up.
+  void check() {
+    const long evaluations = equilibrium_.evaluations();
+    ended_ = evaluations >= settings_.max_steps;
+    if (evaluations % settings_.check_interval != 0) return;
+    if (levels_.full()) report();
+    const double residual = equilibrium_.residual();
+    const double digits =
+        std::log(std::clamp(residual, settings_.tolerance, 1.0)) / std::log(settings_.tolerance);
+    result_.interrupted = !observer_.proceed(
+        evaluations, levels_.full() ? 0.3 + 0.7 * digits : 0.3 * levels_.travelled() / levels_.way(),
+        residual);
+    ended_ = ended_ || result_.interrupted;
+  }
+
+  /// Work of imposed displacements and forces over a level, from the mean of the forces at its ends.
+  void add_work() {
+    const auto& constraints = model_.scene().constraints;
+    const auto moved = levels_.moved();
+    for (std::size_t k = 0; k < constraints.size(); ++k) {
+      const ImposedPath& path = constraints[k].path;
+      const double force = body().reactions()[k];
+      for (std::size_t i = 0; i < 3; ++i) {
+        work_ += 0.5 * (reactions_[k] + force) * moved[path.angle][i] * path.share[i];
+      }
+      reactions_[k] = force;
+    }
+    const double path = body().load_path();
+    work_ += (levels_.load() - 0.5 * levels_.increment()) * (path - load_path_);
+    load_path_ = path;
+  }
+
+  void report() {
+    const StrainEnergies energies = body().energies();
+    observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
+                       energies.hourglass, work_, equilibrium_.residual(), levels_.increment()});
+  }
+
+  const Model& model_;
+  const RelaxationSettings& settings_;
+  Observer& observer_;
+  Equilibrium<Real> equilibrium_;
+  Adaption<Real> adaption_;
+  LoadLevels<Real> levels_;
+  NodalField no_velocity_;
+  Relaxation result_;
+  std::vector<double> reactions_;
+  double load_path_ = 0.0;
+  double work_ = 0.0;
+  long first_evaluation_ = 0;  // of this level
+  bool lowered_ = false;       // elements have gone down at the full load
+  bool settled_ = false;       // and then asked for no more at a moderate residual
+  bool ended_ = false;
+};
+
+}  // namespace
+
+bool at_rest(const Relaxation& relaxation, Precision precision) {
+  return relaxation.converged || (relaxation.stagnated && precision == Precision::single_precision);
+}
+
+std::string outcome(const Relaxation& relaxation, Precision precision) {
+  if (relaxation.converged) return "at rest";
+  if (relaxation.interrupted) return fmt::format("interrupted at step {}", relaxation.steps);
+  if (!relaxation.stagnated) return fmt::format("not at rest after {} steps", relaxation.steps);
+  if (at_rest(relaxation, precision)) return "at rest within the rounding of single precision";
+  return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
+}
+
+Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from) {
+  const auto start = std::chrono::steady_clock::now();
+  Relaxation result = method_named(model.choice().method).is_condensed
+                          ? condensed_answer(model, observer)
+                          : std::visit(
+                                [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+                                  return Search<Real>(model, *elements, observer).run(from);
+                                },
+                                model.internal_force());
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!(result.step_seconds > 0.0)) {
+    result.step_seconds = result.seconds / static_cast<double>(std::max(result.steps, 1L));
+  }
+  return result;
+}
+
+}  // namespace sandglass

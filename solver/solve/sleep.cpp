@@ -1,0 +1,273 @@
+#include "solve/sleep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "mesh/distances.hpp"
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "mesh/mesh_part.hpp"
+#include "solve/equilibrium.hpp"
+#include "solve/load_levels.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::size_t at(int n) {
+  return static_cast<std::size_t>(n);
+}
+
+// Shares of what may be neglected: the error of the first motion, and what holding a part of it may change in
+// the rest of it. A tenth is left for what the whole load changes.
+constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
+
+/// The nodes that are pushed: by an imposed displacement or a force.
+std::vector<int> pushed_nodes(const Scene& scene) {
+  std::vector<int> nodes;
+  for (const auto& constraint : scene.constraints) {
+    const auto& share = constraint.path.share;
+    if (std::any_of(share.begin(), share.end(), [](double s) { return s != 0.0; })) {
+      nodes.push_back(constraint.node);
+    }
+  }
+  for (const auto& load : scene.loads) nodes.push_back(load.node);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+/// The scene on a part of its mesh, held at the rim.
+Scene scene_of(const Scene& whole, const MeshPart& part) {
+  Scene scene = {.description = whole.description,
+                 .mesh = part.mesh,
+                 .sets = {},
+                 .constraints = {},
+                 .angles = whole.angles,
+                 .loads = {},
+                 .initial_velocities = {},
+                 .case_hash = whole.case_hash,
+                 .mesh_hash = whole.mesh_hash};
+  for (const auto& constraint : whole.constraints) {
+    const int node = part.part_of[at(constraint.node)];
+    if (node >= 0 && !part.on_the_rim[at(node)]) {
+      scene.constraints.push_back({node, constraint.component, constraint.path});
+    }
+  }
+  for (std::size_t n = 0; n < part.on_the_rim.size(); ++n) {
+    for (int i = 0; i < 3 && part.on_the_rim[n]; ++i) {
+      scene.constraints.push_back({static_cast<int>(n), i, {}});
+    }
+  }
+  std::sort(scene.constraints.begin(), scene.constraints.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.node, a.component) < std::pair(b.node, b.component);
+  });
+  for (const auto& load : whole.loads) {
+    const int node = part.part_of[at(load.node)];
+    if (node >= 0) scene.loads.push_back({node, load.force});
+  }
+  return scene;
+}
+
+NodalField on_the_whole(const NodalField& field, const MeshPart& part) {
+  NodalField whole(part.part_of.size());
+  for (std::size_t n = 0; n < field.size(); ++n) whole[at(part.node_of[n])] = field[n];
+  return whole;
+}
+
+/// Tells of the whole what it hears of a part.
+class PartObserver final : public Observer {
+ public:
+  PartObserver(Observer& listener, const MeshPart& part, std::size_t elements)
+      : listener_(listener), part_(part), elements_(elements) {}
+
+  void frame(const Frame& frame) override {
+    listener_.frame({frame.time, on_the_whole(frame.u, part_), on_the_whole(frame.v, part_),
+                     per_element(frame.jacobians, 1.0), per_element(frame.hourglass_energy_densities, 0.0),
+                     frame.levels.empty() ? frame.levels : per_element(frame.levels, 0.0)});
+  }
+  void history(const HistoryRow& row) override { listener_.history(row); }
+  bool proceed(long step, double share, double residual) override {
+    return listener_.proceed(step, share, residual);
+  }
+
+ private:
+  std::vector<double> per_element(const std::vector<double>& values, double asleep) const {
+    std::vector<double> whole(elements_, asleep);
+    for (std::size_t e = 0; e < values.size(); ++e) whole[at(part_.element_of[e])] = values[e];
+    return whole;
+  }
+
+  Observer& listener_;
+  const MeshPart& part_;
+  std::size_t elements_;
+};
+
+/// The displacements of a part of a body under its first load, from a guess of the whole, divided by that
+/// load: it is so small that answers grow with it.
+class FirstAnswer {
+ public:
+  FirstAnswer(const Model& model, const MeshPart& part) : model_(model), part_(part) {}
+
+  /// Replaces the nodes of the part in u (m); returns the evaluations of forces that it took.
+  long find(NodalField& u) const {
+    return std::visit([&](const auto& elements) { return find(u, *elements); }, model_.internal_force());
+  }
+
+ private:
+  /// Of the forces out of balance at the guess. They may be small, but they are what wakes the surroundings.
+  static constexpr double share_left = 0.05;
+  static constexpr long most_evaluations = 1000;
+
+  template <class Real>
+  long find(NodalField& whole, const InternalForce<Real>& elements) const {
+    const double load = first_load(model_);
+    NodalField u;
+    for (const int node : part_.node_of) u.push_back(scaled(whole[at(node)], load));
+    Equilibrium<Real> search(model_, elements);
+    search.body().state() = state_at(elements, u);
+    search.body().impose(load);
+    search.start();
+    const double enough = share_left * search.residual();
+    while (search.residual() > enough && search.evaluations() < most_evaluations && search.step()) {
+    }
+    u = search.body().field(search.body().state().u);
+    for (std::size_t n = 0; n < u.size(); ++n) whole[at(part_.node_of[n])] = scaled(u[n], 1.0 / load);
+    return search.evaluations();
+  }
+
+  static Vector scaled(const Vector& v, double factor) {
+    return {factor * v[0], factor * v[1], factor * v[2]};
+  }
+
+  const Model& model_;
+  const MeshPart& part_;
+};
+
+/// The motion of a body as it begins, found no farther than it reaches.
+class FirstMotion {
+ public:
+  FirstMotion(const Scene& scene, const MethodChoice& choice)
+      : scene_(scene),
+        choice_(choice),
+        distances_(scene.mesh),
+        from_pushed_(distances_.from(pushed_nodes(scene))),
+        awake_(scene.mesh.cells.size(), false),
+        u_(scene.mesh.points.size()) {
+    std::vector<int> margin(u_.size(), 0);
+    for (std::size_t n = 0; n < margin.size(); ++n) margin[n] = from_pushed_[n] == 0 ? first_margin : 0;
+    distances_.mark(margin, awake_);
+    find();
+  }
+
+  /// Displacements (m) over the load, with an error of at most `share` of the largest.
+  const NodalField& within(double share) {
+    const auto allowed = [&] { return share * displacement_unit(scene_, u_); };
+    while (left_ > allowed() && wake(allowed())) find();
+    return u_;
+  }
+
+  /// The elements around nodes that move by more than a length (m), and next to them.
+  std::vector<bool> around_what_moves(double by_more_than) const {
+    std::vector<int> margin(u_.size(), 0);
+    for (std::size_t n = 0; n < u_.size(); ++n) margin[n] = length(u_[n]) > by_more_than ? 1 : 0;
+    std::vector<bool> marked(awake_.size(), false);
+    distances_.mark(margin, marked);
+    for (std::size_t e = 0; e < marked.size(); ++e) marked[e] = marked[e] && awake_[e];
+    return marked;
+  }
+
+  /// How many elements the motion reaches.
+  std::size_t elements() const {
+    return static_cast<std::size_t>(std::count(awake_.begin(), awake_.end(), true));
+  }
+
+  long evaluations() const { return evaluations_; }
+
+ private:
+  /// From one part to the next, a third larger, the error of a motion that falls off as 1/r falls by this
+  /// factor; no motion falls off more slowly.
+  static constexpr double slowest = 0.75;
+  static constexpr int first_margin = 4;  // elements around what is pushed
+  static constexpr int least_margin = 2;  // the next rim is a third farther, not the last node that moves
+
+  /// Wakes the elements around nodes that move by more than a length, as far as a third of their own distance
+  /// from what is pushed; whether something slept there.
+  bool wake(double by_more_than) {
+    std::vector<int> margin(u_.size(), 0);
+    for (std::size_t n = 0; n < u_.size(); ++n) {
+      if (length(u_[n]) > by_more_than) margin[n] = from_pushed_[n] / 3 + least_margin;
+    }
+    const std::size_t before = elements();
+    distances_.mark(std::move(margin), awake_);
+    return elements() > before;
+  }
+
+  /// Computes what is awake. What changed by waking some was the error before, and how fast it falls from
+  /// part to part tells what is left; the slower of the last two times, for motions of several kinds fall off
+  /// side by side, the fast ones first.
+  void find() {
+    const NodalField before = u_;
+    const MeshPart part = part_of_mesh(scene_.mesh, awake_);
+    const Scene scene = scene_of(scene_, part);
+    evaluations_ += FirstAnswer(Model(scene, choice_), part).find(u_);
+    const double change = largest_distance(u_, before);
+    const double falls = std::min(slowest, change / change_), factor = std::max(falls, falls_);
+    left_ = change * factor / (1.0 - factor);
+    change_ = change;
+    falls_ = falls;
+  }
+
+  const Scene& scene_;
+  const MethodChoice& choice_;
+  Distances distances_;
+  std::vector<int> from_pushed_;  // of each node
+  std::vector<bool> awake_;       // elements
+  NodalField u_;
+  double falls_ = slowest;                                 // factor from the last change but one to the last
+  double change_ = 0.0;                                    // m, by the last computation
+  double left_ = std::numeric_limits<double>::infinity();  // m, of error
+  long evaluations_ = 0;
+};
+
+}  // namespace
+
+LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share,
+                            Observer& observer) {
+  if (method_named(choice.method).is_condensed) {
+    throw InputError(fmt::format(
+        "sleep: '{}' computes no elements that could sleep; allowed: a method that steps", choice.method));
+  }
+  if (pushed_nodes(scene).empty()) {
+    throw InputError("sleep: nothing pushes, so that all would sleep; impose a displacement or a force");
+  }
+  const auto start = std::chrono::steady_clock::now();
+  FirstMotion first(scene, choice);
+  const NodalField& motion = first.within(share_of_motion * share);
+  const double unit = displacement_unit(scene, motion);
+  long evaluations = first.evaluations();
+  for (double held = 0.5 * share;; held *= 0.6) {
+    const MeshPart part = part_of_mesh(scene.mesh, first.around_what_moves(held * unit));
+    const Scene awake = scene_of(scene, part);
+    const Model model(awake, choice);
+    if (part.element_of.size() < first.elements()) {
+      NodalField neglecting(motion.size());
+      for (const int node : part.node_of) neglecting[at(node)] = motion[at(node)];
+      evaluations += FirstAnswer(model, part).find(neglecting);
+      if (largest_distance(neglecting, motion) > share_of_holding * share * unit) continue;
+    }
+    PartObserver told(observer, part, scene.mesh.cells.size());
+    LocalRelaxation local{relax(model, told), part.element_of.size()};
+    local.relaxation.u = on_the_whole(local.relaxation.u, part);
+    local.relaxation.steps += evaluations;
+    local.relaxation.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return local;
+  }
+}
+
+}  // namespace sandglass

@@ -1,0 +1,180 @@
+#include "benchmark/bench.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "assembly/method_entry.hpp"
+#include "benchmark/condensed_model.hpp"
+#include "benchmark/force_check.hpp"
+#include "benchmark/stepped_model.hpp"
+
+namespace sandglass {
+
+namespace {
+
+Speed speed_of(const Timing& timing, const BenchRecord& record, double memory_gbs) {
+  const auto elements = static_cast<double>(record.elements);
+  Speed speed{};
+  speed.ns = spread_of(timing.seconds_per_step);
+  const double median = speed.ns.median;
+  for (double* figure : {&speed.ns.best, &speed.ns.lower_quartile, &speed.ns.median, &speed.ns.upper_quartile,
+                         &speed.ns.worst}) {
+    *figure *= 1e9 / elements;
+  }
+  speed.p50_us = 1e6 * quantile(timing.seconds_of_a_step, 0.5);
+  speed.p99_us = 1e6 * quantile(timing.seconds_of_a_step, 0.99);
+  speed.max_us = 1e6 * quantile(timing.seconds_of_a_step, 1.0);
+  speed.steps = static_cast<long>(timing.seconds_of_a_step.size());
+  speed.allocations_per_step = timing.allocations_per_step;
+  if (record.stable_step) speed.real_time = *record.stable_step / median;
+  speed.gflops = record.work.operations / speed.ns.median;
+  speed.peak_share = speed.gflops / record.ceiling.gflops;
+  speed.gbs = record.work.bytes / speed.ns.median;
+  speed.memory_share = speed.gbs / memory_gbs;
+  speed.roofline_fraction = roofline_fraction(record.work, record.ceiling, speed.ns.median);
+  return speed;
+}
+
+/// The forces that all variants of a method must find.
+NodalField reference_forces(const Scene& scene, const std::string& method) {
+  return make_stepped_model(scene, {.method = method, .kernel = KernelWidth::scalar})->forces();
+}
+
+/// Variants that are in memory at the same time.
+struct Group {
+  std::deque<std::unique_ptr<SteppedModel>> models;
+  std::vector<BenchRecord> records;
+};
+
+/// Makes models from `next` on, as many as fit into memory, at least one.
+Group make_group(const Scene& scene, const std::vector<MethodChoice>& variants, std::size_t& next) {
+  const std::size_t elements = scene.mesh.cells.size(), nodes = scene.mesh.points.size();
+  const double room = 0.5 * static_cast<double>(available_memory());
+  double taken = 0.0;
+  Group group;
+  for (; next < variants.size(); ++next) {
+    const MethodChoice& choice = variants[next];
+    // Of the model before, since this one is not made yet: variants of a method stand together.
+    const double model = group.records.empty() ? 0.0 : group.records.back().work.bytes;
+    if (taken + 2.0 * model * static_cast<double>(elements) > room) break;
+    group.models.push_back(make_stepped_model(scene, choice));
+    BenchRecord record{scene.description.name, elements, nodes, choice, {}, 0.0, 0.0, {}, {}, {}, {}};
+    const SteppedModel& made = *group.models.back();
+    record.force_limit = force_limit(choice.precision, scene.description.law);
+    record.work = made.work();
+    record.stable_step = made.stable_step();
+    taken += record.work.bytes * static_cast<double>(elements);
+    group.records.push_back(std::move(record));
+  }
+  return group;
+}
+
+/// Takes the variants that would take too long to set up out of the list, and makes their records.
+std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>& variants) {
+  const std::size_t elements = scene.mesh.cells.size(), nodes = scene.mesh.points.size();
+  std::vector<BenchRecord> records;
+  if (nodes <= most_condensed_nodes) return records;
+  std::erase_if(variants, [&](const MethodChoice& choice) {
+    if (!method_named(choice.method).is_condensed) return false;
+    const std::string why = fmt::format("left out: to factorise for {} nodes takes too long; at most {} here",
+                                        nodes, most_condensed_nodes);
+    records.push_back({scene.description.name, elements, nodes, choice, why, 0.0, 0.0, {}, {}, {}, {}});
+    return true;
+  });
+  return records;
+}
+
+/// Whether two records differ in the method alone, or in kernel and precision alone.
+bool same_numbers(const MethodChoice& a, const MethodChoice& b) {
+  return a.kernel == b.kernel && a.precision == b.precision && a.threads == b.threads;
+}
+bool same_method(const MethodChoice& a, const MethodChoice& b) {
+  return a.method == b.method && a.threads == b.threads;
+}
+
+}  // namespace
+
+bool is_wrong(const BenchRecord& record) {
+  return record.status.starts_with("wrong");
+}
+
+std::string_view name_of(KernelWidth kernel) {
+  return kernel == KernelWidth::pack ? "pack" : "scalar";
+}
+
+std::vector<MethodChoice> variants_of(const BenchPlan& plan) {
+  std::vector<MethodChoice> variants;
+  for (const int threads : plan.threads) {
+    for (const auto& method : plan.methods) {
+      for (const Precision precision : plan.precisions) {
+        variants.push_back({.method = method, .precision = precision, .threads = threads});
+      }
+      variants.push_back({.method = method, .threads = threads, .kernel = KernelWidth::scalar});
+    }
+  }
+  return variants;
+}
+
+std::vector<BenchRecord> bench(const Scene& scene, const BenchPlan& plan, MachineSpeed& machine,
+                               const Proceed& proceed) {
+  auto variants = variants_of(plan);
+  std::vector<BenchRecord> records = leave_out(scene, variants);
+  std::map<std::string, NodalField> references;
+  for (const auto& choice : variants) {
+    if (!references.contains(choice.method)) {
+      references[choice.method] = reference_forces(scene, choice.method);
+    }
+  }
+  for (std::size_t next = 0; next < variants.size();) {
+    const std::size_t first = next;
+    Group group = make_group(scene, variants, next);
+    std::vector<Entry> entries;
+    for (std::size_t n = 0; n < group.models.size(); ++n) {
+      BenchRecord& record = group.records[n];
+      const auto working_set =
+          static_cast<std::size_t>(record.work.bytes * static_cast<double>(record.elements));
+      record.ceiling = machine.ceiling(record.choice.precision, record.choice.threads, working_set);
+      entries.push_back({group.models[n].get(), &references[record.choice.method], record.force_limit});
+    }
+    const auto share = [&](double of_group) {
+      return proceed((static_cast<double>(first) + of_group * static_cast<double>(next - first)) /
+                     static_cast<double>(variants.size()));
+    };
+    const auto timings = measure(entries, plan.settings, share);
+    machine.measure_again();
+    for (std::size_t n = 0; n < timings.size(); ++n) {
+      BenchRecord& record = group.records[n];
+      const int threads = record.choice.threads;
+      const auto working_set =
+          static_cast<std::size_t>(record.work.bytes * static_cast<double>(record.elements));
+      record.ceiling = machine.ceiling(record.choice.precision, threads, working_set);
+      record.status = timings[n].status;
+      record.force_difference = timings[n].force_difference;
+      if (record.status == "ok") record.speed = speed_of(timings[n], record, machine.memory_gbs(threads));
+      records.push_back(std::move(record));
+    }
+  }
+  compare_among_each_other(records);
+  return records;
+}
+
+void compare_among_each_other(std::vector<BenchRecord>& records) {
+  for (auto& record : records) {
+    if (!record.speed) continue;
+    for (const auto& other : records) {
+      if (!other.speed || other.case_name != record.case_name || other.elements != record.elements) continue;
+      const double ratio = record.speed->ns.median / other.speed->ns.median;
+      if (other.choice.method == "tl-perturbation" && same_numbers(record.choice, other.choice)) {
+        record.speed->to_tl_perturbation = ratio;
+      }
+      if (other.choice.kernel == KernelWidth::scalar && same_method(record.choice, other.choice)) {
+        record.speed->speedup = 1.0 / ratio;
+      }
+    }
+  }
+}
+
+}  // namespace sandglass

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "benchmark/machine_speed.hpp"
+#include "benchmark/measure.hpp"
+#include "benchmark/statistics.hpp"
+#include "problem/model.hpp"
+
+namespace sandglass {
+
+std::string_view name_of(KernelWidth kernel);  ///< "pack" or "scalar"
+
+/// What is to be measured.
+struct BenchPlan {
+  std::vector<std::string> methods;
+  std::vector<Precision> precisions;
+  std::vector<int> threads;
+  MeasureSettings settings;
+};
+
+/// Times and what follows from them.
+struct Speed {
+  Spread ns;      ///< per element and step, of batches
+  double p50_us;  ///< of single steps
+  double p99_us;  ///< of single steps
+  double max_us;  ///< of single steps
+  long steps;     ///< timed
+  std::optional<double> allocations_per_step;
+  std::optional<double> real_time;  ///< simulated seconds per wall second at the stable step
+  double gflops;                    ///< counted operations over the median
+  double peak_share;                ///< of the peak with so many threads
+  double gbs;                       ///< estimated bytes over the median
+  double memory_share;              ///< of the triad in memory; above 1 when a mesh stays in a cache
+  double roofline_fraction;
+  std::optional<double> to_tl_perturbation;  ///< time over that of tl-perturbation, same kernel and numbers
+  std::optional<double> speedup;  ///< time of the scalar double kernel over this one, same method and threads
+};
+
+/// One variant of one method on one mesh.
+struct BenchRecord {
+  std::string case_name;
+  std::size_t elements;
+  std::size_t nodes;
+  MethodChoice choice;
+  std::string status;  ///< "ok", "wrong result: ...", or "left out: ..."
+  double force_difference;
+  double force_limit;
+  Work work;                          ///< per element and step
+  std::optional<double> stable_step;  ///< s; none where there are no dynamics
+  Ceiling ceiling;                    ///< of this precision, number of threads and working set
+  std::optional<Speed> speed;         ///< none when the result is wrong
+};
+
+/// Whether what was computed is wrong.
+bool is_wrong(const BenchRecord& record);
+
+/// Every variant of the plan; the scalar double kernel is always among them, for it is the yardstick.
+std::vector<MethodChoice> variants_of(const BenchPlan& plan);
+
+/// Measures all variants on a scene in turn. When they do not all fit into memory, those that do are measured
+/// together and the others after them. Condensed methods are left out where their factorisation would take
+/// too long.
+std::vector<BenchRecord> bench(const Scene& scene, const BenchPlan& plan, MachineSpeed& machine,
+                               const Proceed& proceed);
+
+/// The figures that follow from the records' times among each other.
+void compare_among_each_other(std::vector<BenchRecord>& records);
+
+}  // namespace sandglass

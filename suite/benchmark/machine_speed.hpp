@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "assembly/internal_force.hpp"
+#include "benchmark/roofline.hpp"
+
+namespace sandglass {
+
+/// Bytes of the last cache between a processor and memory, as the system tells it; 32 MiB where it does not.
+std::size_t last_level_cache();
+
+/// Bytes of memory that new data may take without harm to others.
+std::size_t available_memory();
+
+/// Processors on which this process may run.
+int available_processors();
+
+/// 1e9 operations per second of independent multiplications and additions, as many at a time as a register
+/// holds, fused where the build fuses them.
+double measure_peak_gflops(Precision precision, int threads);
+
+/// 1e9 bytes per second of a = b + s c over three arrays, the thirds of `numbers`, counted as STREAM does:
+/// two reads and a write.
+double measure_triad_gbs(std::span<double> numbers, int threads);
+
+/// The speed of this machine, the best of all that was measured.
+class MachineSpeed {
+ public:
+  /// Measures all that is known already once more, so that a quiet moment later on counts too.
+  void measure_again();
+
+  double peak_gflops(Precision precision, int threads);
+
+  /// Triad over arrays several times larger than the last cache.
+  double memory_gbs(int threads);
+
+  /// Triad over arrays as large as a working set, in whole powers of two: what fits in a cache is held
+  /// against that cache.
+  double stream_gbs(std::size_t working_set, int threads);
+
+  Ceiling ceiling(Precision precision, int threads, std::size_t working_set);
+
+ private:
+  double triad_gbs(std::size_t bytes, int threads);
+
+  std::vector<double> numbers_;  // of the triad, as many as were needed so far
+  std::map<std::pair<Precision, int>, double> peaks_;
+  std::map<std::pair<std::size_t, int>, double> streams_;
+};
+
+}  // namespace sandglass

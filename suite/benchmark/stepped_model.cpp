@@ -1,0 +1,176 @@
+#include "benchmark/stepped_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "benchmark/condensed_model.hpp"
+#include "benchmark/work.hpp"
+#include "solve/adaption.hpp"
+#include "solve/explicit_step.hpp"
+#include "solve/stable_step.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr double relative_height = 0.03;  ///< of the waves, in element sizes
+
+template <class Real>
+class SteppedModelOf final : public SteppedModel {
+ public:
+  SteppedModelOf(const Scene& scene, const MethodChoice& choice, const NodalField* start)
+      : field_(start != nullptr ? *start : wavy_field(scene)),
+        model_(scene, choice),
+        elements_(*std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force())),
+        step_(model_, elements_) {
+    const double imposed = largest_imposed(scene);
+    if (imposed > 0.0) loading_ = relative_height * element_size(scene) / imposed;
+    if (start != nullptr) loading_ = 1.0;
+    Body<Real>& body = step_.body();
+    body.state() = state_at(elements_, field_);
+    body.impose(loading_);
+    Adaption<Real>(model_, body).apply(body, Demotion::never);
+    body.evaluate_forces();
+    Rows<Real>& increment = body.state().increment;
+    std::fill(increment.begin(), increment.end(), Row<Real>{});  // it stands still
+    start_ = body.state();
+    stable_step_ = sandglass::stable_step(model_, body.stiffness_bounds()).step;
+    constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
+    step_size_ = step_fraction * stable_step_;
+    keep_ = (1.0 - damping) / (1.0 + damping);
+    gain_ = step_size_ * step_size_ / (1.0 + damping);
+  }
+
+  NodalField forces() override { return forces_on_the_way(elements_, field_); }
+
+  void restart() override {
+    step_.body().state() = start_;
+    step_.body().evaluate_forces();
+  }
+
+  void step() override {
+    step_.take(step_size_, keep_, gain_, [this](Body<Real>& body) { body.impose(loading_); });
+  }
+
+  void require_healthy() override {
+    try {
+      step_.body().require_healthy(0);
+    } catch (const ComputationError& error) {
+      throw ComputationError(fmt::format("bench of {} with {}: the waves of the start were too much: {}",
+                                         model_.scene().description.name, model_.choice().method,
+                                         error.what()));
+    }
+  }
+
+  std::optional<double> stable_step() const override { return stable_step_; }
+
+  Work work() const override {
+    return work_of(model_.choice(), model_.scene().description.law, elements_.layout(),
+                   model_.scene().mesh.cells.size());
+  }
+
+ private:
+  NodalField field_;
+  Model model_;
+  const InternalForce<Real>& elements_;
+  ExplicitStep<Real> step_;
+  State<Real> start_;
+  double loading_ = 0.0;
+  double stable_step_ = 0.0;
+  double step_size_ = 0.0;
+  double keep_ = 0.0;
+  double gain_ = 0.0;
+};
+
+}  // namespace
+
+template <class Real>
+NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field) {
+  State<Real> state = elements.rest();
+  Rows<Real> force(state.u.size());
+  for (const double share : {0.3, 0.7, 1.0}) {
+    NodalField part = field;
+    for (auto& u : part) {
+      for (double& component : u) component *= share;
+    }
+    Rows<Real> u = to_rows<Real>(part, elements.layout());
+    for (std::size_t r = 0; r < u.size(); ++r) {
+      for (std::size_t i = 0; i < 3; ++i) state.increment[r][i] = u[r][i] - state.u[r][i];
+    }
+    state.u = std::move(u);
+    elements.evaluate(state, force);
+  }
+  return to_field(force, elements.layout());
+}
+
+template NodalField forces_on_the_way(const InternalForce<double>&, const NodalField&);
+template NodalField forces_on_the_way(const InternalForce<float>&, const NodalField&);
+
+Scene box_scene(int elements) {
+  const int edge = std::max(1, static_cast<int>(std::lround(std::cbrt(elements))));
+  const int height =
+      std::max(1, static_cast<int>(std::lround(static_cast<double>(elements) / (edge * edge))));
+  constexpr double width = 0.1;
+  const double z = width * height / edge;
+  Case description;
+  description.file = "box";
+  description.name = "box";
+  description.mesh = BoxMesh{{width, width, z}, {edge, edge, height}};
+  description.law = NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49};
+  description.density = 1000.0;
+  description.sets = {{.name = "foot", .within = {{{}, {}, Interval{0.0, 0.0}}}},
+                      {.name = "head", .within = {{{}, {}, Interval{z, z}}}}};
+  description.displacements = {{.set = "foot"}, {.set = "head", .value = {0.0, 0.0, -0.1 * z}}};
+  Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
+  return make_scene(std::move(description), std::move(mesh));
+}
+
+double element_size(const Scene& scene) {
+  double smallest = std::numeric_limits<double>::infinity();  // squared
+  for (const auto& cell : scene.mesh.cells) {
+    const NodalVectors<double> X = gather(scene.mesh.points, cell);
+    for (int I = 0; I < 8; ++I) {
+      for (int J = 0; J < I; ++J) {
+        const double x = X(I, 0) - X(J, 0), y = X(I, 1) - X(J, 1), z = X(I, 2) - X(J, 2);
+        smallest = std::min(smallest, x * x + y * y + z * z);
+      }
+    }
+  }
+  return std::sqrt(smallest);
+}
+
+NodalField wavy_field(const Scene& scene) {
+  const double h = element_size(scene);
+  // Lengths that have no common multiple with each other or with the mesh: no element stays at rest.
+  const double k = 2.0 * std::numbers::pi / h;
+  const std::array<Vector, 3> waves{Vector{k / 3.7, k / 5.3, k / 4.1}, Vector{k / 4.7, k / 3.3, k / 6.1},
+                                    Vector{k / 5.9, k / 4.3, k / 3.1}};
+  NodalField u;
+  u.reserve(scene.mesh.points.size());
+  for (const Vector& X : scene.mesh.points) {
+    Vector& value = u.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector& wave = waves[i];
+      value[i] = relative_height * h *
+                 std::sin(wave[0] * X[0] + wave[1] * X[1] + wave[2] * X[2] + static_cast<double>(i));
+    }
+  }
+  return u;
+}
+
+std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
+                                                 const NodalField* start) {
+  if (method_named(choice.method).is_condensed) return make_condensed_model(scene, choice);
+  if (choice.precision == Precision::double_precision) {
+    return std::make_unique<SteppedModelOf<double>>(scene, choice, start);
+  }
+  return std::make_unique<SteppedModelOf<float>>(scene, choice, start);
+}
+
+}  // namespace sandglass

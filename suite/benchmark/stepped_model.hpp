@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "benchmark/measure.hpp"
+#include "benchmark/roofline.hpp"
+#include "problem/model.hpp"
+
+namespace sandglass {
+
+/// A box of about so many cubes with the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3), clamped
+/// at z = 0 and moved at its other end.
+Scene box_scene(int elements);
+
+/// The shortest distance between two nodes of an element, m.
+double element_size(const Scene& scene);
+
+/// Displacements (m) that strain every element by a few percent and wake its hourglass modes, whatever the
+/// mesh: waves of some elements' length, 3 % of the element size high.
+NodalField wavy_field(const Scene& scene);
+
+/// A model that takes the steps of a dynamic run, from the wavy field on. Steps are 0.9 of the stable one and
+/// damped, so that the motion stays bounded for good. What a condensed method repeats is its update instead:
+/// displacements of all nodes and forces on the driven sets. The scene must outlive it.
+class SteppedModel : public Candidate {
+ public:
+  /// s, at the stiffness of the wavy field; none where there are no dynamics.
+  virtual std::optional<double> stable_step() const = 0;
+
+  /// Operations and bytes of a step, per element.
+  virtual Work work() const = 0;
+};
+
+/// Forces (N) on the way to a field of displacements (m), in three steps that are the same for all.
+template <class Real>
+NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field);
+
+/// With `start`, steps go on from those displacements (m) under the full load instead of from the waves; a
+/// condensed method has no steps and needs neither.
+std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
+                                                 const NodalField* start = nullptr);
+
+}  // namespace sandglass

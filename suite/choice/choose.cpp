@@ -1,0 +1,215 @@
+#include "choice/choose.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "base/names.hpp"
+#include "mesh/interpolation.hpp"
+#include "mesh/variations.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Evaluations of the forces after which a rung is not at rest: answers that exist take some hundreds.
+constexpr int most_evaluations = 20000;
+
+void require_possible(const Scene& scene, const Demand& demand) {
+  if (!scene.description.quasi_static) {
+    throw InputError(
+        fmt::format("{}: choose compares answers at rest: case.answer = 'dynamic' must be 'quasi-static'; "
+                    "choose for the state of rest that the motion goes to",
+                    scene.description.file.string()));
+  }
+  for (const auto& name : demand.methods) method_named(name, "--methods");
+}
+
+/// The user's mesh, and those coarser ones that the golden's own element can still answer on. What was looked
+/// at is told in `looked_at`.
+std::deque<LadderMesh> make_meshes(const Scene& scene, const Reference& reference, Judge& judge,
+                                   std::vector<MeshAttempt>& looked_at) {
+  std::deque<LadderMesh> meshes;
+  meshes.push_back({{}, scene, reference.u});
+  auto& most = meshes.front().scene.description.relaxation.max_steps;
+  most = std::min(most, most_evaluations);
+  const auto* generator = std::get_if<AnyGenerator>(&scene.description.mesh);
+  if (generator == nullptr) return meshes;
+  for (const auto& coarser : coarser_meshes(*generator)) {
+    MeshAttempt attempt{coarser};
+    try {
+      Scene on_it = scene_on(coarser, meshes.front().scene.description);
+      NodalField there = interpolate(scene.mesh, reference.u, on_it.mesh.points);
+      LadderMesh mesh{coarser, std::move(on_it), std::move(there)};
+      attempt.judgement = judge.judge_mesh(mesh);
+      attempt.kept = attempt.judgement.reason.empty();
+      if (attempt.kept) meshes.push_back(std::move(mesh));
+    } catch (const InputError& error) {
+      attempt.judgement.reason = error.what();
+    }
+    looked_at.push_back(std::move(attempt));
+  }
+  return meshes;
+}
+
+/// What a rung's place is by: its cost. An adaptive one stands behind fixed ones that cost up to a tenth
+/// more: elements that stay as they are make the simpler program.
+double rank(const Attempt& attempt) {
+  constexpr double price_of_change = 1.1;
+  if (!attempt.cost) return std::numeric_limits<double>::infinity();
+  const double cost = attempt.cost->per_simulated_second();
+  return method_named(attempt.rung.choice.method).adapts() ? price_of_change * cost : cost;
+}
+
+/// Why a rung is too dear; empty when it is not.
+std::string cost_reason(const Cost& cost, const Demand& demand) {
+  if (demand.budget && cost.seconds > *demand.budget) {
+    return fmt::format("{} takes {:.3g} ms, and may take {:.3g} ms", cost.step_size ? "a step" : "an answer",
+                       1e3 * cost.seconds, 1e3 * *demand.budget);
+  }
+  if (demand.real_time && cost.per_simulated_second() > 1.0) {
+    return fmt::format("not in real time: a simulated second takes {:.3g} s", cost.per_simulated_second());
+  }
+  return "";
+}
+
+std::vector<Attempt> make_attempts(std::vector<Rung> rungs, const std::vector<Costing>& costings) {
+  std::vector<Attempt> attempts;
+  for (std::size_t n = 0; n < rungs.size(); ++n) {
+    Attempt attempt{.rung = std::move(rungs[n]), .cost = costings[n].cost};
+    attempt.judgement.reason = attempt.rung.unfit;
+    if (!attempt.cost && attempt.rung.unfit.empty()) attempt.judgement.reason = costings[n].status;
+    if (!attempt.judgement.reason.empty()) attempt.outcome = Outcome::refused;
+    attempts.push_back(std::move(attempt));
+  }
+  std::stable_sort(attempts.begin(), attempts.end(),
+                   [](const Attempt& a, const Attempt& b) { return rank(a) < rank(b); });
+  return attempts;
+}
+
+/// Whether an error can be told by a reference: not when the truth itself is known less well.
+bool can_show(const Reference& reference, double error) {
+  return reference.name != "truth" || reference.own.largest.value_or(0.0) <= error;
+}
+
+/// Judges rungs from the cheapest on.
+void climb(Choice& choice, Judge& judge, const ProgressOf& progress) {
+  const Demand& demand = choice.demand;
+  for (std::size_t n = 0; n < choice.attempts.size(); ++n) {
+    Attempt& attempt = choice.attempts[n];
+    if (attempt.outcome == Outcome::refused) continue;
+    if (choice.chosen && !demand.all) continue;
+    const double share = static_cast<double>(n) / static_cast<double>(choice.attempts.size());
+    if (!progress(share, name_of(attempt.rung)))
+      throw ComputationError("choose: interrupted; nothing was written");
+    const std::string too_dear = cost_reason(*attempt.cost, demand);
+    if (too_dear.empty() || demand.all) attempt.judgement = judge.judge(attempt.rung);
+    if (!too_dear.empty()) attempt.judgement.reason = too_dear;
+    if (attempt.judgement.reason.empty() && !can_show(choice.reference, demand.tolerance)) {
+      attempt.judgement.reason = "nearer to the truth than the truth itself is known";
+    }
+    attempt.outcome = attempt.judgement.reason.empty() ? Outcome::sufficient : Outcome::refused;
+    if (attempt.outcome == Outcome::refused || choice.chosen) continue;
+    attempt.outcome = Outcome::chosen;
+    choice.chosen = n;
+  }
+}
+
+std::string percent(double fraction) {
+  return fmt::format("{:.3g} %", 100.0 * fraction);
+}
+
+/// What the reference itself is worth.
+std::string reference_remark(const Choice& choice) {
+  const auto& [name, u, unit, own] = choice.reference;
+  const double tolerance = choice.demand.tolerance;
+  if (name == "truth") {
+    if (!own.largest) return fmt::format("how far the truth itself is off is not known: {}", own.note);
+    return fmt::format(
+        "the truth itself is known to {} ({}){}", percent(*own.largest), own.note,
+        !can_show(choice.reference, tolerance) ? ": that something is nearer than this cannot be shown" : "");
+  }
+  if (!own.largest) return "";
+  return fmt::format(
+      "the reference is the best of this mesh: it is itself about {} from the answer of ever finer meshes "
+      "({})",
+      percent(*own.largest), own.note);
+}
+
+const Attempt* nearest(const Choice& choice) {
+  const Attempt* best = nullptr;
+  for (const auto& attempt : choice.attempts) {
+    const auto& error = attempt.judgement.error;
+    if (error && (best == nullptr || *error < *best->judgement.error)) best = &attempt;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string_view name_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::chosen:
+      return "chosen";
+    case Outcome::sufficient:
+      return "sufficient";
+    case Outcome::refused:
+      return "refused";
+    case Outcome::not_tried:
+      break;
+  }
+  return "not tried";
+}
+
+Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress) {
+  require_possible(scene, demand);
+  std::string stage = "reference";
+  const Proceed proceed = [&](double share) { return progress(share, stage); };
+  Choice choice{.demand = demand, .reference = make_reference(scene, demand.against, proceed), .meshes = {}};
+  Judge judge(scene, choice.reference, demand.tolerance, proceed);
+  stage = "coarser meshes";
+  choice.meshes = make_meshes(scene, choice.reference, judge, choice.coarser);
+  stage = "time of steps";
+  auto rungs = make_ladder(choice.meshes, {demand.methods, demand.tolerance, demand.threads});
+  const auto costings = measure_costs(rungs, proceed);
+  choice.attempts = make_attempts(std::move(rungs), costings);
+  stage = "answers";
+  climb(choice, judge, progress);
+  return choice;
+}
+
+std::vector<std::string> remarks(const Choice& choice) {
+  const double tolerance = choice.demand.tolerance;
+  std::vector<std::string> said;
+  if (const auto remark = reference_remark(choice); !remark.empty()) said.push_back(remark);
+  if (choice.chosen) return said;
+  const Attempt* best = nearest(choice);
+  if (best != nullptr) {
+    said.push_back(fmt::format("the nearest of those that were computed is {}, {}: {}", name_of(best->rung),
+                               best->rung.mesh->name(), percent(*best->judgement.error)));
+  }
+  for (const auto& attempt : choice.attempts) {
+    const auto& [rung, cost, judgement, outcome] = attempt;
+    const bool is_golden = rung.choice.method == golden_method && !rung.mesh->coarser &&
+                           rung.choice.precision == Precision::double_precision;
+    if (!is_golden || !judgement.error || !(*judgement.error > tolerance)) continue;
+    said.push_back(
+        fmt::format("the golden's own element is {} off on this mesh: so much is the mesh's, and no "
+                    "method mends it. Errors that fall with the square of the element size would ask "
+                    "for about {:.2g} times as many elements in each direction",
+                    percent(*judgement.error), std::sqrt(*judgement.error / tolerance)));
+  }
+  const auto dear =
+      std::count_if(choice.attempts.begin(), choice.attempts.end(), [&](const Attempt& attempt) {
+        return attempt.cost && !cost_reason(*attempt.cost, choice.demand).empty() && !attempt.judgement.error;
+      });
+  if (dear > 0)
+    said.push_back(fmt::format("{} rungs are too dear and were not computed; --all computes them", dear));
+  return said;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,67 @@
+#include "choice/choose_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "assembly/method_entry.hpp"
+#include "mesh/variations.hpp"
+
+namespace sandglass {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json to_record(const Attempt& attempt) {
+  const auto& [rung, cost, judgement, outcome] = attempt;
+  return {
+      {"rung", name_of(rung)},
+      {"method", rung.choice.method},
+      {"kappa", or_null(rung.choice.kappa)},
+      {"accuracy", method_named(rung.choice.method).adapts() ? Json(rung.choice.accuracy) : Json(nullptr)},
+      {"precision", name_of(rung.choice.precision)},
+      {"mesh", rung.mesh->name()},
+      {"elements", rung.mesh->scene.mesh.cells.size()},
+      {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
+      {"step_size", cost ? or_null(cost->step_size) : Json(nullptr)},
+      {"seconds_per_simulated_second", cost ? Json(cost->per_simulated_second()) : Json(nullptr)},
+      {"error", or_null(judgement.error)},
+      {"smallest_jacobian", or_null(judgement.smallest_jacobian)},
+      {"outcome", name_of(outcome)},
+      {"reason", judgement.reason}};
+}
+
+}  // namespace
+
+std::string to_json(const Provenance& provenance, const Scene& scene, const Choice& choice) {
+  Json document;
+  for (const auto& [name, value] : provenance) document[name] = value;
+  const Demand& demand = choice.demand;
+  document["case"] = scene.description.name;
+  document["tolerance"] = demand.tolerance;
+  document["real_time"] = demand.real_time;
+  document["budget_seconds"] = or_null(demand.budget);
+  document["threads"] = demand.threads;
+  document["reference"] = {{"name", choice.reference.name},
+                           {"own_error", or_null(choice.reference.own.largest)},
+                           {"note", choice.reference.own.note}};
+  document["answers_per_second"] = answers_per_second;
+  document["chosen"] = or_null(choice.chosen);
+  document["remarks"] = remarks(choice);
+  document["coarser_meshes"] = Json::array();
+  for (const auto& [mesh, judgement, kept] : choice.coarser) {
+    document["coarser_meshes"].push_back({{"mesh", counts_text(mesh)},
+                                          {"error", or_null(judgement.error)},
+                                          {"kept", kept},
+                                          {"reason", judgement.reason}});
+  }
+  document["rungs"] = Json::array();
+  for (const auto& attempt : choice.attempts) document["rungs"].push_back(to_record(attempt));
+  return document.dump(1) + "\n";
+}
+
+}  // namespace sandglass

@@ -1,0 +1,198 @@
+#include "choice/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "comparison/accuracy.hpp"
+#include "mesh/hexahedron.hpp"
+#include "mesh/interpolation.hpp"
+#include "stability/answer.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Load over that of the case at which a rung must still come to rest.
+constexpr double margin = 1.1;
+
+/// Asks whether to go on while an answer is searched.
+class Asking final : public Observer {
+ public:
+  explicit Asking(const Proceed& proceed) : proceed_(proceed) {}
+  bool proceed(long /*step*/, double share, double /*residual*/) override {
+    stopped_ = stopped_ || !proceed_(share);
+    return !stopped_;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  const Proceed& proceed_;
+  bool stopped_ = false;
+};
+
+Answer find_answer(const Scene& scene, const MethodChoice& choice, const Proceed& proceed) {
+  Asking observer(proceed);
+  Answer answer = answer_at_rest(scene, choice, observer);
+  if (observer.stopped()) throw ComputationError("choose: interrupted; nothing was written");
+  return answer;
+}
+
+MethodChoice golden_element(int threads) {
+  return {.method = std::string(golden_method), .threads = threads};
+}
+
+/// The same scene with a tenth more load.
+Scene with_margin(const Scene& scene) {
+  Case description = scene.description;
+  scale_load(description, margin);
+  description.sets.clear();
+  return make_scene(std::move(description), scene.mesh, scene.sets);
+}
+
+double smallest_jacobian(const Model& model, const NodalField& u) {
+  std::vector<double> jacobians(model.scene().mesh.cells.size());
+  std::visit([&](const auto& elements) { elements->smallest_jacobians(state_at(*elements, u), jacobians); },
+             model.internal_force());
+  return *std::min_element(jacobians.begin(), jacobians.end());
+}
+
+/// The largest norm of the elements' mean displacement gradients: strain and rotation together.
+double largest_gradient(const Mesh& mesh, const NodalField& u) {
+  double largest = 0.0;
+  for (const auto& cell : mesh.cells) {
+    const NodalVectors<double> X = gather(mesh.points, cell);
+    const Tensor<double> H = transpose(gather(u, cell)) * mean_gradient(X).h;
+    largest = std::max(largest, std::sqrt(double_dot(H, H)));
+  }
+  return largest;
+}
+
+/// How an answer that is too far from the reference goes wrong.
+std::string error_reason(const Rung& rung, const Symptoms& symptoms, double tolerance, double gradient) {
+  if (method_named(rung.choice.method).is_linear && gradient > 0.1) {
+    return fmt::format("small-strain theory, but displacement gradients reach {:.2g}", gradient);
+  }
+  switch (diagnose(symptoms, tolerance)) {
+    case Finding::hourglassing:
+      return fmt::format("nodes zigzag: {:.2g} times the reference's hourglass amplitudes",
+                         symptoms.bending_ratio);
+    case Finding::locking:
+      return fmt::format("locks: takes {:.2g} % more energy to deform",
+                         100.0 * (symptoms.stiffness_ratio - 1.0));
+    default:
+      return fmt::format("inaccurate; {:.2g} % of the squared error stands in hourglass modes",
+                         100.0 * symptoms.zigzag_share);
+  }
+}
+
+/// How a computation failed, in a mechanic's words.
+std::string failure_reason(const Answer& answer) {
+  if (answer.failure == Finding::inverted) return "an element turns inside out";
+  if (answer.failure == Finding::unstable) return "displacements grow beyond all numbers";
+  return answer.status;
+}
+
+OwnError own_error_of(const std::filesystem::path& path, const Scene& scene) {
+  try {
+    read_reference(path, scene);  // it may belong to another case
+    return read_own_error(path);
+  } catch (const InputError&) {
+    return {{}, "no stored golden tells it"};
+  }
+}
+
+}  // namespace
+
+Reference make_reference(const Scene& scene, const std::string& against, const Proceed& proceed) {
+  const Case& description = scene.description;
+  Reference reference{.name = against, .u = {}, .unit = 0.0, .own = {}};
+  if (!against.empty()) {
+    const auto& path = against == "truth" ? description.truth : description.golden;
+    reference.u = read_reference(path, scene);
+    reference.own = read_own_error(path);
+  } else {
+    reference.name = golden_method;
+    Answer answer = find_answer(scene, golden_element(1), proceed);
+    if (answer.refused || answer.failure) {
+      throw ComputationError(
+          fmt::format("{}: the reference, {}, finds no answer: {}; remedy: impose less, refine the mesh, or "
+                      "name a stored one with --against",
+                      description.name, reference.name, answer.status));
+    }
+    reference.u = std::move(answer.u);
+    reference.own = own_error_of(description.golden, scene);
+  }
+  reference.unit = displacement_unit(scene, reference.u);
+  return reference;
+}
+
+Judge::Judge(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed)
+    : scene_(scene),
+      reference_(reference),
+      tolerance_(tolerance),
+      proceed_(proceed),
+      largest_gradient_(largest_gradient(scene.mesh, reference.u)) {}
+
+Judgement Judge::judge(const Rung& rung) {
+  Judgement found = judge_answer(rung);
+  if (found.reason.empty()) found.reason = margin_reason(rung);
+  return found;
+}
+
+Judgement Judge::judge_mesh(const LadderMesh& mesh) {
+  Judgement found = judge_answer({golden_element(1), &mesh});
+  if (!found.reason.empty() && found.error) found.reason = "too coarse for any method";
+  return found;
+}
+
+Judgement Judge::judge_answer(const Rung& rung) {
+  const Scene& scene = rung.mesh->scene;
+  const Answer answer = find_answer(scene, rung.choice, proceed_);
+  if (answer.refused || answer.u.empty()) return {.reason = failure_reason(answer)};
+  Judgement found;
+  found.smallest_jacobian = smallest_jacobian(Model(scene, rung.choice), answer.u);
+  const NodalField u = rung.mesh->coarser ? interpolate(scene.mesh, answer.u, scene_.mesh.points) : answer.u;
+  found.error = accuracy(u, reference_.u, nullptr, reference_.unit).max_relative_error;
+  if (answer.failure) {
+    found.reason = failure_reason(answer);
+  } else if (!(*found.error <= tolerance_)) {
+    // On its own mesh a coarser one's nodes have the reference's displacements to be compared with.
+    const Symptoms told = symptoms(scene, answer.u, answer.energy, rung.mesh->reference, reference_.unit);
+    found.reason =
+        error_reason(rung, {*found.error, told.zigzag_share, told.bending_ratio, told.stiffness_ratio},
+                     tolerance_, largest_gradient_);
+  }
+  return found;
+}
+
+std::string Judge::margin_reason(const Rung& rung) {
+  const auto survives = [&](const MethodChoice& choice) {
+    const Scene harder = with_margin(rung.mesh->scene);
+    return find_answer(harder, choice, proceed_);
+  };
+  const Answer beyond = survives(rung.choice);
+  if (!beyond.failure && !beyond.refused) return "";
+  const Answer golden = survives(golden_element(rung.choice.threads));
+  if (golden.failure || golden.refused) return "";
+  return fmt::format("no reserve: with a tenth more load {}", failure_reason(beyond));
+}
+
+Scene scene_on(const AnyGenerator& mesh, Case description) {
+  const auto used = [&](const NodeSetRule& rule) {
+    const auto is = [&](const auto& imposed) { return imposed.set == rule.name; };
+    return std::any_of(description.displacements.begin(), description.displacements.end(), is) ||
+           std::any_of(description.rotations.begin(), description.rotations.end(), is) ||
+           std::any_of(description.forces.begin(), description.forces.end(), is);
+  };
+  std::erase_if(description.sets, [&](const NodeSetRule& rule) { return !used(rule); });
+  description.profile.reset();
+  description.published.clear();
+  description.mesh = mesh;
+  return make_scene(std::move(description), generate_mesh(mesh));
+}
+
+}  // namespace sandglass

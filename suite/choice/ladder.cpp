@@ -1,0 +1,55 @@
+#include "choice/ladder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "assembly/method_entry.hpp"
+#include "choice/candidates.hpp"
+#include "mesh/variations.hpp"
+
+namespace sandglass {
+
+std::string LadderMesh::name() const {
+  return coarser ? counts_text(*coarser) : "own mesh";
+}
+
+std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan) {
+  std::vector<Rung> rungs;
+  const auto asked = [&](std::string_view method) {
+    return plan.methods.empty() ||
+           std::find(plan.methods.begin(), plan.methods.end(), method) != plan.methods.end();
+  };
+  for (const auto& mesh : meshes) {
+    for (const MethodEntry& method : methods()) {
+      if (!asked(method.name)) continue;
+      MethodChoice plain{.method = std::string(method.name), .threads = plan.threads};
+      if (const std::string_view why = unfit(method); !why.empty()) {
+        if (!mesh.coarser) rungs.push_back({plain, &mesh, std::string(why)});
+        continue;
+      }
+      for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+        plain.precision = precision;
+        for (auto& choice : choices_of(method, plain, mesh.scene.description.law, plan.tolerance)) {
+          rungs.push_back({std::move(choice), &mesh});
+        }
+      }
+    }
+  }
+  return rungs;
+}
+
+std::string name_of(const Rung& rung) {
+  const auto& choice = rung.choice;
+  const std::string kappa = choice.kappa ? fmt::format(" kappa {:.3g}", *choice.kappa) : "";
+  const std::string accuracy =
+      method_named(choice.method).adapts() ? fmt::format(" accuracy {:.3g} %", 100.0 * choice.accuracy) : "";
+  return fmt::format("{}{}{} {}", choice.method, kappa, accuracy, name_of(choice.precision));
+}
+
+bool same_work(const Rung& a, const Rung& b) {
+  return a.mesh == b.mesh && a.choice.method == b.choice.method && a.choice.precision == b.choice.precision &&
+         a.choice.accuracy == b.choice.accuracy;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/model.hpp"
+
+namespace sandglass {
+
+/// The user's own mesh, or a coarser one of the same body.
+struct LadderMesh {
+  std::optional<AnyGenerator> coarser = {};  ///< none: the user's own
+  Scene scene;
+  NodalField reference;  ///< the reference's displacements at its nodes, m
+
+  /// "own mesh", or the counts of elements of a coarser one.
+  std::string name() const;
+};
+
+/// A way to compute a scene: what `sandglass choose` chooses among.
+struct Rung {
+  MethodChoice choice;
+  const LadderMesh* mesh = nullptr;
+  std::string unfit = {};  ///< why nobody should use it, whatever it costs; empty: fit
+};
+
+/// What a ladder is made of.
+struct LadderPlan {
+  std::vector<std::string> methods;  ///< none: all of the list
+  double tolerance = 0.01;           ///< of the user
+  int threads = 1;
+};
+
+/// All rungs of some meshes, not yet in order: every method of the list in double and in float. A method
+/// whose kappa matters at rest is there with auto, half and twice that; an adaptive one with several
+/// accuracies about the user's tolerance. A method that has no
+/// answer at rest, or leaves hourglass modes to themselves, is there once, as unfit.
+std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan);
+
+/// What is on a rung, for people: "tl-perturbation kappa 0.00325 float".
+std::string name_of(const Rung& rung);
+
+/// Whether two rungs do the same work in a step, so that one time stands for both.
+bool same_work(const Rung& a, const Rung& b);
+
+}  // namespace sandglass

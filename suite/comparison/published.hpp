@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "problem/model.hpp"
+
+namespace sandglass {
+
+/// A published motion beside the computed one.
+struct PublishedResult {
+  PublishedValue published;
+  std::optional<double> computed;  ///< m or rad; none when the computation failed
+  std::optional<double> truth;     ///< m or rad, that of the stored truth; none without one
+
+  /// computed / published.
+  std::optional<double> ratio() const;
+
+  /// computed / truth.
+  std::optional<double> ratio_to_truth() const;
+};
+
+/// What a published value is about, of displacements u (m): the mean of a component over its node set (m), or
+/// the rotation (rad, small) about an axis through the middle of the set that fits them best,
+/// sum (r x u)_k / sum (|r|^2 - r_k^2).
+double motion_of(const Scene& scene, const NodalField& u, const PublishedValue& published);
+
+/// The published values of a scene beside those of its truth, where there is one; nothing is computed
+/// yet.
+std::vector<PublishedResult> published_results(const Scene& scene, const std::optional<NodalField>& truth);
+
+/// Fills in what displacements u (m) of the scene give.
+void fill_computed(const Scene& scene, const NodalField& u, std::vector<PublishedResult>& results);
+
+/// The largest |computed / published - 1|; none when there is nothing to compare.
+std::optional<double> largest_relative_error(const std::vector<PublishedResult>& results);
+
+}  // namespace sandglass

@@ -1,0 +1,129 @@
+#include "comparison/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "io/reference_file.hpp"
+#include "solve/stable_step.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::optional<NodalField> read_if_present(const std::filesystem::path& path, const Scene& scene) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+  return read_reference(path, scene);
+}
+
+std::optional<double> figure_of(const Verdict& verdict, const Expectation& expected) {
+  if (expected.reference == "published") return largest_relative_error(verdict.published);
+  const auto& accuracy = expected.reference == "golden" ? verdict.golden : verdict.truth;
+  if (!accuracy) return std::nullopt;
+  if (expected.figure == "max_relative_error") return accuracy->max_relative_error;
+  if (expected.figure == "rms_relative_error") return accuracy->rms_relative_error;
+  return accuracy->profile_relative_error;
+}
+
+bool concerns(const Expectation& expected, const Verdict& verdict) {
+  if (verdict.method != expected.method || verdict.precision != "double") return false;
+  if (!verdict.kappa || expected.kappa == "best") return true;
+  if (expected.kappa == "auto") return verdict.kappa_is_auto;
+  return !verdict.kappa_is_auto && fmt::to_string(*verdict.kappa) == expected.kappa;
+}
+
+/// Brings the scene to rest: its displacements (m), what a verdict says of the way there, and the energy (J)
+/// in the body, which is returned. Throws ComputationError.
+double fill_relaxed(const Scene& scene, const MethodChoice& choice, Verdict& verdict, NodalField& u) {
+  const Model model(scene, choice);
+  verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
+  Observer silent;
+  Relaxation relaxation = relax(model, silent);
+  u = std::move(relaxation.u);
+  const StrainEnergies energies = relaxation.energies;
+  verdict.status = at_rest(relaxation, choice.precision)
+                       ? "ok"
+                       : fmt::format("failed: {}, residual {:.1e}", outcome(relaxation, choice.precision),
+                                     relaxation.residual);
+  verdict.steps = relaxation.steps;
+  verdict.residual = relaxation.residual;
+  verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;
+  verdict.wall_seconds = relaxation.seconds;
+  verdict.ns_per_element_step = 1e9 * relaxation.step_seconds / static_cast<double>(scene.mesh.cells.size());
+  return energies.strain + energies.hourglass;
+}
+
+}  // namespace
+
+References read_references(const Scene& scene) {
+  return {read_if_present(scene.description.golden, scene), read_if_present(scene.description.truth, scene)};
+}
+
+std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
+                                    const std::optional<NodalField>& reference) {
+  if (!reference) return std::nullopt;
+  const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
+  return accuracy(u, *reference, profile, displacement_unit(scene, *reference));
+}
+
+std::optional<double> golden_to_truth(const Scene& scene, const References& references) {
+  if (!references.golden || !references.truth) return std::nullopt;
+  return accuracy_of(scene, *references.golden, references.truth)->max_relative_error;
+}
+
+Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
+  const MethodEntry& method = method_named(choice.method);
+  const AnyLaw& law = scene.description.law;
+  Verdict verdict{.case_name = scene.description.name,
+                  .method = choice.method,
+                  .kappa = choice.kappa ? choice.kappa : method.auto_kappa(law, choice.kappa_modulus),
+                  .kappa_is_auto = method.takes_kappa && !choice.kappa,
+                  .precision = std::string(name_of(choice.precision)),
+                  .operations = method.operations(law).total.total(),
+                  .family = scene.description.family,
+                  .variants = scene.description.variants,
+                  .published = published_results(scene, references.truth)};
+  double energy = 0.0;
+  try {
+    energy = fill_relaxed(scene, choice, verdict, u);
+  } catch (const ComputationError& error) {
+    const std::string_view text(error.what());
+    verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
+    verdict.finding = finding_of(error.breakdown());
+    return verdict;
+  }
+  verdict.golden = accuracy_of(scene, u, references.golden);
+  verdict.truth = accuracy_of(scene, u, references.truth);
+  if (references.golden) {
+    const double unit = displacement_unit(scene, *references.golden);
+    verdict.symptoms = symptoms(scene, u, energy, *references.golden, unit);
+    verdict.finding = verdict.ok()
+                          ? diagnose(*verdict.symptoms, good_limit(golden_to_truth(scene, references)))
+                          : Finding::not_at_rest;
+  }
+  fill_computed(scene, u, verdict.published);
+  return verdict;
+}
+
+std::vector<LimitCheck> check_limits(const Scene& scene, const std::vector<Verdict>& verdicts) {
+  std::vector<LimitCheck> checks;
+  for (const auto& expected : scene.description.expectations) {
+    LimitCheck check{scene.description.name, expected, {}, {}, false};
+    for (const auto& verdict : verdicts) {
+      if (verdict.case_name != check.case_name || !concerns(expected, verdict)) continue;
+      const auto figure = figure_of(verdict, expected);
+      if (!figure || (check.figure && *check.figure <= *figure)) continue;
+      check.figure = figure;
+      check.kappa = verdict.kappa;
+      // A run that did not come to rest may show that a method fails, never that it is accurate.
+      check.holds = expected.below ? verdict.ok() && *figure <= *expected.below : *figure > *expected.above;
+    }
+    checks.push_back(check);
+  }
+  return checks;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "comparison/accuracy.hpp"
+#include "comparison/finding.hpp"
+#include "comparison/published.hpp"
+#include "problem/model.hpp"
+#include "solve/relaxation.hpp"
+
+namespace sandglass {
+
+/// The stored answers a scene is compared with; absent when the case has none.
+struct References {
+  std::optional<NodalField> golden;
+  std::optional<NodalField> truth;
+};
+
+/// Reads the scene's golden and truth where they exist. Throws InputError when one exists but belongs to
+/// another case.
+References read_references(const Scene& scene);
+
+/// The accuracy figures of displacements u of a scene against one of its references, if there is one.
+std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
+                                    const std::optional<NodalField>& reference);
+
+/// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
+std::optional<double> golden_to_truth(const Scene& scene, const References& references);
+
+/// What came of one method on one case.
+struct Verdict {
+  std::string case_name;
+  std::string method;
+  std::optional<double> kappa;  ///< the number used, none for methods without one
+  bool kappa_is_auto = false;
+  std::string precision = "double";
+  std::string status;  ///< "ok" or "failed: why"
+  std::optional<Accuracy> golden;
+  std::optional<Accuracy> truth;
+  std::optional<Accuracy> twin;      ///< where there is no golden: against its explicit twin, computed for it
+  std::optional<Finding> finding;    ///< none where there is no golden to tell by
+  std::optional<Symptoms> symptoms;  ///< what it was found by; none for a computation that broke down
+  double stable_step = 0.0;          ///< s, at rest; 0 where unknown
+  long operations = 0;               ///< per element and step
+  long steps = 0;
+  double residual = 0.0;
+  double hourglass_energy_ratio = 0.0;  ///< hourglass over strain energy
+  double ns_per_element_step = 0.0;
+  double wall_seconds = 0.0;
+  std::string family = {};                      ///< what the case shares with its variants
+  std::vector<std::string> variants = {};       ///< of the case
+  std::vector<PublishedResult> published = {};  ///< one for each published value of the case
+
+  bool ok() const { return status == "ok"; }
+};
+
+/// Relaxes the scene with a method and compares. A failed computation becomes a status, not an exception.
+/// `u` receives the displacements when there are any.
+Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u);
+
+/// The outcome of one expectation of a case.
+struct LimitCheck {
+  std::string case_name;
+  Expectation expectation;
+  std::optional<double> figure;  ///< none when no run gave it
+  std::optional<double> kappa;   ///< at which it was found, for "best"
+  bool holds = false;
+};
+
+/// Holds the verdicts of a scene to its expectations, which are for double precision: verdicts in another are
+/// no concern of theirs.
+std::vector<LimitCheck> check_limits(const Scene& scene, const std::vector<Verdict>& verdicts);
+
+}  // namespace sandglass

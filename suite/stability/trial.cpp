@@ -1,0 +1,108 @@
+#include "stability/trial.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "assembly/method_entry.hpp"
+#include "mesh/variations.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr double careful_step = 0.5;
+constexpr double usual_step = 0.9;
+
+/// Shear waves, m/s.
+double shear_wave_speed(const Case& description) {
+  const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, description.law);
+  return std::sqrt(mu / description.density);
+}
+
+/// The time in which a shear wave crosses the body, s.
+double crossing_time(const Scene& scene) {
+  return diagonal(scene.mesh.points) / shear_wave_speed(scene.description);
+}
+
+double noise_velocity(const Trial& trial) {
+  return trial.noise.value_or(0.0) * shear_wave_speed(trial.description);
+}
+
+}  // namespace
+
+void scale_load(Case& description, double factor) {
+  for (auto& displacement : description.displacements) {
+    for (double& d : displacement.value) d *= factor;
+  }
+  for (auto& rotation : description.rotations) {
+    rotation.angle *= factor;
+    for (double& d : rotation.displacement) d *= factor;
+  }
+  for (auto& force : description.forces) {
+    for (double& f : force.total) f *= factor;
+    for (double& m : force.moment) m *= factor;
+  }
+}
+
+Scene scene_of(const Trial& trial) {
+  Case description = trial.description;
+  const auto shape = [&](Vector& v) {
+    v[2] *= trial.aspect;
+    v[0] += trial.skew * v[2];
+  };
+  Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
+  const auto on_boundary = boundary_nodes(mesh);
+  NodeSets sets;
+  for (const auto& rule : description.sets) sets[rule.name] = select_nodes(mesh, on_boundary, rule);
+  description.sets.clear();
+  for (auto& X : mesh.points) shape(X);
+  for (auto& displacement : description.displacements) shape(displacement.value);
+  if (trial.noise) scale_load(description, 0.0);
+  Scene scene = make_scene(std::move(description), std::move(mesh), std::move(sets));
+  if (!trial.is_dynamic()) return scene;
+  const double crossing = crossing_time(scene);
+  scene.description.dynamics = {.duration = (trial.noise ? 10.0 : 4.0) * crossing,
+                                .ramp_time = 2.0 * crossing,
+                                .step_fraction = trial.step.value_or(usual_step),
+                                .damping = trial.noise ? 0.0 : 4.0 / crossing,
+                                .frames = 1};
+  if (trial.noise) {
+    const double v = noise_velocity(trial);
+    for (const int sign : zigzag(scene.mesh)) scene.initial_velocities.push_back({sign * v, 0.0, 0.0});
+  }
+  return scene;
+}
+
+double unit_of(const Trial& trial, const Scene& scene, const NodalField& golden) {
+  if (trial.noise) return noise_velocity(trial) * scene.description.dynamics.duration;
+  return displacement_unit(scene, golden);
+}
+
+double limit_of(const Trial& trial, double limit) {
+  return trial.noise ? 0.1 : limit;
+}
+
+Trial careful(Trial trial) {
+  if (trial.is_dynamic()) trial.step = careful_step;
+  return trial;
+}
+
+Trial golden_of(Trial trial) {
+  trial.choice = {std::string(golden_method)};
+  trial.description.relaxation.cycles = 0;
+  return careful(std::move(trial));
+}
+
+std::string key_of(const Trial& trial) {
+  const auto or_none = [](const std::optional<double>& value) {
+    return value ? fmt::to_string(*value) : std::string("none");
+  };
+  const auto& [description, choice, aspect, skew, step, noise] = trial;
+  return fmt::format("{} {} kappa {} {} aspect {} skew {} step {} noise {} cycles {} tolerance {} at most {}",
+                     case_hash(description), choice.method, or_none(choice.kappa), name_of(choice.precision),
+                     aspect, skew, or_none(step), or_none(noise), description.relaxation.cycles,
+                     description.relaxation.tolerance, description.relaxation.max_steps);
+}
+
+}  // namespace sandglass
