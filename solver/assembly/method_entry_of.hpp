@@ -17,13 +17,13 @@ std::optional<double> auto_kappa_of(const AnyLaw& any_law, KappaModulus modulus)
   }
 }
 
-/// A law to count: every elastic law as one type, so that the kernels are not compiled anew for each.
+/// A law to count: every elastic law behind calls, so that the kernels are not compiled anew for each.
 template <class Law>
 auto counted_law(const Law& law) {
   if constexpr (law_remembers<Law>) {
     return kernel_law(law);
   } else {
-    return AnyElasticLaw<ElasticLaws>(law);
+    return CalledLaw(law);
   }
 }
 

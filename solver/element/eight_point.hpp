@@ -6,7 +6,7 @@
 #include "element/hourglass_none.hpp"
 #include "element/one_point.hpp"
 #include "element/point_bound.hpp"
-#include "material/memory.hpp"
+#include "material/point_stress.hpp"
 
 namespace sandglass {
 
@@ -102,12 +102,13 @@ struct EightPoint {
                         const NoControl::Element<T>& /*control*/, NoHistory<T>& /*history*/, const Law& law) {
     const auto dilatation = Pressure::dilatations(now.J_minus_one, element);
     std::array<Tensor<T>, 8> flux;  // w P J^-T, the stress that the parent gradient carries
-    for (std::size_t q = 0; q < 8; ++q) {
-      const VolumeChange<T> change{now.J_minus_one[q], now.inverse_root[q]};
-      const T p = law.pressure(dilatation[q]);
-      flux[q] = at_point(law, q).weighted_piola(element.weight[q], now.H[q], change, p) *
-                transpose(element.inverse_jacobian[q]);
-    }
+    const auto load = [&](std::size_t q) {
+      return PointLoad<T>{
+          element.weight[q], {now.J_minus_one[q], now.inverse_root[q]}, law.pressure(dilatation[q])};
+    };
+    for_each_stress(law, now.H, load, [&](std::size_t q, const Tensor<T>& VP) {
+      flux[q] = VP * transpose(element.inverse_jacobian[q]);
+    });
     return parent_divergence(flux);
   }
 

@@ -4,7 +4,7 @@
 
 #include "element/one_point.hpp"
 #include "element/point_bound.hpp"
-#include "material/memory.hpp"
+#include "material/point_stress.hpp"
 
 namespace sandglass {
 
@@ -64,9 +64,12 @@ struct FourPoint {
     const T p = law.pressure(mean_dilatation(now.change));
     const T quarter = T(0.25) * element.V;
     std::array<Tensor<T>, 4> P;  // times the reference volume of a point
-    for (std::size_t q = 0; q < 4; ++q) {
-      P[q] = at_point(law, q).weighted_piola(quarter, now.H[q], now.change[q], p);
-    }
+    for_each_stress(
+        law, now.H,
+        [&](std::size_t q) {
+          return PointLoad<T>{quarter, now.change[q], p};
+        },
+        [&](std::size_t q, const Tensor<T>& VP) { P[q] = VP; });
     // The transpose of `point_gradients`.
     const Tensor<T> lower = P[0] + P[1], upper = P[2] + P[3];
     const Tensor<T> x = P[1] - P[0], y = P[2] - P[3];

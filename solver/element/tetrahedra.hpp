@@ -6,6 +6,7 @@
 #include "element/hourglass_none.hpp"
 #include "element/one_point.hpp"
 #include "element/tetrahedron_pressure.hpp"
+#include "material/point_stress.hpp"
 
 namespace sandglass {
 
@@ -81,11 +82,12 @@ struct Tetrahedra {
                         const NoControl::Element<T>& /*control*/, NoHistory<T>& /*history*/, const Law& law) {
     const TetrahedronValues<T> p = Pressure::pressures(now.J_minus_one, now.around, law);
     TetrahedronTensors<T> flux;  // w P J^-T, the stress that the parent gradient carries
-    for (std::size_t e = 0; e < tetrahedron_count; ++e) {
-      const VolumeChange<T> change{now.J_minus_one[e], now.inverse_root[e]};
-      flux[e] = at_point(law, e).weighted_piola(element.weight[e], now.H[e], change, p[e]) *
-                transpose(element.inverse_jacobian[e]);
-    }
+    const auto load = [&](std::size_t e) {
+      return PointLoad<T>{element.weight[e], {now.J_minus_one[e], now.inverse_root[e]}, p[e]};
+    };
+    for_each_stress(law, now.H, load, [&](std::size_t e, const Tensor<T>& VP) {
+      flux[e] = VP * transpose(element.inverse_jacobian[e]);
+    });
     return parent_divergence(flux);
   }
 

@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "material/point_load.hpp"
+#include "material/quadratic_volume.hpp"
+
 /// Laws that remember. Such a law has a `Memory<T>`, what it keeps at each integration point beside the
 /// deformation, and two steps towards a law that elements run like an elastic one: `at_step(dt)`, the law for
 /// a step of time, and that one's `recalling(memory)`, the law at a point. The functions here take any law
@@ -61,13 +64,29 @@ constexpr auto at_step(const Law& law, double seconds) {
 
 /// A law at a step with the memories of an element of several points.
 template <class LawAtStep, class Memories>
-class RecallingLaw : public LawAtStep::Elastic {
+class RecallingLaw : public QuadraticVolume<RecallingLaw<LawAtStep, Memories>> {
+  static constexpr std::size_t points = std::tuple_size_v<decltype(Memories::point)>;
+
  public:
-  RecallingLaw(const LawAtStep& law, Memories& memories)
-      : LawAtStep::Elastic(law.elastic()), law_(law), memories_(memories) {}
+  RecallingLaw(const LawAtStep& law, Memories& memories) : law_(law), memories_(memories) {}
+
+  double shear_modulus() const { return law_.elastic().shear_modulus(); }
+  double bulk_modulus() const { return law_.elastic().bulk_modulus(); }
 
   /// The law at integration point q.
   auto at_point(std::size_t q) const { return law_.recalling(memories_.point[q]); }
+
+  /// V P (Pa m^3) at all points, where the elastic law takes them in one call.
+  template <class T>
+  requires TakesAllPoints<typename LawAtStep::Elastic, T>
+  void weighted_piola(std::size_t count, const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP) const {
+    std::array<PointLoad<T>, points> alone;  // the isochoric stress of the elastic law, Pa
+    for (std::size_t q = 0; q < points; ++q) alone[q] = {T(1), at[q].change, T(0)};
+    law_.elastic().weighted_piola(count, alone.data(), H, VP);
+    for (std::size_t q = 0; q < points; ++q) {
+      VP[q] = at_point(q).relaxed_piola(VP[q], at[q].V, H[q], at[q].change, at[q].p);
+    }
+  }
 
  private:
   const LawAtStep& law_;

@@ -32,7 +32,9 @@ template <class Law, class T>
 TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one, const T& p,
                               const T& bulk) {
   const T J = T(1) + J_minus_one;
-  if constexpr (requires { law.tangent_bound(H); }) {
+  if constexpr (requires { law.tangent_bound(H, J_minus_one, p, bulk); }) {
+    return law.tangent_bound(H, J_minus_one, p, bulk);
+  } else if constexpr (requires { law.tangent_bound(H); }) {
     return law.tangent_bound(H) +
            volumetric_tangent_bound(J, p - law.pressure(J_minus_one), bulk - law.bulk_tangent(J_minus_one));
   } else {
@@ -45,6 +47,26 @@ template <class Law, class T>
 TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H) {
   const T J_minus_one = jacobian_minus_one(H);
   return tangent_bound(law, H, J_minus_one, law.pressure(J_minus_one), law.bulk_tangent(J_minus_one));
+}
+
+/// The bound of a law whose isochoric part has relaxed to an unknown share of it. Where a law knows a bound
+/// of the whole alone, what answers is something between the whole and its volumetric part, and where the
+/// isochoric part softens, the volumetric part is the stiffer.
+template <class Law, class T>
+TangentBound<T> relaxing_tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one, const T& p,
+                                       const T& bulk) {
+  if constexpr (requires { law.relaxing_tangent_bound(H, J_minus_one, p, bulk); }) {
+    return law.relaxing_tangent_bound(H, J_minus_one, p, bulk);
+  } else if constexpr (requires { law.tangent_bound(H); }) {
+    const T J = T(1) + J_minus_one;
+    const T own_p = law.pressure(J_minus_one), own_bulk = law.bulk_tangent(J_minus_one);
+    const TangentBound<T> whole = law.tangent_bound(H);
+    const TangentBound<T> volume = volumetric_tangent_bound(J, own_p, own_bulk);
+    return TangentBound<T>{max(whole.volumetric, volume.volumetric), max(whole.gradient, volume.gradient)} +
+           volumetric_tangent_bound(J, p - own_p, bulk - own_bulk);
+  } else {
+    return tangent_bound(law, H, J_minus_one, p, bulk);
+  }
 }
 
 /// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): the largest eigenvalue per

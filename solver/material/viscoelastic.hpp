@@ -9,6 +9,7 @@
 #include "base/joined_text.hpp"
 #include "base/parameter.hpp"
 #include "material/memory.hpp"
+#include "material/quadratic_volume.hpp"
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 #include "math/symmetric.hpp"
@@ -58,16 +59,27 @@ struct RelaxationMemory {
 /// A viscoelastic law at one point: it answers like an elastic law, and what it is told goes into the memory.
 /// `Memory` is const where energies and bounds are asked for.
 template <class Law, class Memory>
-class ViscoelasticPoint : public Law {
+class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>> {
  public:
+  static constexpr bool splits_volume = Law::splits_volume;
+
   ViscoelasticPoint(const Law& elastic, const std::array<RelaxationStep, 2>& terms, Memory& memory)
-      : Law(elastic), terms_(terms), memory_(memory) {}
+      : elastic_(elastic), terms_(terms), memory_(memory) {}
+
+  double shear_modulus() const { return elastic_.shear_modulus(); }
+  double bulk_modulus() const { return elastic_.bulk_modulus(); }
 
   /// V P as of an elastic law, and one step in time: P = F (S_iso - sum_i Q_i) + p cof F.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
+    return relaxed_piola(elastic_.weighted_piola(T(1), H, change, T(0)), V, H, change, p);
+  }
+
+  /// The same from the elastic law's isochoric stress P (Pa).
+  template <class T>
+  Tensor<T> relaxed_piola(const Tensor<T>& P, const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+                          const T& p) const {
     const Tensor<T> cof_F = deformation_cofactor(H);
-    const Tensor<T> P = elastic().weighted_piola(T(1), H, change, T(0));
     const Tensor<T> Q = relax(P, cof_F, change);
     const Tensor<T> HQ = H * Q;
     const T Vp = V * p;
@@ -86,17 +98,6 @@ class ViscoelasticPoint : public Law {
     return VP + VP * transpose(H);
   }
 
-  template <class T>
-  Tensor<T> piola(const Tensor<T>& H) const {
-    const VolumeChange<T> change = volume_change(H);
-    return weighted_piola(T(1), H, change, elastic().pressure(change.J_minus_one));
-  }
-
-  template <class T>
-  Tensor<T> isochoric_piola(const Tensor<T>& H) const {
-    return weighted_piola(T(1), H, volume_change(H), T(0));
-  }
-
   /// Stored isochoric energy (J/m^3) at the strain that the memory is of: that of the spring that stays, and
   /// of the springs of the relaxing parts, whose stresses are h_i = g_i S - Q_i:
   ///   W = g_inf W_iso + sum_i h_i : h_i / (4 g_i mu) * W_iso / (S : S / (4 mu)).
@@ -105,9 +106,9 @@ class ViscoelasticPoint : public Law {
   /// small strains; in between, at large strains, the model has no potential in closed form.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
-    const T W = elastic().isochoric_energy(H);
-    const T tiny(1e-30 * elastic().shear_modulus());  // so that rest is 1, not 0/0
-    const T quarter(0.25 / elastic().shear_modulus());
+    const T W = elastic_.isochoric_energy(H);
+    const T tiny(1e-30 * elastic_.shear_modulus());  // so that rest is 1, not 0/0
+    const T quarter(0.25 / elastic_.shear_modulus());
     const T compliance = quarter * (W + tiny) / (quarter * norm_square(memory_.S) + tiny);
     T energy = T(remaining_share()) * W;
     for (std::size_t i = 0; i < 2; ++i) {
@@ -116,39 +117,16 @@ class ViscoelasticPoint : public Law {
     return energy;
   }
 
-  template <class T>
-  T energy(const Tensor<T>& H) const {
-    return isochoric_energy(H) + elastic().volumetric_energy(jacobian_minus_one(H));
-  }
-
   /// The elastic law's bound and that of the stress that stays behind when the strain changes. A further step
   /// answers with (1 - sum_i follow_i) S + R, R = -sum_i (b Q_i + (b - a) h_i), a = exp(-x), b = (1 - a) / x,
   /// x = dt/tau_i. The first part is softer than the elastic law; the second adds (F R F^T) : (L^T L) to the
   /// second variation, where max(|Q_i|, |h_i|) bounds each part for any step because b + (b - a) <= 1.
   template <class T>
-  TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
-    return elastic().isochoric_tangent_bound(H) + memory_bound(H);
-  }
-
-  /// The same for a law that knows a bound of the whole, W_iso + U. What answers is a share of W_iso and all
-  /// of U, something between the whole and U alone; where W_iso softens, U alone is the stiffer.
-  template <class T>
-  TangentBound<T> tangent_bound(const Tensor<T>& H) const requires requires(const Law& law) {
-    law.tangent_bound(H);
-  }
-  {
-    const T J_minus_one = jacobian_minus_one(H);
-    const TangentBound<T> whole = elastic().tangent_bound(H);
-    const TangentBound<T> volume = volumetric_tangent_bound(
-        T(1) + J_minus_one, elastic().pressure(J_minus_one), elastic().bulk_tangent(J_minus_one));
-    const TangentBound<T> either{max(whole.volumetric, volume.volumetric),
-                                 max(whole.gradient, volume.gradient)};
-    return either + memory_bound(H);
+  TangentBound<T> tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk) const {
+    return relaxing_tangent_bound(elastic_, H, J_minus_one, p, bulk) + memory_bound(H);
   }
 
  private:
-  const Law& elastic() const { return *this; }
-
   template <class T>
   TangentBound<T> memory_bound(const Tensor<T>& H) const {
     TangentBound<T> bound{T(0), T(0)};
@@ -193,6 +171,7 @@ class ViscoelasticPoint : public Law {
     return full(sum);
   }
 
+  const Law& elastic_;
   const std::array<RelaxationStep, 2>& terms_;
   Memory& memory_;
 };

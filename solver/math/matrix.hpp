@@ -44,21 +44,27 @@ constexpr Tensor<T> identity() {
   return {{T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1)}};
 }
 
+// Operands are taken by reference and results filled entry by entry: for a copy of packs GCC calls memcpy.
+
 template <class T, int R, int C>
-constexpr Matrix<T, R, C> operator+(Matrix<T, R, C> a, const Matrix<T, R, C>& b) {
-  return a += b;
+constexpr Matrix<T, R, C> operator+(const Matrix<T, R, C>& a, const Matrix<T, R, C>& b) {
+  Matrix<T, R, C> sum;
+  for (std::size_t n = 0; n < sum.entries.size(); ++n) sum.entries[n] = a.entries[n] + b.entries[n];
+  return sum;
 }
 
 template <class T, int R, int C>
-constexpr Matrix<T, R, C> operator-(Matrix<T, R, C> a, const Matrix<T, R, C>& b) {
-  for (std::size_t n = 0; n < a.entries.size(); ++n) a.entries[n] = a.entries[n] - b.entries[n];
-  return a;
+constexpr Matrix<T, R, C> operator-(const Matrix<T, R, C>& a, const Matrix<T, R, C>& b) {
+  Matrix<T, R, C> difference;
+  for (std::size_t n = 0; n < a.entries.size(); ++n) difference.entries[n] = a.entries[n] - b.entries[n];
+  return difference;
 }
 
 template <class T, int R, int C>
-constexpr Matrix<T, R, C> operator*(const T& s, Matrix<T, R, C> a) {
-  for (auto& entry : a.entries) entry = s * entry;
-  return a;
+constexpr Matrix<T, R, C> operator*(const T& s, const Matrix<T, R, C>& a) {
+  Matrix<T, R, C> product;
+  for (std::size_t n = 0; n < a.entries.size(); ++n) product.entries[n] = s * a.entries[n];
+  return product;
 }
 
 template <class T, int R, int N, int C>
@@ -106,10 +112,13 @@ constexpr T trace(const Tensor<T>& a) {
 
 /// The part of a tensor without trace, a - tr(a)/3 I.
 template <class T>
-constexpr Tensor<T> deviator(Tensor<T> a) {
+constexpr Tensor<T> deviator(const Tensor<T>& a) {
   const T third = trace(a) * T(1.0 / 3.0);
-  for (int i = 0; i < 3; ++i) a(i, i) = a(i, i) - third;
-  return a;
+  Tensor<T> d;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) d(i, j) = i == j ? a(i, i) - third : a(i, j);
+  }
+  return d;
 }
 
 /// The cofactor matrix, det(a) a^-T, without a division.
