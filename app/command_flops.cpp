@@ -38,7 +38,7 @@ std::vector<Row> count_methods() {
       // Three columns for each handle, a product and a sum with each for every component of a node.
       add("update", "node", {.add = 9, .mul = 9}, 9 * sizeof(double));
     } else {
-      const OperationCount count = method.operations(Law{});
+      const OperationCount count = method.operations(kernel_law(Law{}));
       add("kernel", "gradient", count.gradient);
       add("kernel", "law", count.law);
       add("kernel", "force", count.force);
@@ -55,7 +55,7 @@ std::vector<Row> count_laws() {
   const MethodEntry& plain = method_named("tl-none");
   std::vector<Row> rows;
   for_each_type(Laws{}, [&]<class Law>() {
-    rows.push_back({plain.name, Law::name, "kernel", "law", plain.operations(Law{}).law});
+    rows.push_back({plain.name, Law::name, "kernel", "law", plain.operations(kernel_law(Law{})).law});
   });
   return rows;
 }

@@ -298,7 +298,7 @@ TEST(UpdatedLagrangian, agrees_with_total_lagrangian_to_first_order_in_strain) {
 /// the current geometry scales the stiffness of the modes by about the square of a stretch.
 TEST(UpdatedLagrangian, differs_less_than_kappa_by_a_quarter) {
   const Scene scene = bent_cantilever(0.2);
-  const double kappa = *method_named("tl-perturbation").auto_kappa(law, KappaModulus::p_wave);
+  const double kappa = *method_named("tl-perturbation").auto_kappa(CalledLaw(law), KappaModulus::p_wave);
   const NodalField total = relaxed(scene, method("tl-perturbation", kappa));
   const NodalField updated = relaxed(scene, method("ul-perturbation", kappa));
   const double spread = largest_distance(relaxed(scene, method("tl-perturbation", 0.75 * kappa)),

@@ -11,18 +11,18 @@ namespace detail {
 
 /// Clears the rows that a chunk is the first to meet.
 template <class Real>
-void clear_rows_of(const Layout::Chunk& chunk, Rows<Real>& rows) {
-  std::fill(rows.data() + chunk.first_row, rows.data() + chunk.last_row, Row<Real>{});
+void clear_rows_of(const Layout::Chunk& chunk, Real* rows) {
+  std::fill(rows + place_of_row(chunk.first_row), rows + place_of_row(chunk.last_row), Real(0));
 }
 
 }  // namespace detail
 
-/// Clears the rows and adds to them what add(c) adds, chunk by chunk. Each thread takes a run of slabs and
-/// goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of even number comes before its neighbour,
-/// as it does for any number of threads, and finds what it needs still in the cache. The last slab of a run
-/// waits for the thread that has the next one.
+/// Clears the rows, four numbers each, and adds to them what add(c) adds, chunk by chunk. Each thread takes a
+/// run of slabs and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of even number comes before
+/// its neighbour, as it does for any number of threads, and finds what it needs still in the cache. The last
+/// slab of a run waits for the thread that has the next one.
 template <class Real, class Add>
-void sum_over_chunks(const Layout& layout, int threads, Rows<Real>& rows, const Add& add) {
+void sum_over_chunks(const Layout& layout, int threads, Real* rows, const Add& add) {
   const std::size_t count = layout.chunks.size(), pairs = (count + 1) / 2;
   const std::size_t runs = std::min(pairs, static_cast<std::size_t>(threads));
   const auto first_pair = [=](std::size_t run) { return pairs * run / runs; };

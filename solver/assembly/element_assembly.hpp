@@ -1,292 +1,293 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
-#include <span>
-#include <vector>
 
-#include "assembly/chunk_sum.hpp"
-#include "assembly/element_block.hpp"
-#include "assembly/face_gather.hpp"
-#include "assembly/internal_force.hpp"
-#include "assembly/prefetch.hpp"
-#include "element/element_motion.hpp"
+#include "assembly/levelled_elements.hpp"
 #include "material/memory.hpp"
-#include "math/lanes.hpp"
 
 namespace sandglass {
 
-/// All elements of one formulation, their constants computed once, in blocks of as many elements as `Number`
-/// computes at a time: a pack for speed, a plain number for comparison. The loop runs along the strips of the
-/// layout: a face's nodes are gathered once, their modes serve the elements on both sides, and the forces of
-/// both leave together.
-template <class Kernel, class Law, class Number>
-class ElementAssembly final : public InternalForce<typename Lanes<Number>::Scalar> {
-  static constexpr int width = Lanes<Number>::width;
-  using Real = typename Lanes<Number>::Scalar;
-  using ElementBlock = typename Kernel::template Element<Number>;
-  using HistoryBlock = typename Kernel::template History<Number>;
+/// The elements of a mesh with a law: all that does not run in every step. Laws are called here, so that one
+/// class serves all that remember nothing, and another those that relax.
+template <class Levels, class Law, class Number>
+class ElementAssembly;
+
+template <class... Methods, class Law, class Number>
+class ElementAssembly<TypeList<Methods...>, Law, Number>
+    : public LevelledElements<TypeList<Methods...>, Number> {
+  using Base = LevelledElements<TypeList<Methods...>, Number>;
+
+ protected:
+  using Base::layout_, Base::width, Base::top;
+  using typename Base::Real;
+  template <class Method>
+  using Kernel = FormulationOf<Method, Law>;
+
+  static_assert(!Base::adapts || !law_remembers<Law>,
+                "what is remembered at one point says nothing of eight");
+  static constexpr bool remembers = (Kernel<Methods>::remembers || ...);
+
+  template <class Method>
+  using HistoryBlock = typename Kernel<Method>::template History<Number>;
+  using OnlyHistory = HistoryBlock<std::tuple_element_t<0, std::tuple<Methods...>>>;
+  static constexpr std::size_t history_numbers = remembers ? sizeof(OnlyHistory) / sizeof(Real) : 0;
 
  public:
-  ElementAssembly(const Mesh& mesh, const Law& law, const HourglassSettings& settings, int threads)
-      : layout_(make_layout(mesh, width)), law_(law), threads_(threads) {
-    blocks_.resize(layout_.levels());
-    for (const auto& group : layout_.groups) {
-      for (std::size_t k = 0; k < group.levels; ++k) {
-        blocks_[group.first_level + k] = element_block<Kernel, Number>(mesh, layout_, layout_.node_of_row,
-                                                                       group.first_face + k, law, settings);
-      }
-    }
-    streams_ = blocks_.size() * (sizeof(ElementBlock) + sizeof(HistoryBlock)) > cached_bytes;
-    if constexpr (Kernel::needs_coordinates) {
-      coordinates_ = centred_coordinates<Real>(mesh.points, layout_);
-    }
-  }
-
-  const Layout& layout() const override { return layout_; }
+  ElementAssembly(const Mesh& mesh, const CalledLaw& elastic, const Law& law,
+                  const HourglassSettings& settings, int threads)
+      : Base(mesh, elastic, settings, threads), law_(law) {}
 
   State<Real> rest() const override {
-    State<Real> state{Rows<Real>(layout_.rows()), Rows<Real>(layout_.rows()), {}, {}};
-    if constexpr (Kernel::averages_over_nodes) state.volumes.resize(layout_.rows());
-    if constexpr (Kernel::remembers) state.history.resize(blocks_.size() * history_numbers);
+    State<Real> state = Base::rest();
+    state.history.resize(history_numbers * layout_->levels() +
+                         (Base::averages_over_nodes ? 4 * layout_->rows() : 0));
     return state;
-  }
-
-  bool needs_increment() const override { return Kernel::needs_increment; }
-
-  void evaluate(State<Real>& state, Rows<Real>& force) const override {
-    if constexpr (Kernel::averages_over_nodes) sum_volumes(state.u, state.volumes);
-    sum_over_chunks(layout_, threads_, force, [&](std::size_t c) { add_chunk(c, state, numbers_of(force)); });
   }
 
   StrainEnergies energies(const State<Real>& state) const override {
     StrainEnergies sum;
     const auto law = at_step(law_, state.step);
-    for_each_level(state, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law);
-      for (int lane = 0; lane < width; ++lane) {
-        if (element_at(level, lane) < 0) continue;
+    this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, std::size_t block,
+                                                  const auto& for_each_lane) {
+      const auto energy = Kernel<Method>::energy(motion, element, history<Method>(state, block), law);
+      for_each_lane([&](std::size_t /*e*/, int lane) {
         sum.strain += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
         sum.hourglass += static_cast<double>(Lanes<Number>::get(energy.hourglass, lane));
-      }
+      });
     });
     return sum;
   }
 
   void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const override {
     const auto law = at_step(law_, state.step);
-    per_element(state, densities, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      const auto energy = Kernel::energy(motion, blocks_[level], history(state, level), law);
-      return energy.hourglass / Kernel::volume(motion, blocks_[level]);
-    });
-  }
-
-  void jacobians(const State<Real>& state, std::span<double> jacobians) const override {
-    per_element(state, jacobians, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      return Kernel::mean_jacobian(motion, blocks_[level]);
-    });
-  }
-
-  void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const override {
-    per_element(state, jacobians, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      return Kernel::smallest_jacobian(motion, blocks_[level]);
-    });
+    this->per_element(state, densities,
+                      [&]<class Method>(const auto& motion, const auto& element, std::size_t block) {
+                        using Kernel = Kernel<Method>;
+                        return Kernel::energy(motion, element, history<Method>(state, block), law).hourglass /
+                               Kernel::volume(motion, element);
+                      });
   }
 
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
     const auto law = at_step(law_, state.step);
-    per_element(state, bounds, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      return Kernel::stiffness_bound(motion, blocks_[level], history(state, level), law);
+    this->per_element(
+        state, bounds, [&]<class Method>(const auto& motion, const auto& element, std::size_t block) {
+          return Kernel<Method>::stiffness_bound(motion, element, history<Method>(state, block), law);
+        });
+  }
+
+  Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
+                   double demoting_length) const override {
+    Adaptation changes;
+    if constexpr (Base::adapts) {
+      const std::vector<std::size_t> before = Base::plan_of(state).levels;
+      std::vector<Defects> defects(before.size());
+      in_parallel(layout_->chunks.size(), this->threads_,
+                  [&](std::size_t c) { measure_defects(layout_->chunks[c], state.u, mobility, defects); });
+      std::vector<std::size_t> wanted(before.size());
+      for (std::size_t e = 0; e < wanted.size(); ++e) {
+        const std::size_t needed = cheapest(defects[e], length), kept = cheapest(defects[e], demoting_length);
+        wanted[e] = needed > before[e]      ? needed
+                    : demoting_length > 0.0 ? std::min(kept, before[e])
+                                            : before[e];
+      }
+      for (const auto& elements : this->elements_of_chunks()) fill_lanes(elements, defects, wanted);
+      for (std::size_t e = 0; e < wanted.size(); ++e) {
+        if (wanted[e] > before[e]) ++changes.promoted;
+        if (wanted[e] < before[e]) ++changes.demoted;
+      }
+      if (changes.promoted + changes.demoted > 0) this->regroup(state, std::move(wanted));
+    }
+    return changes;
+  }
+
+ protected:
+  template <class Method>
+  HistoryBlock<Method> history(const State<Real>& state, std::size_t block) const {
+    HistoryBlock<Method> remembered;
+    if constexpr (remembers) {
+      std::memcpy(&remembered, state.history.data() + block * history_numbers, sizeof remembered);
+    }
+    return remembered;
+  }
+
+  template <class Method>
+  void keep_history(const HistoryBlock<Method>& remembered, State<Real>& state, std::size_t block) const {
+    if constexpr (remembers) {
+      std::memcpy(state.history.data() + block * history_numbers, &remembered, sizeof remembered);
+    }
+  }
+
+  /// Where the volumes around nodes stand, of elements that average over nodes.
+  Real* volumes_of(State<Real>& state) const {
+    return state.history.data() + history_numbers * layout_->levels();
+  }
+
+  Law law_;
+
+ private:
+  /// What each level but the highest lacks of it, as a displacement (m); see `adapt`.
+  using Defects = std::array<double, top>;
+
+  /// The lowest level whose defect is no longer than `length`.
+  static std::size_t cheapest(const Defects& defects, double length) {
+    std::size_t level = 0;
+    while (level < top && !(defects[level] <= length)) ++level;
+    return level;
+  }
+
+  /// Lanes of a chunk that a level leaves empty are computed with the others: the elements of the level below
+  /// that come nearest to needing it take them. As many lanes as packs have, whatever `Number` is, so that
+  /// the levels are the same for all.
+  static void fill_lanes(const std::vector<int>& elements, const std::vector<Defects>& defects,
+                         std::vector<std::size_t>& wanted) {
+    constexpr std::size_t lanes = Lanes<Pack<Real>>::width;
+    for (std::size_t level = top; level > 0; --level) {
+      std::vector<std::size_t> below;
+      std::size_t at_level = 0;
+      for (const int number : elements) {
+        const auto e = static_cast<std::size_t>(number);
+        if (wanted[e] == level) ++at_level;
+        if (wanted[e] + 1 == level) below.push_back(e);
+      }
+      const std::size_t empty = std::min((lanes - at_level % lanes) % lanes, below.size());
+      std::partial_sort(below.begin(), below.begin() + static_cast<std::ptrdiff_t>(empty), below.end(),
+                        [&](std::size_t a, std::size_t b) {
+                          return std::pair(-defects[a][level - 1], a) < std::pair(-defects[b][level - 1], b);
+                        });
+      for (std::size_t k = 0; k < empty; ++k) wanted[below[k]] = level;
+    }
+  }
+
+  /// Sets the defects of the elements of a chunk. Constants of all levels are computed anew from the
+  /// coordinates: few are at hand.
+  void measure_defects(const Layout::Chunk& chunk, const Rows<Real>& u, const Rows<Real>& mobility,
+                       std::vector<Defects>& defects) const {
+    for (std::size_t g = chunk.first; g < chunk.last; ++g) {
+      const auto& group = layout_->groups[g];
+      for (std::size_t k = 0; k < group.levels; ++k) {
+        const auto squares = squared_defects(u, mobility, group.first_face + k);
+        for (int lane = 0; lane < width; ++lane) {
+          const int e = layout_->elements[(group.first_level + k) * width + static_cast<std::size_t>(lane)];
+          if (e < 0) continue;
+          for (std::size_t level = 0; level < top; ++level) {
+            defects[static_cast<std::size_t>(e)][level] =
+                std::sqrt(static_cast<double>(Lanes<Number>::get(squares[level], lane)));
+          }
+        }
+      }
+    }
+  }
+
+  /// Squares (m^2) of the defects of the elements between a face of the layout and the next.
+  [[gnu::flatten]] std::array<Number, top> squared_defects(const Rows<Real>& u, const Rows<Real>& mobility,
+                                                           std::size_t face) const {
+    const auto modes = [&](const Rows<Real>& rows) {
+      return modes_between(gather_face_modes<Number>(rows, *layout_, face),
+                           gather_face_modes<Number>(rows, *layout_, face + 1));
+    };
+    ElementMotion<Number> motion;
+    motion.u = modes(u);
+    const Modes<Number> x = modes(this->coordinates_);
+    const NodalVectors<Number> mobilities =
+        nodes_of(gather_face_vectors<Number>(mobility, *layout_, face),
+                 gather_face_vectors<Number>(mobility, *layout_, face + 1));
+    const std::array<Modes<Number>, top + 1> forces{force_at<Kernel<Methods>>(motion, x)...};
+    std::array<Number, top> squares;
+    for (std::size_t level = 0; level < top; ++level) {
+      const NodalVectors<Number> difference = from_modes(forces[level] - forces[top]);
+      squares[level] = Number(Real(0));
+      for (int I = 0; I < 8; ++I) {
+        Number square(Real(0));
+        for (int i = 0; i < 3; ++i) {
+          const Number moved = mobilities(I, i) * difference(I, i);
+          square = square + moved * moved;
+        }
+        squares[level] = max(squares[level], square);
+      }
+    }
+    return squares;
+  }
+
+  template <class Kernel>
+  Modes<Number> force_at(const ElementMotion<Number>& motion, const Modes<Number>& x) const {
+    const auto element = Kernel::template constants<Number>(x, law_, this->settings_);
+    typename Kernel::template History<Number> none;
+    return Kernel::force(Kernel::deformation(motion, element), element, none, law_);
+  }
+};
+
+/// The loop of the time step. `LoopLaw` is the law that it is compiled for: the one of the assembly, or an
+/// elastic law that the compiler sees through.
+template <class Levels, class Law, class LoopLaw, class Number>
+class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
+  using Base = ElementAssembly<Levels, Law, Number>;
+  using typename Base::Faces, typename Base::FaceMotion, typename Base::Real;
+
+ public:
+  ForceLoop(const Mesh& mesh, const CalledLaw& elastic, const Law& law, const LoopLaw& loop_law,
+            const HourglassSettings& settings, int threads)
+      : Base(mesh, elastic, law, settings, threads), loop_law_(loop_law) {}
+
+  void evaluate(State<Real>& state, Rows<Real>& force) const override {
+    const auto& plan = Base::plan_of(state);
+    if constexpr (Base::averages_over_nodes) this->sum_volumes(state, this->volumes_of(state));
+    sum_over_chunks(*this->layout_, this->threads_, numbers_of(force), [&](std::size_t c) {
+      std::apply([&](const auto&... part) { (add_forces(part, state, numbers_of(force)), ...); },
+                 *plan.chunks[c]);
     });
   }
 
  private:
-  using Faces = FaceModes<Number>;
-
-  /// A face's part of an `ElementMotion`.
-  struct FaceMotion {
-    Faces u;
-    Faces increment;
-    Faces X;
-    std::array<Number, 4> dilatation;
-  };
-
-  /// Sets each row of `volumes` to the change of volume around the node and to that volume at rest (m^3), a
-  /// third number unused.
-  void sum_volumes(const Rows<Real>& u, Rows<Real>& volumes) const {
-    sum_over_chunks(layout_, threads_, volumes,
-                    [&](std::size_t c) { add_volumes(c, u, numbers_of(volumes)); });
-  }
-
-  /// Adds those of one chunk, as `add_chunk` does forces.
-  [[gnu::flatten, gnu::aligned(64)]] void add_volumes(std::size_t c, const Rows<Real>& u,
-                                                      Real* volumes) const {
-    const Layout::Chunk chunk = layout_.chunks[c];
-    for (std::size_t g = chunk.first; g < chunk.last; ++g) {
-      const Layout::Group group = layout_.groups[g];
-      Faces lower = gather_rows(u, group.first_face);
-      NodalVolumes<Number> carried{};
-      for (std::size_t k = 0; k < group.levels; ++k) {
-        const Faces upper = gather_rows(u, group.first_face + k + 1);
-        ElementMotion<Number> motion;
-        motion.u = modes_between(lower, upper);
-        const auto own = Kernel::nodal_volumes(motion, blocks_[group.first_level + k]);
-        scatter_volumes(carried, own, group.first_face + k, volumes);
-        carried = own;
-        lower = upper;
-      }
-      scatter_volumes(carried, NodalVolumes<Number>{}, group.first_face + group.levels, volumes);
-    }
-  }
-
-  /// Adds to the rows of a face what the element below and the one above have there.
-  void scatter_volumes(const NodalVolumes<Number>& below, const NodalVolumes<Number>& above, std::size_t face,
-                       Real* volumes) const {
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      scatter_add<Number>({below.change[4 + corner] + above.change[corner],
-                           below.rest[4 + corner] + above.rest[corner], Number(Real(0))},
-                          volumes, layout_.places(face, corner));
-    }
-  }
-
-  std::array<Number, 4> gather_dilatations(const Rows<Real>& volumes, std::size_t face) const {
-    std::array<Number, 4> dilatations;
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      const auto [change, rest, unused] = gather<Number>(numbers_of(volumes), layout_.places(face, corner));
-      dilatations[corner] = change / rest;
-    }
-    return dilatations;
-  }
-
-  /// Adds the forces of one chunk. Without `flatten` the compiler leaves small matrix functions out of line,
+  /// Adds the forces of a part. Without `flatten` the compiler leaves small matrix functions out of line,
   /// which costs a third of the time.
-  [[gnu::flatten, gnu::aligned(64)]] void add_chunk(std::size_t c, State<Real>& state, Real* force) const {
-    const Layout::Chunk chunk = layout_.chunks[c];
-    const auto law = at_step(law_, state.step);  // a copy that no store can alias: moduli are computed once
+  template <class Method>
+  [[gnu::flatten, gnu::aligned(64)]] void add_forces(const typename Base::template Part<Method>& part,
+                                                     State<Real>& state, Real* force) const {
+    using Kernel = typename Base::template Kernel<Method>;
+    const ElementGroups& groups = *part.groups;
+    const auto law =
+        at_step(loop_law_, state.step);  // a copy that no store can alias: moduli are computed once
     const bool timeless = !(state.step < std::numeric_limits<double>::infinity());
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
-    for (std::size_t g = chunk.first; g < chunk.last; ++g) {
-      const Layout::Group group = layout_.groups[g];
-      FaceMotion lower = gather_face(state, state.volumes, group.first_face);
+    const Real* const volumes = this->volumes_of(state);
+    for (std::size_t g = part.first; g < part.last; ++g) {
+      const ElementGroups::Group group = groups.groups[g];
+      FaceMotion lower = this->template gather_face<Method>(groups, state, volumes, group.first_face);
       Faces carried{};
       for (std::size_t k = 0; k < group.levels; ++k) {
-        const std::size_t level = group.first_level + k;
-        const FaceMotion upper = gather_face(state, state.volumes, group.first_face + k + 1);
-        if (streams_) prefetch_level(state, level + levels_ahead);
-        HistoryBlock remembered = history(state, level);
+        const std::size_t block = group.first_level + k;
+        const auto& element = part.blocks[block - part.first_block];
+        const FaceMotion upper =
+            this->template gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
+        if (this->streams_) prefetch_block(part, state, block + levels_ahead);
+        auto remembered = this->template history<Method>(state, block);
         if (timeless) remembered.law = {};  // nothing of it counts, and a trial that failed may have left it
-        const Modes<Number> f =
-            Kernel::force(Kernel::deformation(between(lower, upper, inverse_step), blocks_[level]),
-                          blocks_[level], remembered, law);
-        keep_history(remembered, state, level);
-        scatter_face(carried + lower_face(f), group.first_face + k, force);
+        const Modes<Number> f = Kernel::force(
+            Kernel::deformation(Base::template between<Method>(lower, upper, inverse_step), element), element,
+            remembered, law);
+        this->template keep_history<Method>(remembered, state, block);
+        scatter_face_modes(carried + lower_face(f), force, groups, group.first_face + k);
         carried = upper_face(f);
         lower = upper;
       }
-      scatter_face(carried, group.first_face + group.levels, force);
+      scatter_face_modes(carried, force, groups, group.first_face + group.levels);
     }
   }
 
-  /// Asks for the constants and the history of a level.
-  void prefetch_level(const State<Real>& state, std::size_t level) const {
-    if (level >= blocks_.size()) return;
-    prefetch(blocks_.data() + level, sizeof(ElementBlock));
-    if constexpr (Kernel::remembers) {
-      prefetch(state.history.data() + level * history_numbers, sizeof(HistoryBlock));
+  /// Asks for the constants and the history of a block.
+  template <class Part>
+  void prefetch_block(const Part& part, const State<Real>& state, std::size_t block) const {
+    if (block - part.first_block >= part.blocks.size()) return;
+    prefetch(part.blocks.data() + (block - part.first_block), sizeof(part.blocks[0]));
+    if constexpr (Base::remembers) {
+      prefetch(state.history.data() + block * Base::history_numbers, Base::history_numbers * sizeof(Real));
     }
   }
 
-  Faces gather_rows(const Rows<Real>& rows, std::size_t face) const {
-    return gather_face_modes<Number>(rows, layout_, face);
-  }
-
-  FaceMotion gather_face(const State<Real>& state, const Rows<Real>& volumes, std::size_t face) const {
-    FaceMotion motion;
-    motion.u = gather_rows(state.u, face);
-    if constexpr (Kernel::needs_increment) motion.increment = gather_rows(state.increment, face);
-    if constexpr (Kernel::needs_coordinates) motion.X = gather_rows(coordinates_, face);
-    if constexpr (Kernel::averages_over_nodes) motion.dilatation = gather_dilatations(volumes, face);
-    return motion;
-  }
-
-  static ElementMotion<Number> between(const FaceMotion& lower, const FaceMotion& upper,
-                                       const Number& inverse_step) {
-    ElementMotion<Number> motion;
-    motion.inverse_step = inverse_step;
-    motion.u = modes_between(lower.u, upper.u);
-    if constexpr (Kernel::needs_increment) motion.increment = modes_between(lower.increment, upper.increment);
-    if constexpr (Kernel::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
-    if constexpr (Kernel::averages_over_nodes) {
-      std::copy(lower.dilatation.begin(), lower.dilatation.end(), motion.dilatation.begin());
-      std::copy(upper.dilatation.begin(), upper.dilatation.end(), motion.dilatation.begin() + 4);
-    }
-    return motion;
-  }
-
-  void scatter_face(const Faces& forces, std::size_t face, Real* force) const {
-    scatter_face_modes(forces, force, layout_, face);
-  }
-
-  static constexpr std::size_t history_numbers = sizeof(HistoryBlock) / sizeof(Real);
-
-  HistoryBlock history(const State<Real>& state, std::size_t level) const {
-    HistoryBlock block;
-    if constexpr (Kernel::remembers) {
-      std::memcpy(&block, state.history.data() + level * history_numbers, sizeof block);
-    }
-    return block;
-  }
-
-  void keep_history(const HistoryBlock& block, State<Real>& state, std::size_t level) const {
-    if constexpr (Kernel::remembers) {
-      std::memcpy(state.history.data() + level * history_numbers, &block, sizeof block);
-    }
-  }
-
-  int element_at(std::size_t level, int lane) const {
-    return layout_.elements[level * width + static_cast<std::size_t>(lane)];
-  }
-
-  /// Calls visit(level, motion) for every block.
-  template <class Visit>
-  void for_each_level(const State<Real>& state, const Visit& visit) const {
-    const Number inverse_step(static_cast<Real>(1.0 / state.step));
-    Rows<Real> volumes;
-    if constexpr (Kernel::averages_over_nodes) {
-      volumes.resize(layout_.rows());
-      sum_volumes(state.u, volumes);
-    }
-    for (const auto& group : layout_.groups) {
-      FaceMotion lower = gather_face(state, volumes, group.first_face);
-      for (std::size_t k = 0; k < group.levels; ++k) {
-        const FaceMotion upper = gather_face(state, volumes, group.first_face + k + 1);
-        visit(group.first_level + k, between(lower, upper, inverse_step));
-        lower = upper;
-      }
-    }
-  }
-
-  /// Sets values[e] for every element of the mesh to its lane of evaluate(level, motion).
-  template <class Evaluate>
-  void per_element(const State<Real>& state, std::span<double> values, const Evaluate& evaluate) const {
-    for_each_level(state, [&](std::size_t level, const ElementMotion<Number>& motion) {
-      const Number value = evaluate(level, motion);
-      for (int lane = 0; lane < width; ++lane) {
-        const int e = element_at(level, lane);
-        if (e >= 0)
-          values[static_cast<std::size_t>(e)] = static_cast<double>(Lanes<Number>::get(value, lane));
-      }
-    });
-  }
-
-  Layout layout_;
-  std::vector<ElementBlock> blocks_;
-  Rows<Real> coordinates_;  // only where the kernel needs them
-  Law law_;
-  int threads_;
-  bool streams_ = false;  // constants do not stay in the cache from step to step
+  LoopLaw loop_law_;
 };
 
 }  // namespace sandglass

@@ -30,10 +30,17 @@ void require_sensible(const MethodChoice& choice, const MethodEntry& method) {
 
 }  // namespace
 
-AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice,
                                      double density) {
   const MethodEntry& method = method_named(choice.method);
   require_sensible(choice, method);
+  const KernelLaw law = kernel_law(any_law);
+  if (!method.knows_relaxation && std::holds_alternative<Viscoelastic<CalledLaw>>(law)) {
+    throw InputError(
+        fmt::format("law: '{}' relaxes, which method '{}' takes no notice of; allowed: an elastic law, or "
+                    "another method",
+                    name_of(any_law), method.name));
+  }
   const HourglassSettings settings{choice.kappa, density, choice.kappa_modulus};
   if (choice.kernel == KernelWidth::scalar) {
     return method.assemble_scalar_double(mesh, law, settings, choice.threads);

@@ -21,13 +21,13 @@ struct StrainEnergies {
   double hourglass = 0.0;
 };
 
-/// How an adaptive method's elements stand together at their levels. Only the elements know what is in it.
-class Grouping {
+/// The levels of a method's elements, and how they stand together. Only the elements know what is in it.
+class ElementLevels {
  public:
-  Grouping() = default;
-  Grouping(const Grouping&) = delete;
-  Grouping& operator=(const Grouping&) = delete;
-  virtual ~Grouping() = default;
+  ElementLevels() = default;
+  ElementLevels(const ElementLevels&) = delete;
+  ElementLevels& operator=(const ElementLevels&) = delete;
+  virtual ~ElementLevels() = default;
 };
 
 /// What changed when elements were given new levels.
@@ -42,9 +42,7 @@ struct State {
   Rows<Real> u;               ///< displacements, m
   Rows<Real> increment;       ///< what the last step added to them, m
   std::vector<Real> history;  ///< of the elements; only they know its meaning
-  std::vector<Real> levels;   ///< of each element, 0 the cheapest; empty where a method has but one
-  std::shared_ptr<const Grouping> grouping;  ///< of the elements by their levels
-  Rows<Real> volumes;  ///< scratch of `evaluate`, where elements average over nodes; else empty
+  std::shared_ptr<const ElementLevels> levels;
   double step = std::numeric_limits<double>::infinity();  ///< s, that the increment took; infinite where time
                                                           ///< plays no part
 };
@@ -82,8 +80,11 @@ class InternalForce {
     return {};
   }
 
-  /// Groups the elements by the levels of the state, which may have come from a file.
-  virtual void regroup(State<Real>& /*state*/) const {}
+  /// The level of each element, 0 the cheapest; empty where a method has but one.
+  virtual std::vector<double> levels(const State<Real>& /*state*/) const { return {}; }
+
+  /// Sets them. Throws InputError where one is no level of the method, for they may have come from a file.
+  virtual void set_levels(State<Real>& /*state*/, const std::vector<double>& /*levels*/) const {}
 
   /// Strain and hourglass energy.
   virtual StrainEnergies energies(const State<Real>& state) const = 0;

@@ -14,9 +14,9 @@ namespace sandglass {
 template <class Number>
 using ForceOf = std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>>;
 
-/// Makes the elements of a mesh. Throws InputError when the method takes no notice of the law.
+/// Makes the elements of a mesh with a law that the method knows.
 template <class Number>
-using Assemble = ForceOf<Number>(const Mesh&, const AnyLaw&, const HourglassSettings&, int threads);
+using Assemble = ForceOf<Number>(const Mesh&, const KernelLaw&, const HourglassSettings&, int threads);
 
 /// A method as the program knows it while it runs. `element/methods/` says what it is to the compiler; its
 /// kernels stand behind the functions here, each method's in source files of their own, so that a change of
@@ -31,6 +31,7 @@ struct MethodEntry {
   bool kappa_matters_at_rest = false;  ///< and that changes its answers at rest
   bool is_linear = false;              ///< forces are linear in the displacements, f = K u
   bool is_condensed = false;           ///< answers by condensation instead of steps
+  bool knows_relaxation = true;        ///< takes notice of laws that relax
   std::vector<std::string_view> levels =
       {};  ///< of an adaptive method, methods from the cheapest on; else none
 
@@ -39,14 +40,14 @@ struct MethodEntry {
   Assemble<double>* assemble_scalar_double = nullptr;
 
   /// The number that `auto` stands for; none when the method takes no kappa.
-  std::optional<double> (*auto_kappa)(const AnyLaw&, KappaModulus) = nullptr;
+  std::optional<double> (*auto_kappa)(const CalledLaw&, KappaModulus) = nullptr;
 
   /// Operations of one element and step, counted by running the kernel. They do not depend on the law's
   /// parameters.
-  OperationCount (*operations)(const AnyLaw&) = nullptr;
+  OperationCount (*operations)(const KernelLaw&) = nullptr;
 
   /// What an element reads and writes in a step.
-  Traffic (*traffic)(const AnyLaw&) = nullptr;
+  Traffic (*traffic)(const KernelLaw&) = nullptr;
 
   /// Whether the method chooses the level of each element.
   bool adapts() const { return !levels.empty(); }
@@ -54,7 +55,8 @@ struct MethodEntry {
 
 /// The elements of a mesh with a method, for `MethodEntry`. Defined in `assembly/assemble.hpp`.
 template <class Method, class Number>
-ForceOf<Number> assemble(const Mesh& mesh, const AnyLaw& law, const HourglassSettings& settings, int threads);
+ForceOf<Number> assemble(const Mesh& mesh, const KernelLaw& law, const HourglassSettings& settings,
+                         int threads);
 
 /// The entry of a method. Defined in `assembly/method_entry_of.hpp`.
 template <class Method>

@@ -9,36 +9,32 @@ namespace sandglass {
 namespace detail {
 
 template <class Method>
-std::optional<double> auto_kappa_of(const AnyLaw& any_law, KappaModulus modulus) {
+std::optional<double> auto_kappa_of(const CalledLaw& law, KappaModulus modulus) {
   if constexpr (Method::Hourglass::takes_kappa) {
-    return std::visit([&](const auto& law) { return Method::Hourglass::auto_kappa(law, modulus); }, any_law);
+    return Method::Hourglass::auto_kappa(law, modulus);
   } else {
     return std::nullopt;
   }
 }
 
-/// A law to count: every elastic law behind calls, so that the kernels are not compiled anew for each.
-template <class Law>
-auto counted_law(const Law& law) {
-  if constexpr (law_remembers<Law>) {
-    return kernel_law(law);
-  } else {
-    return CalledLaw(law);
-  }
+/// Calls use(law) with the law as `operations` and `traffic` take it: behind calls, as it relaxes.
+template <class Use>
+auto with_called_law(const KernelLaw& kernel_law, const Use& use) {
+  const auto* relaxing = std::get_if<Viscoelastic<CalledLaw>>(&kernel_law);
+  return relaxing != nullptr ? use(*relaxing) : use(elastic_law(kernel_law));
 }
 
 template <class Method>
-OperationCount operations_of(const AnyLaw& any_law) {
-  return std::visit(
-      [](const auto& law) {
-        return count_operations<typename Method::Kinematics, typename Method::Hourglass>(counted_law(law));
-      },
-      any_law);
+OperationCount operations_of(const KernelLaw& kernel_law) {
+  return with_called_law(kernel_law, [](const auto& law) {
+    return count_operations<typename Method::Kinematics, typename Method::Hourglass>(law);
+  });
 }
 
 template <class Method>
-Traffic traffic_with(const AnyLaw& any_law) {
-  return std::visit([]<class Law>(const Law&) { return traffic_of<FormulationOf<Method, Law>>(); }, any_law);
+Traffic traffic_with(const KernelLaw& kernel_law) {
+  return with_called_law(kernel_law,
+                         []<class Law>(const Law&) { return traffic_of<FormulationOf<Method, Law>>(); });
 }
 
 }  // namespace detail

@@ -22,6 +22,7 @@ MethodEntry method_facts() {
       .kappa_matters_at_rest = kappa_matters_at_rest<Method>,
       .is_linear = is_linear<Method>,
       .is_condensed = is_condensed<Method>,
+      .knows_relaxation = knows_law<Method, Viscoelastic<CalledLaw>>,
       .levels = level_names<Method>()};
 }
 

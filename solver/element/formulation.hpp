@@ -19,16 +19,19 @@ constexpr int integration_points_of() {
   }
 }
 
+/// What is constant in time of an element, whatever its law.
+template <class Kinematics, class Hourglass, class T>
+struct ElementConstants {
+  [[no_unique_address]] typename Kinematics::template Element<T> body;
+  [[no_unique_address]] typename Hourglass::template Element<T> hourglass;
+};
+
 /// An element: kinematics (how stress becomes force), an hourglass control and a material law, bundled.
 /// All functions are templated on the number type T: double, a pack, a counting or a dual number.
 template <class Kinematics, class Hourglass, class Law>
 struct Formulation {
-  /// What is constant in time.
   template <class T>
-  struct Element {
-    [[no_unique_address]] typename Kinematics::template Element<T> body;
-    [[no_unique_address]] typename Hourglass::template Element<T> hourglass;
-  };
+  using Element = ElementConstants<Kinematics, Hourglass, T>;
 
   /// What changes in time beside the displacements; empty for elements whose force follows from them.
   template <class T>

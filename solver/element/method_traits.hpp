@@ -43,6 +43,24 @@ inline constexpr bool is_adaptive = requires {
   typename Method::Levels;
 };
 
+namespace detail {
+
+template <class Method>
+struct LevelsOf {
+  using type = TypeList<Method>;
+};
+template <class Method>
+requires is_adaptive<Method>
+struct LevelsOf<Method> {
+  using type = typename Method::Levels;
+};
+
+}  // namespace detail
+
+/// The levels of a method's elements; of one that does not adapt, itself.
+template <class Method>
+using LevelsOf = typename detail::LevelsOf<Method>::type;
+
 /// The names of an adaptive method's levels, from the cheapest on; none for other methods.
 template <class Method>
 std::vector<std::string_view> level_names() {

@@ -10,22 +10,15 @@ namespace sandglass {
 /// All laws that a case may name.
 using Laws = Concatenated<ElasticLaws, Wrapped<Viscoelastic, ElasticLaws>>;
 
-/// The law that kernels are compiled for: the neo-Hookean one itself, the others behind calls.
-inline const NeoHookean& kernel_law(const NeoHookean& law) {
-  return law;
-}
-template <class Law>
-CalledLaw kernel_law(const Law& law) {
-  return CalledLaw(law);
-}
-template <class Law>
-Viscoelastic<CalledLaw> kernel_law(const Viscoelastic<Law>& law) {
-  return {CalledLaw(static_cast<const Law&>(law)), law.relaxation_1, law.time_1, law.relaxation_2,
-          law.time_2};
-}
-
 /// A law chosen at run time.
 using AnyLaw = VariantOf<Laws>;
+
+/// The laws that kernels are compiled for: the neo-Hookean one, and the others behind calls.
+using KernelLaw = std::variant<NeoHookean, CalledLaw, Viscoelastic<CalledLaw>>;
+KernelLaw kernel_law(const AnyLaw& law);
+
+/// The elastic law, or the instantaneous response of one that relaxes, behind calls.
+CalledLaw elastic_law(const KernelLaw& law);
 
 /// The name of a law chosen at run time.
 inline std::string_view name_of(const AnyLaw& any_law) {

@@ -128,7 +128,7 @@ Frame Body<Real>::frame(double time, NodalField v) const {
               std::move(v),
               std::vector<double>(per_element_.size()),
               std::vector<double>(per_element_.size()),
-              std::vector<double>(state_.levels.begin(), state_.levels.end())};
+              elements_.levels(state_)};
   elements_.jacobians(state_, frame.jacobians);
   elements_.hourglass_energy_densities(state_, frame.hourglass_energy_densities);
   return frame;

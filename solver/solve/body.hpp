@@ -88,8 +88,9 @@ class Body {
     archive("displacement", state_.u);
     archive("increment", state_.increment);
     archive("element history", state_.history);
-    archive("element level", state_.levels);
-    elements_.regroup(state_);
+    std::vector<double> levels = elements_.levels(state_);
+    archive("element level", levels);
+    elements_.set_levels(state_, levels);
     archive("increment step", state_.step);
     archive("free force", force_);
     archive("body reaction", reactions_);

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/distances.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "mesh/distances.hpp"
 #include "mesh/mesh_part.hpp"
 #include "solve/equilibrium.hpp"
 #include "solve/load_levels.hpp"

@@ -25,7 +25,7 @@ std::vector<MethodChoice> choices_of(const MethodEntry& method, const MethodChoi
   }
   choices.push_back(plain);
   if (method.kappa_matters_at_rest) {
-    const double usual = method.auto_kappa(law, plain.kappa_modulus).value();
+    const double usual = method.auto_kappa(elastic_law(kernel_law(law)), plain.kappa_modulus).value();
     for (const double strength : other_strengths) {
       add([&](MethodChoice& choice) { choice.kappa = strength * usual; });
     }

@@ -76,16 +76,17 @@ std::optional<double> golden_to_truth(const Scene& scene, const References& refe
 
 Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
   const MethodEntry& method = method_named(choice.method);
-  const AnyLaw& law = scene.description.law;
-  Verdict verdict{.case_name = scene.description.name,
-                  .method = choice.method,
-                  .kappa = choice.kappa ? choice.kappa : method.auto_kappa(law, choice.kappa_modulus),
-                  .kappa_is_auto = method.takes_kappa && !choice.kappa,
-                  .precision = std::string(name_of(choice.precision)),
-                  .operations = method.operations(law).total.total(),
-                  .family = scene.description.family,
-                  .variants = scene.description.variants,
-                  .published = published_results(scene, references.truth)};
+  const KernelLaw law = kernel_law(scene.description.law);
+  Verdict verdict{
+      .case_name = scene.description.name,
+      .method = choice.method,
+      .kappa = choice.kappa ? choice.kappa : method.auto_kappa(elastic_law(law), choice.kappa_modulus),
+      .kappa_is_auto = method.takes_kappa && !choice.kappa,
+      .precision = std::string(name_of(choice.precision)),
+      .operations = method.operations(law).total.total(),
+      .family = scene.description.family,
+      .variants = scene.description.variants,
+      .published = published_results(scene, references.truth)};
   double energy = 0.0;
   try {
     energy = fill_relaxed(scene, choice, verdict, u);

@@ -1,0 +1,357 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "assembly/chunk_sum.hpp"
+#include "assembly/element_block.hpp"
+#include "assembly/face_gather.hpp"
+#include "assembly/internal_force.hpp"
+#include "assembly/prefetch.hpp"
+#include "base/error.hpp"
+#include "base/type_list.hpp"
+#include "element/method_traits.hpp"
+#include "mesh/node_elements.hpp"
+
+namespace sandglass {
+
+template <class Levels, class Number>
+class LevelledElements;
+
+/// The elements of a mesh, each at one of the levels of its method; a method that does not adapt has one. The
+/// elements of a chunk that share a level stand in groups of their own, in blocks of as many as `Number`
+/// computes at a time, so that loops are those of one kernel and packs are full. What is here knows no law.
+///
+/// Loops run along the strips of a group: a face's nodes are gathered once, their modes serve the elements on
+/// both sides, and the forces of both leave together.
+template <class... Methods, class Number>
+class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<typename Lanes<Number>::Scalar> {
+ protected:
+  static constexpr int width = Lanes<Number>::width;
+  static constexpr std::size_t top = sizeof...(Methods) - 1;
+  using Real = typename Lanes<Number>::Scalar;
+  using Faces = FaceModes<Number>;
+
+  /// A method's elements with the law of their set-up; what is law-free of them does not depend on it.
+  template <class Method>
+  using Kernel = FormulationOf<Method, CalledLaw>;
+
+  static constexpr bool adapts = top > 0;
+  static constexpr bool uses_increment = (Kernel<Methods>::needs_increment || ...);
+  static constexpr bool uses_coordinates = (Kernel<Methods>::needs_coordinates || ...);
+  static constexpr bool averages_over_nodes = (Kernel<Methods>::averages_over_nodes || ...);
+
+  /// The elements of a chunk at one level: groups `first` to `last` - 1, with the constants of their blocks.
+  template <class Method>
+  struct Part {
+    using Element = typename Kernel<Method>::template Element<Number>;
+
+    std::shared_ptr<const ElementGroups> groups;
+    std::size_t first = 0;
+    std::size_t last = 0;
+    std::size_t first_block = 0;  // where the blocks of the first group stand among those of `groups`
+    std::vector<Element> blocks;
+  };
+
+  /// One part for each level.
+  using Parts = std::tuple<Part<Methods>...>;
+
+  /// Chunks are values that never change: plans share those whose elements have the same levels.
+  struct Plan final : ElementLevels {
+    std::vector<std::size_t> levels;  // of each element; empty where there is but one
+    std::vector<std::shared_ptr<const Parts>> chunks;
+  };
+
+ public:
+  LevelledElements(const Mesh& mesh, const CalledLaw& law, const HourglassSettings& settings, int threads)
+      : layout_(std::make_shared<Layout>(
+            make_layout(mesh, width, adapts ? SpareRows::everywhere : SpareRows::where_needed))),
+        setup_law_(law),
+        settings_(settings),
+        threads_(threads) {
+    if constexpr (uses_coordinates || adapts) {
+      coordinates_ = centred_coordinates<Real>(mesh.points, *layout_);
+    }
+    auto plan = std::make_shared<Plan>();
+    if constexpr (adapts) {
+      regrouping_ = std::make_unique<const Regrouping>(mesh, *layout_);
+      plan = plan_at(std::vector<std::size_t>(mesh.cells.size()), nullptr);
+    } else {
+      for (const auto& chunk : layout_->chunks) plan->chunks.push_back(only_part(mesh, chunk));
+    }
+    plan_at_rest_ = std::move(plan);
+    using Cheapest = typename std::tuple_element_t<0, Parts>::Element;
+    streams_ = layout_->levels() * sizeof(Cheapest) > cached_bytes;
+  }
+
+  const Layout& layout() const override { return *layout_; }
+  bool needs_increment() const override { return uses_increment; }
+
+  State<Real> rest() const override {
+    State<Real> state;
+    state.u.resize(layout_->rows());
+    state.increment.resize(layout_->rows());
+    state.levels = plan_at_rest_;
+    return state;
+  }
+
+  std::vector<double> levels(const State<Real>& state) const override {
+    const auto& levels = plan_of(state).levels;
+    return {levels.begin(), levels.end()};
+  }
+
+  void set_levels(State<Real>& state, const std::vector<double>& levels) const override {
+    if constexpr (adapts) {
+      std::vector<std::size_t> wanted;
+      for (const double level : levels) {
+        if (!(level >= 0.0 && level <= static_cast<double>(top)) || level != std::floor(level)) {
+          throw InputError("checkpoint: 'element level' must hold levels of the method");
+        }
+        wanted.push_back(static_cast<std::size_t>(level));
+      }
+      regroup(state, std::move(wanted));
+    }
+  }
+
+  void jacobians(const State<Real>& state, std::span<double> jacobians) const override {
+    per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, std::size_t) {
+      return Kernel<Method>::mean_jacobian(motion, element);
+    });
+  }
+
+  void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const override {
+    per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, std::size_t) {
+      return Kernel<Method>::smallest_jacobian(motion, element);
+    });
+  }
+
+ protected:
+  static const Plan& plan_of(const State<Real>& state) { return static_cast<const Plan&>(*state.levels); }
+
+  /// Gives the elements new levels.
+  void regroup(State<Real>& state, std::vector<std::size_t> levels) const {
+    state.levels = plan_at(std::move(levels), &plan_of(state));
+  }
+
+  const std::vector<std::vector<int>>& elements_of_chunks() const { return regrouping_->elements; }
+
+  /// A face's part of an `ElementMotion`.
+  struct FaceMotion {
+    Faces u;
+    Faces increment;
+    Faces X;
+    std::array<Number, 4> dilatation;
+  };
+
+  template <class Method>
+  FaceMotion gather_face(const ElementGroups& groups, const State<Real>& state, const Real* volumes,
+                         std::size_t face) const {
+    FaceMotion motion;
+    motion.u = gather_face_modes<Number>(state.u, groups, face);
+    if constexpr (Kernel<Method>::needs_increment) {
+      motion.increment = gather_face_modes<Number>(state.increment, groups, face);
+    }
+    if constexpr (Kernel<Method>::needs_coordinates) {
+      motion.X = gather_face_modes<Number>(coordinates_, groups, face);
+    }
+    if constexpr (Kernel<Method>::averages_over_nodes) {
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        const auto [change, rest, unused] = gather<Number>(volumes, groups.places(face, corner));
+        motion.dilatation[corner] = change / rest;
+      }
+    }
+    return motion;
+  }
+
+  template <class Method>
+  static ElementMotion<Number> between(const FaceMotion& lower, const FaceMotion& upper,
+                                       const Number& inverse_step) {
+    ElementMotion<Number> motion;
+    motion.inverse_step = inverse_step;
+    motion.u = modes_between(lower.u, upper.u);
+    if constexpr (Kernel<Method>::needs_increment) {
+      motion.increment = modes_between(lower.increment, upper.increment);
+    }
+    if constexpr (Kernel<Method>::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
+    if constexpr (Kernel<Method>::averages_over_nodes) {
+      std::copy(lower.dilatation.begin(), lower.dilatation.end(), motion.dilatation.begin());
+      std::copy(upper.dilatation.begin(), upper.dilatation.end(), motion.dilatation.begin() + 4);
+    }
+    return motion;
+  }
+
+  /// Sets each row of `volumes`, four numbers, to the change of volume around the node and to that volume at
+  /// rest (m^3).
+  void sum_volumes(const State<Real>& state, Real* volumes) const {
+    const Plan& plan = plan_of(state);
+    sum_over_chunks(*layout_, threads_, volumes, [&](std::size_t c) {
+      std::apply([&](const auto&... part) { (add_volumes(part, state, volumes), ...); }, *plan.chunks[c]);
+    });
+  }
+
+  /// Calls visit.operator()<Method>(motion, element, block, for_each_lane) for every block of elements, with
+  /// its number among the groups that it stands in; for_each_lane calls back with the number of the element
+  /// in each lane that has one.
+  template <class Visit>
+  void for_each_block(const State<Real>& state, const Visit& visit) const {
+    std::vector<Real> volumes;
+    if constexpr (averages_over_nodes) {
+      volumes.resize(4 * layout_->rows());
+      sum_volumes(state, volumes.data());
+    }
+    const Number inverse_step(static_cast<Real>(1.0 / state.step));
+    const auto visit_part = [&]<class Method>(const Part<Method>& part) {
+      for (std::size_t g = part.first; g < part.last; ++g) {
+        const auto group = part.groups->groups[g];
+        FaceMotion lower = gather_face<Method>(*part.groups, state, volumes.data(), group.first_face);
+        for (std::size_t k = 0; k < group.levels; ++k) {
+          const std::size_t block = group.first_level + k;
+          const FaceMotion upper =
+              gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
+          visit.template operator()<Method>(
+              between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block], block,
+              [&](const auto& use) {
+                for (int lane = 0; lane < width; ++lane) {
+                  const int e = part.groups->elements[block * width + static_cast<std::size_t>(lane)];
+                  if (e >= 0) use(static_cast<std::size_t>(e), lane);
+                }
+              });
+          lower = upper;
+        }
+      }
+    };
+    for (const auto& parts : plan_of(state).chunks) {
+      std::apply([&](const auto&... part) { (visit_part(part), ...); }, *parts);
+    }
+  }
+
+  /// Sets values[e] for every element to its lane of evaluate.operator()<Method>(motion, element, block).
+  template <class Evaluate>
+  void per_element(const State<Real>& state, std::span<double> values, const Evaluate& evaluate) const {
+    for_each_block(state, [&]<class Method>(const ElementMotion<Number>& motion, const auto& element,
+                                            std::size_t block, const auto& for_each_lane) {
+      const Number value = evaluate.template operator()<Method>(motion, element, block);
+      for_each_lane(
+          [&](std::size_t e, int lane) { values[e] = static_cast<double>(Lanes<Number>::get(value, lane)); });
+    });
+  }
+
+  std::shared_ptr<const Layout> layout_;  // of all elements
+  CalledLaw setup_law_;
+  HourglassSettings settings_;
+  int threads_;
+  Rows<Real> coordinates_;  // only where kernels need them, or constants of other levels
+  bool streams_ = false;    // constants do not stay in the cache from step to step
+
+ private:
+  /// What it takes to give elements other levels.
+  struct Regrouping {
+    Regrouping(const Mesh& body, const Layout& layout) : mesh(body), neighbours(body) {
+      for (const auto& chunk : layout.chunks) elements.push_back(layout.elements_of(chunk));
+    }
+
+    Mesh mesh;
+    NodeElements neighbours;
+    std::vector<std::vector<int>> elements;  // of each chunk
+  };
+
+  /// All elements of a chunk, in the groups of the layout.
+  std::shared_ptr<const Parts> only_part(const Mesh& mesh, const Layout::Chunk& chunk) const {
+    auto parts = std::make_shared<Parts>();
+    auto& part = std::get<0>(*parts);
+    part.groups = layout_;
+    part.first = chunk.first;
+    part.last = chunk.last;
+    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_level;
+    fill_blocks(part, mesh);
+    return parts;
+  }
+
+  std::shared_ptr<Plan> plan_at(std::vector<std::size_t> levels, const Plan* before) const {
+    auto plan = std::make_shared<Plan>();
+    plan->levels = std::move(levels);
+    for (std::size_t c = 0; c < elements_of_chunks().size(); ++c) {
+      const auto& elements = elements_of_chunks()[c];
+      const bool same = before != nullptr && std::all_of(elements.begin(), elements.end(), [&](int e) {
+                          const auto n = static_cast<std::size_t>(e);
+                          return before->levels[n] == plan->levels[n];
+                        });
+      plan->chunks.push_back(same ? before->chunks[c] : parts_at(c, plan->levels));
+    }
+    return plan;
+  }
+
+  /// The elements of a chunk, grouped by their levels.
+  std::shared_ptr<const Parts> parts_at(std::size_t c, const std::vector<std::size_t>& levels) const {
+    auto parts = std::make_shared<Parts>();
+    std::size_t level = 0;
+    const auto fill = [&](auto& part) {
+      std::vector<int> chosen;
+      std::copy_if(elements_of_chunks()[c].begin(), elements_of_chunks()[c].end(), std::back_inserter(chosen),
+                   [&](int e) { return levels[static_cast<std::size_t>(e)] == level; });
+      part.groups = std::make_shared<ElementGroups>(
+          groups_within(*layout_, layout_->chunks[c], regrouping_->mesh, regrouping_->neighbours, chosen));
+      part.last = part.groups->groups.size();
+      fill_blocks(part, regrouping_->mesh);
+      ++level;
+    };
+    std::apply([&](auto&... part) { (fill(part), ...); }, *parts);
+    return parts;
+  }
+
+  template <class Method>
+  void fill_blocks(Part<Method>& part, const Mesh& mesh) const {
+    for (std::size_t g = part.first; g < part.last; ++g) {
+      const auto& group = part.groups->groups[g];
+      for (std::size_t k = 0; k < group.levels; ++k) {
+        part.blocks.push_back(element_block<Kernel<Method>, Number>(
+            mesh, *part.groups, layout_->node_of_row, group.first_face + k, setup_law_, settings_));
+      }
+    }
+  }
+
+  /// Adds the volumes of a part, as forces are added.
+  template <class Method>
+  [[gnu::flatten, gnu::aligned(64)]] void add_volumes(const Part<Method>& part, const State<Real>& state,
+                                                      Real* volumes) const {
+    if constexpr (Kernel<Method>::averages_over_nodes) {
+      const ElementGroups& groups = *part.groups;
+      for (std::size_t g = part.first; g < part.last; ++g) {
+        const ElementGroups::Group group = groups.groups[g];
+        Faces lower = gather_face_modes<Number>(state.u, groups, group.first_face);
+        NodalVolumes<Number> carried{};
+        for (std::size_t k = 0; k < group.levels; ++k) {
+          const Faces upper = gather_face_modes<Number>(state.u, groups, group.first_face + k + 1);
+          ElementMotion<Number> motion;
+          motion.u = modes_between(lower, upper);
+          const auto own =
+              Kernel<Method>::nodal_volumes(motion, part.blocks[group.first_level + k - part.first_block]);
+          scatter_volumes(carried, own, groups, group.first_face + k, volumes);
+          carried = own;
+          lower = upper;
+        }
+        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.levels, volumes);
+      }
+    }
+  }
+
+  /// Adds to the rows of a face what the element below and the one above have there.
+  static void scatter_volumes(const NodalVolumes<Number>& below, const NodalVolumes<Number>& above,
+                              const ElementGroups& groups, std::size_t face, Real* volumes) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      scatter_add<Number>({below.change[4 + corner] + above.change[corner],
+                           below.rest[4 + corner] + above.rest[corner], Number(Real(0))},
+                          volumes, groups.places(face, corner));
+    }
+  }
+
+  std::unique_ptr<const Regrouping> regrouping_;  // of methods that adapt
+  std::shared_ptr<const Plan> plan_at_rest_;
+};
+
+}  // namespace sandglass
