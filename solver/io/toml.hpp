@@ -7,6 +7,9 @@
 ///
 /// Its table of white space calls characters from U+00A1 to U+0499 unreachable. They are none: no white
 /// space.
+///
+/// Its functions are compiled once, in toml.cpp.
+#define TOML_HEADER_ONLY 0
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #define TOML_ASSERT(expr) static_assert(true)

@@ -1,0 +1,3 @@
+/// The functions of toml++; see toml.hpp.
+#define TOML_IMPLEMENTATION
+#include "io/toml.hpp"
