@@ -135,7 +135,7 @@ def test_variants(tmp_path):
     assert find_case(tmp_path, "bar-1-b") == path
     assert find_case(tmp_path, "bar-1-c") is None
     with pytest.raises(
-        InputError, match="has 4 variants, and one must be named; known: bar-1-a, bar-1-b"
+        InputError, match="has 4 variants; name one of them; known: bar-1-a, bar-1-b"
     ):
         read_case(path)
     with pytest.raises(InputError, match="has no case 'bar-1-c'"):
