@@ -48,7 +48,7 @@ class MixedProblem:
     mesh: HexMesh. pair: ElementPair. law: a name in LAWS. material: dict of its parameters (SI),
     directions as tuples.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
-    dofs), values (their values at full load, m), scale (their largest value on the load path, m), free
+    dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
     (the other dofs), load (the current factor of the tractions, 0 to 1).
     """
 
