@@ -1,4 +1,4 @@
-"""The commands of README.md and of the top README are run as they stand there."""
+"""The commands of README.md and of the top README are run as written there."""
 
 import importlib.util
 import json
@@ -25,7 +25,7 @@ def commands_of(text, title):
 
 
 def run(words, folder):
-    """Runs a command in a folder; what it printed."""
+    """Runs a command in a folder and returns its output."""
     words = [word.strip('"') for word in words]
     if words[0] == "sandglass":
         done = sandglass(*words[1:], cwd=folder)
@@ -65,7 +65,7 @@ def test_from_gmsh_to_the_answer(example):
 
 @pytest.mark.skipif(importlib.util.find_spec("dolfinx") is None, reason="no FEniCSx")
 def test_a_golden_of_ones_own(example, tmp_path):
-    """The mixed element and its explicit twin agree on a mesh that came from elsewhere."""
+    """The mixed element and its explicit twin agree on a mesh of another program."""
     (tmp_path / "exchange").mkdir()
     example = example.rename(tmp_path / "exchange" / "example")
     (tmp_path / "reference").symlink_to(ROOT / "reference")
