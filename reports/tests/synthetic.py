@@ -218,7 +218,7 @@ class DataSet:
 
     @property
     def page(self):
-        """Where the page goes."""
+        """The path of the page."""
         return self.folder / "report/index.html"
 
     @property

@@ -1,4 +1,4 @@
-"""Claims and mutants: what belongs together, what is refused; the tree's own claims hold."""
+"""Claims and mutants: their association, rejected files; the tree's own claims are valid."""
 
 import json
 
@@ -81,7 +81,7 @@ def test_both_files_may_be_absent(tree):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("some_test.cpp", "other_test.cpp", "there is no test verification/other_test.cpp"),
+        ("some_test.cpp", "other_test.cpp", "test verification/other_test.cpp does not exist"),
         ("tl-perturbation auto", "tl-perturbation best", "no limit"),
         ('oracle = "arithmetic"', "", "oracle"),
         ("[[claim]]", "[[claim", "claims.toml"),

@@ -1,4 +1,4 @@
-"""The whole report from a tiny data set: what is on the page, and what is not."""
+"""The whole report from a tiny data set: what the page contains, and what not."""
 
 import re
 from html.parser import HTMLParser
@@ -113,7 +113,7 @@ def test_a_case_whose_runs_all_failed_makes_a_page(data):
         path.unlink()
     page = data.make()
     assert "No limits were checked" in page
-    assert "No run left a mesh to show" in page
+    assert "No mesh: no run has a result file" in page
 
 
 def test_an_exploded_run_makes_a_page(data):
