@@ -27,7 +27,7 @@ def test_without_optional_files_the_page_names_the_commands(data):
     assert "Our counts are missing" in page and "Our times are missing" in page
     assert "The file of claims is missing" in page and "ci/mutants" in page
     assert "No maps were computed" in page
-    assert "not there: what it shows is left out" in section(page, "provenance")
+    assert "missing: its figures are left out" in section(page, "provenance")
 
 
 def test_the_chart_has_the_points_of_runs_and_ladders(data):
