@@ -1,4 +1,4 @@
-"""Follows the steps of a README literally: new files and changes of lines, as its code blocks say.
+"""Follows the instructions of a README literally: its code blocks are new files and changed lines.
 
 A step names its file, "New file `PATH`:" or "..., in `PATH`:", and code blocks follow: the whole
 text of a new file, or changes (diff): lines with "-" or " " before them are found as they stand,
@@ -18,7 +18,7 @@ STEP = re.compile(
 
 
 def section(document, heading):
-    """The text under a heading of second order."""
+    """The text under a second-level heading."""
     found = re.search(rf"^## {re.escape(heading)}\n(.*?)(?=^## |\Z)", document, re.M | re.S)
     if found is None:
         raise ValueError(f"no heading '## {heading}'")
@@ -32,7 +32,7 @@ def commands(text):
 
 
 def changed(text, change):
-    """A text with the lines of a change in place of those that it names, which are there once."""
+    """A text with a change applied; the lines to replace must occur exactly once."""
     lines = change.splitlines(keepends=True)
     old, new = ("".join(line[1:] for line in lines if line[0] in " " + sign) for sign in "-+")
     if text.count(old) != 1:
@@ -41,7 +41,7 @@ def changed(text, change):
 
 
 def follow(text, tree):
-    """Takes the steps of a text in a tree. Returns the files that are new or changed."""
+    """Follows the steps of a text in a tree. Returns the new or changed files."""
     touched = []
     for step in STEP.finditer(text):
         if step["path"]:

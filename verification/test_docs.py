@@ -1,4 +1,4 @@
-"""READMEs are true: their steps are followed literally in a copy, and what they name is there.
+"""READMEs are true: their steps are followed literally in a copy, and all that they name exists.
 
 A law, a control and a number type are compiled alone, into the tests that need no kernels: half a
 minute each. `ci/docs` follows all steps and builds the whole solver.
@@ -19,7 +19,7 @@ THEORY = ["solver/element/README.md", "solver/material/README.md", "solver/solve
 
 
 def followed(document, heading, tree, *folders):
-    """A copy of some folders in which the steps of a section were taken; its commands and files."""
+    """Follows the steps of a section in a copy of some folders; returns its commands and files."""
     results = shutil.ignore_patterns("__pycache__", "*.h5", "build")
     for folder in folders:
         shutil.copytree(ROOT / folder, tree / folder, ignore=results)
@@ -28,7 +28,7 @@ def followed(document, heading, tree, *folders):
 
 
 def only_last(file, name):
-    """Leaves the last entry in a list of types: what was added."""
+    """Reduces a list of types to its last entry, the one that was added."""
     text = file.read_text()
     found = re.search(rf"using {name} =\s+TypeList<[^;]*?(\w+)>;", text)
     file.write_text(text.replace(found[0], f"using {name} = TypeList<{found[1]}>;"))
@@ -41,7 +41,7 @@ def build(command, tree, environment):
 
 
 def run_test(tree, name, tests):
-    """Compiles a test of the copy, runs those of it that a filter names, tells how many passed."""
+    """Compiles a test of the copy and runs it with a filter; returns how many tests passed."""
     environment = os.environ | {"CCACHE_BASEDIR": str(tree), "CCACHE_NOHASHDIR": "1"}
     launcher = ["ccache"] if shutil.which("ccache") else []
     flags = "-std=c++20 -O0 -fno-math-errno -Isolver -Iverification -isystem /usr/include/eigen3"

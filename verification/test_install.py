@@ -1,4 +1,4 @@
-"""What is installed serves other projects: they find it, build without flags, step as the program.
+"""The installed library in other projects: found, built without flags, same steps as the program.
 
 Takes the build folder in which the program under test stands.
 """
@@ -39,7 +39,7 @@ def run(*command, **options):
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory):
-    """A folder into which all has been installed."""
+    """A folder with a complete installation."""
     folder = tmp_path_factory.mktemp("prefix")
     run("cmake", "--install", BUILD, "--prefix", folder)
     return folder
@@ -53,7 +53,7 @@ def built(source, folder, *options):
 
 @pytest.mark.parametrize("found", ["installed", "in the build folder"])
 def test_the_example_steps_as_the_program(found, prefix, tmp_path):
-    """Limit: half a unit in the last place of 0.02 m, carried on by two sums over 1000 steps."""
+    """Limit: half a unit in the last place of 0.02 m, accumulated by two sums over 1000 steps."""
     case = tmp_path / "block.toml"
     case.write_text(DYNAMIC)
     where = {"installed": f"-DCMAKE_PREFIX_PATH={prefix}"}.get(found, f"-Dsandglass_DIR={BUILD}")
@@ -74,7 +74,7 @@ def test_the_example_steps_as_the_program(found, prefix, tmp_path):
 
 
 def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):
-    """Other flags would make other packs of the same name; a program must hold none of its own."""
+    """Other flags would give other packs of the same name; a program must contain none itself."""
     (tmp_path / "only.cpp").write_text(
         "#include <sandglass/simulation.hpp>\n"
         "double time(const char* file) { return sandglass::Simulation<float>(file).time(); }\n"
@@ -103,7 +103,7 @@ def test_all_headers_come_with_the_flags_of_the_library(prefix, tmp_path):
 
 
 def test_the_installed_program_has_its_cases(prefix, tmp_path):
-    """Also where neither the source nor a folder `cases` is at hand."""
+    """Also where neither the source nor a folder `cases` is available."""
     environment = {name: value for name, value in os.environ.items() if name != "SANDGLASS_CASES"}
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     listed = run(moved / "bin" / "sandglass", "cases", cwd=tmp_path, env=environment)
@@ -116,7 +116,7 @@ def test_the_installed_program_has_its_cases(prefix, tmp_path):
 
 
 def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
-    """By its own copies of exchange/ and common/, not by those of the source."""
+    """Uses its own copies of exchange/ and common/, not those of the source."""
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     program = moved / "bin" / "sandglass"
     run(program, "mesh", "column", "-o", tmp_path / "column.vtu", cwd=tmp_path)

@@ -1,4 +1,4 @@
-"""What the gate catches: regressions planted in a copy of the solver, and false alarms without any.
+"""Tests the gate with regressions planted in a copy of the solver, and for false alarms.
 
 Builds a copy of HEAD under build/gate-trial, and again with the patches of plants/; runs the gate
 with each, against a baseline of the clean copy; writes the table between the marks in README.md.
@@ -34,7 +34,7 @@ BASELINE_PROCESSES = 24
 
 @dataclass(frozen=True)
 class Plant:
-    """A planted regression: its words, its binary, where it shows, what switches it on."""
+    """A planted regression: description, binary, where it shows, what switches it on."""
 
     words: str
     binary: str
@@ -43,7 +43,7 @@ class Plant:
 
 
 def slower(method, share):
-    """The switches that make the steps of a method slower by a share."""
+    """The switches that slow the steps of a method by a share."""
     return (("SANDGLASS_PLANT_SLOWER", method), ("SANDGLASS_PLANT_SHARE", str(share)))
 
 
@@ -89,7 +89,7 @@ def program(binary, switches=()):
 
 
 def shell(*command, cwd):
-    """What a command prints. Raises ComputationError with its last words."""
+    """The output of a command. Raises ComputationError with its last line."""
     done = subprocess.run(command, cwd=cwd, capture_output=True, text=True)
     if done.returncode:
         told = f"{done.stdout[-500:]}{done.stderr[-500:]}"
@@ -100,7 +100,7 @@ def shell(*command, cwd):
 
 
 def build(binary):
-    """Builds the copy, with the patch of that name if there is one, and keeps its program.
+    """Builds the copy, with the patch of this name if it exists, and keeps its program.
 
     The patch of a header leaves its time of change alone, and only the source that counts is
     compiled anew: kernels in which nobody looks for the plant would take half an hour.
@@ -131,7 +131,7 @@ def build(binary):
 
 
 def processes(name, binary, switches, first, last):
-    """Files of processes of bench, of which those that are there are not run again."""
+    """Files of processes of bench; existing ones are not run again."""
     pool = FOLDER / "pool"
     pool.mkdir(parents=True, exist_ok=True)
     files = []
@@ -165,7 +165,7 @@ def other_run(name, plant):
 
 
 def outcomes_of(baseline, name, plant):
-    """What the gate says; of speed it asks a third more processes before it fails."""
+    """The gate's outcome; it runs a third more processes before it fails on speed."""
     if plant.source != "speed":
         return compare(baseline, other_run(name, plant), [plant.source])
     for count in (collect.PROCESSES, collect.PROCESSES * 4 // 3):
@@ -177,7 +177,7 @@ def outcomes_of(baseline, name, plant):
 
 
 def row(words, outcomes):
-    """A row of the table: what was planted, whether it was caught, where, what else was told."""
+    """A row of the table: the regression, whether and where it was caught, other outcomes."""
     failing = [outcome for outcome in outcomes if outcome.fails]
     noisy = sum(outcome.verdict == NOISY for outcome in outcomes)
     first = f"`{failing[0].name}`, {failing[0].figure}: {failing[0].reason}" if failing else "-"
@@ -198,7 +198,7 @@ def baseline_of_the_clean():
 
 
 def told(runs, again):
-    """What runs without a plant told."""
+    """The text about runs without a planted regression."""
     alarms = sum(any(outcome.fails for outcome in outcomes) for outcomes in runs)
     noisy = sorted(sum(outcome.verdict == NOISY for outcome in outcomes) for outcomes in runs)
     moved = sum(outcome.verdict != SAME for outcome in again)
@@ -212,7 +212,7 @@ def told(runs, again):
 
 
 def origin(baseline):
-    """Where the table comes from."""
+    """The line on the table's making."""
     revision = (FOLDER / "bin" / "revision").read_text().strip()
     load = f"{os.getloadavg()[2]:.0f} programs wanted its {os.cpu_count()} processors"
     machines = ", ".join(baseline.machines)
@@ -220,7 +220,7 @@ def origin(baseline):
 
 
 def trial():
-    """Everything; the text of the table."""
+    """Runs the trial and returns the text of the table."""
     for binary in ("clean", "switched", "multiplication"):
         build(binary)
     baseline = baseline_of_the_clean()
@@ -237,7 +237,7 @@ def trial():
 
 
 def tabulate():
-    """Puts the table into README.md, and prints it. Raises InputError or ComputationError."""
+    """Writes the table into README.md, and prints it. Raises InputError or ComputationError."""
     readme = HERE / "README.md"
     table = trial()
     before, after = readme.read_text(encoding="utf-8").split(MARKS[0])

@@ -1,4 +1,4 @@
-"""The trial can be repeated: its patches fit the tree, and its table has a place."""
+"""The trial can be repeated: its patches apply to the tree, and its table has a place."""
 
 import subprocess
 
