@@ -1,6 +1,6 @@
 """The mutants of verification/mutants: their patches fit this tree, and the table knows them all.
 
-What kills them is the work of `ci/mutants`, which takes hours.
+What kills them is the work of `verification/mutants/run.py`, which takes hours.
 """
 
 import subprocess

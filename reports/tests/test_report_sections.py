@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-OPTIONAL = "sandglass bench --threads", "sandglass flops", "ci/curves", "sandglass stability"
+OPTIONAL = "sandglass bench --threads", "sandglass flops", "reports/curves", "sandglass stability"
 
 
 def section(page, name):
@@ -25,7 +25,7 @@ def test_without_optional_files_the_page_names_the_commands(data):
     for command in OPTIONAL:
         assert command in page
     assert "Our counts are missing" in page and "Our times are missing" in page
-    assert "No file of claims was found" in page and "ci/mutants" in page
+    assert "No file of claims was found" in page and "verification/mutants/run.py" in page
     assert "No maps were computed" in page
     assert "not there: what it shows is left out" in section(page, "provenance")
 
