@@ -35,7 +35,7 @@ def document(cells, xs=(1.0, 2.0), ys=(0.3,)):
 
 def test_every_outcome_has_a_colour_and_a_letter_of_its_own():
     """The words are the solver's; a new one must be given a colour here."""
-    header = ROOT / "solver" / "comparison" / "finding.cpp"
+    header = ROOT / "suite" / "comparison" / "finding.cpp"
     words = [line.split('"')[1] for line in header.read_text().splitlines() if 'return "' in line]
     assert set(words) <= set(OUTCOMES) and len(words) == 7
     assert len({colour for colour, _ in OUTCOMES.values()}) == len(OUTCOMES)
