@@ -135,6 +135,8 @@ def not_taken(command, binary):
     if words[:2] == ["-m", "pytest"]:
         absent = [word for word in words[2:] if "/" in word and not (ROOT / word).exists()]
         return f"{absent} is not there" if absent else ""
+    if "/" not in words[0]:
+        return "" if shutil.which(words[0]) else f"{words[0]} is not there"
     script = ROOT / words[0]
     if not script.is_file():
         return f"{words[0]} is not there"
