@@ -1,6 +1,6 @@
 """CalculiX and Sandglass on the same mesh, in turn, on one thread each: seconds and errors.
 
-Usage: ci/peers [CASE] [--json FILE] [--markdown FILE]
+Usage: /usr/bin/python3 bench/peers.py [CASE] [--json FILE] [--markdown FILE]
 Needs CalculiX (ci/setup bench) and the solver's binary: build/release/sandglass, or the one given
 by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
@@ -290,7 +290,7 @@ def report(document, options):
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        prog="ci/peers",
+        prog="peers.py",
         description="CalculiX and Sandglass on the same mesh, in turn, on one thread each.",
         epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
     )

@@ -62,7 +62,12 @@ def main(arguments=None):
     add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")
     add("--pictures", type=Path, default="reports/figures", help="folder of drawn failure maps")
     add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
-    add("--mutants", type=Path, default="verification/mutants/RESULTS.md", help="of ci/mutants")
+    add(
+        "--mutants",
+        type=Path,
+        default="verification/mutants/RESULTS.md",
+        help="of verification/mutants/run.py",
+    )
     add("--root", type=Path, default=".", help="of the tree that the claims' tests are in")
     add("-o", "--output", type=Path, default="build/report/index.html", help="the page to write")
     return exit_code(make, parser.parse_args(arguments))

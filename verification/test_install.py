@@ -5,6 +5,7 @@ Takes the build folder in which the program under test stands.
 
 import os
 import pathlib
+import platform
 import shutil
 import subprocess
 
@@ -130,6 +131,41 @@ def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
         text=True,
     )
     assert done.returncode == 2 and "the copy" in done.stderr
+
+
+AVX2 = """
+#include <cstdio>
+#include <vector>
+std::vector<double> ones(64, 1.0);
+double sum = [] {
+  double total = 0.0;
+  for (std::size_t k = 0; k < ones.size(); ++k) total += ones[k] * static_cast<double>(k);
+  return total;
+}();
+int main() { std::printf("%g\\n", sum); }
+"""
+
+
+@pytest.mark.skipif(shutil.which("qemu-x86_64") is None, reason="qemu-user is not installed")
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="for x86-64 compilers")
+@pytest.mark.parametrize("processor, code", [("Haswell", 0), ("Nehalem", 3)])
+def test_packages_refuse_a_processor_without_their_instructions(processor, code, tmp_path):
+    """Before initialisers that need them, which here die of them without the check."""
+    (tmp_path / "main.cpp").write_text(AVX2)
+    v3, all_processors = ["-O3", "-march=x86-64-v3"], ["-O3", "-march=x86-64"]
+    run("c++", *v3, "-ffast-math", "-c", "main.cpp", cwd=tmp_path)
+    run("c++", *all_processors, "-c", ROOT / "app/processor_check.cpp", cwd=tmp_path)
+    run("c++", "main.o", "-o", "bare", cwd=tmp_path)
+    run("c++", "main.o", "processor_check.o", "-o", "checked", cwd=tmp_path)
+    for program in ("bare", "checked"):
+        command = ["qemu-x86_64", "-cpu", processor, tmp_path / program]
+        done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+        if program == "bare" and code:
+            assert done.returncode < 0
+        else:
+            assert done.returncode == code
+            assert (done.stdout == "2016\n") == (code == 0)
+            assert ("lacks instructions of x86-64-v3" in done.stderr) == (code != 0)
 
 
 def test_other_versions_are_refused(tmp_path):

@@ -1,6 +1,6 @@
 """The mutants of verification/mutants: their patches apply to this tree, and the table has all.
 
-What kills them is the work of `ci/mutants`, which takes hours.
+What kills them is the work of `verification/mutants/run.py`, which takes hours.
 """
 
 import subprocess

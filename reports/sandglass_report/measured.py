@@ -10,7 +10,7 @@ from sandglass_report.maps import read_maps
 BENCH = "sandglass bench --threads 1 --json build/bench.json"
 FLOPS = "sandglass flops --json build/flops.json"
 REST = "sandglass bench --rest --json build/rest.json"
-CURVES = "ci/curves"
+CURVES = "reports/curves"
 MAPS = "sandglass stability CASE --json build/stability/CASE.json"
 
 OWN_MESH = "own mesh"

@@ -12,7 +12,7 @@ from sandglass_report.page import ANCHORS
 
 TABLE = """# Mutants
 
-Made by `ci/mutants` on a day, revision r: 2 killed, 1 not run, 1 survived.
+Made by `verification/mutants/run.py` on a day, revision r: 2 killed, 1 not run, 1 survived.
 
 | mutant | mistake | verdict | by | s | revision |
 |---|---|---|---|---|---|
@@ -100,7 +100,7 @@ def test_a_claim_about_a_case_that_was_not_run_shows_no_figure(tree):
 
 def test_a_table_of_another_shape_is_refused(tree):
     tree.write_mutants(TABLE.replace("| s |", "|"))
-    with pytest.raises(InputError, match="ci/mutants"):
+    with pytest.raises(InputError, match="verification/mutants/run.py"):
         tree.read()
 
 

@@ -18,7 +18,7 @@ def test_what_is_absent_is_named_with_its_command(data):
     assert not (found.rungs or found.steps or found.rests or found.counts or found.maps)
     assert all(source.facts is None for source in found.sources)
     commands = " ".join(source.command for source in found.sources)
-    for word in ("bench --threads", "flops", "bench --rest", "ci/curves", "stability CASE"):
+    for word in ("bench --threads", "flops", "bench --rest", "reports/curves", "stability CASE"):
         assert word in commands
 
 

@@ -38,7 +38,7 @@ class Balance(HTMLParser):
 def plain(tmp_path_factory):
     """The data set as it is, with its page made."""
     data = DataSet(tmp_path_factory.mktemp("plain"))
-    data.make()
+    data.make(figures=True)
     return data
 
 
@@ -111,7 +111,7 @@ def test_a_case_whose_runs_all_failed_makes_a_page(data):
     data.write_verdicts()
     for path in (data.folder / "results").iterdir():
         path.unlink()
-    page = data.make()
+    page = data.make(figures=True)
     assert "No limits were checked" in page
     assert "No mesh: no run has a result file" in page
 
@@ -120,7 +120,7 @@ def test_an_exploded_run_makes_a_page(data):
     error = 1e9
     data.records[0] = data.run("tl-none", error) | {"status": "failed: not at rest"}
     data.write_verdicts()
-    page = data.make()
+    page = data.make(figures=True)
     assert "failed: not at rest" in page
 
 

@@ -23,14 +23,14 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   using Base::layout_, Base::width, Base::top;
   using typename Base::Real;
   template <class Method>
-  using Kernel = FormulationOf<Method, Law>;
+  using KernelOf = FormulationOf<Method, Law>;
 
   static_assert(!Base::adapts || !law_remembers<Law>,
                 "what is remembered at one point says nothing of eight");
-  static constexpr bool remembers = (Kernel<Methods>::remembers || ...);
+  static constexpr bool remembers = (KernelOf<Methods>::remembers || ...);
 
   template <class Method>
-  using HistoryBlock = typename Kernel<Method>::template History<Number>;
+  using HistoryBlock = typename KernelOf<Method>::template History<Number>;
   using OnlyHistory = HistoryBlock<std::tuple_element_t<0, std::tuple<Methods...>>>;
   static constexpr std::size_t history_numbers = remembers ? sizeof(OnlyHistory) / sizeof(Real) : 0;
 
@@ -51,7 +51,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const auto law = at_step(law_, state.step);
     this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, std::size_t block,
                                                   const auto& for_each_lane) {
-      const auto energy = Kernel<Method>::energy(motion, element, history<Method>(state, block), law);
+      const auto energy = KernelOf<Method>::energy(motion, element, history<Method>(state, block), law);
       for_each_lane([&](std::size_t /*e*/, int lane) {
         sum.strain += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
         sum.hourglass += static_cast<double>(Lanes<Number>::get(energy.hourglass, lane));
@@ -64,7 +64,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const auto law = at_step(law_, state.step);
     this->per_element(state, densities,
                       [&]<class Method>(const auto& motion, const auto& element, std::size_t block) {
-                        using Kernel = Kernel<Method>;
+                        using Kernel = KernelOf<Method>;
                         return Kernel::energy(motion, element, history<Method>(state, block), law).hourglass /
                                Kernel::volume(motion, element);
                       });
@@ -74,7 +74,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const auto law = at_step(law_, state.step);
     this->per_element(
         state, bounds, [&]<class Method>(const auto& motion, const auto& element, std::size_t block) {
-          return Kernel<Method>::stiffness_bound(motion, element, history<Method>(state, block), law);
+          return KernelOf<Method>::stiffness_bound(motion, element, history<Method>(state, block), law);
         });
   }
 
@@ -194,7 +194,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const NodalVectors<Number> mobilities =
         nodes_of(gather_face_vectors<Number>(mobility, *layout_, face),
                  gather_face_vectors<Number>(mobility, *layout_, face + 1));
-    const std::array<Modes<Number>, top + 1> forces{force_at<Kernel<Methods>>(motion, x)...};
+    const std::array<Modes<Number>, top + 1> forces{force_at<KernelOf<Methods>>(motion, x)...};
     std::array<Number, top> squares;
     for (std::size_t level = 0; level < top; ++level) {
       const NodalVectors<Number> difference = from_modes(forces[level] - forces[top]);
@@ -246,7 +246,7 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
   template <class Method>
   [[gnu::flatten, gnu::aligned(64)]] void add_forces(const typename Base::template Part<Method>& part,
                                                      State<Real>& state, Real* force) const {
-    using Kernel = typename Base::template Kernel<Method>;
+    using Kernel = typename Base::template KernelOf<Method>;
     const ElementGroups& groups = *part.groups;
     const auto law =
         at_step(loop_law_, state.step);  // a copy that no store can alias: moduli are computed once

@@ -39,17 +39,17 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   /// A method's elements with the law of their set-up; what is law-free of them does not depend on it.
   template <class Method>
-  using Kernel = FormulationOf<Method, CalledLaw>;
+  using KernelOf = FormulationOf<Method, CalledLaw>;
 
   static constexpr bool adapts = top > 0;
-  static constexpr bool uses_increment = (Kernel<Methods>::needs_increment || ...);
-  static constexpr bool uses_coordinates = (Kernel<Methods>::needs_coordinates || ...);
-  static constexpr bool averages_over_nodes = (Kernel<Methods>::averages_over_nodes || ...);
+  static constexpr bool uses_increment = (KernelOf<Methods>::needs_increment || ...);
+  static constexpr bool uses_coordinates = (KernelOf<Methods>::needs_coordinates || ...);
+  static constexpr bool averages_over_nodes = (KernelOf<Methods>::averages_over_nodes || ...);
 
   /// The elements of a chunk at one level: groups `first` to `last` - 1, with the constants of their blocks.
   template <class Method>
   struct Part {
-    using Element = typename Kernel<Method>::template Element<Number>;
+    using Element = typename KernelOf<Method>::template Element<Number>;
 
     std::shared_ptr<const ElementGroups> groups;
     std::size_t first = 0;
@@ -120,13 +120,13 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   void jacobians(const State<Real>& state, std::span<double> jacobians) const override {
     per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, std::size_t) {
-      return Kernel<Method>::mean_jacobian(motion, element);
+      return KernelOf<Method>::mean_jacobian(motion, element);
     });
   }
 
   void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const override {
     per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, std::size_t) {
-      return Kernel<Method>::smallest_jacobian(motion, element);
+      return KernelOf<Method>::smallest_jacobian(motion, element);
     });
   }
 
@@ -153,13 +153,13 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
                          std::size_t face) const {
     FaceMotion motion;
     motion.u = gather_face_modes<Number>(state.u, groups, face);
-    if constexpr (Kernel<Method>::needs_increment) {
+    if constexpr (KernelOf<Method>::needs_increment) {
       motion.increment = gather_face_modes<Number>(state.increment, groups, face);
     }
-    if constexpr (Kernel<Method>::needs_coordinates) {
+    if constexpr (KernelOf<Method>::needs_coordinates) {
       motion.X = gather_face_modes<Number>(coordinates_, groups, face);
     }
-    if constexpr (Kernel<Method>::averages_over_nodes) {
+    if constexpr (KernelOf<Method>::averages_over_nodes) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
         const auto [change, rest, unused] = gather<Number>(volumes, groups.places(face, corner));
         motion.dilatation[corner] = change / rest;
@@ -174,11 +174,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     ElementMotion<Number> motion;
     motion.inverse_step = inverse_step;
     motion.u = modes_between(lower.u, upper.u);
-    if constexpr (Kernel<Method>::needs_increment) {
+    if constexpr (KernelOf<Method>::needs_increment) {
       motion.increment = modes_between(lower.increment, upper.increment);
     }
-    if constexpr (Kernel<Method>::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
-    if constexpr (Kernel<Method>::averages_over_nodes) {
+    if constexpr (KernelOf<Method>::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
+    if constexpr (KernelOf<Method>::averages_over_nodes) {
       std::copy(lower.dilatation.begin(), lower.dilatation.end(), motion.dilatation.begin());
       std::copy(upper.dilatation.begin(), upper.dilatation.end(), motion.dilatation.begin() + 4);
     }
@@ -309,7 +309,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     for (std::size_t g = part.first; g < part.last; ++g) {
       const auto& group = part.groups->groups[g];
       for (std::size_t k = 0; k < group.levels; ++k) {
-        part.blocks.push_back(element_block<Kernel<Method>, Number>(
+        part.blocks.push_back(element_block<KernelOf<Method>, Number>(
             mesh, *part.groups, layout_->node_of_row, group.first_face + k, setup_law_, settings_));
       }
     }
@@ -319,7 +319,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   template <class Method>
   [[gnu::flatten, gnu::aligned(64)]] void add_volumes(const Part<Method>& part, const State<Real>& state,
                                                       Real* volumes) const {
-    if constexpr (Kernel<Method>::averages_over_nodes) {
+    if constexpr (KernelOf<Method>::averages_over_nodes) {
       const ElementGroups& groups = *part.groups;
       for (std::size_t g = part.first; g < part.last; ++g) {
         const ElementGroups::Group group = groups.groups[g];
@@ -330,7 +330,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
           ElementMotion<Number> motion;
           motion.u = modes_between(lower, upper);
           const auto own =
-              Kernel<Method>::nodal_volumes(motion, part.blocks[group.first_level + k - part.first_block]);
+              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_level + k - part.first_block]);
           scatter_volumes(carried, own, groups, group.first_face + k, volumes);
           carried = own;
           lower = upper;

@@ -42,9 +42,9 @@ Traffic traffic_with(const KernelLaw& kernel_law) {
 template <class Method>
 MethodEntry method_entry() {
   MethodEntry entry = method_facts<Method>();
-  entry.assemble_packed_double = &assemble<Method, Pack<double>>;
-  entry.assemble_packed_float = &assemble<Method, Pack<float>>;
-  entry.assemble_scalar_double = &assemble<Method, double>;
+  entry.assemble_packed_double = &assemble<KernelOwner<Method>, Pack<double>>;
+  entry.assemble_packed_float = &assemble<KernelOwner<Method>, Pack<float>>;
+  entry.assemble_scalar_double = &assemble<KernelOwner<Method>, double>;
   entry.auto_kappa = &detail::auto_kappa_of<Method>;
   entry.operations = &detail::operations_of<Method>;
   entry.traffic = &detail::traffic_with<Method>;

@@ -10,7 +10,7 @@
 /// integration_points, Kinematics and Hourglass; where it has them also `zero_energy_modes`, the modes that
 /// are left without energy by nature; `condensed`; `Levels`, methods from the cheapest to the one that an
 /// adaptive method stands for; `AtSmallStrain`, what an Updated Lagrangian method tends to as strains vanish
-/// and time plays no part.
+/// and time plays no part; `SharesKernelsOf`, a method with the same element.
 namespace sandglass {
 
 /// An hourglass control that resists velocities alone says so with `damps_only`: it loses energy, and does
@@ -46,6 +46,18 @@ inline constexpr bool is_adaptive = requires {
 namespace detail {
 
 template <class Method>
+struct KernelOwner {
+  using type = Method;
+};
+template <class Method>
+requires requires {
+  typename Method::SharesKernelsOf;
+}
+struct KernelOwner<Method> {
+  using type = typename Method::SharesKernelsOf;
+};
+
+template <class Method>
 struct LevelsOf {
   using type = TypeList<Method>;
 };
@@ -56,6 +68,10 @@ struct LevelsOf<Method> {
 };
 
 }  // namespace detail
+
+/// The method whose kernels a method runs: itself, unless it `SharesKernelsOf` another.
+template <class Method>
+using KernelOwner = typename detail::KernelOwner<Method>::type;
 
 /// The levels of a method's elements; of one that does not adapt, itself.
 template <class Method>

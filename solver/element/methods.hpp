@@ -3,7 +3,6 @@
 #include "base/type_list.hpp"
 #include "element/method_traits.hpp"
 #include "element/methods/linear.hpp"
-#include "element/methods/linear_condensed.hpp"
 #include "element/methods/t4.hpp"
 #include "element/methods/t4_anp.hpp"
 #include "element/methods/tl_adaptive.hpp"

@@ -32,7 +32,7 @@ def arguments(given):
     parser = argparse.ArgumentParser(prog="ci/gate", description=__doc__.splitlines()[0])
     add = parser.add_argument
     add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")
-    add("--baseline", type=Path, default="ci/baseline.json", help="default: %(default)s")
+    add("--baseline", type=Path, default="verification/gate/baseline.json", help="default: %(default)s")
     add(
         "--verdicts",
         metavar="FILE",

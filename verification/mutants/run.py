@@ -159,7 +159,9 @@ def run(options, stop):
 def main():
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        prog="ci/mutants", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="verification/mutants/run.py",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutants, or how they begin: 017")
     parser.add_argument("--jobs", type=int, default=1, help="copies side by side (default 1)")

@@ -17,4 +17,15 @@ struct LinearPerturbation {
   using Hourglass = PerturbationHourglassControl;
 };
 
+struct LinearCondensed {
+  static constexpr std::string_view name = "linear-condensed";
+  static constexpr std::string_view summary =
+      "linear, solved once for all loads: answers are superposed from the response to unit displacements";
+  static constexpr int integration_points = 1;
+  static constexpr bool condensed = true;
+  using SharesKernelsOf = LinearPerturbation;
+  using Kinematics = LinearPerturbation::Kinematics;
+  using Hourglass = LinearPerturbation::Hourglass;
+};
+
 }  // namespace sandglass

@@ -1,0 +1,32 @@
+# Sources that are made from the lists of methods and number types, so that a build costs methods + laws: a change of one method
+# compiles its own.
+set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/kernels)
+
+# Makes `OUTPUT` from a template and adds it to the library.
+function(add_generated template output)
+  configure_file(${template} ${GENERATED}/${output} @ONLY)
+  target_sources(sandglass_library PRIVATE ${GENERATED}/${output})
+endfunction()
+
+# The laws that kernels call: for the number types that run, that count and that differentiate.
+set(NUMBERS "Pack<double>" "Pack<float>" "double" "Counted" "Dual<double>")
+set(NAMES packed_double packed_float scalar_double counted dual)
+foreach(NUMBER NAME IN ZIP_LISTS NUMBERS NAMES)
+  add_generated(material/called_law_source.cpp.in called_law_${NAME}.cpp)
+endforeach()
+
+# For each method its facts, and its kernels for the number types that run; methods of one header share the kernels of the first.
+list(SUBLIST NUMBERS 0 3 NUMBERS)
+list(SUBLIST NAMES 0 3 NAMES)
+file(GLOB METHODS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/element/methods CONFIGURE_DEPENDS element/methods/*.hpp)
+foreach(HEADER IN LISTS METHODS)
+  get_filename_component(METHOD ${HEADER} NAME_WE)
+  file(STRINGS element/methods/${HEADER} TYPES REGEX "^struct ")
+  list(TRANSFORM TYPES REPLACE "^struct ([A-Za-z0-9]+).*" "\\1")
+  list(GET TYPES 0 TYPE)
+  list(JOIN TYPES ">();\ntemplate MethodEntry method_entry<" ENTRIES)
+  add_generated(assembly/method_entry_source.cpp.in ${METHOD}/method_entry.cpp)
+  foreach(NUMBER NAME IN ZIP_LISTS NUMBERS NAMES)
+    add_generated(assembly/assemble_source.cpp.in ${METHOD}/assemble_${NAME}.cpp)
+  endforeach()
+endforeach()
