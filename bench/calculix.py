@@ -1,6 +1,6 @@
-"""CalculiX (ccx): running it on the deck of a case and reading the displacements back.
+"""Runs CalculiX (ccx) on the deck of a case and reads its displacements.
 
-Deck and result file are those of exchange/, which tells what they hold.
+Deck and result file are handled by exchange/.
 """
 
 import math
@@ -21,12 +21,11 @@ SECONDS = r"Total CalculiX Time: *([\d.]+)"
 
 @dataclass(frozen=True)
 class Solution:
-    """What ccx answered: displacement (n, 3) in m, and what it cost.
+    """The answer of ccx, displacement (n, 3) in m, and its cost.
 
-    process_seconds: from start to end of the process. processor_seconds: of them, on a processor.
-    solver_seconds: what ccx says of itself, the reading of the deck included. increments: those
-    that converged. iterations: all, those of increments that were cut included. version: ccx's own,
-    as text.
+    process_seconds: wall time of the process. processor_seconds: its processor time.
+    solver_seconds: as printed by ccx, including the reading of the deck. increments: those that
+    converged. iterations: all, including those of increments that were cut. version: that of ccx.
     """
 
     displacement: np.ndarray
@@ -41,9 +40,9 @@ class Solution:
 def deck(title, mesh, law, material, element="C3D8", tolerance=None, explicit=None, share=1.0):
     """The input deck of a case, as text.
 
-    title: one line. mesh: HexMesh of reference/. law: name out of LAWS. material: dict of its
-    numbers (SI). element, tolerance, explicit: as calculix_deck.deck takes them. share: of the
-    displacements. Raises InputError for a law that ccx lacks.
+    title: one line. mesh: HexMesh of reference/. law: a name in LAWS. material: dict of its
+    parameters (SI). element, tolerance, explicit: as for calculix_deck.deck. share: the share of
+    the displacements to impose. Raises InputError for a law that ccx lacks.
     """
     prescribed, values = mesh.imposed(share)
     plain = HexMesh(mesh.points, mesh.cells, {})
@@ -52,9 +51,9 @@ def deck(title, mesh, law, material, element="C3D8", tolerance=None, explicit=No
 
 
 def read_progress(path):
-    """What a progress file of ccx (.sta) says: (increments, iterations, share of the load reached).
+    """(increments, iterations, share of the load reached) from a progress file of ccx (.sta).
 
-    Raises InputError naming the line and the rule when the file cannot be read or is not one.
+    Raises InputError naming the line and the rule if the file is unreadable or malformed.
     """
     increments, iterations, reached = 0, 0, 0.0
     for number, line in enumerate(_text(path).splitlines()[2:], start=3):
@@ -72,11 +71,11 @@ def read_progress(path):
 
 
 def solve(text, n_nodes, folder, environment=None, processor=None):
-    """Run ccx on a deck in an empty folder until all is at rest. Returns a Solution.
+    """Run ccx on a static deck in an empty folder. Returns a Solution.
 
-    text: of deck(). n_nodes: of its mesh. environment: of the process; None takes the present one.
-    processor: the one that it keeps to, or None. Raises ComputationError when ccx finds no
-    equilibrium, InputError when its files are damaged.
+    text: of deck(). n_nodes: of its mesh. environment: of the process; None means the current one.
+    processor: the one to bind it to, or None. Raises ComputationError if ccx finds no equilibrium,
+    and InputError if its files are damaged.
     """
     done = _run(text, folder, environment, processor)
     increments, iterations, reached = read_progress(Path(folder) / "case.sta")
@@ -86,11 +85,11 @@ def solve(text, n_nodes, folder, environment=None, processor=None):
 
 
 def move(text, n_nodes, folder, motion, environment=None, processor=None):
-    """Run ccx on the deck of a motion, an Explicit, in an empty folder: Solution at its end.
+    """Run ccx on the deck of a motion, an Explicit, in an empty folder. Returns the final Solution.
 
-    Its increments are shorter than the steps of the motion, and more, where ccx takes those for
-    unstable. Arguments as of solve. Raises ComputationError when ccx breaks off or blows up,
-    InputError when its files are damaged.
+    If ccx considers the steps of the motion unstable, it takes more and shorter increments.
+    Arguments as for solve(). Raises ComputationError if ccx breaks off or diverges, and InputError
+    if its files are damaged.
     """
     done = _run(text, folder, environment, processor)
     selected = re.search(r"SELECTED time increment: *(\S+)", done.output)
@@ -103,19 +102,19 @@ def move(text, n_nodes, folder, motion, environment=None, processor=None):
 
 
 def stable_step(text, folder, environment=None):
-    """The longest step, s, that ccx takes for stable, of the deck of a short motion.
+    """The longest step, s, that ccx considers stable, from the deck of a short motion.
 
-    Raises ComputationError when it tells none.
+    Raises ComputationError if it reports none.
     """
     done = _run(text, folder, environment, None)
     told = re.search(r"COURANT initial stable time increment: *(\S+)", done.output)
     if not told:
-        raise ComputationError("CalculiX tells no stable step")
+        raise ComputationError("CalculiX reports no stable step")
     return float(told[1])
 
 
 def _run(text, folder, environment, processor):
-    """ccx on a deck: clock.Clocked. Raises ComputationError when it does not end well."""
+    """Runs ccx on a deck: clock.Clocked. Raises ComputationError if it fails."""
     (Path(folder) / "case.inp").write_text(text, encoding="ascii")
     done = clock.run([PROGRAM, "-i", "case"], folder, environment, processor)
     if done.code or not re.search(SECONDS, done.output):
@@ -126,7 +125,7 @@ def _run(text, folder, environment, processor):
 
 
 def _solution(done, n_nodes, folder, increments, iterations):
-    """The Solution of a run that ended well."""
+    """The Solution of a successful run."""
     version = re.search(r"CalculiX Version ([\w.]+)", done.output)
     return Solution(
         frd_file.read_displacement(Path(folder) / "case.frd", n_nodes),
@@ -144,4 +143,6 @@ def _text(path):
     try:
         return Path(path).read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read as what CalculiX writes: {error}") from error
+        raise InputError(
+            f"{path}: cannot be read as an output file of CalculiX: {error}"
+        ) from error

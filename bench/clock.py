@@ -1,4 +1,4 @@
-"""Clocking a program from its start to its end, alone on a processor where that is asked for."""
+"""Times a program from start to end, bound to a processor if requested."""
 
 import os
 import subprocess
@@ -11,7 +11,7 @@ from common.errors import InputError
 
 @dataclass(frozen=True)
 class Clocked:
-    """What a program did: exit code, what it printed, seconds of wall clock and on a processor."""
+    """The outcome of a program: exit code, output, seconds of wall time and of processor time."""
 
     code: int
     output: str
@@ -21,11 +21,11 @@ class Clocked:
 
 
 def run(command, folder=None, environment=None, processor=None):
-    """Run a command and clock it: Clocked.
+    """Run a command and time it: Clocked.
 
-    folder, environment: where and with what it runs; None: here, as here. processor: the number of
-    the one that it keeps to, with all its threads; None: any. Raises InputError when it cannot be
-    started.
+    folder, environment: those of the process; None means the current ones. processor: the number
+    of the one to bind it to, with all its threads; None means any. Raises InputError if it cannot
+    be started.
     """
     pinned = (lambda: os.sched_setaffinity(0, {processor})) if processor is not None else None
     with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:

@@ -1,7 +1,7 @@
-"""Time a golden: what FEniCSx takes to set up, to compile and to solve a case with Q1-P0.
+"""Time a golden: the seconds FEniCSx takes to set up, compile and solve a case with Q1-P0.
 
 Usage: /usr/bin/python3 bench/golden_timing.py CASE.toml --mesh mesh.h5 -o out.npz [--load-steps N]
-A process of its own, as the reference's command line is one; bench/time_to_rest.py starts it.
+bench/time_to_rest.py starts it as a separate process, like the reference's command line.
 Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium found.
 """
 
@@ -29,14 +29,14 @@ from solve import LOAD_STEPS, NEWTON_TOLERANCE
 
 
 class WatchedProblem(MixedProblem):
-    """A MixedProblem that notes when Newton's method linearizes, and at which displacement."""
+    """A MixedProblem that records when Newton's method linearizes, and at which displacement."""
 
     def __init__(self, *arguments):
         super().__init__(*arguments)
         self.moments = []
 
     def note(self):
-        """Note the present moment and displacement."""
+        """Record the current time and displacement."""
         self.moments.append((time.perf_counter(), self.nodal_displacement()))
 
     def linearize(self):
@@ -45,7 +45,7 @@ class WatchedProblem(MixedProblem):
 
 
 def seconds_within(moments, limit, unit):
-    """Seconds from the first moment to the one from which on the displacement stays near the last.
+    """Seconds from the first moment until the displacement stays close to the final one.
 
     moments: list of (seconds, displacement (n, 3) in m). limit: of max |u - u_last| over the nodes,
     as a fraction of the unit of errors, m.
@@ -60,10 +60,10 @@ def seconds_within(moments, limit, unit):
 
 
 def time_golden(case, mesh, load_steps):
-    """Set up twice, the first time perhaps compiling, and solve once.
+    """Set up twice, as the first time may include compilation, and solve once.
 
     case: Case. mesh: HexMesh. load_steps: from rest. Returns a dict of displacement (n, 3) in m and
-    of numbers: seconds (the keys tell of what), load_steps, iterations, residual.
+    of numbers: seconds (of what is in the key), load_steps, iterations, residual.
     Raises ComputationError.
     """
     set_up = [time.perf_counter()]

@@ -1,9 +1,9 @@
-/// Kernels by themselves, for work on a kernel: every method of the list, on every number type that runs.
+/// Times single kernels, for work on a kernel: every method, on every number type that runs.
 ///   element/METHOD/NUMBER            the arithmetic of elements in a strip: no gather, no scatter
 ///   forces/METHOD/NUMBER/ELEMENTS    internal forces of a box
 ///   step/METHOD/NUMBER/ELEMENTS      the whole explicit step
-/// Times are per call; those per element stand in the counter `per_element`. Options: --help. Methods are
-/// compared by `sandglass bench`, which times all in turn.
+/// Times are per call; those per element are in the counter `per_element`. Options: --help. To compare
+/// methods, use `sandglass bench`, which times all in turn.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -90,7 +90,7 @@ NodalField forces_of(const Scene& scene, const MethodChoice& choice) {
                     model.internal_force());
 }
 
-/// Whether a kernel's forces are those of the method's scalar double kernel: a wrong result gets no time.
+/// Whether a kernel's forces are those of the method's scalar double kernel: a wrong result is not timed.
 bool right(State& state, const Scene& scene, const MethodChoice& choice) {
   const NodalField reference = forces_of(scene, {.method = choice.method, .kernel = KernelWidth::scalar});
   const std::string status = force_status(relative_difference(forces_of(scene, choice), reference),

@@ -1,12 +1,12 @@
-"""A block touched in the middle: what sleep saves, and what it neglects.
+"""A block touched in the middle: the time that sleep saves, and the error it makes.
 
 Usage: /usr/bin/python3 bench/local_touch.py [--elements NX NY NZ] [--shares 1% 0.1%] [--case FILE]
        /usr/bin/python3 bench/local_touch.py --survey 36
-Runs `sandglass run` on the whole and with each --sleep, in turn, and prints medians of the wall
-time and the largest difference of displacements, over all nodes, in percent of the depth.
+Runs `sandglass run` without and with each --sleep, in turn, and prints medians of the wall time and
+the largest difference of displacements over all nodes, in percent of the depth.
 --case keeps the case file, for other commands. --survey runs random blocks, patches, Poisson's
-ratios and methods at 10 %, 2 % and 0.4 % and prints what is neglected over what may be.
-The binary is build/release/sandglass, or the one that SANDGLASS_BINARY names.
+ratios and methods at 10 %, 2 % and 0.4 % and prints the error made over the error allowed.
+The binary is build/release/sandglass, or the one given by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a run failed.
 """
 
@@ -62,7 +62,7 @@ value = [0.0, 0.0, {depth}]
 
 
 def case_text(elements, patch, depth, poisson_ratio=0.49):
-    """A block of so many elements; patch x patch of them are pushed in by depth (m)."""
+    """A block with this many elements, of which patch x patch are pushed in by depth (m)."""
     middle = [EDGE * (n // 2) for n in elements[:2]]
     reach = EDGE * (patch / 2 + 0.1)
     numbers = {
@@ -80,7 +80,7 @@ def case_text(elements, patch, depth, poisson_ratio=0.49):
 def run(case, method, folder, share=None):
     """Seconds, share of the elements awake and displacements (n, 3), m, of one run.
 
-    Raises InputError or ComputationError where the solver does.
+    Raises InputError or ComputationError if the solver does.
     """
     result = Path(folder) / "result.h5"
     sleep = ["--sleep", share] if share else []
@@ -92,7 +92,7 @@ def run(case, method, folder, share=None):
 
 
 def measure(case, method, shares, repetitions):
-    """For None, the whole, and each share: all seconds, the share awake, the displacements."""
+    """For None (no sleep) and each share: all seconds, the share awake, the displacements."""
     rows = {share: ([], 1.0, None) for share in [None, *shares]}
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(repetitions):
@@ -103,7 +103,7 @@ def measure(case, method, shares, repetitions):
 
 
 def table(rows, depth):
-    """The lines of the table, the whole first."""
+    """The lines of the table; the run without sleep comes first."""
     whole, _, u = rows[None]
     lines = [
         f"{'may neglect':>12} {'awake %':>8} {'s (range)':>22} {'speed-up':>9} {'neglects %':>11}"
@@ -118,7 +118,7 @@ def table(rows, depth):
 
 
 def touch(options):
-    """The lines that tell of the block that the options describe."""
+    """The lines about the block given by the options."""
     with tempfile.TemporaryDirectory() as folder:
         case = options.case or Path(folder) / "touched-block.toml"
         case.write_text(case_text(options.elements, options.patch, options.depth))
@@ -128,7 +128,7 @@ def touch(options):
 
 
 def survey(count):
-    """The lines that tell of so many random blocks: the median, and the five worst."""
+    """The lines about this many random blocks: the median, and the five worst."""
     draw = random.Random(3)
     found = []
     for _ in range(count):

@@ -1,6 +1,6 @@
-"""What bench/peers.py clocks: one run of a program on a case, at rest or in motion.
+"""The runs timed by bench/peers.py: one program on one case, at rest or in motion.
 
-A run is a function without arguments that returns a Run. Each works in a fresh folder.
+A run is a function without arguments that returns a Run. Each works in a new folder.
 """
 
 import itertools
@@ -20,18 +20,18 @@ from common.result_file import last_displacement
 from exchange.calculix_deck import Explicit
 from mesh_file import load_case_mesh, make_mesh
 
-# Imposed displacements move at most at this share of the speed of shear waves: strains of as much.
+# Largest speed of imposed displacements over the shear wave speed; strains are of this order.
 SPEED = 0.1
 CURVE_RATE = 15 / 8  # the steepest that the loading curve of eq. 15 is
 STEP_FRACTION = 0.8  # of the smallest stable step of all programs and methods
-# The longer run of a motion has at least three times its steps, and in Sandglass elements times
-# steps enough for half a second, so that its excess can be told from the start of a process.
+# The longer run of a motion has at least three times the steps and, in Sandglass, enough elements
+# times steps for half a second, so that its excess is clear of the start-up time.
 ELEMENT_STEPS = {"CalculiX": 0, "Sandglass": 4e6}
 
 
 @dataclass(frozen=True)
 class Run:
-    """Seconds of a process, of wall clock and on its processor; steps that it made; displacement.
+    """Wall and processor time of a process (s), its steps and its displacement.
 
     steps: increments of CalculiX, force evaluations of Sandglass. iterations: of Newton's method,
     or 0. answer: a file of displacements for `sandglass score`, or the displacement (n, 3) in m.
@@ -45,7 +45,7 @@ class Run:
 
 
 class Bench:
-    """What the runs of a case share: files, folder, environment of one thread, one processor."""
+    """Shared by the runs of a case: files, folder, environment for one thread, processor."""
 
     def __init__(self, path, folder):
         self.path, self.folder = path, Path(folder)
@@ -82,7 +82,7 @@ class Bench:
     def score(self, answer):
         """Max errors of a file of displacements, as fractions.
 
-        Of golden and truth, and of the explicit twin where there is no golden; others are None.
+        Relative to golden and truth or, without a golden, to the explicit twin; None if unknown.
         """
         output = self.folder / "score.json"
         self.sandglass("score", answer, "--case", self.path, "--json", output)
@@ -92,7 +92,7 @@ class Bench:
 
 
 def calculix_at_rest(bench, element):
-    """A run: ccx on the deck of `sandglass mesh --deck`, *STATIC, until it is at rest."""
+    """A run: ccx on the static deck of `sandglass mesh --deck`."""
 
     def run():
         folder = bench.fresh_folder()
@@ -118,38 +118,38 @@ def sandglass_at_rest(bench, method):
 
 
 class Motion:
-    """A case's displacements, imposed within so many steps with inertia, as far as they are gentle.
+    """A share of a case's displacements, imposed with inertia within a number of steps.
 
-    share: of the case's displacements, so that they move at SPEED. Raises InputError for a case
-    that cannot be moved like this, ComputationError when a program cannot take a step.
+    share: that for which they move at SPEED, at most one. Raises InputError for a case that cannot
+    be run like this, ComputationError if a program cannot take a step.
     """
 
     def __init__(self, bench, steps, methods):
         self.bench, self.steps = bench, steps
         if bench.case.rotations or bench.case.forces:
-            raise InputError(f"{bench.path}: only [[displacement]] can be moved in explicit runs")
+            raise InputError(f"{bench.path}: explicit runs support only [[displacement]]")
         self.material = next(iter(read_tables(bench.path).values()))["material"]
         shear = self.material["young_modulus"] / 2 / (1 + self.material["poisson_ratio"])
         self.speed = SPEED * math.sqrt(shear / self.material["density"])
-        self._set_step(1e-9)  # shorter than that of any program
+        self._set_step(1e-9)  # shorter than the step of any program
         folder = bench.fresh_folder()
         calculix_step = calculix.stable_step(self.deck("C3D8", 1), folder, bench.environment)
         self._set_step(calculix_step)
         self._set_step(STEP_FRACTION * min([calculix_step, *map(self._own_step, methods)]))
 
     def _set_step(self, seconds):
-        """Takes a step, to three digits, and the displacements that it has time for."""
+        """Sets the step, rounded to three digits, and the share of the displacements that fits."""
         self.time_step = float(f"{seconds:.3g}")
         way = self.speed * self.time_step * self.steps / CURVE_RATE
         self.share = min(1.0, way / self.bench.mesh.largest_imposed())
 
     def _own_step(self, method):
-        """The step, s, that a method of Sandglass takes by itself, in the mean."""
+        """The mean step, s, that a method of Sandglass chooses by default."""
         done = self.bench.sandglass("run", self.write_case(1, time_step=0.0), "-m", method)
         return self.time_step * self.steps / int(_said(r"in (\d+) steps of", done.output))
 
     def explicit(self, longer):
-        """The motion for CalculiX; longer: how many times as many steps."""
+        """The motion for CalculiX. longer: factor for the number of steps."""
         steps = longer * self.steps
         return Explicit(self.material["density"], self.time_step, steps, self.steps)
 
@@ -160,7 +160,7 @@ class Motion:
         return calculix.deck(case.name, mesh, case.law, case.material, element, **options)
 
     def write_case(self, longer, time_step=None):
-        """Writes the motion as a case of Sandglass: its path. time_step: 0: its own choice."""
+        """Writes the motion as a case of Sandglass; returns its path. time_step: 0: default."""
         ramp = self.time_step * self.steps
         case = {"name": self.bench.case.name, "requirement": "It moves.", "answer": "dynamic"}
         dynamics = {
@@ -181,7 +181,7 @@ class Motion:
         return path
 
     def longer(self, program):
-        """How many times as many steps the longer run of a program has."""
+        """The number of steps in the longer run of a program over that in the shorter one."""
         return max(3, round(ELEMENT_STEPS[program] / len(self.bench.mesh.cells) / self.steps))
 
     def largest_imposed(self):
@@ -190,7 +190,7 @@ class Motion:
 
 
 def calculix_in_motion(motion, element, longer=1):
-    """A run: ccx by *DYNAMIC, EXPLICIT; longer: how many times the steps of the motion."""
+    """A run: ccx by *DYNAMIC, EXPLICIT. longer: factor for the number of steps."""
     bench = motion.bench
 
     def run():
@@ -223,7 +223,7 @@ def _of_calculix(bench, found, answer):
 
 
 def _said(pattern, text):
-    """What a program printed. Raises ComputationError where it did not."""
+    """The match of a pattern in a program's output. Raises ComputationError if there is none."""
     found = re.search(pattern, text)
     if not found:
         raise ComputationError(f"sandglass printed {text!r}: {pattern!r} is required")
@@ -231,5 +231,5 @@ def _said(pattern, text):
 
 
 def _table(name, values):
-    """The lines of a table of TOML; texts, numbers and lists are written as in JSON."""
+    """The lines of a TOML table; strings, numbers and lists are written as in JSON."""
     return [name, *(f"{key} = {json.dumps(value)}" for key, value in values.items()), ""]

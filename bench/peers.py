@@ -1,8 +1,8 @@
 """CalculiX and Sandglass on the same mesh, in turn, on one thread each: seconds and errors.
 
-Usage: ci/peers [CASE] [--json FILE] [--markdown FILE]
-Needs CalculiX (ci/setup bench) and the solver's binary: build/release/sandglass, or the one that
-SANDGLASS_BINARY names.
+Usage: /usr/bin/python3 bench/peers.py [CASE] [--json FILE] [--markdown FILE]
+Needs CalculiX (ci/setup bench) and the solver's binary: build/release/sandglass, or the one given
+by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """
 
@@ -33,28 +33,27 @@ ELEMENTS = ("C3D8", "C3D8R", "C3D8I")
 METHODS = ("tl-perturbation", "tl-four-point", "tl-mean-dilatation", "tl-full")
 AT_REST = (*METHODS, "tl-energy-sampling")
 IN_MOTION = (*METHODS, "ul-perturbation")
-# The golden element's explicit twin: what motions are held against.
+# The golden element's explicit twin, the reference for motions.
 TWIN = "tl-mean-dilatation"
 NEWTON, RELAXATION, EXPLICIT = "Newton", "relaxation", "central differences"
 
 NOTES_AT_REST = """
-One answer by different ways: CalculiX by *STATIC, NLGEOM, Newton's method with a direct solver,
-Sandglass by dynamic relaxation, both until their residuals are below 1e-8. Seconds and errors of
-any two rows may be compared, those of a step may not: a step of CalculiX is an increment of several
-iterations, one of Sandglass an evaluation of the forces.
-seconds: of the whole process. CPU: of them, on its processor. max to golden, to truth: largest
-error at any node, of the largest imposed displacement, by `sandglass score`; to twin: where a case
-has no golden, to tl-mean-dilatation.
+The same answer by different methods: CalculiX uses *STATIC, NLGEOM, Newton's method with a direct
+solver, Sandglass uses dynamic relaxation, both until their residuals are below 1e-8. Seconds and
+errors of any two rows are comparable, times per step are not: a step of CalculiX is an increment of
+several iterations, one of Sandglass an evaluation of the forces.
+seconds: wall time of the whole process. CPU: its processor time. max to golden, to truth: largest
+error at any node over the largest imposed displacement, by `sandglass score`; to twin: for a case
+without a golden, to tl-mean-dilatation.
 """
 NOTES_IN_MOTION = """
-One motion by one method: central differences with lumped masses and the same step, {step:.3g} s,
-or a shorter one where CalculiX takes that for unstable; {share:.3g} of the case's displacements,
-imposed in {steps} steps. What may be compared is the time per element and step: the processor's
-time by which a longer run exceeds this one, over its further steps, so that what comes before the
-first step does not count.
-There is no golden of a motion. to {twin}: largest difference from its motion, at the end,
-of what is imposed. nearest: which method of Sandglass moves most alike, as C3D8 and tl-full must,
-which are the same element. A motion that is far from all is not sound.
+The same motion by the same method: central differences with lumped masses and the same step,
+{step:.3g} s, or a shorter one if CalculiX considers that unstable; {share:.3g} of the case's
+displacements, imposed in {steps} steps. The comparable figure is the time per element and step: the
+additional processor time of a longer run over its additional steps, so start-up does not count.
+There is no golden for a motion. to {twin}: largest difference from its final displacement over the
+imposed one. nearest: the method of Sandglass with the most similar motion; C3D8 and tl-full are the
+same element and must agree. A motion that is far from all others is not sound.
 """
 
 
@@ -96,9 +95,9 @@ COLUMNS_IN_MOTION = (
 
 
 class Row:
-    """A program with an element, and what was clocked of it.
+    """A program with an element, and its timed runs.
 
-    runs: name -> function that returns a Run, clocked in this order in every round.
+    runs: name -> function that returns a Run; timed in this order in every round.
     """
 
     def __init__(self, program, element, solve, runs):
@@ -107,7 +106,7 @@ class Row:
         self.failure = None
 
     def round(self):
-        """Clock every run once more; a row that failed stays out."""
+        """Time every run once more; a row that failed is skipped."""
         if self.failure:
             return
         print(f"{self.program} {self.element}, {self.solve}", file=sys.stderr, flush=True)
@@ -118,7 +117,7 @@ class Row:
             self.failure = str(error)
 
     def record(self, **more):
-        """The row as a dict of plain figures; None for what is not known."""
+        """The row as a dict of plain figures; None for unknown ones."""
         record = {key: None for _, key, _ in (*COLUMNS_AT_REST, *COLUMNS_IN_MOTION)}
         record |= {"program": self.program, "element": self.element, "solve": self.solve}
         record |= dict.fromkeys(("seconds", "processor_seconds", "ns_per_element_step"))
@@ -136,7 +135,7 @@ class Row:
         return record
 
     def per_step(self):
-        """Processor seconds per step, of each round: the longer run's excess over the other."""
+        """Processor seconds per step in each round: the longer run minus the shorter one."""
         return [
             (long.processor_seconds - short.processor_seconds) / (long.steps - short.steps)
             for short, long in zip(self.clocked["answer"], self.clocked["longer"], strict=True)
@@ -156,7 +155,7 @@ def rows_at_rest(bench, options):
 
 
 def rows_in_motion(motion, options):
-    """The rows of the same displacements with inertia."""
+    """The rows for the same displacements imposed with inertia."""
     rows = []
     makers = {
         "CalculiX": (peer_runs.calculix_in_motion, options.elements),
@@ -171,7 +170,7 @@ def rows_in_motion(motion, options):
 
 
 def motion_methods(options):
-    """The methods of Sandglass that are moved; the twin is always among them."""
+    """The methods of Sandglass to compare in motion; they always include the twin."""
     return list(dict.fromkeys([*(options.methods or IN_MOTION), TWIN]))
 
 
@@ -261,7 +260,7 @@ def measure(options):
 
 
 def shown(records, columns):
-    """A Markdown table of the columns in which something stands."""
+    """A Markdown table of the non-empty columns."""
     known = [
         column for column in columns if any(record[column[1]] is not None for record in records)
     ]
@@ -269,7 +268,7 @@ def shown(records, columns):
 
 
 def report(document, options):
-    """What was measured, on what, and what is compared with what, as Markdown."""
+    """The report in Markdown: measurements, machine and notes."""
     loads = "{load_average_before:.2f} to {load_average_after:.2f}".format(**document)
     versions = ", ".join(f"{name} {version}" for name, version in document["versions"].items())
     lines = [
@@ -291,7 +290,7 @@ def report(document, options):
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        prog="ci/peers",
+        prog="peers.py",
         description="CalculiX and Sandglass on the same mesh, in turn, on one thread each.",
         epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
     )

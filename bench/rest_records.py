@@ -1,6 +1,6 @@
-"""Records of what a program took to bring a case to rest: reading, checking, showing, storing.
+"""Records of a program's time to rest: reading, checking, printing, storing.
 
-A record is a dict with every key of KEYS; None stands for what is not measured.
+A record is a dict with every key of KEYS; None means not measured.
 """
 
 import re
@@ -9,7 +9,7 @@ from common.errors import ComputationError, InputError
 from common.files import read_json
 from common.records import NUMBER, entries, entry
 
-# What `sandglass bench --rest` gives of each of its runs.
+# Keys written by `sandglass bench --rest` for each of its runs.
 SOLVER_KEYS = {
     "case": str,
     "method": str,
@@ -20,7 +20,7 @@ SOLVER_KEYS = {
     "seconds_to_rest": float,
     "residual": float,
 }
-# What else this benchmark knows. steps: of an implicit program, its load steps.
+# Keys added by this benchmark. steps: for an implicit program, its load steps.
 KEYS = {
     "program": str,
     **SOLVER_KEYS,
@@ -41,7 +41,7 @@ def record(**known):
 
 
 def read_solver_records(path):
-    """The records of the document that `sandglass bench --rest` wrote: objects with SOLVER_KEYS.
+    """The records in a document of `sandglass bench --rest`: objects with SOLVER_KEYS.
 
     Other keys, of the document and of a record, are ignored. Returns a list of records with
     program "sandglass". Raises InputError naming file, entry, key, value and rule.
@@ -50,7 +50,7 @@ def read_solver_records(path):
 
 
 def _checked(where, found):
-    """An object of a list of solver records as a record: texts, and numbers >= 0 or null."""
+    """One solver record as a record: texts, and numbers >= 0 or null."""
     figures = {}
     for key, kind in SOLVER_KEYS.items():
         text = kind is str
@@ -61,9 +61,9 @@ def _checked(where, found):
 
 
 def read_run(case, method, text):
-    """The record of what `sandglass run` printed about a quasi-static case: only time to rest.
+    """The record (time to rest only) from the output of `sandglass run` on a quasi-static case.
 
-    Raises ComputationError when the text does not say that the case came to rest, and how fast.
+    Raises ComputationError if the text does not state that the case came to rest, and its time.
     """
     rest = re.search(r"at rest after (\d+) steps, residual (\S+)", text)
     wall = re.search(r"^wall time (\S+) s", text, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The deck that CalculiX gets and what is read back; CalculiX itself where it is installed."""
+"""The deck for CalculiX and the reading of its results; CalculiX itself if it is installed."""
 
 import shutil
 
@@ -81,7 +81,7 @@ def test_damaged_progress_file(tmp_path, old, new):
 
 
 def _stand_in(tmp_path, monkeypatch, script):
-    """Put a shell script in the place of ccx."""
+    """Replace ccx by a shell script."""
     program = tmp_path / "ccx"
     program.write_text(f"#!/bin/sh\n{script}\n")
     program.chmod(0o755)

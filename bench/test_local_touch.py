@@ -1,4 +1,4 @@
-"""The touched block: its case, what is printed, and that sleep neglects no more than it may."""
+"""The touched block: its case, the output, and that sleep's error is within its limit."""
 
 import numpy as np
 import pytest

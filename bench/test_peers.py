@@ -18,7 +18,7 @@ needs_ccx = pytest.mark.skipif(
 
 @pytest.fixture
 def block(tmp_path):
-    """A small case in a folder of its own."""
+    """A small case in its own folder."""
     file = tmp_path / "block.toml"
     file.write_text(BLOCK)
     return file
@@ -40,7 +40,7 @@ def test_the_same_element_gives_the_same_answers(block, capsys):
     assert set(rest) == {"C3D8", "C3D8R", "tl-perturbation", "tl-full"}
     # Six digits are written, and both stop at residuals of 1e-8 of the reactions.
     assert abs(rest["C3D8"]["twin"] - rest["tl-full"]["twin"]) < 1e-5
-    assert rest["C3D8"]["twin"] > 0.1 > 10 * rest["C3D8R"]["twin"]  # one of them locks
+    assert rest["C3D8"]["twin"] > 0.1 > 10 * rest["C3D8R"]["twin"]  # one of the two locks
     motion = {record["element"]: record for record in document["in_motion"]}
     assert motion["C3D8"]["nearest"]["method"] == "tl-full"
     # Both are of second order: they may differ by half a squared step, of 60, times the largest
@@ -100,7 +100,7 @@ def test_cases_that_calculix_cannot_do(block, capsys, old, new, told):
 def test_what_has_a_load_is_not_moved(block, capsys):
     block.write_text(BLOCK + '\n[[force]]\nset = "head"\ntotal = [0.0, 0.0, 1.0]\n')
     assert _compare(block)[0] == 2
-    assert "only [[displacement]] can be moved" in capsys.readouterr().err
+    assert "explicit runs support only [[displacement]]" in capsys.readouterr().err
 
 
 def test_files_that_cannot_be_written(block, capsys):
@@ -109,7 +109,7 @@ def test_files_that_cannot_be_written(block, capsys):
 
 
 def test_a_step_costs_what_the_longer_run_takes_more():
-    """Whatever comes before the first step does not count; rounds are kept apart."""
+    """Time before the first step does not count; rounds are kept separate."""
     short = iter(
         [Run(9.0, 1.0, 10, 0, None), Run(5.0, 2.0, 10, 0, None), Run(7.0, 3.0, 10, 0, None)]
     )

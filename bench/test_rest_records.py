@@ -1,4 +1,4 @@
-"""Records of times to rest: reading those of the solver, showing and storing them."""
+"""Records of times to rest: reading those of the solver, printing and storing them."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""The command line: what it stores, what it leaves out, exit codes. Takes the solver's binary."""
+"""The command line: what it stores, what it skips, exit codes. Uses the solver's binary."""
 
 import importlib.util
 import json
@@ -35,7 +35,7 @@ def _measure(case, *options):
 
 
 def _stand_in(tmp_path, monkeypatch, script):
-    """A shell script before the solver: what it does not answer goes to the real one."""
+    """A shell script in front of the solver, which passes on what it does not answer itself."""
     program = tmp_path / "sandglass"
     real = shlex.quote(str(binary()))
     program.write_text(f'#!/bin/sh\n{script}\nexec {real} "$@"\n')
@@ -72,7 +72,7 @@ if [ "$1 $2 $4" = "bench --rest --json" ]; then echo {listed} > "$5"; exit 0; fi
 
 
 def test_records_of_bench_itself(block, capsys):
-    """The solver's own, with its figures in the order in which they must stand."""
+    """The solver's own records, with their figures in the required order."""
     code, document = _measure(block, "--programs", "sandglass")
     assert code == 0
     found = {(timed["method"], timed["precision"]) for timed in document["records"]}
@@ -171,7 +171,7 @@ def test_seconds_until_it_stays_near_the_end():
     pytest.importorskip("dolfinx", reason="FEniCSx is not installed (package python3-dolfinx)")
     import golden_timing
 
-    # Near the end once at 11 s, away again, near for good from 13 s on; exact at 14 s.
+    # Close to the end once at 11 s, away again, close for good from 13 s on; exact at 14 s.
     heights = [(10.0, 0.0), (11.0, 0.999), (12.0, 0.5), (13.0, 1.004), (14.0, 1.0)]
     moments = [(at, np.array([[0.0, 0.0, z]])) for at, z in heights]
     assert golden_timing.seconds_within(moments, 0.01, 1.0) == 3.0

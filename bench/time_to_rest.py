@@ -1,8 +1,8 @@
 """Seconds to the answer of a quasi-static case: FEniCSx, CalculiX and Sandglass, in one run.
 
 Usage: /usr/bin/python3 bench/time_to_rest.py [CASE] [--json FILE]
-Needs the solver's binary: build/release/sandglass, or the one that SANDGLASS_BINARY names.
-A program that is not installed is named and left out.
+Needs the solver's binary: build/release/sandglass, or the one given by SANDGLASS_BINARY.
+Programs that are not installed are named and skipped.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """
 
@@ -22,8 +22,8 @@ if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 if importlib.util.find_spec("ufl") is None:
-    # The list of laws, which checks the case file, is written in UFL: without FEniCSx its energies
-    # are never called, but its import must not fail.
+    # The list of laws, needed to check the case file, imports UFL. Without FEniCSx its energies are
+    # never called, but the import must not fail.
     sys.modules["ufl"] = types.ModuleType("ufl")
 
 import calculix
@@ -41,27 +41,27 @@ from reference_file import path_of, read_reference
 
 METHODS = ("tl-mean-dilatation", "tl-perturbation")
 ELEMENTS = ("C3D8", "C3D8R")
-# Of CalculiX's force residual and displacement correction; the residual at which Sandglass rests.
+# For CalculiX's force residual and displacement correction; the residual at which Sandglass stops.
 TOLERANCE = 1e-8
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 NOTES = """
-Seconds of wall clock. Distances are max |u - u'| over the nodes / largest imposed displacement.
-to 1 %, 0.1 %: from the start of the solution until u stays that near to the method's own end.
-Those of Sandglass: that share of its force evaluations, times its seconds to rest.
+Seconds are wall time. Distances are max |u - u'| over the nodes / largest imposed displacement.
+to 1 %, 0.1 %: from the start of the solution until u stays that close to the method's final u.
+For Sandglass: the corresponding share of its force evaluations, times its seconds to rest.
 to rest: until the method stops. FEniCSx: correction < 1e-10. CalculiX: residual and correction
-< 1e-8; its own time, reading and set-up included. Sandglass: residual < 1e-8, in float also the
-rounding; median of three runs.
+< 1e-8; time as printed by CalculiX, including reading and set-up. Sandglass: residual < 1e-8, in
+float also the rounding; median of three runs.
 steps, iterations: load steps and Newton iterations of implicit programs, force
 evaluations of Sandglass.
 """.strip()
 
 
 class Unavailable(Exception):
-    """A program is not installed or cannot do the case: it is named and left out."""
+    """A program is not installed or cannot run the case: it is named and skipped."""
 
 
 class Job:
-    """What all programs share: the case, its mesh, a folder to work in, an environment, options."""
+    """Shared by all programs: the case, its mesh, a working folder, an environment, options."""
 
     def __init__(self, options, folder):
         self.options, self.folder = options, Path(folder)
@@ -78,13 +78,13 @@ class Job:
         self.golden = None
 
     def fail(self, text):
-        """Tell of a computation that failed; the others go on."""
+        """Report a failed computation; the others continue."""
         print(f"error: {self.case.name}: {text}", file=sys.stderr, flush=True)
         self.exit_code = 3
 
 
 def case_path(name):
-    """The absolute path of a case, given as a file or by the name of a canonical one.
+    """The absolute path of a case, given as a file or as the name of a case in cases/.
 
     Raises InputError.
     """
@@ -98,7 +98,7 @@ def case_path(name):
 
 
 def require_quasi_static(path):
-    """Raise InputError unless the case, a readable one, has a static answer."""
+    """Raise InputError unless the case is quasi-static."""
     answer = read_toml(path)["case"].get("answer")
     if answer != "quasi-static":
         raise InputError(f"{path}: case.answer = {answer!r} must be 'quasi-static'")
@@ -123,7 +123,7 @@ def time_golden(job):
 
 
 def _golden(job, load_steps):
-    """(record, displacement (n, 3) in m) of the golden by so many load steps; 0: the reference's.
+    """(record, displacement (n, 3) in m) of the golden with load_steps; 0: the reference's number.
 
     Raises ComputationError.
     """
@@ -134,7 +134,7 @@ def _golden(job, load_steps):
     command += ["--mesh", job.mesh_path, "-o", output]
     if load_steps:
         command += ["--load-steps", load_steps]
-    # In an empty cache, so that what is compiled does not depend on earlier runs.
+    # An empty cache, so that compilation does not depend on earlier runs.
     environment = {**job.environment, "XDG_CACHE_HOME": str(folder / "cache")}
     started = time.perf_counter()
     output_of(*command, env=environment)
@@ -156,7 +156,7 @@ def _golden(job, load_steps):
 
 
 def time_calculix(job):
-    """Adds a record of CalculiX for every element asked for. Raises Unavailable."""
+    """Adds a record of CalculiX for every requested element. Raises Unavailable."""
     if shutil.which(calculix.PROGRAM) is None:
         raise Unavailable(
             f"{calculix.PROGRAM} is not installed; package {calculix.PACKAGE} (ci/setup bench)"
@@ -190,9 +190,9 @@ def time_calculix(job):
 
 
 def time_sandglass(job):
-    """Adds the records of Sandglass, those of `sandglass bench --rest` where it is there.
+    """Adds the records of Sandglass, from `sandglass bench --rest` if available.
 
-    METHODS that it lacks get their seconds to rest from `sandglass run`. Raises ComputationError or
+    Other METHODS get their seconds to rest from `sandglass run`. Raises ComputationError or
     InputError.
     """
     solver = binary()
@@ -207,7 +207,7 @@ def time_sandglass(job):
                 timed = rest_records.read_run(job.case.name, method, output_of(*command))
                 timed["process_seconds"] = time.perf_counter() - started
                 records.append(timed)
-            # Again for the displacement: writing frames must not count.
+            # Run again for the displacement: writing frames must not count.
             output_of(*command, "-o", output)
         except ComputationError as error:
             job.fail(f"{method}: {error}")
@@ -219,7 +219,7 @@ def time_sandglass(job):
 
 
 def _records_of_bench(job, solver):
-    """The records of `bench --rest`; none of a solver that has no such command."""
+    """The records of `bench --rest`; none if the solver has no such command."""
     if "--rest" not in output_of(solver, "bench", "--help"):
         note("this sandglass has no `bench --rest`: its seconds to 1 % and 0.1 % are not measured")
         return []
@@ -228,7 +228,7 @@ def _records_of_bench(job, solver):
         output_of(solver, "bench", "--rest", job.path, "--json", output)
     except ComputationError as error:
         job.fail(error)
-    # With what came to rest, also when something did not.
+    # It contains the runs that came to rest, even if others did not.
     return rest_records.read_solver_records(output) if output.exists() else []
 
 
@@ -236,21 +236,21 @@ PROGRAMS = {"golden": time_golden, "calculix": time_calculix, "sandglass": time_
 
 
 def compare(job):
-    """Fill in every record's distance from the golden: this run's, or else the stored one.
+    """Fill in every record's distance from the golden of this run or, if none, the stored one.
 
-    Raises InputError when the stored one is damaged.
+    Raises InputError if the stored one is damaged.
     """
     golden = job.golden
     if golden is None:
         stored = path_of("golden", job.case.name)
         if not stored.exists():
-            note("no golden: the others are compared with nothing")
+            note("no golden: distances are not computed")
             return
         _, golden, attributes = read_reference(stored)
         if attributes["mesh_hash"] != job.mesh_file.mesh_hash or (
             attributes["case_hash"] != job.mesh_file.case_hash
         ):
-            note(f"{stored}: of another state of the case: compared with nothing")
+            note(f"{stored}: belongs to another version of the case: distances are not computed")
             return
         note(f"compared with the stored golden {stored}")
     for timed, displacement in job.displacements:
@@ -259,7 +259,7 @@ def compare(job):
 
 
 def machine(threads):
-    """What the seconds were measured on, as a dict."""
+    """The machine that the seconds were measured on, as a dict."""
     name = "unknown"
     if os.path.exists("/proc/cpuinfo"):
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
@@ -275,12 +275,12 @@ def machine(threads):
 
 
 def note(text):
-    """Tell something that is no error."""
+    """Print a message that is not an error."""
     print(f"note: {text}", file=sys.stderr, flush=True)
 
 
 def show(job, place):
-    """Print what was measured, and on what. place: of machine()."""
+    """Print the measurements and the machine. place: from machine()."""
     loads = f"{place['load_average_before']:.2f} to {place['load_average_after']:.2f}"
     print(f"{job.case.name}: {len(job.mesh.points)} nodes, {len(job.mesh.cells)} elements")
     print(
@@ -303,7 +303,7 @@ def measure(options):
             try:
                 PROGRAMS[name](job)
             except Unavailable as reason:
-                note(f"{name} is left out: {reason}")
+                note(f"{name} is skipped: {reason}")
             except ComputationError as error:
                 job.fail(error)
         place["load_average_after"] = os.getloadavg()[0]

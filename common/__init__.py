@@ -1,1 +1,1 @@
-"""What all Python folders share; see README.md."""
+"""Code shared by the Python folders; see README.md."""

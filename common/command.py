@@ -1,4 +1,4 @@
-"""Command lines: how they end, and numbers out of them."""
+"""Exit codes and arguments of command lines."""
 
 import argparse
 import sys
@@ -7,23 +7,23 @@ from common.errors import ComputationError, InputError
 
 
 def exit_code(work, *arguments):
-    """Does the work of a command line. Returns its exit code.
+    """Runs work(*arguments) and returns the exit code of the command line.
 
-    That is what work(*arguments) returns, 0 for None; for an InputError 2 and for a
-    ComputationError 3, which are told in one line of standard error.
+    This is the value that work returns (0 for None), 2 for an InputError or 3 for a
+    ComputationError; an error is reported in one line on standard error.
     """
     try:
         return work(*arguments) or 0
     except InputError as error:
-        told, code = error, 2
+        message, code = error, 2
     except ComputationError as error:
-        told, code = error, 3
-    print(f"error: {told}", file=sys.stderr)
+        message, code = error, 3
+    print(f"error: {message}", file=sys.stderr)
     return code
 
 
 def whole_number(smallest):
-    """A function that takes a whole number >= smallest out of the command line, for argparse."""
+    """A type for argparse: whole numbers of at least `smallest`."""
 
     def number(text):
         found = int(text)

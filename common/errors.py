@@ -1,14 +1,14 @@
-"""The two ways in which a program refuses to go on, as solver/base/error.hpp has them."""
+"""The two kinds of errors, as in solver/base/error.hpp."""
 
 import difflib
 
 
 class InputError(Exception):
-    """Bad usage or input: file or key, value, rule, what is allowed. Exit code 2."""
+    """Bad usage or input: names file or key, value, rule, what is allowed. Exit code 2."""
 
 
 class ComputationError(Exception):
-    """A computation failed: no equilibrium, or a program that broke down. Exit code 3."""
+    """A computation failed: no equilibrium, or a program that crashed. Exit code 3."""
 
 
 def suggestion(name, known):

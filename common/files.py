@@ -1,4 +1,4 @@
-"""JSON and TOML files that are read, and files that appear whole or not at all."""
+"""Reading JSON and TOML files, and writing files atomically."""
 
 import json
 import os
@@ -13,7 +13,7 @@ from common.errors import InputError
 def read_json(path, command=""):
     """The object in a JSON file, a dict. Raises InputError.
 
-    command: what makes such a file, for the message where there is none.
+    command: makes such a file; named in the message if the file cannot be read.
     """
     document = _parsed(path, json.loads, "JSON", command)
     if not isinstance(document, dict):
@@ -27,7 +27,7 @@ def read_toml(path):
 
 
 def _parsed(path, parse, language, command=""):
-    """What parse() makes of the text of a file. Raises InputError."""
+    """The result of parse() for the text of a file. Raises InputError."""
     try:
         return parse(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
@@ -38,7 +38,7 @@ def _parsed(path, parse, language, command=""):
 
 
 def require_writable(path):
-    """Raises InputError unless a file can be written at `path`: asked before the long work."""
+    """Raises InputError unless a file can be written at `path`. To be called before long work."""
     folder = Path(path).resolve().parent
     if not folder.is_dir():
         raise InputError(f"{path}: cannot be written: the folder {folder} does not exist")
@@ -48,7 +48,7 @@ def require_writable(path):
 
 @contextmanager
 def writing(path):
-    """What fails while files are written within is an InputError about them, or about `path`."""
+    """Turns an OSError within the block into an InputError about its file, or about `path`."""
     try:
         yield
     except OSError as error:
@@ -58,10 +58,10 @@ def writing(path):
 
 @contextmanager
 def new_file(path):
-    """The Path of an empty file that takes the place of `path` when all has been written to it.
+    """The Path of an empty temporary file, which replaces `path` when the block ends.
 
-    Where something fails within, what stood at `path` stays and nothing else is left. Raises
-    InputError where it cannot be written.
+    If the block fails, `path` is left as it was and the temporary file is removed. Raises
+    InputError if the file cannot be written.
     """
     place, temporary = Path(path).resolve(), None
     try:
@@ -79,11 +79,11 @@ def new_file(path):
 
 
 def write_whole(path, text):
-    """Writes a text as a new file. Raises InputError."""
+    """Writes a text file atomically. Raises InputError."""
     with new_file(path) as file:
         file.write_text(text, encoding="utf-8")
 
 
 def write_json(path, document):
-    """Writes a document as a new JSON file. Raises InputError, ValueError for what JSON lacks."""
+    """Writes a JSON file atomically. Raises InputError, or ValueError for NaN and infinity."""
     write_whole(path, json.dumps(document, indent=1, allow_nan=False) + "\n")

@@ -29,7 +29,7 @@ def boundary_faces(cells):
 def gauss_jacobians(points, cells):
     """det dX/dxi at the 2x2x2 Gauss points of trilinear hexahedra: (8, m), m^3.
 
-    Their sum is the volume, exactly: det J is quadratic in each direction. points: (n, 3), m.
+    Their sum is exactly the volume, as det J is quadratic in each direction. points: (n, 3), m.
     cells: (m, 8).
     """
     corners = points[cells]

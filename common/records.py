@@ -1,4 +1,4 @@
-"""Reading documents with care: what is missing or of the wrong kind is said with file and key."""
+"""Validated reading of documents: errors name the file and the missing or mistyped key."""
 
 import dataclasses
 import math
@@ -18,7 +18,7 @@ WORDS = {
 
 
 def entries(where, record, key):
-    """(where, object) of each entry of a required list of objects, where as in "FILE: key[0]".
+    """(where, object) for each entry of a required list of objects; where is like "FILE: key[0]".
 
     Raises InputError.
     """
@@ -31,7 +31,7 @@ def entries(where, record, key):
 
 
 def entry(where, record, key, kind, none_allowed=False):
-    """A required value of an object, of a kind out of WORDS; None where that is allowed.
+    """A required value of an object, of one of the kinds in WORDS; None where that is allowed.
 
     where: the file, or the file and the object's own key. Raises InputError.
     """
@@ -49,15 +49,15 @@ def entry(where, record, key, kind, none_allowed=False):
 
 
 def _name(where, key):
-    """A key of a file, or of an object in it."""
+    """The full name of a key of a file or of an object in it."""
     return f"{where}.{key}" if ": " in str(where) else f"{where}: {key}"
 
 
 def as_dataclass(kind, where, record, **known):
-    """An object as a dataclass: each field by its name, or by the key that `key` gave it.
+    """An object as a dataclass; a field's key is its name unless `key` gives another.
 
-    Fields are texts, numbers (float: any), lists, objects or dataclasses, or one of them | None.
-    known: the fields that are not read. Raises InputError.
+    Fields are texts, numbers (float: any), lists, objects or dataclasses, or one of these | None.
+    known: values of fields that are not read. Raises InputError.
     """
     for field in dataclasses.fields(kind):
         if field.name in known:
@@ -73,10 +73,10 @@ def as_dataclass(kind, where, record, **known):
 
 
 def key(name):
-    """A field of a dataclass whose key in documents is not its own name."""
+    """A field of a dataclass whose key in documents differs from its name."""
     return dataclasses.field(metadata={"key": name})
 
 
 def facts(document):
-    """What a document says about its making: name -> text, all that is neither list nor object."""
+    """A document's metadata: name -> text, for all values that are neither lists nor objects."""
     return {k: str(v) for k, v in document.items() if not isinstance(v, (list, dict, type(None)))}

@@ -1,4 +1,4 @@
-"""What result files of `sandglass run` hold (HDF5)."""
+"""Reading the result files of `sandglass run` (HDF5)."""
 
 import h5py
 
@@ -10,5 +10,5 @@ def last_displacement(path):
 
 
 def text_of(attribute):
-    """A text attribute; texts of fixed length come out of h5py as bytes. Others as they are."""
+    """A text attribute as str: h5py returns texts of fixed length as bytes. Others stay as is."""
     return attribute.decode() if isinstance(attribute, bytes) else attribute

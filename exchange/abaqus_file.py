@@ -1,8 +1,8 @@
-"""Abaqus and CalculiX input files (.inp): the mesh and its sets, read and written.
+"""Reads and writes Abaqus and CalculiX input files (.inp): the mesh and its sets.
 
-Not by meshio: it ends a list of nodes at a comment, lets a second *NODE, or a second *NSET of the
-same name, replace the first, drops sets made of sets, mixes up the blocks of element sets, and
-refuses lower-case types.
+meshio is not used: it ends a list of nodes at a comment, lets a second *NODE, or a second *NSET of
+the same name, replace the first, drops sets made of sets, mixes up the blocks of element sets, and
+rejects lower-case types.
 """
 
 import re
@@ -20,8 +20,8 @@ BRICK = re.compile(r"C3D8[A-Z]*")
 def read(path):
     """The ForeignMesh of an .inp file: sets of nodes and of elements become node sets.
 
-    Sets are told apart as Abaqus does it, without regard to case; they keep the spelling that comes
-    first. Raises InputError naming the line.
+    As in Abaqus, names of sets are not case-sensitive; the first spelling is kept. Raises
+    InputError naming the line.
     """
     reader = _Reader()
     reader.read(path, 0)
@@ -29,13 +29,13 @@ def read(path):
 
 
 class _Sets:
-    """Sets of numbers by name: what several keywords say of one adds up."""
+    """Sets of numbers by name; several keywords may contribute to the same set."""
 
     def __init__(self):
         self.spelled, self.members = {}, {}
 
     def add(self, name, numbers):
-        """Adds numbers to those of a name."""
+        """Adds numbers to the set of this name."""
         self.spelled.setdefault(name.upper(), name)
         self.members.setdefault(name.upper(), set()).update(numbers)
 
@@ -47,7 +47,7 @@ class _Reader:
         self.instances = 0
 
     def read(self, path, depth):
-        """All keywords of a file and of those that it includes. Raises InputError."""
+        """Reads all keywords of a file and of the files it includes. Raises InputError."""
         try:
             text = path.read_text(encoding="utf-8", errors="replace")
         except OSError as error:
@@ -55,17 +55,17 @@ class _Reader:
         for keyword, options, lines, where in _keywords(path, text):
             if keyword == "INCLUDE":
                 if depth > 9 or not options.get("INPUT"):
-                    raise InputError(f"{where}: *INCLUDE needs INPUT=FILE, ten deep at most")
+                    raise InputError(f"{where}: *INCLUDE needs INPUT=FILE, nested at most ten deep")
                 self.read(path.parent / options["INPUT"], depth + 1)
             elif keyword in GENERATING:
                 raise InputError(
-                    f"{where}: *{keyword}: not read here; write all nodes and elements"
+                    f"{where}: *{keyword} is not supported; write all nodes and elements"
                 )
             elif keyword == "INSTANCE":
                 self.instances += 1
                 if self.instances > 1 or lines:
                     raise InputError(
-                        f"{where}: *INSTANCE: one instance, neither moved nor turned, is allowed"
+                        f"{where}: *INSTANCE: only one is allowed, neither translated nor rotated"
                     )
             elif keyword == "NODE":
                 self._read_nodes(options, lines, where)
@@ -79,7 +79,7 @@ class _Reader:
             raise InputError(f"{where}: *NODE, SYSTEM: rectangular coordinates are required")
         for place, fields in lines:
             if not 3 <= len(fields) <= 7:
-                raise InputError(f"{place}: a node is an id and three coordinates")
+                raise InputError(f"{place}: a node needs an id and three coordinates")
             self.ids.append(_whole(place, fields[0]))
             xyz = [_real(place, field) for field in fields[1:4]]
             self.points.append(xyz + [0.0] * (3 - len(xyz)))
@@ -100,7 +100,7 @@ class _Reader:
         elements, alike = [[]], {}
         for place, fields in lines:
             elements[-1] += [_whole(place, field) for field in fields if field]
-            if fields[-1]:  # a line that ends with a comma goes on
+            if fields[-1]:  # a line that ends with a comma is continued
                 elements.append([])
         for element in filter(None, elements):
             alike.setdefault(len(element), []).append(element)
@@ -128,9 +128,9 @@ class _Reader:
                 ends = [_whole(place, field) for field in fields]
                 step = ends[2] if len(ends) == 3 else 1
                 if not 2 <= len(ends) <= 3 or step < 1 or ends[1] < ends[0]:
-                    raise InputError(f"{place}: GENERATE needs first, last, and a step above zero")
+                    raise InputError(f"{place}: GENERATE needs first, last, and a positive step")
                 if (ends[1] - ends[0]) // step >= 10**8:
-                    raise InputError(f"{place}: GENERATE makes more than 100 million numbers")
+                    raise InputError(f"{place}: GENERATE gives more than 100 million numbers")
                 own.add(name, range(ends[0], ends[1] + 1, step))
                 continue
             for field in fields:
@@ -139,7 +139,7 @@ class _Reader:
 
     def _members(self, where, sets, name):
         if name.upper() not in sets.members:
-            raise InputError(f"{where}: set '{name}' is not there; it must stand before its use")
+            raise InputError(f"{where}: set '{name}' must be defined before its use")
         return sets.members[name.upper()]
 
     def _nodes_of(self, elements):
@@ -148,15 +148,17 @@ class _Reader:
         return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *found])).tolist()
 
     def mesh(self, path):
-        """The ForeignMesh. Raises InputError where a set names what is not there."""
+        """The ForeignMesh. Raises InputError if a set names an element that does not exist."""
         sets = {}
         known = np.concatenate([np.empty(0, dtype=np.int64), *(b.ids for b in self.blocks)])
         for key, members in self.elements.members.items():
             missing = np.setdiff1d(np.fromiter(members, dtype=np.int64), known)
             if missing.size:
                 name = self.elements.spelled[key]
-                raise InputError(f"{path}: set '{name}' names element {missing[0]}: not there")
-            if key not in self.nodes.members:  # else the node set of that name is meant
+                raise InputError(
+                    f"{path}: set '{name}' names element {missing[0]}, which does not exist"
+                )
+            if key not in self.nodes.members:  # a node set of the same name takes precedence
                 sets[self.elements.spelled[key]] = np.array(self._nodes_of(members), dtype=np.int64)
         for key, members in self.nodes.members.items():
             sets[self.nodes.spelled[key]] = np.array(sorted(members), dtype=np.int64)
@@ -165,7 +167,7 @@ class _Reader:
 
 
 def _joined(blocks):
-    """Blocks of one kind and width as one, so that there are few."""
+    """The blocks, with those of the same kind and width joined."""
     alike = {}
     for block in blocks:
         alike.setdefault((block.kind, block.dimension, block.nodes.shape[1]), []).append(block)
@@ -189,9 +191,9 @@ def _keywords(path, text):
             continue
         if not line.startswith("*"):
             if current is None:
-                raise InputError(f"{place}: {line[:40]!r} stands before the first *KEYWORD")
+                raise InputError(f"{place}: {line[:40]!r} comes before the first *KEYWORD")
             if not lines and current[0].endswith(",") and line[0].isalpha():
-                current = (current[0] + line, current[1])  # the keyword's line goes on
+                current = (current[0] + line, current[1])  # the keyword's line is continued
                 continue
             lines.append((place, [field.strip() for field in line.split(",")]))
             continue
@@ -230,7 +232,7 @@ def _real(place, text):
 
 
 def number(value):
-    """A number in at most 20 characters, more are not read: exact where that suffices."""
+    """A number in at most 20 characters, as more are not read; exact if they suffice."""
     texts = (repr(float(value)), f"{value:.13e}", f"{value:.12e}")
     return next(text for text in texts if len(text) <= 20)
 
@@ -238,23 +240,24 @@ def number(value):
 def mesh_lines(mesh, element="C3D8", element_set=None):
     """The lines of *NODE, *ELEMENT and *NSET of a HexMesh; ids count from one.
 
-    element: type of a brick of eight nodes. element_set: name for all elements, if they need one.
-    Raises InputError for a name of a set that the format cannot hold.
+    element: an eight-node brick type. element_set: name of a set of all elements, or None.
+    Raises InputError for a set name that the format does not allow.
     """
     lines = ["*NODE"]
     lines += [f"{i}, " + ", ".join(map(number, point)) for i, point in enumerate(mesh.points, 1)]
-    # VTK and Abaqus number the vertices of a brick alike.
+    # VTK and Abaqus number the vertices of a brick in the same order.
     lines.append(f"*ELEMENT, TYPE={element}" + (f", ELSET={element_set}" if element_set else ""))
     lines += [f"{i}, " + ", ".join(map(str, cell)) for i, cell in enumerate(mesh.cells + 1, 1)]
     spelled = {}
     for name, nodes in mesh.sets.items():
         if not name.isprintable() or '"' in name or len(name) > 80:
             raise InputError(
-                f"set {name!r}: a name in .inp has no quotes and 80 characters at most"
+                f"set {name!r}: names in .inp must be printable, without quotes, at most 80 "
+                "characters"
             )
         other = spelled.setdefault(name.upper(), name)
         if other != name:
-            raise InputError(f"sets '{other}' and '{name}': names in .inp differ not only in case")
+            raise InputError(f"sets '{other}' and '{name}': names in .inp are not case-sensitive")
         plain = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII)
         lines.append(f"*NSET, NSET={name}" if plain else f'*NSET, NSET="{name}"')
         ids = [str(node + 1) for node in nodes]

@@ -3,8 +3,8 @@
 Usage: convert.py mesh FOREIGN MESH.h5                        read a mesh
        convert.py write MESH.h5 FILE --format vtu|xdmf|inp [--deck --element C3D8]
        convert.py displacement FOREIGN MESH.h5 OUT.h5 --tolerance T [--field NAME]
-Exit codes: 0 done, 2 bad input, told in one line of standard output, 3 the disk or the memory is
-full. Warnings go to standard error.
+Exit codes: 0 done, 2 bad input, reported in one line on standard output, 3 the disk or the memory
+is full. Warnings go to standard error.
 """
 
 import argparse
@@ -38,7 +38,7 @@ def read_mesh(source, output):
 
 
 def write_mesh(source, output, options):
-    """Writes a mesh for another program, or a deck. Raises InputError."""
+    """Writes a mesh, or a deck, for another program. Raises InputError."""
     mesh = hdf5_file.read_mesh(source)
     if options.deck:
         problem = hdf5_file.read_problem(source)
@@ -52,7 +52,7 @@ def write_mesh(source, output, options):
 
 
 def match_displacement(source, mesh_path, output, options):
-    """Brings displacements into the order of a mesh. Raises InputError."""
+    """Writes displacements in the node order of a mesh. Raises InputError."""
     from exchange import matching  # its library takes long to load
 
     ending, ids = _ending(source, DISPLACEMENTS), None
@@ -83,7 +83,7 @@ def match_displacement(source, mesh_path, output, options):
 
 
 def _ending(path, allowed):
-    """The ending of a file that is there. Raises InputError."""
+    """The suffix of an existing file, in lower case. Raises InputError."""
     if path.suffix.lower() not in allowed:
         raise InputError(f"{path}: ending '{path.suffix}'; allowed are {', '.join(allowed)}")
     try:
@@ -91,10 +91,10 @@ def _ending(path, allowed):
             pass
     except OSError as error:
         geometry = path.with_suffix(".geo")
-        told = ""
+        hint = ""
         if path.suffix.lower() == ".msh" and geometry.exists() and not path.exists():
-            told = f"; `gmsh -3 {geometry} -o {path}` makes it"
-        raise InputError(f"{path}: cannot be read: {error.strerror}{told}") from error
+            hint = f"; `gmsh -3 {geometry} -o {path}` makes it"
+        raise InputError(f"{path}: cannot be read: {error.strerror}{hint}") from error
     return path.suffix.lower()
 
 

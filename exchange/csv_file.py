@@ -1,4 +1,4 @@
-"""Reading displacements from a table of comma-separated values, by the names of its columns."""
+"""Reads displacements from a table of comma-separated values with named columns."""
 
 import csv
 import math
@@ -7,13 +7,13 @@ import numpy as np
 
 from common.errors import InputError
 
-# Spellings of a column, in lower case; those with a digit are ParaView's.
+# Accepted names of a column, in lower case; those with a digit are ParaView's.
 POINTS = {axis: (axis, f"points:{i}", f"points_{i}") for i, axis in enumerate("xyz")}
 RULE = "columns id or x, y, z, and ux, uy, uz are required (or ParaView's Points:0, displacement:0)"
 
 
 def read(path, field):
-    """(points (n, 3) or None, ids (n,) or None, displacement (n, 3)), m; one of the first two.
+    """(points (n, 3) or None, ids (n,) or None, displacement (n, 3)), m; one of the two is given.
 
     field: name of the displacement columns NAME:0, NAME:1, NAME:2, or None for ux, uy, uz or
     displacement:0 .... Raises InputError naming the line and the rule.
@@ -25,11 +25,11 @@ def read(path, field):
         raise InputError(f"{path}: cannot be read as a table: {error}") from error
     rows = [(line, [cell.strip() for cell in row]) for line, row in rows if "".join(row).strip()]
     if len(rows) < 2:
-        raise InputError(f"{path}: has no rows below a line of column names; {RULE}")
+        raise InputError(f"{path}: has no rows below the column names; {RULE}")
     header = [name.lower() for name in rows[0][1]]
     twice = {name for name in header if header.count(name) > 1}
     if twice:
-        raise InputError(f"{path}:1: column '{min(twice)}' is there twice; names must differ")
+        raise InputError(f"{path}:1: column '{min(twice)}' occurs twice; names must differ")
     name = (field or "displacement").lower()
     spelled = [
         [] if field else ["ux", "uy", "uz"],

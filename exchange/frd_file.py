@@ -1,4 +1,4 @@
-"""Reading the result file of CalculiX (.frd, ASCII): nodes and their displacements."""
+"""Reads result files of CalculiX (.frd, ASCII): nodes and their displacements."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,7 @@ def read(path):
     """(points (n, 3), displacement (n, 3)) in m, of the last displacement block of a file.
 
     ccx writes six digits. Nodes without a displacement are left out; they belong to no element.
-    Raises InputError naming the line and the rule when the file cannot be read or is damaged.
+    Raises InputError naming the line and the rule if the file cannot be read or is damaged.
     """
     points, displacement = _blocks(path)
     if not points:
@@ -27,8 +27,8 @@ def read(path):
 
 
 def read_displacement(path, n_nodes):
-    """The displacements of nodes 1 to n_nodes: (n_nodes, 3) in m. Raises InputError, too, when the
-    block has not exactly these nodes."""
+    """The displacements of nodes 1 to n_nodes: (n_nodes, 3) in m. Also raises InputError if the
+    block does not have exactly these nodes."""
     _, found = _blocks(path)
     for node in range(1, n_nodes + 1):
         if node not in found:
@@ -65,7 +65,7 @@ def _blocks(path):
 
 
 def _read_node(where, line, found):
-    """Adds the node of a line. Neighbours may touch: a sign fills the whole of a field's gap."""
+    """Adds the node of a line. Fields have fixed widths: a minus sign may leave no gap between."""
     node, numbers = line[3:13].strip(), NUMBER.findall(line[13:])
     whole = "".join(numbers) == "".join(line[13:].split())
     if not (node.isdigit() and whole and len(numbers) == 3):

@@ -1,7 +1,7 @@
-"""Reading Gmsh's .msh, versions 2.2 and 4.1, text and binary: physical groups become node sets.
+"""Reads Gmsh's .msh, versions 2.2 and 4.1, text and binary: physical groups become node sets.
 
-Not by meshio: it loses groups of surfaces that are named with a minus sign, groups of the same name
-and groups without one, and takes a node that is not there for the last one.
+meshio is not used: it loses groups of surfaces that are named with a minus sign, groups of the same
+name and unnamed groups, and takes an unknown node for the last one.
 """
 
 import re
@@ -46,7 +46,7 @@ def read(path):
     sections = _sections(path, path.read_bytes())
     for name in ("MeshFormat", "Nodes", "Elements"):
         if name not in sections:
-            raise InputError(f"{path}: section ${name} is missing; no mesh of Gmsh, or cut off")
+            raise InputError(f"{path}: section ${name} is missing; not a Gmsh mesh, or truncated")
     if "PartitionedEntities" in sections:
         raise InputError(f"{path}: is partitioned; save it whole (Mesh.PartitionSplitMeshFiles)")
     words = sections["MeshFormat"].split(None, 3)[:3]

@@ -9,7 +9,7 @@ from exchange.foreign_mesh import HexMesh
 
 
 def read_mesh(path):
-    """The HexMesh of a file that `sandglass` wrote, which is not checked."""
+    """The HexMesh of a file written by `sandglass`, unchecked."""
     with h5py.File(path, "r") as file:
         mesh = file["mesh"]
         sets = {name: nodes[...] for name, nodes in mesh.get("sets", {}).items()}
@@ -17,7 +17,7 @@ def read_mesh(path):
 
 
 def write_mesh(path, mesh):
-    """Writes a HexMesh where `sandglass` reads it."""
+    """Writes a HexMesh in the form that `sandglass` reads."""
     with h5py.File(path, "w") as file:
         file["mesh/points"] = mesh.points
         file["mesh/cells"] = mesh.cells.astype(np.int64)
@@ -26,8 +26,8 @@ def write_mesh(path, mesh):
 
 
 def read_problem(path):
-    """What a deck says beside the mesh, as keywords of calculix_deck.deck: title, law, material,
-    prescribed, values, forces. It is written by solver/io/foreign_file.cpp."""
+    """The contents of a deck other than the mesh, as keywords of calculix_deck.deck: title, law,
+    material, prescribed, values, forces. Written by solver/io/foreign_file.cpp."""
     with h5py.File(path, "r") as file:
         shape, attributes = file["mesh/points"].shape, dict(file.attrs)
         imposed = file["problem/imposed"][...] if "problem/imposed" in file else np.empty((0, 3))
@@ -48,8 +48,8 @@ def read_problem(path):
 
 
 def read_displacement(path, warn):
-    """(points (n, 3) or None, displacement (n, 3)), m: of a result of `sandglass run` the last
-    frame, else the dataset displacement with points, mesh/points or neither. Raises InputError.
+    """(points (n, 3) or None, displacement (n, 3)), m: the last frame of a result of `sandglass
+    run`, or the dataset displacement with points, mesh/points or neither. Raises InputError.
     """
     try:
         with h5py.File(path, "r") as file:
@@ -62,7 +62,7 @@ def read_displacement(path, warn):
                 )
             status = text_of(file.attrs.get("status", "complete"))
             if status != "complete":
-                warn(f"its run ended so: {status}")
+                warn(f"incomplete result: its run ended with status '{status}'")
             found = [_nodal(path, file, at) if at else None, _nodal(path, file, name)]
     except InputError:
         raise
@@ -70,13 +70,13 @@ def read_displacement(path, warn):
         raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
     if found[0] is not None and len(found[0]) != len(found[1]):
         raise InputError(
-            f"{path}: {at} has {len(found[0])} rows and {name} {len(found[1])}; as many of each"
+            f"{path}: {at} has {len(found[0])} rows, {name} {len(found[1])}; both need equally many"
         )
     return tuple(found)
 
 
 def write_displacement(path, displacement):
-    """Writes (n, 3) where `sandglass score` reads it."""
+    """Writes displacements (n, 3) in the form that `sandglass score` reads."""
     with h5py.File(path, "w") as file:
         file["displacement"] = displacement
 

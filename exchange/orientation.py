@@ -1,4 +1,4 @@
-"""Whether hexahedra are numbered as VTK does it: bottom counterclockwise, then the top above it."""
+"""Checks that hexahedra are numbered as in VTK: bottom counterclockwise, then the top above it."""
 
 import numpy as np
 
@@ -8,19 +8,19 @@ TANGLED, RIGHT, MIRRORED = 0, 1, -1
 MIRROR = [4, 5, 6, 7, 0, 1, 2, 3]  # top and bottom change places
 
 
-def judge(points, cells):
-    """RIGHT, MIRRORED or TANGLED for each cell, (m,): det dX/dxi at the eight Gauss points is above
-    zero at all, below zero at all, or neither. points: (n, 3), m. cells: (m, 8)."""
+def classify(points, cells):
+    """RIGHT, MIRRORED or TANGLED for each cell, (m,): det dX/dxi is positive at all eight Gauss
+    points, negative at all, or neither. points: (n, 3), m. cells: (m, 8)."""
     found = gauss_jacobians(points, cells)
     right, mirrored = (found > 0).all(axis=0), (found < 0).all(axis=0)
     return np.where(right, RIGHT, np.where(mirrored, MIRRORED, TANGLED))
 
 
 def overlap(cells):
-    """Two cells that do not lie on two sides of the face that they share, or None.
+    """Two cells that do not lie on opposite sides of their common face, or None.
 
-    cells: (m, 8), each of them RIGHT. Seen from both sides, the nodes of a face go round in
-    opposite directions.
+    cells: (m, 8), each of them RIGHT. Cells on opposite sides of a face list its nodes in opposite
+    directions.
     """
     faces = cells[:, FACES].reshape(-1, 4)
     first = faces.argmin(axis=1)[:, None]

@@ -1,4 +1,4 @@
-"""VTK's unstructured grids (.vtu) and XDMF, by meshio."""
+"""Reads and writes VTK's unstructured grids (.vtu) and writes XDMF, with meshio."""
 
 import contextlib
 import io
@@ -16,7 +16,7 @@ DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
 def read(path):
     """The ForeignMesh of a .vtu file; ids count from 0. Raises InputError.
 
-    Point arrays of integers that are 0 or 1 are node sets by their names: 1 for nodes of the set.
+    Integer point arrays with values 0 and 1 define node sets: 1 marks the nodes of the set.
     """
     grid = _read(path)
     ids, first = np.arange(len(grid.points)), 0
@@ -37,24 +37,24 @@ def read(path):
 def read_displacement(path, field):
     """(points (n, 3), displacement (n, 3)), m, of a .vtu file.
 
-    field: name of the point array; None takes one of DISPLACEMENTS, in any case of letters.
+    field: name of the point array; None means one of DISPLACEMENTS, which is not case-sensitive.
     Raises InputError.
     """
     grid = _read(path)
     vectors = {n: d for n, d in grid.point_data.items() if d.ndim == 2 and d.shape[1] == 3}
     wanted = [field] if field else [n for n in vectors if n.lower() in DISPLACEMENTS]
     if len(wanted) != 1 or wanted[0] not in vectors:
-        told = ", ".join(f"'{name}'" for name in vectors) or "none"
+        names = ", ".join(f"'{name}'" for name in vectors) or "none"
         raise InputError(
-            f"{path}: which point array has the displacements? Say --field NAME; its arrays of "
-            f"three components: {told}"
+            f"{path}: cannot tell which point array holds the displacements; choose one with "
+            f"--field NAME; its arrays of three components: {names}"
         )
     return np.asarray(grid.points, dtype=float), np.asarray(vectors[wanted[0]], dtype=float)
 
 
 def write(path, mesh, kind):
     """Writes a HexMesh as "vtu" or "xdmf", each of its sets as a point array of 0 and 1."""
-    import meshio  # by those alone who need it: it takes long to load
+    import meshio  # imported only where needed, as it is slow to load
 
     inside = {}
     for name, nodes in mesh.sets.items():
@@ -68,7 +68,7 @@ def write(path, mesh, kind):
 
 
 def _read(path):
-    """meshio's grid of a file. Raises InputError for what it cannot read or would read wrongly."""
+    """meshio's grid of a file. Raises InputError if it cannot read the file or would misread it."""
     import meshio
 
     said = io.StringIO()
@@ -84,7 +84,7 @@ def _read(path):
         raise
     except BaseException as error:  # a library may fail in any way on a damaged file
         raise _refusal(path, str(error) or type(error).__name__) from error
-    if said.getvalue():  # it goes on where it has left something out
+    if said.getvalue():  # meshio warns and continues if it skips something
         raise _refusal(path, said.getvalue())
     if grid.points.ndim != 2 or grid.points.shape[1] != 3:
         raise InputError(f"{path}: points have {grid.points.shape[1:]} components; 3 are required")

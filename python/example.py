@@ -1,8 +1,8 @@
-"""A tool moves a set of nodes of a soft body, 60 frames a second, and feels what the body answers.
+"""A tool moves a set of nodes of a soft body, 60 frames per second, and feels the reaction.
 
     PYTHONPATH=build/release/python /usr/bin/python3 python/example.py CASE SET X Y Z
 
-with the displacement X Y Z (m) in which the motion ends, after a second.
+X Y Z is the final displacement (m), reached after one second.
 """
 
 import sys
@@ -13,7 +13,7 @@ import sandglass
 
 def main(case, driven, *end):
     body = sandglass.Simulation(case, precision="float")
-    u = body.displacements  # a view of what the solver computes with: always the present
+    u = body.displacements  # a view of the solver's array: always current
     end = np.array(end, dtype=float)
     for frame in range(1, 61):
         t = frame / 60

@@ -16,17 +16,17 @@ namespace {
 
 using Vector = std::array<double, 3>;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Integers = py::array_t<std::int64_t, py::array::c_style>;  // numbers with a fraction are refused
+using Integers = py::array_t<std::int64_t, py::array::c_style>;  // arrays of fractions are rejected
 
-/// A simulation in either precision, in one thread at a time.
+/// A simulation in either precision, used by one thread at a time.
 class AnySimulation {
  public:
-  /// From what a simulation is made of, in numbers of "double" or "float".
+  /// `arguments` are those of Simulation; `precision` is "double" or "float".
   template <class... Arguments>
   explicit AnySimulation(const std::string& precision, const Arguments&... arguments)
       : simulation_(make(precision, arguments...)) {}
 
-  /// What `use(simulation)` returns. Throws while another thread is in here.
+  /// Returns `use(simulation)`. Throws if another thread is using the simulation.
   template <class Use>
   auto with(const Use& use) {
     if (busy_.test_and_set()) throw std::runtime_error("the simulation is busy in another thread");
@@ -64,8 +64,8 @@ py::ssize_t signed_size(std::size_t size) {
   return static_cast<py::ssize_t>(size);
 }
 
-/// Numbers of a simulation as a read-only array of so many rows, `stride` numbers apart, that keeps it alive;
-/// of one dimension where the width is one.
+/// A read-only view of numbers of a simulation, which keeps it alive: `rows` rows, `stride` numbers apart; of
+/// one dimension if `width` is one.
 template <class Number>
 py::array view(const py::object& owner, const Number* data, std::size_t rows, std::size_t width,
                std::size_t stride) {
@@ -80,7 +80,7 @@ py::array view(const py::object& owner, const Number* data, std::size_t rows, st
   return array;
 }
 
-/// A view of what `get(simulation)` tells, a span of rows or of numbers.
+/// A view of `get(simulation)`, a span of rows or of numbers.
 template <class Number, std::size_t width, class Get>
 py::array view_of(const py::object& self, const Get& get) {
   return self.cast<AnySimulation&>().with([&](const auto& simulation) {
@@ -105,7 +105,7 @@ double number_of(const std::string& /*name*/, double number) {
 }
 int number_of(const std::string& name, std::int64_t node) {
   if (node >= 0 && node <= std::numeric_limits<int>::max()) return static_cast<int>(node);
-  throw InputError(name + ": " + std::to_string(node) + " is no number of a node");
+  throw InputError(name + ": " + std::to_string(node) + " is not a node number");
 }
 
 /// The rows of an array of shape (n, width).
@@ -169,22 +169,22 @@ std::unique_ptr<AnySimulation> of_mesh(const Doubles& points, const Integers& ce
 }
 
 constexpr const char* about_simulation =
-    R"(A body in motion that you move, step and look at while it runs.
+    R"(A moving body that can be driven, advanced and inspected step by step.
 
     simulation = sandglass.Simulation("my-beam.toml", precision="float", damping=20.0)
     u = simulation.displacements
     simulation.move("moved", (0.03, 0, 0))
     simulation.advance(1 / 60)
 
-The case is that of a file as `sandglass run` takes it, at rest or with its initial velocities. `method`, `kappa` and
-`damping` (1/s) are the case's unless given; no step is longer than `step_fraction` of the stable one. Arrays are
-read-only views of what the simulation computes with: they show its present state and keep it alive. One thread may
-use it at a time; `advance` lets others run.)";
+The case file is one for `sandglass run`; the body starts undeformed, at rest or with the case's initial velocities.
+`method`, `kappa` and `damping` (1/s) override the case's; steps are at most `step_fraction` of the stable step. Arrays
+are read-only views of the simulation's own: they show its current state and keep it alive. Only one thread may use it
+at a time; `advance` releases the GIL.)";
 
 constexpr const char* about_mesh =
-    R"(The same with a mesh of yours.
+    R"(A simulation on the given mesh.
 
-`points` (n, 3) in m, `cells` (m, 8) in VTK order, `sets` a dict of names and nodes; `case_text` is the text of a
+`points` (n, 3) in m, `cells` (m, 8) in VTK order, `sets` a dict from names to nodes; `case_text` is the text of a
 case file without [mesh].)";
 
 }  // namespace
@@ -193,7 +193,7 @@ case file without [mesh].)";
 PYBIND11_MODULE(sandglass, m) {
   using namespace sandglass;
   using namespace pybind11::literals;
-  m.doc() = "Sandglass, an explicit solver for soft solids, in steps that you take.";
+  m.doc() = "Sandglass, an explicit solver for soft solids, step by step.";
 
   py::register_exception<InputError>(m, "InputError", PyExc_ValueError);
   py::register_exception<ComputationError>(m, "ComputationError", PyExc_RuntimeError);
@@ -205,21 +205,21 @@ PYBIND11_MODULE(sandglass, m) {
                   py::kw_only(), "precision"_a = "double", "method"_a = py::none(), "kappa"_a = py::none(),
                   "damping"_a = py::none(), "step_fraction"_a = 0.9, "threads"_a = 1)
       .def("move", &move, "set"_a, "displacement"_a,
-           "Where the driven nodes of a set shall be when the next `advance` ends: one displacement (m) for "
-           "all of them, or one row for each node of `nodes(set)`. Components that the case leaves free stay "
-           "free.")
+           "Sets the position of the driven nodes of a set at the end of the next `advance`: one "
+           "displacement (m) for all of them, or one row for each node of `nodes(set)`. Components "
+           "that the case leaves free stay free.")
       .def(
           "impose", [](AnySimulation& self, double factor) { self.with([&](auto& s) { s.impose(factor); }); },
           "factor"_a,
-          "The same for all driven nodes at once: where the case has them at a factor of its loads, 1 at the "
-          "end of its loading curve. Its forces grow to that factor.")
+          "Sets the position of all driven nodes at the end of the next `advance`: the case's "
+          "displacements at a load factor, which is 1 at the end of the loading curve. The case's "
+          "forces reach the same factor.")
       .def(
           "advance",
           [](AnySimulation& self, double seconds) { self.with([&](auto& s) { s.advance(seconds); }); },
           "seconds"_a, py::call_guard<py::gil_scoped_release>(),
-          "Goes on for so long, in equal steps of at most `step_size`; driven nodes and forces go straight "
-          "to "
-          "where they shall be. Raises ComputationError when the body fails.")
+          "Advances in time, in equal steps of at most `step_size`; driven nodes and forces change "
+          "linearly to their new values. Raises ComputationError if the computation diverges.")
       .def(
           "reaction",
           [](AnySimulation& self, const std::string& set) {
@@ -232,11 +232,11 @@ PYBIND11_MODULE(sandglass, m) {
             return view_of<int, 1>(self, [&](const auto& s) { return s.nodes(set); });
           },
           "set"_a, "The nodes of a set, sorted.")
-      .def("copy", &AnySimulation::copy, "A snapshot that goes its own way.")
+      .def("copy", &AnySimulation::copy, "An independent copy.")
       .def_property_readonly(
           "displacements", &displacements,
-          "Displacements (m), one row per node in the order of the time loop: that of node "
-          "n is at `rows[n]`, so that displacements[rows] is a copy by nodes.")
+          "Displacements (m), one row per node in the order of the time loop: node n is in row `rows[n]`, "
+          "so displacements[rows] is a copy in node order.")
       .def_property_readonly(
           "rows",
           [](const py::object& self) {
@@ -248,7 +248,7 @@ PYBIND11_MODULE(sandglass, m) {
           [](const py::object& self) {
             return view_of<double, 3>(self, [](const auto& s) { return s.points(); });
           },
-          "The nodes of the mesh at rest (m), in its own numbering.")
+          "The undeformed positions of the nodes (m), in the numbering of the mesh.")
       .def_property_readonly(
           "cells",
           [](const py::object& self) {
@@ -257,9 +257,9 @@ PYBIND11_MODULE(sandglass, m) {
           "The nodes of each hexahedron, in VTK order.")
       .def_property_readonly(
           "time", [](AnySimulation& self) { return self.with([](const auto& s) { return s.time(); }); },
-          "Seconds since the start.")
+          "The simulated time (s).")
       .def_property_readonly(
           "step_size",
           [](AnySimulation& self) { return self.with([](const auto& s) { return s.step_size(); }); },
-          "The longest step at present, s.");
+          "The longest step allowed at present (s).");
 }

@@ -1,4 +1,4 @@
-"""Where the module under test stands: $SANDGLASS_PYTHON_FOLDER, else build/release/python."""
+"""The folder of the module under test: $SANDGLASS_PYTHON_FOLDER, else build/release/python."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""The Python module: the same motion as the program's, views that live, errors as exceptions."""
+"""The Python module: the same motion as the program's, live views, errors as exceptions."""
 
 import gc
 import os
@@ -39,8 +39,8 @@ def body(case):
     "precision, limit", [("double", 200 * 200 * 1.8e-18), ("float", 200 * 1e-9)]
 )
 def test_moved_by_hand_it_goes_as_the_program(case, tmp_path, precision, limit):
-    """Limits: half a unit in the last place of 0.02 m at driven nodes in each of 200 steps, carried
-    on by two sums over as many; in float roundings have either sign, and one sum is enough."""
+    """Limits: half a unit in the last place of 0.02 m at driven nodes in each of 200 steps,
+    accumulated by two sums over as many; in float the signs of roundings vary, and one suffices."""
     result = tmp_path / "result.h5"
     done = program("run", case, "--precision", precision, "-o", result)
     assert done.returncode == 0, done.stderr
@@ -112,7 +112,7 @@ def test_a_mesh_of_arrays_is_the_same_body(body):
         sandglass.Simulation.of_mesh(body.points, body.cells + 0.5, sets, text)
     with pytest.raises(ValueError, match=r"cells must have the shape \(m, 8\)"):
         sandglass.Simulation.of_mesh(body.points, body.cells[:, :4], sets, text)
-    with pytest.raises(ValueError, match="-1 is no number of a node"):
+    with pytest.raises(ValueError, match="-1 is not a node number"):
         sandglass.Simulation.of_mesh(body.points, body.cells, {"head": np.array([-1])}, text)
     with pytest.raises(ValueError, match="names node 45"):
         sandglass.Simulation.of_mesh(body.points, body.cells, {"head": np.array([45])}, text)
@@ -174,7 +174,7 @@ def test_errors_are_exceptions_with_the_solvers_words(case, body):
 
 
 def test_other_threads_run_while_it_steps_and_cannot_step_it_too(body):
-    """The other thread counts while `advance` holds the main one: with the lock it could not."""
+    """The other thread counts while the main one is in `advance`, so the GIL is released."""
     counted, refused, done = [], [], threading.Event()
 
     def look():

@@ -1,9 +1,9 @@
 """Dirichlet conditions for any Lagrange order: the trace of the Q1 displacement of the mesh.
 
-On every vertex, edge, face or cell of the mesh all of whose vertices are in the set of a
-condition, all degrees of freedom are prescribed, with the mean of the vertices' values (the Q1
-interpolation at mid-edge, mid-face and centre). On exactly these entities the Q1 displacement has
-no freedom left, so Q1 and Q2 solve the same boundary value problem.
+If all vertices of an edge, face or cell (or the vertex itself) are in the set of a condition, all
+its degrees of freedom are prescribed, with the mean of the vertices' values (the Q1 interpolation
+at mid-edge, mid-face and centre). On exactly these entities the Q1 displacement is fully
+prescribed, so Q1 and Q2 solve the same boundary value problem.
 """
 
 import basix
@@ -14,9 +14,9 @@ def prescribed_dofs(space, cell_nodes, conditions, load=1.0):
     """Prescribed degrees of freedom of a vector Lagrange space of order 1 or 2 on hexahedra.
 
     space: dolfinx vector function space. cell_nodes: (m, 8) node numbers, in the space's order of
-    cells and vertices. conditions: Conditions on these nodes, which do not contradict each other.
+    cells and vertices. conditions: Conditions on these nodes, which must not contradict each other.
     load: the load factor. Returns (dofs, values): sorted unrolled indices (3 * block + component)
-    and their values there, m.
+    and their values, m.
     """
     layout = space.dofmap.dof_layout
     cell_dofs = space.dofmap.list.array.reshape(len(cell_nodes), -1)

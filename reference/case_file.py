@@ -1,4 +1,4 @@
-"""Reading the parts of a case file (TOML) that the reference needs: material and displacements."""
+"""Reads the parts of a case file (TOML) that the reference needs: material and displacements."""
 
 import math
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ class Rotation:
     """An imposed rotation: node set, axis (3,) of length one, angle in rad, center, displacement.
 
     center: a point (3,) of the axis, m, or None for the mean of the set's nodes. displacement: (3,)
-    in m, beside the rotation.
+    in m, in addition to the rotation.
     """
 
     set_name: str
@@ -44,7 +44,7 @@ class Force:
 
 @dataclass(frozen=True)
 class Case:
-    """Name, law, numbers of the law (SI units), what is imposed on a case."""
+    """A case: name, law, parameters of the law (SI units), imposed motions and forces."""
 
     name: str
     law: str
@@ -55,7 +55,7 @@ class Case:
 
 
 def read_tables(path):
-    """The tables of every case of a file, its variants merged in: name of the case -> dict.
+    """The tables of every case in a file, with variants merged in: case name -> dict.
 
     path: str or Path of a TOML file. A file without [variants] has one case. Raises InputError.
     """
@@ -73,7 +73,7 @@ def read_tables(path):
 
 
 def find_case(folder, name):
-    """The file in a folder of cases that holds the case of this name, or None."""
+    """The file in a folder of cases that defines the case of this name, or None."""
     for path in sorted(folder.glob("*.toml")):
         if name.startswith(path.stem) and name in read_tables(path):
             return path
@@ -81,9 +81,9 @@ def find_case(folder, name):
 
 
 def read_case(path, name=None):
-    """Read and check a case of a case file.
+    """Read and check a case from a case file.
 
-    path: str or Path of a TOML file. name: of the case; needed where the file has variants.
+    path: str or Path of a TOML file. name: the case's name; required if the file has variants.
     Returns a Case. Raises InputError naming file, key, value, rule and what is allowed.
     """
     name, tables = _chosen(path, read_tables(path), name)
@@ -119,10 +119,10 @@ def read_case(path, name=None):
 
 
 def _chosen(path, cases, name):
-    """(name, tables) of a case out of those of a file; without a name the only one."""
+    """(name, tables) of the named case among those of a file; without a name the only one."""
     if name is None and len(cases) > 1:
         raise InputError(
-            f"{path}: has {len(cases)} variants, and one must be named; known: {', '.join(cases)}"
+            f"{path}: has {len(cases)} variants; name one of them; known: {', '.join(cases)}"
         )
     name = name or next(iter(cases))
     if name not in cases:
@@ -131,7 +131,7 @@ def _chosen(path, cases, name):
 
 
 def _material_number(where, table, key):
-    """A finite number or a tuple of three; other rules are the solver's."""
+    """A finite number or a tuple of three; the solver checks all other rules."""
     if isinstance(table.get(key), list):
         return _vector(where, table, key)
     value = float(entry(where, table, key, NUMBER))
@@ -143,7 +143,7 @@ def _material_number(where, table, key):
 
 
 def _merged(tables, changes):
-    """Tables with changes added or put in place; tables within are merged, lists replaced."""
+    """Tables with changes applied: nested tables are merged, other values replaced."""
     merged = dict(tables)
     for key, value in changes.items():
         both = isinstance(value, dict) and isinstance(tables.get(key), dict)
@@ -152,13 +152,13 @@ def _merged(tables, changes):
 
 
 def _displacement(where, table):
-    """A checked [[displacement]] table as a Displacement. where: its file, key and number."""
+    """A checked [[displacement]] table as a Displacement. where: file, key and index of it."""
     _check_keys(where, table, ("set", "value", "components"))
     letters = entry(where, table, "components", str) if "components" in table else "xyz"
     if not letters or len(set(letters)) != len(letters) or not set(letters) <= set("xyz"):
         raise InputError(
-            f"{where}.components = {letters!r} must be letters out of 'xyz', each at most once, "
-            "at least one"
+            f"{where}.components = {letters!r} must be one or more of the letters 'xyz', each at "
+            "most once"
         )
     return Displacement(
         entry(where, table, "set", str),
@@ -209,7 +209,7 @@ def _vector(where, table, key):
 
 
 def _check_keys(where, table, known):
-    """Raises InputError at the first key of the table that is not known."""
+    """Raises InputError for the first unknown key of a table."""
     for key in table:
         if key not in known:
             raise InputError(f"{where}.{key}: unknown key; {suggestion(key, known)}")

@@ -1,7 +1,7 @@
-"""The distance between goldens and truths: the table of README.md.
+"""The distance between goldens and truths: the table in README.md.
 
 Usage: /usr/bin/python3 reference/compare.py [--update]
-Exit codes: 0 done, 2 damaged or contradicting files.
+Exit codes: 0 done, 2 damaged or contradictory files.
 """
 
 import argparse
@@ -26,7 +26,7 @@ BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
 def golden_error(golden_path, truth_path):
     """Distance of a golden from the truth of the same case and mesh: (max, rms), fractions.
 
-    Raises InputError when the two do not belong together.
+    Raises InputError if the two do not belong together.
     """
     points, displacement, golden = read_reference(golden_path)
     truth_points, truth_displacement, truth = read_reference(truth_path)
@@ -37,7 +37,7 @@ def golden_error(golden_path, truth_path):
                 f"{golden_path}: both must come from the same case and mesh; run "
                 f"reference/regenerate {golden['case']}"
             )
-    # Both hold the very numbers of the mesh file; 1e-12 of the size only forgives another build.
+    # Both contain the coordinates of the mesh file; 1e-12 of the size allows for another build.
     if points.shape != truth_points.shape or not np.allclose(
         points, truth_points, rtol=0, atol=1e-12 * np.ptp(points)
     ):
@@ -55,7 +55,7 @@ def fill_golden_error(golden_path, truth_path):
 
 
 def table():
-    """The Markdown table of all stored goldens against their truths, as a string."""
+    """The Markdown table that compares all stored goldens with their truths, as a string."""
     lines = [
         "| case | golden to truth, max | rms | golden's own error, max | rms | order "
         "| truth's mesh | truth's own error, max | rms | order | golden, s | truth, s |",
@@ -79,7 +79,7 @@ def table():
 
 
 def update_readme():
-    """Put the present table between the two marks of README.md. Raises InputError."""
+    """Write the current table between the two marks in README.md. Raises InputError."""
     readme = FOLDER / "README.md"
     text = readme.read_text(encoding="utf-8")
     before, begin, rest = text.partition(BEGIN)
@@ -90,7 +90,7 @@ def update_readme():
 
 
 def _own_error(attributes):
-    """The cells of a result's distance from the limit of refinement: max, rms, order."""
+    """Table cells of a result's distance from the limit of refinement: max, rms, order."""
     order = attributes["own_error_order"]
     if math.isnan(order):
         return [_percent(math.nan)] * 2 + ["-"]
@@ -105,7 +105,7 @@ def _percent(fraction):
 
 
 def run(options):
-    """Prints the table and puts it into README.md where that is asked for. Raises InputError."""
+    """Prints the table and, with --update, writes it into README.md. Raises InputError."""
     print(table())
     if options.update:
         update_readme()

@@ -1,8 +1,8 @@
-"""How far a golden or a truth is from the limit of refinement of its own element.
+"""Estimates how far a golden or a truth is from its element's limit under mesh refinement.
 
 Usage: /usr/bin/python3 reference/convergence.py [CASE...]
-Solves the stored results of the named cases, by default of all, again on split meshes where that
-takes minutes, and stores the estimates as attributes beside the untouched displacements.
+Solves the named cases (default: all with stored results) again on split meshes where that takes
+only minutes, and stores the estimates as attributes; the stored displacements are not touched.
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
 """
 
@@ -29,17 +29,17 @@ from mesh_file import load_case_mesh, make_mesh
 from reference_file import path_of, read_reference, stored, write_estimate
 from symmetry import halve
 
-# With two meshes the order is assumed: 2 is what the golden's element has on smooth answers; a
-# truth has converged so far that the singular edges of the answer rule it.
+# With two meshes the order is assumed: 2 for the golden's element, its order on smooth answers; 1
+# for a truth, which has converged so far that the singular edges dominate its error.
 ASSUMED_ORDER = {"golden": 2.0, "truth": 1.0}
 
-# At an edge where a body is held or driven, displacements go like r^a with a > 1/2, so that energy,
-# and with it what loads move, converges with order 2 a > 1. A sequence that seems slower has not
-# come to its last order, and its own would extrapolate it too far.
+# At an edge where a body is held or driven, displacements vary like r^a with a > 1/2, so energy,
+# and with it the displacement of loads, converges with order 2 a > 1. A sequence that seems slower
+# has not reached its asymptotic order; extrapolating with the measured one would go too far.
 LOWEST_ORDER = 1.0
 
-# A golden's mesh, halved at its mirror planes, is split as long as that gives no more cells than
-# these: about a minute on one core. A truth is solved on the meshes before the stored one alone.
+# A golden's mesh, halved at its mirror planes, is split as long as that gives at most this many
+# cells: about a minute on one core. A truth is solved only on meshes coarser than the stored one.
 MOST_CELLS = 18000
 MOST_SPLITS = 3
 
@@ -48,8 +48,8 @@ MOST_SPLITS = 3
 class Estimate:
     """The limit of a sequence of fields and how it was found.
 
-    limit: (n, 3). order: of convergence, that the limit was found with. origin: "measured",
-    "assumed", or "the lowest" where a lower one was measured.
+    limit: (n, 3). order: order of convergence used. origin: "measured", "assumed", or "the lowest"
+    if the measured order was lower than LOWEST_ORDER.
     """
 
     limit: np.ndarray
@@ -60,12 +60,11 @@ class Estimate:
 def richardson(fields, assumed_order):
     """The limit of fields on meshes of edge h, h/2, h/4, ... by Richardson's extrapolation.
 
-    fields: two or more arrays (n, 3), coarse to fine, at the same points. With an error C h^p the
-    differences of neighbours fall by 2^p, and what the last field lacks is the last difference over
-    2^p - 1. Of three or more fields the last three show p, by the root mean square of their
-    differences; of two it is assumed_order.
-    It is taken as LOWEST_ORDER where it is lower. Returns an Estimate, or None when there are less
-    than two fields or differences do not fall.
+    fields: two or more arrays (n, 3), coarse to fine, at the same points. If the error is C h^p,
+    the differences of successive fields fall by 2^p, and the error of the last field is the last
+    difference over 2^p - 1. With three or more fields, p follows from the root mean square
+    differences of the last three, but is at least LOWEST_ORDER; with two it is assumed_order.
+    Returns an Estimate, or None for fewer than two fields or if the differences do not fall.
     """
     if len(fields) < 2:
         return None
@@ -82,10 +81,10 @@ def richardson(fields, assumed_order):
 
 
 def attributes_of(kind, fields, displacement, unit, reason):
-    """The attributes that say how far a displacement is from the limit of `fields`.
+    """The attributes that state how far a displacement is from the limit of `fields`.
 
     kind: "golden" or "truth". fields: as for richardson(). displacement: (n, 3), m, one of them.
-    unit: m, of relative errors. reason: why there are no more fields, for the note.
+    unit: m, for relative errors. reason: why there are no more fields, for the note.
     Returns what reference_file.write_estimate() takes.
     """
     estimate = richardson(fields, ASSUMED_ORDER[kind])
@@ -106,7 +105,7 @@ def attributes_of(kind, fields, displacement, unit, reason):
 
 
 def splits_of(cells):
-    """How often a golden's mesh of so many cells is split for an estimate."""
+    """How often a golden's mesh with this many cells is split for an estimate."""
     splits = 0
     while splits < MOST_SPLITS and cells * 8 ** (splits + 1) <= MOST_CELLS:
         splits += 1
@@ -114,7 +113,7 @@ def splits_of(cells):
 
 
 def fields_of(kind, name, displacement, refinements):
-    """The displacements of a stored result's element on its mesh split 0, 1, 2, ... times.
+    """The displacements that a stored result's element gives on its mesh split 0, 1, 2, ... times.
 
     displacement: the stored one, on the mesh split `refinements` times. Returns (list of (n, 3),
     m; why there are no more). Raises InputError or ComputationError.
@@ -150,7 +149,7 @@ def estimate(kind, name):
 
 
 def run(options):
-    """Estimates what is asked for. Raises InputError or ComputationError."""
+    """Estimates the errors of the named results. Raises InputError or ComputationError."""
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     for kind in [options.kind] if options.kind else ASSUMED_ORDER:
         known = stored(kind)

@@ -7,14 +7,14 @@ import numpy as np
 
 from common.hexahedron import LEXICOGRAPHIC, boundary_faces
 
-# The 27 points of a cell that is split in eight, and its vertices among them, x fastest.
+# The 27 nodes of a cell split into eight, and the positions of its vertices among them, x fastest.
 SPLIT_POINTS = [(i, j, k) for k in range(3) for j in range(3) for i in range(3)]
 SPLIT_CORNERS = [(2 * i, 2 * j, 2 * k) for k in range(2) for j in range(2) for i in range(2)]
 
 
 @dataclass(frozen=True)
 class Turn:
-    """A rigid rotation, by its shares in the path of each node: (1 - cos) versine + sin sine.
+    """A rigid rotation: each node is displaced by (1 - cos) versine + sin sine.
 
     angle: rad, at the full load. versine, sine: (n, 3) m.
     """
@@ -29,18 +29,18 @@ class Turn:
         return 2 * np.sin(turned / 2) ** 2 * self.versine + np.sin(turned) * self.sine
 
     def largest(self):
-        """Largest displacement (n,) on the way, m: the chord of the way's arc."""
+        """Largest displacement (n,) along the path, m: the longest chord of the arc."""
         chord = 2 * np.sin(min(abs(self.angle), np.pi) / 2)
         return chord * np.linalg.norm(self.versine, axis=1)
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Displacement components imposed on a set of nodes, which follow the load straight on.
+    """Displacement components imposed on a set of nodes, proportional to the load.
 
     nodes: (n,) bool, True for the nodes of the set. components: axes (0..2) it acts on.
-    values: (n, 3) m; only the rows of the set and the columns of the components mean something.
-    turn: the Turn that the same components make beside that, or None.
+    values: (n, 3) m; only the rows of the set and the columns of the components are used.
+    turn: a Turn imposed on the same components in addition, or None.
     """
 
     nodes: np.ndarray
@@ -57,7 +57,7 @@ class Condition:
 class Traction:
     """A dead traction mean + turn x (X - centre) on the boundary faces within a set of nodes.
 
-    nodes: (n,) bool, True for the nodes of the set; a face needs all its vertices there.
+    nodes: (n,) bool, True for the nodes of the set; it acts on faces with all vertices in it.
     mean: (3,) Pa. turn: (3,) Pa/m. centre: (3,) m.
     """
 
@@ -81,7 +81,7 @@ class HexMesh:
     tractions: tuple = ()
 
     def imposed(self, load=1.0):
-        """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, or zero)."""
+        """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""
         prescribed = np.zeros(self.points.shape, dtype=bool)
         values = np.zeros(self.points.shape)
         for condition in self.conditions:
@@ -91,7 +91,7 @@ class HexMesh:
         return prescribed, values
 
     def largest_turn(self):
-        """Largest displacement by turning alone, on the way: (n,) m."""
+        """Largest displacement due to rotations alone, along the path: (n,) m."""
         largest = np.zeros(len(self.points))
         for condition in self.conditions:
             if condition.turn:
@@ -102,7 +102,7 @@ class HexMesh:
     def largest_imposed(self):
         """Largest imposed displacement: max over the nodes of |d|, m.
 
-        Of nodes that turn, the largest on the way, where what they move beside that counts in full.
+        For rotating nodes, the largest along the path, with any added translation in full.
         """
         straight = tuple(dataclasses.replace(c, turn=None) for c in self.conditions)
         values = dataclasses.replace(self, conditions=straight).imposed()[1]
@@ -149,10 +149,10 @@ def turn_about(points, axis, center, angle):
 def _split_nodes(cells, n_nodes):
     """The nodes of split cells: ((m, 27), and for edges, faces and cells the parents (k, 2|4|8)).
 
-    cells: (m, 8), lexicographic. n_nodes: of their mesh; new nodes are numbered on from there.
+    cells: (m, 8), lexicographic. n_nodes: of their mesh; new nodes are numbered from there on.
     """
-    # The vertices of which each point is the mean: those that agree with it in every direction in
-    # which it is not half-way.
+    # Each new node is the mean of the vertices that agree with it in every direction in which it
+    # is not half-way.
     parents = [
         [v for v, corner in enumerate(SPLIT_CORNERS) if np.abs(np.subtract(p, corner)).max() <= 1]
         for p in SPLIT_POINTS
@@ -162,7 +162,7 @@ def _split_nodes(cells, n_nodes):
     parents_of_new = []
     for n_parents in (2, 4, 8):  # edges, faces, cells
         slots = [s for s in range(27) if len(parents[s]) == n_parents]
-        # Two cells share an edge or a face exactly when they share its set of vertices.
+        # Two cells share an edge or a face if and only if they share all of its vertices.
         keys = np.sort(np.stack([cells[:, parents[s]] for s in slots], axis=1), axis=2)
         entities, number = np.unique(keys.reshape(-1, n_parents), axis=0, return_inverse=True)
         local_to_global[:, slots] = n_nodes + number.reshape(len(cells), len(slots))
@@ -175,8 +175,8 @@ def refine(mesh):
     """Split every hexahedron into eight through the images of its parent mid-points.
 
     The original nodes come first and keep their numbers; then one node per edge, per face and per
-    cell. A new node is in the set of a condition when all vertices of its edge, face or cell are,
-    with their mean value: that is what the Q1 displacement of the coarse mesh does there.
+    cell. A new node is in the set of a condition when all vertices of its edge, face or cell are;
+    its value is their mean, as the Q1 displacement of the coarse mesh has it there.
 
     mesh: HexMesh. Returns a HexMesh with 8 m cells of the same trilinear geometry; the children of
     cell c are the cells 8 c to 8 c + 7.

@@ -1,9 +1,9 @@
-"""The one list of material laws: a name and its mixed energy density, in UFL.
+"""The material laws of the reference: their names and mixed energy densities, in UFL.
 
 A law is a function of the deformation gradient F (3x3, dimensionless), the pressure-like
-multiplier p (Pa, positive in tension) and, by keyword, the numbers that the case's `[material]`
-table holds beside `law` and `density`, under the same names (SI). It returns the energy per
-undeformed volume (J/m^3) whose stationary point in (u, p) is the equilibrium.
+multiplier p (Pa, positive in tension) and, as keyword arguments, the entries of the case's
+`[material]` table other than `law` and `density`, under the same names (SI). It returns the energy
+per undeformed volume (J/m^3) whose stationary point in (u, p) is the equilibrium.
 It must be concave in p (the term -p^2/(2K)), because p is eliminated element by element.
 
 To add a law, write its function and add one entry to LAWS.
@@ -15,10 +15,10 @@ import ufl
 
 
 def neo_hookean(F, p, *, young_modulus, poisson_ratio):
-    """Nearly incompressible neo-Hookean solid, the one of ABAQUS and of the TLED paper.
+    """Nearly incompressible neo-Hookean solid as in Abaqus and in the TLED paper.
 
     W = mu/2 (J^(-2/3) tr(F^T F) - 3) + p (J - 1) - p^2 / (2 K); eliminating p pointwise
-    (p = K (J - 1)) gives back mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2.
+    (p = K (J - 1)) gives mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2.
     """
     mu, K = _moduli(young_modulus, poisson_ratio)
     J = ufl.det(F)
@@ -26,10 +26,10 @@ def neo_hookean(F, p, *, young_modulus, poisson_ratio):
 
 
 def st_venant_kirchhoff(F, p, *, young_modulus, poisson_ratio):
-    """Hooke's law of the Green strain E, lambda/2 tr^2 E + mu E : E.
+    """Hooke's law in terms of the Green strain E, lambda/2 tr^2 E + mu E : E.
 
-    It is no sum of an isochoric and a volumetric part: the pressure takes the place of
-    K/2 (J - 1)^2, which is subtracted from the energy first.
+    It does not split into an isochoric and a volumetric part: K/2 (J - 1)^2 is subtracted from the
+    energy and replaced by the pressure terms.
     """
     mu, K = _moduli(young_modulus, poisson_ratio)
     E, J = (F.T * F - ufl.Identity(3)) / 2, ufl.det(F)
@@ -53,7 +53,7 @@ def yeoh(F, p, *, c1, c2, c3, bulk_modulus):
 
 
 def fibre_neo_hookean(F, p, *, young_modulus, poisson_ratio, fibre_modulus, fibre_direction):
-    """Neo-Hookean with one family of fibres, k/2 ((I4bar - 1)/2)^2; a direction of any length."""
+    """Neo-Hookean with a fibre family, k/2 ((I4bar - 1)/2)^2; the direction may have any length."""
     a, J = fibre_direction, ufl.det(F)
     strain = (J ** (-2 / 3) * ufl.inner(F * a, F * a) / ufl.inner(a, a) - 1) / 2
     matrix = neo_hookean(F, p, young_modulus=young_modulus, poisson_ratio=poisson_ratio)
@@ -66,15 +66,15 @@ def _moduli(E, nu):
 
 
 def _volumetric(J, p, K):
-    """K/2 (J - 1)^2 with its slope p as an unknown of its own."""
+    """K/2 (J - 1)^2 with its derivative p as a separate unknown."""
     return p * (J - 1) - p**2 / (2 * K)
 
 
 def viscoelastic(law):
-    """The same law when all that relaxes has relaxed: its quasi-static answer.
+    """The law after complete stress relaxation, which gives the quasi-static answer.
 
-    The isochoric stress, whose energy is what is left at p = 0, keeps the share
-    1 - relaxation_1 - relaxation_2 (Simo 1987); the volumetric one does not relax.
+    The isochoric stress, whose energy is the law's at p = 0, retains the share
+    1 - relaxation_1 - relaxation_2 (Simo 1987); the volumetric stress does not relax.
     """
 
     def relaxed(F, p, *, relaxation_1, time_1, relaxation_2=0.0, time_2=0.0, **material):
@@ -97,8 +97,7 @@ LAWS |= {VISCOELASTIC + name: viscoelastic(law) for name, law in LAWS.items()}
 
 
 def parameters(law):
-    """The names of a law's numbers, as a case file's `[material]` has them, and whether each must
-    be there."""
+    """A law's parameters as named in a case file's `[material]`: name -> whether it is required."""
     arguments = inspect.getfullargspec(LAWS[law])
     own = {name: name not in (arguments.kwonlydefaults or {}) for name in arguments.kwonlyargs}
     return (parameters(law.removeprefix(VISCOELASTIC)) if arguments.varkw else {}) | own

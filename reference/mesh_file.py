@@ -1,4 +1,4 @@
-"""The mesh file that `sandglass mesh CASE -o FILE` writes: having it made, and reading it."""
+"""Generates (with `sandglass mesh CASE -o FILE`) and reads mesh files."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from hexahedra import Condition, HexMesh, traction, turn_about
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, and what it was made of."""
+    """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, and where it came from."""
 
     points: np.ndarray
     cells: np.ndarray
@@ -28,8 +28,8 @@ class MeshFile:
 def make_mesh(case_path, output, name=None):
     """Runs `sandglass mesh CASE -o OUTPUT`.
 
-    case_path: str or Path of a case file. name: of the case, where the file has variants. Raises
-    InputError or ComputationError when the program is missing or fails.
+    case_path: str or Path of a case file. name: the case's name, if the file has variants. Raises
+    InputError or ComputationError if the program is missing or fails.
     """
     case_path = Path(case_path).resolve()
     case = case_path.parent / name if name else case_path
@@ -41,7 +41,7 @@ def read_mesh(path):
 
     path: str or Path of an HDF5 file with /mesh/points, /mesh/cells, /mesh/sets/NAME and the root
     attributes case, case_hash and mesh_hash. Returns a MeshFile.
-    Raises InputError naming file, dataset or attribute and the rule.
+    Raises InputError naming the file, the dataset or attribute, and the rule.
     """
     try:
         with h5py.File(path, "r") as file:
@@ -73,14 +73,14 @@ def load_case_mesh(case, mesh_path):
     """The mesh of a case, with the displacements and tractions of the case.
 
     case: Case. mesh_path: str or Path. Returns (HexMesh, MeshFile).
-    Raises InputError when the mesh belongs to another case, a set is missing or empty, two
-    displacements contradict each other, a force has no face, or nothing is moved or loaded.
+    Raises InputError if the mesh belongs to another case, a set is missing or empty, two
+    displacements contradict each other, a force has no face, or nothing is imposed.
     """
     file = read_mesh(mesh_path)
     if file.case != case.name:
         raise InputError(
-            f"{mesh_path}: attribute case = {file.case!r} must be {case.name!r}: it is the mesh of "
-            f"another case (sandglass mesh {case.name} -o FILE)"
+            f"{mesh_path}: attribute case = {file.case!r} must be {case.name!r}: the mesh is "
+            f"that of another case (sandglass mesh {case.name} -o FILE)"
         )
     mesh = HexMesh(file.points, file.cells, ())
     for entry in case.displacements:
@@ -101,7 +101,7 @@ def load_case_mesh(case, mesh_path):
         if tractions[-1] is None:
             raise InputError(
                 f"{mesh_path}: force.set = {entry.set_name!r}: no boundary face has all its "
-                "vertices in this set; a force needs one"
+                "vertices in this set; a force needs at least one"
             )
     if not (mesh.largest_imposed() or tractions):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
@@ -110,7 +110,7 @@ def load_case_mesh(case, mesh_path):
 
 def _with_condition(mesh_path, mesh, condition, where):
     """The HexMesh with one more Condition. Raises InputError where it contradicts the others."""
-    for load in (1.0, 0.3):  # paths of rotations that meet at one load part at another
+    for load in (1.0, 0.3):  # paths of rotations may agree at one load and differ at another
         prescribed, values = mesh.imposed(load)
         for axis in condition.components:
             already = np.flatnonzero(prescribed[:, axis] & condition.nodes)
@@ -123,12 +123,12 @@ def _with_condition(mesh_path, mesh, condition, where):
 
 
 def _members(mesh_path, file, table, set_name):
-    """The nodes of a set of a MeshFile. Raises InputError when there are none."""
+    """The nodes of a set of a MeshFile. Raises InputError if there are none."""
     members = file.sets.get(set_name, np.empty(0, dtype=np.int64))
     if not members.size:
         known = sorted(n for n, s in file.sets.items() if s.size)
         raise InputError(
-            f"{mesh_path}: {table}.set = {set_name!r} is not a node set that has nodes; "
+            f"{mesh_path}: {table}.set = {set_name!r} is not a non-empty node set; "
             + suggestion(set_name, known)
         )
     return members
@@ -142,7 +142,7 @@ def _mask(file, members):
 
 
 def _dataset(path, file, name, dtype, width):
-    """One checked dataset: (n, width), or (n,) when width is None, of the wanted kind."""
+    """A dataset checked for its shape, (n, width) or (n,) if width is None, and its type."""
     if name not in file:
         raise InputError(f"{path}: dataset {name} is missing")
     data = file[name]

@@ -10,21 +10,21 @@ from petsc4py import PETSc
 from common.errors import ComputationError
 
 MAX_ITERATIONS = 20
-# A load step only has to lead into the basin of the next one; the last one is solved to round-off.
+# A load step need only reach the basin of convergence of the next; the last is exact to round-off.
 STEP_TOLERANCE = 1e-3
 SMALLEST_STEP = 1 / 4096
 SMALLEST_FRACTION = 1 / 16
-# A correction so many times longer than the whole load is not one that leads to an equilibrium.
+# A correction this many times longer than the whole load does not lead to an equilibrium.
 LARGEST_CORRECTION = 10.0
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the solution cost and how good it is.
+    """Cost and accuracy of a solution.
 
     residual: norm of the unbalanced nodal forces over the norm of the reactions.
     last_correction: largest component of the last Newton correction over the largest imposed
-    component; where nothing is moved, over the largest of the displacement.
+    component or, if none is imposed, over the largest component of the displacement.
     """
 
     load_steps: int
@@ -36,12 +36,12 @@ class Outcome:
 def solve(problem, load_steps, tolerance, guessed=False):
     """Bring a MixedProblem to its prescribed displacement and load, in place.
 
-    problem: MixedProblem at rest or, if guessed, near the answer: when Newton's method fails there
-    it starts again at rest. load_steps: number of equal load steps from rest; a step that fails is
-    halved. tolerance: the last step ends when a Newton correction is below tolerance times the
-    largest imposed component, or the largest of the displacement where nothing is moved. Newton's
-    method converges quadratically, so the solution is then exact to round-off. Returns an
-    Outcome. Raises ComputationError when halving does not help.
+    problem: MixedProblem at rest or, if guessed, near the answer; if Newton's method fails there,
+    it starts again from rest. load_steps: number of equal load steps from rest; a step that fails
+    is halved. tolerance: the last step ends when a Newton correction is below tolerance times the
+    largest imposed component or, if none is imposed, the largest component of the displacement.
+    Newton's method converges quadratically, so the solution is then exact to round-off. Returns an
+    Outcome. Raises ComputationError if halving does not help.
     """
     scale = problem.scale
     state = (problem.displacement.x.array, problem.pressure.x.array)
@@ -104,11 +104,11 @@ def _equilibrate(problem, load, scale, tolerance):
 
 
 def _advance(problem, du, dp, fixed):
-    """Add the largest of du, du/2, du/4, ... that inverts no element, and as much of dp.
+    """Add the largest of du, du/2, du/4, ... that inverts no element, and the same fraction of dp.
 
-    fixed: values of the prescribed dofs after the whole of du. An inverted element has no energy
-    (J^(-2/3) is not a number). Returns the fraction, or 0 when even SMALLEST_FRACTION of the
-    correction inverts elements.
+    fixed: values of the prescribed dofs after the full du. The energy of an inverted element is
+    NaN (J^(-2/3)). Returns the fraction, or 0 if even SMALLEST_FRACTION of the correction inverts
+    elements.
     """
     u, p = problem.displacement.x.array, problem.pressure.x.array
     old_u, old_p = u.copy(), p.copy()
@@ -141,7 +141,7 @@ def _direct_solve(matrix, right):
     ksp.solve(b, x)
     failed = ksp.getConvergedReason() < 0
     solution = np.full(size[0], np.nan) if failed else x.array.copy()
-    # petsc4py keeps what goes out of scope for a later clean-up: without these calls the factors
+    # petsc4py defers the clean-up of objects that go out of scope: without these calls the factors
     # of all iterations pile up.
     for thing in (pc, ksp, a, b, x):
         thing.destroy()

@@ -1,7 +1,7 @@
 """The mixed displacement-pressure problem on a mesh of hexahedra, assembled with FEniCSx.
 
 The pressure is discontinuous, so every Newton step eliminates it exactly on the element level
-(static condensation); what is left is symmetric and has the displacement's unknowns only.
+(static condensation), which leaves a symmetric system in the displacement alone.
 """
 
 from dataclasses import dataclass
@@ -38,18 +38,18 @@ class ElementPair:
 
 
 GOLDEN = ElementPair("Q1-P0", 1, "DQ", 0, 2)
-# Not 3 x 3 x 3: under an indenter's rim the elements are so distorted that it shows (README).
+# Not 3 x 3 x 3: elements under an indenter's rim are so distorted that it matters (README).
 TRUTH = ElementPair("Q2-P1", 2, "DPC", 1, 4)
 
 
 class MixedProblem:
     """Equilibrium of a HexMesh: residual and tangent in the displacement's unknowns.
 
-    mesh: HexMesh. pair: ElementPair. law: name out of LAWS. material: dict of its numbers (SI),
+    mesh: HexMesh. pair: ElementPair. law: a name in LAWS. material: dict of its parameters (SI),
     directions as tuples.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
-    dofs), values (theirs at the full load, m), scale (the largest of them on the way, m), free (the
-    other dofs), load (the present factor of the tractions, 0 to 1).
+    dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
+    (the other dofs), load (the current factor of the tractions, 0 to 1).
     """
 
     def __init__(self, mesh, pair, law, material):
@@ -62,14 +62,14 @@ class MixedProblem:
         pressures = ufl.FiniteElement(pair.pressure_family, "hexahedron", pair.pressure_order)
         self.displacement = fem.Function(fem.FunctionSpace(domain, displacements))
         self.pressure = fem.Function(fem.FunctionSpace(domain, pressures))
-        # As constants rather than literals: one compiled form then serves every case.
+        # Constants rather than literals, so that one compiled form serves every case.
         constants = {name: fem.Constant(domain, value) for name, value in material.items()}
         self._forms = _compile_forms(self.displacement, self.pressure, pair, law, constants)
         self._matrices = {
             name: fem.petsc.create_matrix(form) for name, form in self._forms["matrices"].items()
         }
         # dolfinx reorders cells and nodes on input. Geometry and displacement number the vertices
-        # of a cell alike, so cell by cell they give the node in the caller's numbering.
+        # of a cell in the same order, which gives the caller's node numbers cell by cell.
         n_cells = len(mesh.cells)
         geometry = domain.geometry.dofmap.array.reshape(n_cells, 8)
         cell_nodes = np.asarray(domain.geometry.input_global_indices)[geometry]
@@ -90,10 +90,10 @@ class MixedProblem:
             )
 
     def start_from(self, coarse):
-        """Take over displacement and pressure of a problem on the mesh before refine().
+        """Interpolate displacement and pressure from a problem on the mesh before refine().
 
         coarse: MixedProblem with the same elements. The finer spaces contain the coarser ones, so
-        nothing is lost.
+        the interpolation is exact.
         """
         domain, coarse_domain = (
             problem.displacement.function_space.mesh for problem in (self, coarse)
@@ -119,15 +119,15 @@ class MixedProblem:
         return self.displacement.x.array.reshape(-1, 3)[self._vertex_block]
 
     def nodal_points(self):
-        """Undeformed points (n, 3) in m as the displacement's space sees them, in the same order.
+        """Undeformed points (n, 3) in m according to the displacement's space, in the same order.
 
-        They equal the HexMesh's points exactly when the numbering is right.
+        They equal the HexMesh's points if and only if the numbering is right.
         """
         space = self.displacement.function_space
         return space.tabulate_dof_coordinates()[self._vertex_block]
 
     def linearize(self):
-        """Residual and tangent at the present displacement and pressure, pressure eliminated.
+        """Residual and tangent at the current displacement and pressure, pressure eliminated.
 
         Returns (tangent, residual, recover): sparse (N, N) in N/m and (N,) in N over all
         displacement dofs, and a function from a displacement increment (N,) to the pressure
@@ -149,7 +149,7 @@ class MixedProblem:
     def mixed_residual(self):
         """Both rows of the mixed system: forces (N,) in N, and (M,) in m^3, one per pressure.
 
-        Forces are internal ones less the tractions at their present load.
+        The forces are the internal forces minus the tractions at the current load.
         """
         return self._assemble_vector("u") - self.load * self._external, self._assemble_vector("p")
 
@@ -187,7 +187,7 @@ def _compile_forms(u, p, pair, law, material):
             "pp": ufl.derivative(by_p, p, dp),
         },
     }
-    # Waiting for another process that compiles the same form must not end the run.
+    # Another process may be compiling the same form: wait for it rather than fail.
     options = {"timeout": 600, "cffi_extra_compile_args": ["-O3", "-g0"]}
     return {
         kind: {name: fem.form(form, jit_params=options) for name, form in group.items()}
@@ -199,7 +199,7 @@ def _traction_forces(traction, space, cell_nodes, degree):
     """Nodal forces (N,) in N, over all displacement dofs, of a Traction at full load.
 
     space: the displacement's. cell_nodes: (m, 8) node numbers in the space's order of cells and
-    vertices. degree: of the quadrature.
+    vertices. degree: quadrature degree.
     """
     domain = space.mesh
     domain.topology.create_connectivity(2, 3)

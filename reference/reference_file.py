@@ -1,4 +1,4 @@
-"""Storing and reading goldens and truths (HDF5). A file is written whole or not at all."""
+"""Writes and reads goldens and truths (HDF5). A file is written completely or not at all."""
 
 import math
 import shutil
@@ -25,7 +25,7 @@ ATTRIBUTES = {
     "law": str,
     "mirror_planes": str,
     "boundary_rule": str,
-    "largest_imposed": float,  # where nothing is moved: the largest displacement
+    "largest_imposed": float,  # or, if nothing is imposed, the largest displacement
     "load_steps": int,
     "newton_iterations": int,
     "residual": float,
@@ -42,7 +42,7 @@ ATTRIBUTES = {
     "own_error_note": str,
 }
 
-# What a new one knows of its distance from that limit.
+# Values of the own_error attributes in a new file.
 NOT_ESTIMATED = {
     "own_error_max": math.nan,
     "own_error_rms": math.nan,
@@ -52,7 +52,7 @@ NOT_ESTIMATED = {
 
 
 def path_of(kind, name):
-    """Where the golden or truth of a case is stored. kind: out of KINDS. name: of the case."""
+    """The path of a case's golden or truth. kind: one of KINDS. name: the case's name."""
     return FOLDER / kind / f"{name}.h5"
 
 
@@ -65,7 +65,7 @@ def write_reference(path, points, displacement, attributes):
     """Writes a golden or truth.
 
     points, displacement: (n, 3) float64, m, in the numbering of the mesh file. attributes: dict
-    with exactly the keys of ATTRIBUTES. Raises InputError when the file cannot be written.
+    with exactly the keys of ATTRIBUTES. Raises InputError if the file cannot be written.
     """
     assert set(attributes) == set(ATTRIBUTES), set(attributes) ^ set(ATTRIBUTES)
     with new_file(path) as temporary, h5py.File(temporary, "w") as file:
@@ -78,9 +78,9 @@ def write_reference(path, points, displacement, attributes):
 
 
 def write_estimate(path, estimate):
-    """Replaces the attributes of NOT_ESTIMATED in a stored file; its datasets keep their bytes.
+    """Replaces the attributes of NOT_ESTIMATED in a stored file and leaves its datasets unchanged.
 
-    estimate: dict with those keys. Raises InputError when the file cannot be written.
+    estimate: dict with those keys. Raises InputError if the file cannot be written.
     """
     assert set(estimate) == set(NOT_ESTIMATED), set(estimate) ^ set(NOT_ESTIMATED)
     with new_file(path) as temporary:
@@ -93,7 +93,7 @@ def write_estimate(path, estimate):
 def read_reference(path):
     """Reads a golden or truth: (points (n, 3), displacement (n, 3), m, attributes dict).
 
-    Raises InputError when the file is missing, damaged or lacks an attribute.
+    Raises InputError if the file is missing, is damaged or lacks an attribute.
     """
     try:
         with h5py.File(path, "r") as file:
@@ -102,5 +102,5 @@ def read_reference(path):
     except OSError as error:
         raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
     except KeyError as error:
-        raise InputError(f"{path}: is no golden or truth: {error.args[0]}") from error
+        raise InputError(f"{path}: not a golden or truth: {error.args[0]}") from error
     return points, displacement, attributes

@@ -31,7 +31,7 @@ from reference_file import NOT_ESTIMATED, write_reference
 from symmetry import halve
 
 PAIRS = {"golden": GOLDEN, "truth": TRUTH}
-# A step that fails is halved, so these only set the speed. A body cannot be turned far in one step.
+# A step that fails is halved, so these affect only the speed. One step cannot turn a body far.
 LOAD_STEPS = {"golden": 10, "truth": 1}
 LARGEST_TURN = math.radians(36)
 NEWTON_TOLERANCE = 1e-10
@@ -42,11 +42,11 @@ def solve_case(kind, case, mesh, refinements, load_steps, pair=None):
     """Solve a case on its mesh and on that mesh split once, twice, ... `refinements` times.
 
     kind: "golden" or "truth". case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh.
-    pair: ElementPair, that of the kind unless told.
+    pair: ElementPair, by default that of the kind.
     Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
     the last mesh; axes of the mirror planes used, as text). Raises ComputationError.
     """
-    # The golden is the oracle of every other program: on its own mesh it takes no short cut.
+    # The golden is the oracle for all else: on its own mesh it takes no short cut.
     part, halves = halve(mesh) if kind == "truth" or refinements else (mesh, [])
     n_nodes = len(part.points)
     displacements, coarse = [], None
@@ -68,7 +68,7 @@ def solve_case(kind, case, mesh, refinements, load_steps, pair=None):
 
 
 def load_steps_of(kind, case):
-    """Into how many steps the load of a Case is split at first."""
+    """The initial number of load steps of a Case."""
     turn = max((abs(rotation.angle) for rotation in case.rotations), default=0.0)
     return max(LOAD_STEPS[kind], math.ceil(turn / LARGEST_TURN - 1e-9))
 
@@ -111,9 +111,9 @@ def run(options):
 
 
 def discretisation_error(displacements, unit):
-    """The attributes that say how far the last displacements are from those before.
+    """The attributes that state how far the last displacements are from the previous ones.
 
-    displacements: of solve_case(). unit: m, of relative errors.
+    displacements: from solve_case(). unit: m, for relative errors.
     """
     errors, note = (math.nan, math.nan), "not estimated"
     if len(displacements) > 1:

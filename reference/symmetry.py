@@ -1,7 +1,7 @@
-"""Solving only one half of a mesh that is its own mirror image, per mirror plane.
+"""Reduces a mesh to one half for every mirror plane that it has.
 
-What a truth costs grows with the power 4/3 (memory) to 2 (time) of its unknowns: two mirror planes
-make the cylinder's fourteen times cheaper. The answer is the one with that symmetry.
+The cost of a truth grows with the power 4/3 (memory) to 2 (time) of its unknowns: two mirror planes
+make the cylinder's fourteen times cheaper. The answer found is the one with that symmetry.
 """
 
 from dataclasses import dataclass, replace
@@ -12,16 +12,16 @@ from scipy.spatial import cKDTree
 from common.hexahedron import FACES
 from hexahedra import Condition, HexMesh
 
-# Coordinates and values that differ by less than this part of the mesh's size are equal.
+# Coordinates and values that differ by less than this fraction of the mesh's size count as equal.
 TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
 class Half:
-    """One half of a mesh: which nodes it kept, and where every node of the whole finds its value.
+    """One half of a mesh, and the map from its nodes to those of the whole.
 
-    axis: normal of the mirror plane. mesh: HexMesh of the half. source: (n,) node of the half that
-    carries the displacement of each node of the whole. mirrored: (n,) True where it is mirrored.
+    axis: normal of the mirror plane. mesh: HexMesh of the half. source: (n,) node of the half from
+    which each node of the whole takes its displacement. mirrored: (n,) True where it is mirrored.
     """
 
     axis: int
@@ -40,7 +40,7 @@ def halve(mesh):
     """Halve a HexMesh at every mirror plane normal to x, y or z through its middle.
 
     Returns (the smallest HexMesh, list of Half in the order of cutting). To expand a displacement
-    of the smallest mesh apply the halves' expand() from the last to the first.
+    from the smallest mesh, apply the halves' expand() from the last to the first.
     """
     halves = []
     for axis in range(3):
@@ -52,7 +52,7 @@ def halve(mesh):
 
 
 def _half(mesh, axis):
-    """The Half of a mesh on the upper side of an axis, or None without that symmetry."""
+    """The Half of a mesh on the upper side of an axis, or None if it lacks that symmetry."""
     size = np.ptp(mesh.points)
     low, high = mesh.points[:, axis].min(), mesh.points[:, axis].max()
     height = mesh.points[:, axis] - (low + high) / 2
@@ -90,10 +90,10 @@ def _half(mesh, axis):
 
 
 def _has_mirror(traction, mesh, axis, side, image):
-    """Whether a Traction is its own mirror image, and none of its faces would be a cut one."""
+    """Whether a Traction is its own mirror image and none of its faces lies in the mirror plane."""
     if not np.array_equal(traction.nodes[image], traction.nodes):
         return False
-    # The mirror turns the normal part of a vector round, and of a turn the other parts.
+    # A reflection reverses the normal component of a vector, but the tangential ones of a rotation.
     for part, whole in (
         (traction.mean[axis], traction.mean),
         (np.delete(traction.turn, axis), traction.turn),

@@ -1,6 +1,6 @@
-"""Keeps failure maps of `sandglass stability --json` small, for the page of trees that made none.
+"""Reduces failure maps of `sandglass stability --json` for storage with the sources.
 
-Leaves out what the page does not show, and digits that nobody reads: a tenth remains.
+Removes data that the page does not show, and superfluous digits; a tenth of the size remains.
 
 Usage: /usr/bin/python3 reports/keep_maps.py FILE... [-o FOLDER]
 Exit codes: 0 done, 2 an input is missing or broken.

@@ -1,6 +1,6 @@
-"""Draws error against cost of a step from files of `sandglass choose --all --json`.
+"""Draws error against cost per step from files of `sandglass choose --all --json`.
 
-Several files of one case add up: another tolerance tries the adaptive method at other accuracies.
+Files of the same case are merged: other tolerances try the adaptive method at other accuracies.
 
 Usage: /usr/bin/python3 reports/make_curves.py FILE... [-o FOLDER]
 Exit codes: 0 done, 2 an input is missing or broken.

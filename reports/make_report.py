@@ -1,8 +1,8 @@
-"""Makes the page of the report from verdicts, results, references and what else was measured.
+"""Makes the report page from verdicts, results, references and other measurements.
 
 Usage: /usr/bin/python3 reports/make_report.py [OPTIONS] [-o FILE]; --help lists the inputs.
-Verdicts, results, cases and references must be there; where another is missing, the page says which
-command makes it.
+Verdicts, results, cases and references are required; if another input is missing, the page names
+the command that makes it.
 Exit codes: 0 done, 2 an input is missing, broken or does not belong to the others.
 """
 
@@ -46,7 +46,13 @@ def main(arguments=None):
     add("--verdicts", type=Path, default="build/verdicts.json", help="of sandglass verify --json")
     add("--results", type=Path, default="build/verify", help="of sandglass verify --results")
     add("--cases", type=Path, default="cases", help="folder of case files")
-    add("--case", type=Path, nargs="+", default=[], help="case files beside those of the folder")
+    add(
+        "--case",
+        type=Path,
+        nargs="+",
+        default=[],
+        help="case files in addition to those of the folder",
+    )
     add("--reference", type=Path, default="reference", help="folder with golden/ and truth/")
     add("--bench", type=Path, default="build/bench.json", help="of sandglass bench --json")
     add("--flops", type=Path, default="build/flops.json", help="of sandglass flops --json")
@@ -56,7 +62,12 @@ def main(arguments=None):
     add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")
     add("--pictures", type=Path, default="reports/figures", help="folder of drawn failure maps")
     add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
-    add("--mutants", type=Path, default="verification/mutants/RESULTS.md", help="of ci/mutants")
+    add(
+        "--mutants",
+        type=Path,
+        default="verification/mutants/RESULTS.md",
+        help="of verification/mutants/run.py",
+    )
     add("--root", type=Path, default=".", help="of the tree that the claims' tests are in")
     add("-o", "--output", type=Path, default="build/report/index.html", help="the page to write")
     return exit_code(make, parser.parse_args(arguments))

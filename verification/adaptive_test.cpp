@@ -1,4 +1,4 @@
-/// The adaptive method: how levels are chosen and mixed, and what the accuracy that is asked for means.
+/// The adaptive method: how levels are chosen and mixed, and the meaning of the requested accuracy.
 
 #include <gtest/gtest.h>
 
@@ -279,7 +279,7 @@ class FrameRecorder final : public Observer {
   double unexplained = 0.0;  ///< J, of the imbalance, by what changes of levels brought
 };
 
-/// The answer is balanced at the levels that it is told with, and they are those that it asks for.
+/// The answer is in equilibrium at the levels reported with it, and those are the levels that it requires.
 TEST(Adaptive, answers_rest_at_their_levels) {
   const Scene scene = pressed_block(0.02);
   const MethodChoice choice{.method = "tl-adaptive", .accuracy = 0.005};

@@ -319,7 +319,7 @@ TEST(SubnormalTest, fading_displacements_give_no_force_and_leave_the_processor_a
   EXPECT_GT(tiny * less, 0.0F);
 }
 
-/// Computing the geometry anew changes roundoff only.
+/// Recomputing the geometry changes only roundoff.
 TEST(CompactMethodTest, gives_the_forces_of_the_method_it_stands_for) {
   for (const Mesh& mesh : meshes()) {
     const NodalField loaded = forces(mesh, {"tl-perturbation"});

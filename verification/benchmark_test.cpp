@@ -1,4 +1,4 @@
-/// What the benchmark computes from its times, and that nothing wrong is timed.
+/// Figures computed by the benchmark from its times; wrong results are not timed.
 
 #include <gtest/gtest.h>
 
@@ -80,7 +80,7 @@ TEST(ForceCheck, status_names_difference_and_limit) {
   EXPECT_NE(force_status(std::numeric_limits<double>::quiet_NaN(), 1.0), "ok");
 }
 
-/// Counts what is asked of it.
+/// Counts its calls.
 class Fake final : public Candidate {
  public:
   explicit Fake(double force) : force_(force) {}
@@ -115,7 +115,7 @@ TEST(Measure, wrong_forces_get_no_time) {
   EXPECT_EQ(right.checks, 1);
 }
 
-/// Asks for memory twice in every step, once of a stronger alignment, and when it goes back.
+/// Allocates twice in every step, once with a stronger alignment, and when it goes back.
 class Greedy final : public Candidate {
  public:
   NodalField forces() override { return {{1.0, 0.0, 0.0}}; }
@@ -253,7 +253,7 @@ TEST(Rest, bisection_finds_the_first_below) {
   EXPECT_EQ(first_below(0, 0.5, error), 0);
 }
 
-/// An error that rises once more: what is found is a crossing.
+/// An error that rises again: the bisection finds one of the crossings.
 TEST(Rest, bisection_finds_a_crossing_where_there_are_more) {
   const auto error = [](long n) { return n < 10 || (n >= 40 && n < 60) ? 1.0 : 0.0; };
   const long found = first_below(100, 0.5, error);

@@ -1,4 +1,4 @@
-/// Case files: what is read from good ones, and what is said about bad ones.
+/// Case files: reading valid ones, and messages about invalid ones.
 
 #include "io/case_file.hpp"
 

@@ -27,7 +27,7 @@ Scene loaded_block(const AnyLaw& law, bool quasi_static) {
   description.forces = {{"side", {0.1, 0.2, 0.0}, {}}};
   description.relaxation.levels = 4;
   description.relaxation.tolerance = 1e-6;
-  description.relaxation.max_steps = 600;  // what comes to rest needs less
+  description.relaxation.max_steps = 600;  // runs that come to rest need fewer
   description.quasi_static = quasi_static;
   description.dynamics.duration = 0.1;
   description.dynamics.ramp_time = 0.05;
@@ -37,7 +37,7 @@ Scene loaded_block(const AnyLaw& law, bool quasi_static) {
   return make_scene(description, mesh, sets);
 }
 
-/// Keeps all that is told, and every checkpoint with what was told before it.
+/// Records all reports, and every checkpoint with the reports before it.
 class KeepingRecorder final : public Observer {
  public:
   explicit KeepingRecorder(RunSoFar run = {}) : run_(std::move(run)) {}
@@ -55,7 +55,7 @@ class KeepingRecorder final : public Observer {
   std::vector<RunSoFar> kept_;
 };
 
-/// The bits of everything that a run told and of the answer it ended with.
+/// The bits of all reports of a run and of its final answer.
 std::vector<std::uint64_t> bits_of(const RunSoFar& run, const NodalField& answer) {
   std::vector<std::uint64_t> bits;
   const auto add = [&](double number) { bits.push_back(std::bit_cast<std::uint64_t>(number)); };
@@ -106,7 +106,7 @@ Ending run(const Scene& scene, const MethodChoice& choice, KeepingRecorder& reco
   }
 }
 
-/// Goes on from every checkpoint, through the file, with another number of threads.
+/// Resumes from every checkpoint, through the file, with another number of threads.
 void expect_same_from_everywhere(const Scene& scene, MethodChoice choice, std::size_t at_least) {
   const TemporaryFolder folder;
   const Identity identity{{"method", choice.method}};
@@ -166,7 +166,7 @@ TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
   }
 }
 
-/// Levels that failed and were tried again at half the distance are part of what goes on.
+/// Load levels that failed and were retried at half the distance are part of the resumed state.
 TEST(Checkpoint, goes_on_after_levels_that_failed) {
   Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
   scene.description.displacements[1].value = {0.0, 0.0, -0.17};
@@ -180,7 +180,7 @@ TEST(Checkpoint, goes_on_after_levels_that_failed) {
   expect_same_from_everywhere(scene, {"tl-perturbation", {}}, 3);
 }
 
-/// The load that turns back is part of what goes on, on each of its legs.
+/// A load that reverses is part of the resumed state, in each of its phases.
 TEST(Checkpoint, goes_on_in_every_cycle) {
   Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
   scene.description.relaxation.cycles = 2;
@@ -190,7 +190,7 @@ TEST(Checkpoint, goes_on_in_every_cycle) {
   expect_same_from_everywhere(scene, {"ul-perturbation", {}}, 10);
 }
 
-/// Everything in a checkpoint is asked for: without any one array, or with one number more, it is refused.
+/// Every entry of a checkpoint is required: with any array missing, or one number added, it is rejected.
 TEST(Checkpoint, of_another_shape_is_refused) {
   for (const bool quasi_static : {false, true}) {
     const Scene scene = loaded_block(sample_law<NeoHookean>(0.45), quasi_static);
@@ -281,7 +281,7 @@ TEST_F(CheckpointFileTest, of_another_mesh_is_refused) {
       contains(input_error([&] { read_checkpoint_file(path, identity, 2, 2); }), "each of 2 elements"));
 }
 
-/// What a killed program left beside the file goes with the next one; what belongs to somebody stays.
+/// Temporary files of killed programs are removed with the next checkpoint; all other files stay.
 TEST_F(CheckpointFileTest, removes_what_killed_programs_left) {
   const std::string unused = "999999999";  // above what Linux gives to processes
   const auto ours = fmt::format("run.h5.{}.part", getppid());

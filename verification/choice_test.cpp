@@ -1,4 +1,4 @@
-/// The ladder of methods and meshes, its judge, and what is chosen.
+/// The ladder of methods and meshes, their evaluation, and the choice.
 
 #include <gtest/gtest.h>
 
@@ -79,7 +79,7 @@ TEST(Ladder, has_every_method) {
   EXPECT_EQ(make_ladder(meshes, {.methods = {"linear"}}).size(), 6u);
 }
 
-/// An adaptive method stands on several rungs, on both sides of what the user asks for.
+/// An adaptive method is on several rungs, with accuracies on both sides of the requested one.
 TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
   const auto choices = choices_of(method_named("tl-adaptive"), {"tl-adaptive"}, NeoHookean{}, 0.01);
   ASSERT_GE(choices.size(), 3u);

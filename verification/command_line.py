@@ -51,7 +51,7 @@ kappas = [0.01]
 golden = "golden.h5"
 """
 
-BARE = BLOCK.partition("[comparison]")[0]  # compared with nothing
+BARE = BLOCK.partition("[comparison]")[0]  # without a comparison
 
 LIMIT = """
 [[expect]]
@@ -70,7 +70,7 @@ def dynamic(text, **numbers):
 
 
 def sandglass(*arguments, **options):
-    """Runs the program; its outcome with the texts it wrote."""
+    """Runs the program; returns its outcome with its output."""
     command = [BINARY, *map(str, arguments)]
     return subprocess.run(
         command, capture_output=True, text=True, timeout=120 * PATIENCE, **options
@@ -78,7 +78,7 @@ def sandglass(*arguments, **options):
 
 
 def catches_interrupts(process):
-    """Whether a process has taken charge of Ctrl-C, as the kernel tells."""
+    """Whether a process handles Ctrl-C, according to the kernel."""
     for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
         if line.startswith("SigCgt:"):
             return bool(int(line.split()[1], 16) >> (signal.SIGINT - 1) & 1)
@@ -91,7 +91,7 @@ def methods():
 
 
 def write_golden(case, **changed):
-    """Makes the answer of mean dilatation the golden of a case; `changed` replaces attributes."""
+    """Stores the answer of mean dilatation as a case's golden; `changed` replaces attributes."""
     result = case.parent / "for-golden.h5"
     assert sandglass("run", case, "--method", "tl-mean-dilatation", "-o", result).returncode == 0
     with h5py.File(case.parent / "golden.h5", "w") as golden, h5py.File(result) as source:

@@ -43,7 +43,7 @@ Verdict verdict(const std::string& method, std::optional<double> kappa, bool aut
 
 class LimitTest : public ::testing::Test {
  protected:
-  /// What comes of one expectation.
+  /// The outcome of one expectation.
   LimitCheck check(const Expectation& expected, const std::vector<Verdict>& verdicts) {
     scene.description.expectations = {expected};
     return check_limits(scene, verdicts).at(0);

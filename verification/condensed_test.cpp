@@ -143,7 +143,7 @@ TEST(CondensedTest, forces_are_the_reactions_of_the_linear_method) {
   EXPECT_LT(largest_distance(f, exact), relaxed_tolerance * size);
 }
 
-/// A few nodes may be asked for; they are those of the whole answer, in the order of the asking.
+/// A subset of nodes may be requested; their values are those of the whole answer, in the requested order.
 TEST(CondensedTest, outputs_are_the_nodes_asked_for) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02});
   const std::vector<Vector> d{{}, {0.03, -0.01, 0.02}};
@@ -290,7 +290,7 @@ TEST(CondensedTest, scenes_that_it_cannot_answer_are_refused) {
 
 /// Layers reach everything, and what is joined is at most one layer apart.
 TEST(LayersTest, neighbours_are_at_most_a_layer_apart) {
-  // A ring of nine, a pair beside it, and one alone.
+  // A ring of nine, a pair next to it, and a single one.
   std::vector<std::vector<int>> neighbours(12);
   for (int n = 0; n < 9; ++n) neighbours[index(n)] = {(n + 1) % 9, (n + 8) % 9};
   neighbours[9] = {10};

@@ -193,7 +193,7 @@ TYPED_TEST(DynamicsTest, energy_is_conserved_to_second_order) {
   EXPECT_NEAR(coarse / fine, 4.0, 1.2);
 }
 
-/// What the driven nodes put in is found in the body: work = kinetic + strain + hourglass, to second order.
+/// The work of the driven nodes is the body's energy, kinetic + strain + hourglass, to second order.
 TYPED_TEST(DynamicsTest, work_of_driven_nodes_balances_energies) {
   const auto imbalance = [&](double fraction) {
     Case description = plain_case(this->law(), density);

@@ -55,7 +55,7 @@ TEST(Hexahedron, volume_is_exact) {
     centre_error =
         std::max(centre_error, std::abs(8.0 * determinant(parent_jacobian(X, {0, 0, 0})) / V - 1.0));
   }
-  // The samples tell the exact volume from the popular 8 det J(0).
+  // The samples distinguish the exact volume from the common 8 det J(0).
   EXPECT_GT(centre_error, 0.01);
 }
 
@@ -70,7 +70,7 @@ TEST(Hexahedron, mean_gradients_are_the_derivatives_of_the_volume) {
     const auto centre = point_gradient(X, {0, 0, 0}).gradient;
     centre_error = std::max(centre_error, largest_entry(centre - mean.h) / largest_entry(mean.h));
   }
-  EXPECT_GT(centre_error, 0.01);  // the samples tell mean from centre gradients
+  EXPECT_GT(centre_error, 0.01);  // the samples distinguish mean from centre gradients
 }
 
 TEST(Hexahedron, mean_gradients_reproduce_constant_and_linear_fields) {

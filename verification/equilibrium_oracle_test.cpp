@@ -47,7 +47,7 @@ Scene pressed_block(const AnyLaw& law) {
   return make_scene(description, mesh, sets);
 }
 
-/// What the oracle says of displacements at rest.
+/// The oracle's figures for displacements in equilibrium.
 struct Agreement {
   double residual;         ///< of the relaxed displacements, by the plain assembly, over the forces carried
   double oracle_residual;  ///< of KINSOL's

@@ -1,4 +1,4 @@
-/// How a run went wrong, told from its displacements.
+/// The diagnosis of a failed run from its displacements.
 
 #include "comparison/finding.hpp"
 

@@ -122,7 +122,7 @@ TEST_P(FloatBudgetTest, at_rest_in_other_units_and_far_away) {
   EXPECT_LT(distance(in_millimetres(far_away(scene)), 1e-3), budget_at_rest(scene));
 }
 
-/// A block of 96 elements on its foot, thrown sideways, for so many steps of half the stable one.
+/// A block of 96 elements on its foot, thrown sideways, for a number of steps of half the stable one.
 Scene vibrating_block(long steps) {
   Case description = plain_case(tissue);
   description.quasi_static = false;

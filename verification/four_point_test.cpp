@@ -88,7 +88,7 @@ TEST(FourPoint, other_corners_differ_to_third_order) {
              energy_of<FourPointKernel>(X, u);
     };
     EXPECT_NE(difference(1.0), 0.0);
-    EXPECT_NEAR(difference(0.5) / difference(1.0), 0.125, 0.03);  // odd: a fifth-order term stands beside it
+    EXPECT_NEAR(difference(0.5) / difference(1.0), 0.125, 0.03);  // odd: plus a fifth-order term
   }
 }
 

@@ -118,7 +118,7 @@ TYPED_TEST(ControlWithLawTest, energy_sampling_restores_the_missing_energy) {
     const double exact = 10.0 / 9.0 * law.shear_modulus() / 2.0 * missing;
     const double energy = EnergySamplingControl::energy(hourglass_displacements(X, u),
                                                         EnergySamplingControl::precompute(X, law, {}));
-    // A difference of two sums; coordinates far from the origin lose digits on the way to gradients.
+    // A difference of two sums; coordinates far from the origin cost digits in gradients.
     EXPECT_NEAR(energy, exact, 1e-11 * law.shear_modulus() * all);
   }
 }

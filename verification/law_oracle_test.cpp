@@ -338,7 +338,7 @@ TEST(FibreNeoHookean, has_the_symmetry_of_its_fibres) {
 
 TEST(FibreNeoHookean, needs_a_direction) {
   EXPECT_TRUE(fibres_along(0.0, 0.0, 0.0).broken_rule());
-  EXPECT_TRUE(fibres_along(1e-200, 0.0, 0.0).broken_rule());  // its square is no number to divide by
+  EXPECT_TRUE(fibres_along(1e-200, 0.0, 0.0).broken_rule());  // its square underflows
   EXPECT_FALSE(fibres_along(0.0, 1e-3, 0.0).broken_rule());
 }
 

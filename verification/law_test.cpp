@@ -1,4 +1,4 @@
-/// Every law by itself, without a mesh.
+/// Every law on its own, without a mesh.
 
 #include <gtest/gtest.h>
 

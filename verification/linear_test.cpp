@@ -56,7 +56,7 @@ TEST(LinearTest, agrees_with_total_lagrangian_to_first_order_in_strain) {
 /// A block is tilted by 60 degrees about an edge of its foot: heights of the foot are imposed as the rotation
 /// wants them, z = y sin 60, and all else may follow. A body follows by turning, and strains nothing. To
 /// small-strain theory u = s (-z, y) with s = sin 60 is the rotation: the block grows by sqrt(1 + s^2), a
-/// third in length and three quarters in volume, and no force tells.
+/// third in length and three quarters in volume, and no force reveals it.
 TEST(LinearTest, a_block_that_turns_by_60_degrees_grows) {
   const double s = std::sin(std::acos(0.5));
   Case description = plain_case(sample_law<NeoHookean>(0.49));

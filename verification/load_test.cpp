@@ -140,7 +140,7 @@ TYPED_TEST_SUITE(LoadTest, PathIndependentPairTypes, EntryName);
 TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
   using Method = typename TypeParam::Method;
   using Law = typename TypeParam::Law;
-  if (zero_energy_modes<Method>() > 6) return;  // such modes keep what the path gave
+  if (zero_energy_modes<Method>() > 6) return;  // such modes depend on the path
   if (!is_isotropic<Law>) return;               // fibres that run askew make the bar shear
   const auto law = this->law();
   for (const double stress : {1e-6, bearable_load<Law>() / 3.0}) {
@@ -189,7 +189,7 @@ TYPED_TEST(LoadTest, work_is_stored_in_the_small) {
   EXPECT_NEAR(total_energy(recorder.rows.back()) / (0.5 * path), 1.0, 1e-6);
 }
 
-/// What the loads put in is found in the body: work = kinetic + strain + hourglass, to second order.
+/// The work of the loads is the body's energy, kinetic + strain + hourglass, to second order.
 TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
   if (is_condensed<typename TypeParam::Method>) return;  // takes no steps
   const auto law = this->law();

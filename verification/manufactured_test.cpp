@@ -25,7 +25,7 @@ constexpr bool has_one_answer() {
   return !is_condensed<Method> && zero_energy_modes<Method>() == 6;
 }
 
-/// A pair of method and law that is held to a field.
+/// A pair of method and law tested on a field.
 template <class FieldType, class Pair>
 struct PairInField : Pair {
   using Field = FieldType;

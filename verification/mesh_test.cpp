@@ -56,7 +56,7 @@ double enclosed_volume(const Mesh& mesh) {
   return sum / 12.0;
 }
 
-/// A closed, consistently turned surface runs along each edge once in each direction.
+/// A closed, consistently oriented surface traverses each edge once in each direction.
 void expect_closed(const Mesh& mesh) {
   std::map<std::pair<int, int>, int> directed;
   for (const auto& face : boundary_faces(mesh.cells)) {

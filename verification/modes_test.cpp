@@ -21,7 +21,7 @@ Matrix<double, 8, 7> signs() {
   return s;
 }
 
-/// Sums of eight numbers: each order of additions errs by less than 8 eps times the sum of sizes.
+/// Sums of eight numbers: in any order the error is below 8 eps times the sum of absolute values.
 TEST(Modes, are_the_sums_over_nodes_that_their_names_say) {
   RandomGeometry random(3);
   for (int sample = 0; sample < 100; ++sample) {

@@ -26,7 +26,7 @@ double exact_root(T x) {
 }
 
 /// The root of packs has no library behind it. Its last step has fourth order and an error far below
-/// rounding; what is left is the rounding of r, of y r and of the sum: two units in the last place.
+/// rounding; the remaining error is the rounding of r, of y r and of the sum: two units in the last place.
 template <class T>
 void check_root_of_packs() {
   std::mt19937 random(7);

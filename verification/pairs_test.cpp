@@ -125,7 +125,7 @@ TEST(Pairs, every_control_runs_the_column_with_every_law) {
   });
 }
 
-/// Small-strain methods say that they cannot tell how a law relaxes, instead of forgetting it.
+/// Small-strain methods reject laws with stress relaxation instead of ignoring it.
 TEST(Pairs, linear_methods_refuse_laws_that_relax) {
   for_each_type(Methods{}, []<class Method>() {
     if constexpr (is_linear<Method>) {

@@ -1,4 +1,4 @@
-/// Published values: what is compared with them, limits on it, tables and JSON.
+/// Published values: comparison, limits, tables and JSON.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// Node sets that turn: where they are, how fast, what work they do, and what is said about bad ones.
+/// Rotating node sets: positions, velocities, work, and messages about invalid ones.
 
 #include <gtest/gtest.h>
 
@@ -79,7 +79,7 @@ TEST(Rotation, nodes_stay_on_their_circles) {
   }
 }
 
-/// The center is the mean of the nodes where none is given, a turn beside it shifts the set.
+/// By default the center is the mean of the nodes; a rotation about another point also shifts the set.
 TEST(Rotation, center_is_the_mean_of_the_nodes) {
   const Scene scene = turned_block({.set = "head", .axis = {0, 0, 1}, .angle = 2.0});
   Vector sum{}, moved{};

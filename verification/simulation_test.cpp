@@ -16,7 +16,7 @@ namespace {
 constexpr double step = 1e-3;  // s; stable for the blocks below
 constexpr int steps = 200;
 
-/// A case without mesh; `driven` says what is imposed.
+/// A case without mesh; `driven` is the table of the imposed motion.
 std::string text_of(const std::string& driven, const std::string& answer = "dynamic") {
   const std::string dynamics = "[dynamics]\nduration = 0.2\ntime_step = 1e-3\ndamping = 3.0\nframes = 1\n";
   return "[case]\nname = \"block\"\nrequirement = \"A block is moved.\"\nanswer = \"" + answer +
@@ -133,7 +133,7 @@ TEST(Simulation, forces_grow_straight_too) {
   const std::string pushed =
       "[sets.side]\nx = [0.1, 0.1]\n[[force]]\nset = \"side\"\ntotal = [0.05, 0.0, 0.0]\n";
   Simulation<double> frame(block(), text_of(pulled + pushed)), by_steps(frame);
-  constexpr int n = 8;  // two frames end before steps are chosen anew
+  constexpr int n = 8;  // two frames end before the step is chosen again
   const double size = frame.step_size();
   for (const double before : {0.0, 0.5}) {
     frame.impose(before + 0.5);
@@ -177,7 +177,7 @@ TEST(Simulation, each_node_of_a_set_goes_its_own_way) {
   simulation.move("head", own);
   simulation.advance(0.01);
   for (std::size_t n = 0; n < head.size(); ++n) EXPECT_EQ(field_of(simulation)[index(head[n])], own[n]);
-  simulation.advance(0.01);  // not told: they stay
+  simulation.advance(0.01);  // no new position: they stay
   for (std::size_t n = 0; n < head.size(); ++n) EXPECT_EQ(field_of(simulation)[index(head[n])], own[n]);
 }
 

@@ -41,7 +41,7 @@ TEST(Distances, no_way_is_told) {
 }
 
 /// A margin of m around an inner node of a lattice marks a cube of 2 m elements an edge, m around two nodes
-/// the union, and of two margins that meet the larger goes further.
+/// the union, and where two margins meet the larger one extends further.
 TEST(Distances, margins_mark_cubes) {
   const Mesh mesh = box({8, 8, 8}, {8, 8, 8});
   const Distances distances(mesh);

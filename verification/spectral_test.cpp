@@ -54,7 +54,7 @@ class ExponentialTest : public ::testing::Test {
   }
 
   /// Two units in the last place: of the rounding of the argument's rest, of the series and of the last sum.
-  /// Packs are the same operations; what the compiler contracts may differ.
+  /// Packs perform the same operations; contraction by the compiler may differ.
   template <class Function, class Exact>
   void expect_two_units(const Function& function, const Exact& exact) {
     for (const T x : arguments()) {

@@ -102,7 +102,7 @@ TEST_F(CellTest, where_the_golden_fails_others_are_told_by_how_they_break_down) 
   EXPECT_NE(c.status, "ok");
 }
 
-/// Elastic answers do not remember the way: cycles lead to the same one, as near as both are at rest.
+/// Elastic answers do not depend on the path: cycles lead to the same one, to the tolerance of both.
 TEST_F(CellTest, elastic_bodies_forget_their_cycles) {
   const auto answer = [&](int cycles) {
     Case description = cantilever();
@@ -199,7 +199,7 @@ TEST(Answers, are_computed_once) {
   for (const auto& answer : got) EXPECT_EQ(answer, got[0]);
 }
 
-/// A generator's counts of elements in proportion, the smallest as asked.
+/// A generator's counts of elements scaled in proportion, the smallest as requested.
 TEST(Variations, elements_across_keep_their_proportions) {
   const auto column = std::get<BoxMesh>(with_elements_across(BoxMesh{{0.1, 0.1, 1.0}, {3, 3, 30}}, 2));
   EXPECT_EQ(column.elements, (std::array{2, 2, 20}));
@@ -208,7 +208,7 @@ TEST(Variations, elements_across_keep_their_proportions) {
   EXPECT_EQ(ellipsoid.shell_layers, 3);
 }
 
-/// Ends of every edge differ, on meshes that are no lattices too; a ring of three has no zigzag.
+/// Ends of every edge differ, also on unstructured meshes; a ring of three has no zigzag.
 TEST(Variations, zigzags_change_sign_along_every_edge) {
   for (const Mesh& mesh : {box({1, 1, 1}, {3, 2, 4}), EllipsoidMesh{{1, 1, 1}, 4, 2}.build()}) {
     const auto signs = zigzag(mesh);

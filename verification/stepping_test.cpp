@@ -1,4 +1,4 @@
-/// Steppers: what they promise about residuals, determinism and failures.
+/// Steppers: guarantees about residuals, determinism and failures.
 
 #include <gtest/gtest.h>
 
@@ -65,7 +65,7 @@ TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) 
   const Relaxation answer = relax(model, recorder);
   ASSERT_TRUE(answer.converged);
   EXPECT_LT(answer.residual, 1e-8);
-  // The residual told is that of the displacements returned, to the roundoff of sums in another order.
+  // The reported residual is that of the returned displacements, to the roundoff of sums in another order.
   EXPECT_NEAR(residual_of(model, answer.u), answer.residual, 1e-12);
   for (const int n : scene.sets.at("head")) EXPECT_EQ(answer.u[index(n)], d);
   for (const int n : scene.sets.at("foot")) EXPECT_EQ(answer.u[index(n)], Vector{});
@@ -271,7 +271,7 @@ TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   }
 }
 
-/// A volume that is no number is neither positive nor negative; it must not pass for healthy.
+/// A NaN volume is neither positive nor negative; it must not pass as healthy.
 TEST(Health, numbers_that_are_none_are_told_from_inverted_elements) {
   const auto breakdown_of = [](const std::vector<double>& jacobians) -> std::optional<Breakdown> {
     try {

@@ -1,4 +1,4 @@
-"""sandglass bench: every variant is there, its figures agree with each other, wrong input is told.
+"""sandglass bench: every variant is present, its figures are consistent, wrong input is reported.
 
 No time is judged: only that figures exist, are positive and follow from each other.
 """
@@ -41,7 +41,7 @@ OF_MOTION = {"stable_step_seconds", "simulated_seconds_per_second"}
 
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory):
-    """One short run over everything: what it printed and what it wrote."""
+    """One short run of everything: its output and its file."""
     file = tmp_path_factory.mktemp("bench") / "bench.json"
     outcome = sandglass(*"bench --elements 64 --repetitions 1 --threads 1 2 --json".split(), file)
     assert outcome.returncode == 0, outcome.stderr
@@ -112,7 +112,7 @@ def test_json_tells_where_it_comes_from(tiny):
 
 
 def test_json_tells_the_width_of_packs(tiny):
-    """As the compiler has it: machines of one name and "-march=native" may differ in it."""
+    """According to the compiler: machines of one name and "-march=native" may differ."""
     flags = tiny[1]["build_flags"]
     arch = re.search(r"-march=[^;]+", flags).group()
     macros = subprocess.run(
@@ -151,7 +151,7 @@ def test_condensed_methods_are_left_out_of_large_meshes(tmp_path):
     outcome = sandglass(*"bench --elements 20000".split(), *choice.split(), json_file)
     assert outcome.returncode == 0
     records = json.loads(json_file.read_text())["records"]
-    assert len(records) == 2  # the scalar kernel is always asked for
+    assert len(records) == 2  # the scalar kernel is always included
     for record in records:
         assert record["status"].startswith("left out: ") and record["status"] in outcome.stdout
         assert record["ns_per_element_step"] is None
@@ -198,7 +198,7 @@ def test_wrong_input(arguments, text):
 
 
 def test_rest(block):
-    """Every method and precision, seconds in order; the solver's records as bench/ reads them."""
+    """Every method and precision, with ordered seconds; bench/ reads the solver's records."""
     json_file = block.parent / "rest.json"
     outcome = sandglass("bench", "--rest", block, "--json", json_file)
     assert outcome.returncode == 0, outcome.stderr

@@ -1,6 +1,6 @@
-"""Runs that are killed at any moment and started again: they end with the same bytes.
+"""Runs that are killed at any time and resumed end with the same bytes.
 
-SANDGLASS_KILLS in the environment says how often each run is killed (ci/kill-and-restart).
+SANDGLASS_KILLS in the environment says how often each run is killed; 5 unless told.
 """
 
 import os
@@ -26,8 +26,8 @@ RELAXING = (
 SMALL = "[2, 2, 4]"
 
 
-# Name, case, options. Each takes about a second, most of it spent on checkpoints: kills fall into
-# all that a run does, steps, checkpoints being written, results being written.
+# Name, case, options. Each takes about a second, most of it spent on checkpoints: kills hit every
+# activity of a run: steps, writing of checkpoints, writing of results.
 RUNS = {
     "dynamic": (
         dynamic(RELAXING.replace(SMALL, "[6, 6, 12]"), duration=1.0, frames=9),
@@ -58,7 +58,7 @@ def command(case, options, threads, output="killed.h5"):
 
 
 def kill_at_random(call, folder, longest):
-    """Whether the run was killed; it may be done before."""
+    """Whether the run was killed; it may have finished before."""
     with subprocess.Popen(
         call, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     ) as process:
@@ -113,7 +113,7 @@ def test_killed_runs_end_with_the_same_bytes(tmp_path, name):
 
 
 def checkpoint_of(case, *options):
-    """Leaves the checkpoint of a run that was interrupted, and its name."""
+    """Writes the checkpoint of an interrupted run; returns its name."""
     file = case.parent / "run.checkpoint"
     call = [
         BINARY,
@@ -135,7 +135,7 @@ def checkpoint_of(case, *options):
 
 @pytest.fixture
 def stopped(block):
-    """A case that takes long, and the checkpoint that its killed run left."""
+    """A long case, and the checkpoint of its killed run."""
     block.write_text(dynamic(BLOCK, duration=1e6, frames=9))
     return block, checkpoint_of(block)
 
@@ -217,7 +217,7 @@ def test_missing_folder_is_told_before_the_work(block):
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="needs Linux's /proc")
 def test_an_interrupted_run_goes_on(block):
-    """Ctrl-C writes a checkpoint at the next check, whatever the interval."""
+    """Ctrl-C writes a checkpoint at the next check, regardless of the interval."""
     block.write_text(dynamic(BLOCK, duration=40.0, frames=9))
     folder = block.parent
     assert sandglass("run", block, "-o", folder / "whole.h5").returncode == 0
@@ -236,7 +236,7 @@ def test_an_interrupted_run_goes_on(block):
 
 
 def test_a_full_disk_costs_a_warning_and_no_run(block):
-    """Without room for a checkpoint the run goes on: it does not need one to end well."""
+    """Without space for a checkpoint the run continues, as it does not need one."""
     block.write_text(dynamic(BLOCK.replace(SMALL, "[8, 8, 16]"), duration=0.1, frames=9))
     file = block.parent / "run.checkpoint"
 

@@ -1,4 +1,4 @@
-"""`sandglass choose`: what it picks and why, that a run gives what it predicts, what is refused."""
+"""`sandglass choose`: its choice and reasons, agreement of predictions and runs, rejected input."""
 
 import json
 import signal
@@ -17,14 +17,14 @@ CASES = ROOT / "cases"
 
 
 def choose(case, *arguments):
-    """The outcome of the command, and what it wrote as JSON."""
+    """The outcome of the command, and its JSON file."""
     file = case.parent / "choice.json" if hasattr(case, "parent") else None
     outcome = sandglass("choose", case, *arguments, "--json", file)
     return outcome, json.loads(file.read_text())
 
 
 def copied(name, folder, *replaced):
-    """A case of the repository in a folder of its own, with texts replaced."""
+    """A case of the repository in its own folder, with texts replaced."""
     text = (CASES / f"{name}.toml").read_text()
     for old, new in replaced:
         assert old in text
@@ -64,7 +64,7 @@ def chosen_of(document):
 
 
 def test_light_touch_takes_the_condensed_linear_answer(tmp_path):
-    """1 mm on an organ of 16 cm at 5 %; the chosen case gives the predicted error, to the digit."""
+    """1 mm on an organ of 16 cm at 5 %; the chosen case gives exactly the predicted error."""
     case = copied("ellipsoid-touch", tmp_path, ("-0.01]", "-0.001]"))
     chosen = tmp_path / "chosen.toml"
     outcome, document = choose(case, "--tolerance", "5%", "-o", chosen)
@@ -78,7 +78,7 @@ def test_light_touch_takes_the_condensed_linear_answer(tmp_path):
 
 
 def test_column_takes_one_nonlinear_point(tmp_path):
-    """Where everything turns, small strains are refused for that; one point with control is enough.
+    """Small-strain methods are rejected as everything rotates; one point with control suffices.
 
     The first sufficient one is chosen in the order of costs, which are measured: which of several
     like ones that is no test may ask. The chosen mesh may be coarser: its answer is compared at the
@@ -91,7 +91,7 @@ def test_column_takes_one_nonlinear_point(tmp_path):
     rung = chosen_of(document)
     sufficient = [r for r in document["rungs"] if r["outcome"] in ("chosen", "sufficient")]
     assert sufficient[0] is rung and all(r["error"] <= 0.02 for r in sufficient)
-    # What levels cost is known afterwards only.
+    # The cost of levels is known only afterwards.
     fixed = [r for r in sufficient if r["accuracy"] is None]
     costs = [r["seconds_per_simulated_second"] for r in fixed]
     assert costs == sorted(costs)
@@ -128,7 +128,7 @@ def test_ellipsoid_takes_the_adaptive_method_at_half_a_percent(tmp_path):
 
 
 def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
-    """No method mends a mesh that is a percent off; a truth known less well shows nothing."""
+    """No method can fix a mesh that is a percent off; a less accurate truth proves nothing."""
     case = copied("column", tmp_path)
     chosen = tmp_path / "chosen.toml"
     outcome, document = choose(case, "--tolerance", "0.01%", "--against", "truth", "-o", chosen)
@@ -155,7 +155,7 @@ def test_without_a_stored_golden_it_is_the_same_choice_as_with_one(block):
 
 
 def test_a_mesh_from_a_file_stays_where_it_is(block, tmp_path):
-    """The case is written into another folder; its mesh is found from there, the only one."""
+    """The case is written to another folder, from which its mesh, the only one, is found."""
     mesh = tmp_path / "mesh.h5"
     assert sandglass("mesh", block, "-o", mesh).returncode == 0
     before, rest = BLOCK.split("[mesh]")
@@ -187,7 +187,7 @@ def test_run_takes_the_method_of_the_case_unless_told(block):
     assert "block tl-perturbation 0.02:" in sandglass("run", block).stdout
     assert "block tl-perturbation 0.03:" in sandglass("run", block, "-k", "0.03").stdout
     assert "(auto)" in sandglass("run", block, "-k", "auto").stdout
-    # What the case says of kappa is about its own method.
+    # The case's kappa applies to its own method only.
     assert "block tl-full :" in sandglass("run", block, "-m", "tl-full").stdout
     assert (
         "block ul-perturbation 0.00649" in sandglass("run", block, "-m", "ul-perturbation").stdout

@@ -225,7 +225,7 @@ def test_run_writes_what_it_says(block):
 
 @pytest.mark.parametrize("method", methods())
 def test_every_method_runs(block, method):
-    # A control that resists velocities alone lets a body at rest zigzag: no balance is found.
+    # A control that resists only velocities allows static zigzags: no equilibrium is found.
     assert sandglass("run", block, "--method", method).returncode == (
         3 if "viscous" in method else 0
     )

@@ -1,4 +1,4 @@
-"""Disks that are full, places that cannot be written: reason, exit code, and no half of a file.
+"""Full disks and unwritable places: reason, exit code, and no incomplete file.
 
 A place that cannot be written is wrong input (2); a disk that fills on the way ends the computation
 (3). Files that stood there before stay as they were.
@@ -16,7 +16,7 @@ FULL = ("File too large", "No space left on device", "Disk quota exceeded")
 
 
 def limited(size):
-    """For `preexec_fn`: no file may grow beyond so many bytes, as on a disk with so much room."""
+    """For `preexec_fn`: limits the size of files, as on a disk with this much space."""
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
@@ -45,7 +45,7 @@ def case(block):
     return block
 
 
-# What writes JSON is tried once, not after every computation.
+# JSON files are tested for writability once, not after every computation.
 @pytest.mark.parametrize(
     "writer, size",
     [
@@ -73,7 +73,7 @@ def test_full_disk(case, writer, size):
 
 
 def test_a_disk_that_fills_while_the_guide_is_written(case):
-    """The XDMF file has no room, the result has: both are there afterwards, or none."""
+    """There is space for the result but not for the XDMF file: afterwards both exist, or none."""
     folder = case.parent
     before = listing(folder)
     small = ["run", case, "-o", folder / "out.h5"]
@@ -94,7 +94,7 @@ def test_places_that_cannot_be_written(case, writer, place):
     (folder / "a-file").write_text("")
     (folder / "a-folder").mkdir()
     if (writer, place) == ("verify-results", "a-folder"):
-        return  # a folder is what it wants
+        return  # it requires a folder
     before = listing(folder)
     outcome = sandglass(*arguments, place, cwd=folder)
     assert outcome.returncode == 2, outcome.stdout + outcome.stderr
@@ -130,7 +130,7 @@ def small_disk(tmp_path):
 
 
 def test_a_disk_that_is_really_full(small_disk, case):
-    """The same with a file system instead of a limit: another reason, another moment."""
+    """The same with a file system instead of a limit: another reason, at another time."""
     case.write_text(case.read_text().replace("[2, 2, 4]", "[12, 12, 24]"))
     (small_disk / "out.json").write_text("good")
     for arguments in (["run", case, "-o"], ["mesh", case, "-o"]):
@@ -142,7 +142,7 @@ def test_a_disk_that_is_really_full(small_disk, case):
 
 
 def test_a_disk_without_room_for_a_checkpoint(small_disk, case):
-    """The run needs none to end well: it warns and goes on, and its result is elsewhere."""
+    """The run does not need a checkpoint: it warns and continues; its result is elsewhere."""
     case.write_text(dynamic(BLOCK.replace("[2, 2, 4]", "[8, 8, 16]"), duration=0.05))
     options = ["--checkpoint", small_disk / "c", "--checkpoint-every", "0"]
     result = case.parent / "out.h5"

@@ -1,10 +1,11 @@
-"""What is installed serves other projects: they find it, build without flags, step as the program.
+"""The installed library in other projects: found, built without flags, same steps as the program.
 
 Takes the build folder in which the program under test stands.
 """
 
 import os
 import pathlib
+import platform
 import shutil
 import subprocess
 
@@ -39,7 +40,7 @@ def run(*command, **options):
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory):
-    """A folder into which all has been installed."""
+    """A folder with a complete installation."""
     folder = tmp_path_factory.mktemp("prefix")
     run("cmake", "--install", BUILD, "--prefix", folder)
     return folder
@@ -53,7 +54,7 @@ def built(source, folder, *options):
 
 @pytest.mark.parametrize("found", ["installed", "in the build folder"])
 def test_the_example_steps_as_the_program(found, prefix, tmp_path):
-    """Limit: half a unit in the last place of 0.02 m, carried on by two sums over 1000 steps."""
+    """Limit: half a unit in the last place of 0.02 m, accumulated by two sums over 1000 steps."""
     case = tmp_path / "block.toml"
     case.write_text(DYNAMIC)
     where = {"installed": f"-DCMAKE_PREFIX_PATH={prefix}"}.get(found, f"-Dsandglass_DIR={BUILD}")
@@ -74,7 +75,7 @@ def test_the_example_steps_as_the_program(found, prefix, tmp_path):
 
 
 def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):
-    """Other flags would make other packs of the same name; a program must hold none of its own."""
+    """Other flags would give other packs of the same name; a program must contain none itself."""
     (tmp_path / "only.cpp").write_text(
         "#include <sandglass/simulation.hpp>\n"
         "double time(const char* file) { return sandglass::Simulation<float>(file).time(); }\n"
@@ -103,7 +104,7 @@ def test_all_headers_come_with_the_flags_of_the_library(prefix, tmp_path):
 
 
 def test_the_installed_program_has_its_cases(prefix, tmp_path):
-    """Also where neither the source nor a folder `cases` is at hand."""
+    """Also where neither the source nor a folder `cases` is available."""
     environment = {name: value for name, value in os.environ.items() if name != "SANDGLASS_CASES"}
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     listed = run(moved / "bin" / "sandglass", "cases", cwd=tmp_path, env=environment)
@@ -116,7 +117,7 @@ def test_the_installed_program_has_its_cases(prefix, tmp_path):
 
 
 def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
-    """By its own copies of exchange/ and common/, not by those of the source."""
+    """Uses its own copies of exchange/ and common/, not those of the source."""
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     program = moved / "bin" / "sandglass"
     run(program, "mesh", "column", "-o", tmp_path / "column.vtu", cwd=tmp_path)
@@ -130,6 +131,41 @@ def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
         text=True,
     )
     assert done.returncode == 2 and "the copy" in done.stderr
+
+
+AVX2 = """
+#include <cstdio>
+#include <vector>
+std::vector<double> ones(64, 1.0);
+double sum = [] {
+  double total = 0.0;
+  for (std::size_t k = 0; k < ones.size(); ++k) total += ones[k] * static_cast<double>(k);
+  return total;
+}();
+int main() { std::printf("%g\\n", sum); }
+"""
+
+
+@pytest.mark.skipif(shutil.which("qemu-x86_64") is None, reason="qemu-user is not installed")
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="for x86-64 compilers")
+@pytest.mark.parametrize("processor, code", [("Haswell", 0), ("Nehalem", 3)])
+def test_packages_refuse_a_processor_without_their_instructions(processor, code, tmp_path):
+    """Before initialisers that need them, which here die of them without the check."""
+    (tmp_path / "main.cpp").write_text(AVX2)
+    v3, all_processors = ["-O3", "-march=x86-64-v3"], ["-O3", "-march=x86-64"]
+    run("c++", *v3, "-ffast-math", "-c", "main.cpp", cwd=tmp_path)
+    run("c++", *all_processors, "-c", ROOT / "app/processor_check.cpp", cwd=tmp_path)
+    run("c++", "main.o", "-o", "bare", cwd=tmp_path)
+    run("c++", "main.o", "processor_check.o", "-o", "checked", cwd=tmp_path)
+    for program in ("bare", "checked"):
+        command = ["qemu-x86_64", "-cpu", processor, tmp_path / program]
+        done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+        if program == "bare" and code:
+            assert done.returncode < 0
+        else:
+            assert done.returncode == code
+            assert (done.stdout == "2016\n") == (code == 0)
+            assert ("lacks instructions of x86-64-v3" in done.stderr) == (code != 0)
 
 
 def test_other_versions_are_refused(tmp_path):

@@ -1,6 +1,6 @@
-"""The mutants of verification/mutants: their patches fit this tree, and the table knows them all.
+"""The mutants of verification/mutants: their patches apply to this tree, and the table has all.
 
-What kills them is the work of `ci/mutants`, which takes hours.
+What kills them is the work of `verification/mutants/run.py`, which takes hours.
 """
 
 import subprocess
@@ -25,7 +25,7 @@ def test_there_are_enough_mutants_each_with_a_number_of_its_own():
 
 @pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.name)
 def test_patch_fits_this_tree(patch):
-    """A patch that does not is to be made anew: its mistake can still be made."""
+    """A patch that does not must be updated: its mistake is still possible."""
     done = subprocess.run(
         ["git", "apply", "--check", patch.path], cwd=ROOT, capture_output=True, text=True
     )
@@ -43,7 +43,7 @@ def test_table_names_exactly_the_mutants_there_are():
 
 
 def test_table_survives_being_written_anew(tmp_path, monkeypatch):
-    """Without stored results, as in a fresh clone, rows stay what they were."""
+    """Without stored results, as in a fresh clone, rows are unchanged."""
     rows = results.rows_of(results.TABLE.read_text())
     table = tmp_path / "RESULTS.md"
     table.write_text(results.TABLE.read_text())
@@ -61,7 +61,7 @@ def test_patch_without_a_sentence_is_refused(tmp_path):
 
 
 class FakeWorker:
-    """A copy of the tree with one program, whose runs fail as told, then no more."""
+    """A copy of the tree with one program, whose first runs fail as given and later ones pass."""
 
     def __init__(self, *failures):
         self.failures_left = list(failures)

@@ -1,4 +1,4 @@
-"""`sandglass run --sleep`: what it prints and writes, what it refuses."""
+"""`sandglass run --sleep`: its output and files, and rejected input."""
 
 import h5py
 import pytest
@@ -6,7 +6,7 @@ from command_line import BLOCK, sandglass
 
 from common.result_file import last_displacement
 
-# As long as it is thin, pulled at one end: motion does not reach the other.
+# Long and thin, pulled at one end: the motion does not reach the other.
 BEAM = (
     BLOCK.replace("size = [0.1, 0.1, 0.2]", "size = [0.1, 0.1, 3.0]")
     .replace("elements = [2, 2, 4]", "elements = [2, 2, 60]")

@@ -1,4 +1,4 @@
-"""`sandglass stability`: maps in JSON, cells that are kept, and what is refused."""
+"""`sandglass stability`: maps in JSON, stored cells, and rejected input."""
 
 import json
 import shutil
@@ -39,7 +39,7 @@ def test_writes_every_cell_of_a_map(block, tmp_path):
 
 
 def test_finished_cells_are_not_computed_again(block, tmp_path):
-    """A cell that says something impossible is believed: it was read, not computed."""
+    """A cell with an impossible value is used as is: it was read, not computed."""
     cells, file = tmp_path / "cells", tmp_path / "maps.json"
     assert sandglass("stability", block, *FEW, "--folder", cells).returncode == 0
     before = cells_of(cells)
@@ -104,7 +104,7 @@ def test_axes_are_described():
 
 @pytest.mark.skipif(not shutil.which("snakemake"), reason="Snakemake is not installed")
 def test_the_workflow_has_a_job_for_each_case_and_method(tmp_path):
-    """A case whose name has a dot, as methods' files have between case and method, too."""
+    """A case with a dot in its name; file names also have one between case and method."""
     settings = (f"sandglass={BINARY}", f"folder={tmp_path}", "cases=column bending-2-nu0.49")
     workflow = ROOT / "verification/stability/Snakefile"
     plan = ["snakemake", "-s", workflow, "-n", "--config", *settings]

@@ -1,4 +1,4 @@
-"""`sandglass verify`: limits, references that belong to their case, every figure in JSON."""
+"""`sandglass verify`: limits, references of the right case, every figure in JSON."""
 
 import json
 
@@ -19,7 +19,7 @@ def test_verify_holds_and_writes_every_figure(block):
     assert [r["method"] for r in records if r["kappa_is_auto"] or r["kappa"] is None] == methods()
     for record in records:
         assert record["case"] == "block" and record["precision"] == "double"
-        if record["method"] == "ul-viscous":  # no control at rest: shown as failed, not left out
+        if record["method"] == "ul-viscous":  # no control at rest: listed as failed, not omitted
             assert record["finding"] in ("not at rest", "inverted")
             continue
         assert record["status"] == "ok"
@@ -50,7 +50,7 @@ def test_verify_gives_the_same_figures_for_any_number_of_threads(block):
 
 
 def test_verify_in_float_gives_figures_and_checks_no_limit(block):
-    """The figures are those of a rounding of 6e-8, grown by less than four decades."""
+    """The figures correspond to a rounding of 6e-8, amplified by less than four decades."""
     write_golden(block)
     block.write_text(BLOCK + LIMIT.format(method="tl-mean-dilatation", below=1e-30))
     verdicts = block.parent / "verdicts.json"

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// Both ways to cut a hexahedron in VTK order into five: four corners and what is left, twice.
+/// Both splits of a hexahedron in VTK order into five: four corners and the rest, twice.
 constexpr int cuts[10][4] = {{1, 2, 0, 5}, {3, 0, 2, 7}, {4, 5, 0, 7}, {6, 7, 2, 5}, {0, 2, 5, 7},
                              {0, 1, 3, 4}, {2, 3, 1, 6}, {5, 6, 1, 4}, {7, 4, 3, 6}, {1, 3, 4, 6}};
 
@@ -155,7 +155,7 @@ TEST(TetrahedraTest, energies_and_forces_of_a_mesh_are_those_of_the_definition) 
         path.to(displacements(model, random));  // of which nothing may stay
         EXPECT_LT(largest_distance(path.to(u), exact), roundoff(model, u)) << name;
       }
-      // The samples tell the two methods apart.
+      // The samples distinguish the two methods.
       const Model own(scene, {"t4"}), averaged(scene, {"t4-anp"});
       const NodalField u = displacements(own, random);
       EXPECT_GT(largest_distance(internal_forces(averaged, u), internal_forces(own, u)),

@@ -154,7 +154,7 @@ Scene bar_wave(const std::array<int, 3>& elements) {
   return read_scene(std::move(description));
 }
 
-/// What the closed form of the bar is made of, from the case.
+/// The parameters of the bar's closed form, from the case.
 struct Bar {
   explicit Bar(const Scene& scene)
       : law(std::get<NeoHookean>(scene.description.law)),
@@ -273,7 +273,7 @@ double size(const Vector& a) {
   return std::hypot(a[0], a[1], a[2]);
 }
 
-/// What a body in free flight keeps, and the sums of absolute values by which its roundoff goes.
+/// The conserved quantities of a body in free flight, and the sums of absolute values that scale roundoff.
 struct Momenta {
   Vector linear{};   ///< kg m/s
   Vector angular{};  ///< kg m^2/s, about the origin
@@ -331,7 +331,7 @@ TYPED_TEST(TimeOracleTest, spinning_block_keeps_its_momenta) {
   const SemiDiscrete<TypeParam, NeoHookean> body(scene, law);
   Recorder recorder;
   const Motion motion = integrate(Model(scene, this->choice()), recorder);
-  EXPECT_NEAR(static_cast<double>(motion.steps), steps, 1);  // the sum of so many steps is rounded
+  EXPECT_NEAR(static_cast<double>(motion.steps), steps, 1);  // the sum of this many steps is rounded
   const Momenta start = momenta(body.masses(), scene.mesh.points, recorder.frames.front());
   EXPECT_GT(size(start.angular), 0.0);
   const double roundoff = 4 * std::numeric_limits<double>::epsilon() * std::sqrt(steps);

@@ -43,7 +43,7 @@ Tensor<double> turn_about_z(double angle) {
   return {{std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1}};
 }
 
-/// Stretch and turn at once: F(s) on the way from I.
+/// Simultaneous stretch and rotation: F(s) on the path from I.
 Tensor<double> on_the_way(double s) {
   const Tensor<double> stretch{{1 + 0.4 * s, 0.2 * s, 0, 0, 1 - 0.2 * s, 0.1 * s, 0, 0, 1 + 0.1 * s}};
   return turn_about_z(1.5 * s) * stretch;
@@ -276,7 +276,7 @@ NodalField relaxed(const Scene& scene, const MethodChoice& choice) {
   return relax(Model(scene, choice), silent).u;
 }
 
-/// Controls that rest leaves without force are not asked: where they come to rest is chance.
+/// Controls without static forces are not tested: their final state is arbitrary.
 TEST(UpdatedLagrangian, agrees_with_total_lagrangian_to_first_order_in_strain) {
   for_each_type(Methods{}, []<class Method>() {
     if constexpr (std::is_same_v<typename Method::Kinematics, UpdatedOnePoint>) {

@@ -1,4 +1,4 @@
-/// Case files with variants: which cases they stand for, and what is said about bad ones.
+/// Case files with variants: the cases they define, and messages about invalid ones.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ TEST(Variants, every_combination_is_a_case_with_its_own_keys) {
   EXPECT_NE(read_scene(cases[0]).case_hash, read_scene(cases[1]).case_hash);
 }
 
-/// A variant is the case that a file of its own would be.
+/// A variant equals the case of a separate file.
 TEST(Variants, variant_has_the_hash_of_the_same_case_in_a_file_of_its_own) {
   const TemporaryFolder folder;
   const auto cases = read_cases(folder.write("bar.toml", varied));
@@ -99,7 +99,7 @@ TEST(Variants, bad_ones_are_refused_with_file_line_and_rule) {
   EXPECT_TRUE(
       contains(said(with("name = \"2\"", "name = \"1\"")), "variants.size.name = '1' is there twice"));
   EXPECT_TRUE(contains(said(with("name = \"2\"\n", "")), "variants.size.name is missing"));
-  // What a variant brings is checked like the rest, and found at its place in the file.
+  // A variant's values are checked like all others, and errors name their place in the file.
   EXPECT_TRUE(contains(said(with("poisson_ratio = 0.3\n", "poisson_ratio = 0.6\n")),
                        "bad.toml:37: material.poisson_ratio = 0.6 must be in (-1, 0.5)"));
   EXPECT_TRUE(

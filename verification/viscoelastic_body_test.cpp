@@ -80,7 +80,7 @@ TYPED_TEST(RelaxingBodyTest, uniform_strain_relaxes_as_the_law) {
 /// Without time a law has relaxed, whatever was before: a trial that gave no numbers leaves nothing behind.
 TYPED_TEST(RelaxingBodyTest, trials_without_numbers_are_forgotten_where_time_plays_no_part) {
   using Kernel = FormulationOf<TypeParam, NeoHookean>;
-  if constexpr (Kernel::remembers || Kernel::needs_increment) return;  // its control sees what was before
+  if constexpr (Kernel::remembers || Kernel::needs_increment) return;  // its control depends on the path
   const Mesh mesh = box({1, 1, 1}, {2, 1, 1});
   const AnyLaw law = sample_law<Law>(0.45);
   NodalField u;

@@ -30,7 +30,7 @@ class ViscoelasticTest : public ::testing::Test {
     Law law;
     RelaxationMemory<double> memory{};
 
-    /// The first Piola-Kirchhoff stress (Pa) at H, reached in so many seconds.
+    /// The first Piola-Kirchhoff stress (Pa) at H, reached in the given time (s).
     Tensor<double> to(const Tensor<double>& H, double seconds) {
       return law.at_step(seconds).recalling(memory).piola(H);
     }
@@ -213,7 +213,7 @@ TYPED_TEST(ViscoelasticTest, stored_energy_is_that_of_the_springs) {
     const double W = elastic.isochoric_energy(H);
     EXPECT_NEAR((point.energy(H) - elastic.volumetric_energy(jacobian_minus_one(H))) / W, share, 1e-6);
   }
-  if (!TypeParam::splits_volume) return;  // what it calls isochoric may be negative by itself
+  if (!TypeParam::splits_volume) return;  // its isochoric part alone may be negative
   point = {law};
   for (int n = 0; n < 200; ++n) {
     const auto large = this->large_gradient();
@@ -222,7 +222,7 @@ TYPED_TEST(ViscoelasticTest, stored_energy_is_that_of_the_springs) {
   }
 }
 
-/// What Updated Lagrangian elements ask for: tau = P F^T, and the elastic law's own when there is no time.
+/// The stress for Updated Lagrangian elements: tau = P F^T, and that of the elastic law if no time passes.
 TYPED_TEST(ViscoelasticTest, kirchhoff_stress_is_that_of_the_piola_stress) {
   const auto law = this->law();
   const TypeParam& elastic = law;

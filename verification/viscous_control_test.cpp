@@ -1,4 +1,4 @@
-/// Viscous hourglass control: what it damps, how fast, and what it leaves alone.
+/// Viscous hourglass control: the motions that it damps, the rate, and the motions that it does not affect.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ TEST(ViscousControl, hourglass_velocities_decay_at_the_derived_rate) {
               << "kappa " << kappa << " step " << n;
         }
       }
-      EXPECT_LT(expected, 0.7 * speed);  // the samples tell decay from none
+      EXPECT_LT(expected, 0.7 * speed);  // the samples distinguish decay from none
     }
   }
 }

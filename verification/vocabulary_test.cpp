@@ -15,7 +15,7 @@ namespace {
 template <class Number>
 class Vocabulary : public ::testing::Test {
  protected:
-  /// What stands between one and the next number, found by asking.
+  /// The distance from one to the next number, found numerically.
   static double spacing() {
     double step = 1.0;
     while (plain_value(Number(1.0) + Number(0.5 * step)) > 1.0) step *= 0.5;

@@ -1,4 +1,4 @@
-"""How command lines end, and what they say."""
+"""Exit codes and messages of command lines."""
 
 import argparse
 

@@ -22,7 +22,7 @@ def test_figures_of_a_field_made_by_hand():
 
 
 def test_two_cubes_have_ten_faces_that_look_outward():
-    """In the order of the cells: all but the top of the lower one and the bottom of the upper."""
+    """In the order of the cells: all except the top of the lower and the bottom of the upper."""
     points, cells = STACK
     faces = boundary_faces(cells)
     assert (faces == [*cells[0][np.delete(FACES, 1, 0)], *cells[1][FACES[1:]]]).all()
@@ -53,7 +53,7 @@ def test_volumes_of_cubes_and_of_sheared_ones():
 
 
 def test_volume_of_a_frustum():
-    """The upper face half as long: V = h/3 (1 + 1/2 + 1/4); a cube would pass with one point."""
+    """The upper face is half as long: V = h/3 (1 + 1/2 + 1/4). A cube would pass with one point."""
     points = CUBE.copy()
     points[4:, :2] = 0.25 + 0.5 * points[4:, :2]
     assert gauss_jacobians(points, np.arange(8)[None]).sum() == pytest.approx(1.75 / 3, rel=1e-14)

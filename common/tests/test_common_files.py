@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and JSON and TOML that are read with care."""
+"""Atomic writing of files, and validated reading of JSON and TOML."""
 
 import json
 import os

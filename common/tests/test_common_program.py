@@ -1,4 +1,4 @@
-"""Where the solver is, and what becomes of a program that fails."""
+"""Finding the solver, and the errors of a program that fails."""
 
 import sys
 
@@ -41,7 +41,7 @@ def test_exit_codes_are_kinds_of_errors(code, kind):
 
 
 def test_a_program_that_says_nothing_or_is_not_there(tmp_path):
-    with pytest.raises(ComputationError, match="ended with 3: it told no reason"):
+    with pytest.raises(ComputationError, match="ended with 3: it gave no reason"):
         python("import sys; sys.exit(3)")
     with pytest.raises(InputError, match="none: cannot be run: No such file"):
         output_of(tmp_path / "none")

@@ -1,4 +1,4 @@
-"""Documents are checked key by key; messages name file, key, value and rule."""
+"""Documents are validated key by key; messages name file, key, value and rule."""
 
 from dataclasses import dataclass
 
@@ -61,14 +61,14 @@ def test_lists_of_objects():
 
 @dataclass(frozen=True)
 class Figure:
-    """What the tests read: one object within another."""
+    """Read by the tests: one object within another."""
 
     max: float = key("max_error")
 
 
 @dataclass(frozen=True)
 class Run:
-    """What the tests read."""
+    """Read by the tests."""
 
     case: str
     steps: int

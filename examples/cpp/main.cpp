@@ -1,5 +1,5 @@
-// A tool moves a set of nodes of a soft body for a second of 1000 frames, as in a haptic loop:
-//   step_a_scene CASE SET X Y Z      with the displacement X Y Z (m) in which the motion ends
+// A tool moves a set of nodes of a soft body for one second in 1000 frames, as in a haptic loop:
+//   step_a_scene CASE SET X Y Z      X Y Z is the final displacement (m)
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -10,8 +10,8 @@ int main(int argc, char** argv) {
   const double end[]{std::atof(argv[3]), std::atof(argv[4]), std::atof(argv[5])};
   try {
     sandglass::Simulation<double> body(argv[1]);
-    const auto u = body.displacements();  // where the time loop keeps them: a view, always of the present
-    std::vector<std::size_t> drawn;       // rows of the nodes that we look at: here each tenth
+    const auto u = body.displacements();  // a view of the time loop's array: always current
+    std::vector<std::size_t> drawn;       // rows of the nodes to print: every tenth
     for (std::size_t n = 0; n < u.rows; n += 10) drawn.push_back(std::size_t(body.row_of_node()[n]));
 
     for (int frame = 1; frame <= 1000; ++frame) {

@@ -1,4 +1,4 @@
-"""What the tests of exchange/ share: running the program, small meshes, reading what comes out."""
+"""Shared by the tests of exchange/: running the program, small meshes, reading its output."""
 
 import contextlib
 import io
@@ -39,13 +39,13 @@ CELLS = np.array([range(8), range(4, 12)])
 
 
 class Refused(Exception):
-    """What the program said when it ended with code 2."""
+    """The message of the program when it ended with code 2."""
 
 
 def run(capsys, *arguments):
-    """Runs convert.py; what it said on standard error. Raises Refused where it ends with 2.
+    """Runs convert.py and returns its standard error. Raises Refused if it ends with 2.
 
-    Whatever it is given, it ends with 0 or 2, and with a line of output in the second case only.
+    For any input it must end with 0 or 2, and must print exactly one line in the second case.
     """
     code = convert.main([str(argument) for argument in arguments])
     said = capsys.readouterr()

@@ -1,4 +1,4 @@
-"""Input files of Abaqus and CalculiX: nodes, bricks and sets in all the ways to write them."""
+"""Abaqus and CalculiX input files: nodes, bricks and sets in every supported notation."""
 
 import numpy as np
 import pytest
@@ -85,41 +85,44 @@ def test_included_files(tmp_path, capsys):
     "text, told",
     [
         ("", "has no nodes"),
-        ("1, 2\n", "cubes.inp:1: '1, 2' stands before the first"),
-        (NODES, "has no elements; hexahedra of eight nodes are required"),
-        (NODES + "*ELEMENT, TYPE=S4\n1, 1, 2, 3, 4\n", "has only S4; hexahedra"),
+        ("1, 2\n", "cubes.inp:1: '1, 2' comes before the first"),
+        (NODES, "has no elements; eight-node hexahedra are required"),
+        (NODES + "*ELEMENT, TYPE=S4\n1, 1, 2, 3, 4\n", "has only S4; eight-node hexahedra"),
         (
             CUBES + "*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 5\n8, 1, 2, 3, 6\n",
-            "2 of type 'C3D4', beside 2 hex",
+            "2 of type 'C3D4', besides 2 hex",
         ),
         (CUBES + "*ELEMENT, TYPE=C3D20R\n7, 1, 2, 3, 5\n", "1 of type 'C3D20R'"),
         (CUBES.replace("TYPE=C3D8R, ", ""), ":14: .ELEMENT needs TYPE="),
         (CUBES.replace("2, 5, 6, 7,", "2, 5, 6,"), ":14: C3D8R needs an id and eight nodes"),
         (CUBES.replace("2, 5, 6, 7,", "2, 5, 6, x,"), ":16: 'x' must be a whole number"),
         (CUBES.replace("12, 0., 1.", "12, 0., l."), ":13: 'l.' must be a number"),
-        (CUBES.replace("12, 0., 1., 2.", "12"), ":13: a node is an id and three coordinates"),
+        (CUBES.replace("12, 0., 1., 2.", "12"), ":13: a node needs an id and three coordinates"),
         (CUBES.replace("12, 0., 1.", "12, 0., inf"), "finite; those of node 12 are not"),
         (CUBES.replace("12, 0., 1.", "-12, 0., 1."), "node -12: ids of nodes must not be negative"),
         (CUBES.replace("12, 0., 1.", "9223372036854775808, 0., 1."), "must be a whole number"),
         (CUBES.replace("12, 0., 1.", "9223372036854775807, 0., 1."), "element 2 names node 12"),
         (
             CUBES.replace("\n2, 5, 6", "\n1, 5, 6"),
-            "1 of 2 elements have an id that others have; ids must differ: 1",
+            "1 of 2 elements share an id with another; ids must be unique: 1",
         ),
-        (CUBES + "*NSET, NSET=Foot\n1, 13\n", "set 'Foot' names node 13, which is not there"),
+        (CUBES + "*NSET, NSET=Foot\n1, 13\n", "set 'Foot' names node 13, which does not exist"),
         (CUBES + "*NSET, NSET=Foot\nToes\n", ":18: 'Toes' must be a whole number"),
         (CUBES + "*NSET\n1\n", ":17: .NSET needs a name"),
         (CUBES + "*NSET, NSET=Foot, GENERATE\n4, 1\n", ":18: GENERATE needs first, last"),
         (CUBES + "*NSET, NSET=Foot, GENERATE\n1, 4, 0\n", ":18: GENERATE needs first, last"),
         (CUBES + "*NSET, NSET=Foot, GENERATE\n1, 999999999999\n", "more than 100 million"),
-        (CUBES + "*ELSET, ELSET=up\n5\n", "set 'up' names element 5: not there"),
-        (CUBES + "*NSET, NSET=a, ELSET=b\n", ":17: set 'b' is not there"),
-        (CUBES + "*INSTANCE, NAME=a\n1., 0., 0.\n", ":17: .INSTANCE: one instance, neither moved"),
+        (CUBES + "*ELSET, ELSET=up\n5\n", "set 'up' names element 5, which does not exist"),
+        (CUBES + "*NSET, NSET=a, ELSET=b\n", ":17: set 'b' must be defined before its use"),
+        (
+            CUBES + "*INSTANCE, NAME=a\n1., 0., 0.\n",
+            ":17: .INSTANCE: only one is allowed, neither translated",
+        ),
         (CUBES + "*INSTANCE, NAME=a\n*INSTANCE, NAME=b\n", ":18: .INSTANCE"),
-        (CUBES + "*NGEN\n1, 5\n", ":17: .NGEN: not read here"),
+        (CUBES + "*NGEN\n1, 5\n", ":17: .NGEN is not supported"),
         (CUBES.replace("*NODE", "*NODE, SYSTEM=C"), ":1: .NODE, SYSTEM: rectangular"),
         ("*INCLUDE, INPUT=none.inc\n", "none.inc: cannot be read"),
-        ("*INCLUDE, INPUT=cubes.inp\n", "ten deep at most"),
+        ("*INCLUDE, INPUT=cubes.inp\n", "nested at most ten deep"),
     ],
 )
 def test_wrong_files(tmp_path, capsys, text, told):
@@ -129,11 +132,11 @@ def test_wrong_files(tmp_path, capsys, text, told):
 
 def test_empty_set_is_left_out(tmp_path, capsys):
     _, _, sets, warnings = read_text(tmp_path, capsys, CUBES + "*NSET, NSET=none\n")
-    assert set(sets) == {"tissue"} and "set 'none' has no node" in warnings
+    assert set(sets) == {"tissue"} and "dropped set 'none': it has no node" in warnings
 
 
 def test_what_is_written_is_read_again(tmp_path, capsys):
-    """To the bit: these coordinates need no more than the characters that there are."""
+    """Bit-identical: these coordinates fit into the available characters."""
     points = POINTS / 3
     names = {"foot": [0, 1], "Fuß, left": [3], "2nd": list(range(12))}
     mesh = HexMesh(points, CELLS, {name: np.array(nodes) for name, nodes in names.items()})

@@ -1,4 +1,4 @@
-"""The deck that CalculiX gets, to the letter."""
+"""The exact text of the deck for CalculiX."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Displacements of other programs come to the nodes of the case, or are refused."""
+"""Displacements of other programs are assigned to the nodes of the case, or rejected."""
 
 import h5py
 import numpy as np
@@ -27,7 +27,7 @@ def write_csv(path, header, *columns):
 
 
 def write_frd(path, points, u):
-    """As CalculiX does it: six digits, ids with gaps."""
+    """As written by CalculiX: six digits, ids with gaps."""
 
     def block(rows):
         return "".join(
@@ -99,7 +99,9 @@ def test_a_field_by_name(tmp_path, capsys):
     for field, factor in (("U", 1), ("w", 3)):
         assert (matched(capsys, path, "--field", field)[0] == factor * U).all()
     for options in ([], ["--field", "v"]):
-        with pytest.raises(Refused, match="Say --field NAME; its arrays .*: 'U', 'u', 'w'"):
+        with pytest.raises(
+            Refused, match="choose one with --field NAME; its arrays .*: 'U', 'u', 'w'"
+        ):
             matched(capsys, path, *options)
     path = write_csv(tmp_path / "a.csv", "id,w:0,w:1,w:2,ux,uy,uz", ORDER, U[ORDER], 2 * U[ORDER])
     assert (matched(capsys, path, "--field", "w")[0] == U).all()
@@ -150,15 +152,15 @@ def moved(points, u):
         (points_changed(lambda p, u: (1000 * p, u)), r"diagonals 2449.49 and 2.44949 m"),
         (
             points_changed(lambda p, u: (np.vstack([p, p[3:4]]), np.vstack([u, u[3:4]]))),
-            r"must be there once \(13 nodes in the file, 12 in the case\).*: \(0, 1, 0\)",
+            r"must occur exactly once \(13 nodes in the file, 12 in the case\).*: \(0, 1, 0\)",
         ),
         (
             points_changed(lambda p, u: (np.vstack([p, [[7, 8, 9]]]), np.vstack([u, u[:1]]))),
-            r"nobody's or another's: \(7, 8, 9\)",
+            r"repeated nodes of the file: \(7, 8, 9\)",
         ),
         (
             lambda f: write_h5(f / "a.h5", displacement=U[1:]),
-            "0 to 10 in 11 rows; required are 0 to 11",
+            "0 to 10 in 11 rows must be 0 to 11",
         ),
         (lambda f: write_h5(f / "a.h5", displacement=U * np.nan), "displacements must be finite"),
         (
@@ -168,7 +170,7 @@ def moved(points, u):
         (lambda f: write_h5(f / "a.h5", displacement=U[:, :2]), r"shape \(12, 2\)"),
         (
             lambda f: write_h5(f / "a.h5", displacement=U, points=U[1:]),
-            "points has 11 rows and disp",
+            "points has 11 rows, displacement 12",
         ),
         (lambda f: write_h5(f / "a.h5", displacement=b"text"), "required|shape"),
         (lambda f: write_h5(f / "a.h5", displacement__u=U), "cannot be read as HDF5|shape"),
@@ -180,7 +182,7 @@ def moved(points, u):
         (lambda f: write_csv(f / "a.csv", "x,y,ux,uy,uz", U[:, :2], U), "or x, y, z, and ux"),
         (
             lambda f: write_csv(f / "a.csv", "id,ux,ux,uy,uz", ORDER, U[:, 0], U),
-            "'ux' is there twice",
+            "'ux' occurs twice",
         ),
         (lambda f: write_csv(f / "a.csv", "id,ux,uy,uz", ORDER + 2, U), "ids 2 to 13 in 12 rows"),
         (lambda f: write_csv(f / "a.csv", "id,ux,uy,uz", ORDER // 2, U), "each once"),

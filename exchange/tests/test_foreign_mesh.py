@@ -1,4 +1,4 @@
-"""Which hexahedra are accepted, put right, or refused, whatever file they come from."""
+"""Which hexahedra are accepted, renumbered or rejected, whatever file they come from."""
 
 import numpy as np
 import pytest
@@ -43,8 +43,8 @@ def test_mirrored_elements_are_turned_round(tmp_path, capsys, mirror, which):
     assert (np.sort(turned) == CELLS).all()
     assert np.allclose(volumes(points, turned), volumes(points, CELLS), rtol=1e-14)
     listed = ", ".join(map(str, which))
-    assert f"{len(which)} of 2 elements were numbered mirror-wise" in warnings
-    assert warnings.strip().endswith(f"turned round: {listed}")
+    assert f"{len(which)} of 2 elements had a mirrored node order" in warnings
+    assert warnings.strip().endswith(f"renumbered: {listed}")
 
 
 def test_good_elements_are_left_alone(tmp_path, capsys):
@@ -60,7 +60,7 @@ def test_tangled_elements_are_refused_with_a_hint(tmp_path, capsys):
         Refused, match=r"2 of 2 elements are tangled.*: 0 at \(0.5, 0.5, 0.5\)"
     ) as told:
         read(capsys, write(tmp_path / "a.vtu", cells=CELLS[:, LEXICOGRAPHIC]))
-    assert "counted with x fastest they would not be" in str(told.value)
+    assert "they seem to be numbered with x fastest" in str(told.value)
     points = POINTS.copy()
     points[6] = [-0.5, -0.5, 0.5]  # the common corner beyond the opposite one
     with pytest.raises(Refused, match="are tangled") as told:
@@ -69,21 +69,21 @@ def test_tangled_elements_are_refused_with_a_hint(tmp_path, capsys):
 
 
 def test_an_element_that_is_inside_out_is_no_mirrored_one(tmp_path, capsys):
-    """The upper cube pushed through the lower one: its numbers are right, its place is not."""
+    """The upper cube pushed through the lower one: its numbering is right, its position is not."""
     points = POINTS.copy()
     points[8:, 2] = 0.5
-    with pytest.raises(Refused, match="elements 0 and 1 lie on the same side of the face"):
+    with pytest.raises(Refused, match="elements 0 and 1 lie on the same side of their common face"):
         read(capsys, write(tmp_path / "a.vtu", points))
 
 
 def test_elements_over_each_other_are_refused(tmp_path, capsys):
     for cells in (CELLS[[0, 1, 0]], [CELLS[0], CELLS[0][[1, 2, 3, 0, 5, 6, 7, 4]]]):
-        with pytest.raises(Refused, match="same side of the face that they share"):
+        with pytest.raises(Refused, match="same side of their common face"):
             read(capsys, write(tmp_path / "a.vtu", cells=cells))
 
 
 def test_a_third_element_on_a_face_is_refused(tmp_path, capsys):
-    """It lies on the other side than the second, so that only their number tells."""
+    """It lies on the opposite side of the second, so only the number of elements gives it away."""
     points = np.vstack([POINTS, POINTS[:4] - [0, 0, 1]])
     cells = [*CELLS, [12, 13, 14, 15, 4, 5, 6, 7]]
     with pytest.raises(Refused, match="or share it with a third"):
@@ -95,7 +95,7 @@ def test_nodes_at_one_place_are_told(tmp_path, capsys):
     cells = [CELLS[0], [12, 13, 14, 15, 8, 9, 10, 11]]
     found, _, _, warnings = read(capsys, write(tmp_path / "a.vtu", points, cells))
     assert len(found) == 16
-    assert "4 nodes at the very place of another, such as 4 and 12: the body is not" in warnings
+    assert "4 nodes coincident with another, such as 4 and 12: the body is not" in warnings
 
 
 def test_flat_elements_are_refused(tmp_path, capsys):
@@ -105,7 +105,7 @@ def test_flat_elements_are_refused(tmp_path, capsys):
 
 def test_a_mesh_in_millimetres_is_told(tmp_path, capsys):
     *_, warnings = read(capsys, write(tmp_path / "a.vtu", 20 * POINTS))
-    assert "the mesh is 49 m from corner to corner: coordinates are taken as metres" in warnings
+    assert "the mesh is 49 m across: coordinates are read as metres" in warnings
     *_, warnings = read(capsys, write(tmp_path / "a.vtu", 8 * POINTS))  # 19.6 m
     assert not warnings
 
@@ -114,4 +114,4 @@ def test_ids_of_the_file_are_told(tmp_path, capsys):
     text = CUBES.replace("\n2, 5, 6, 7, 8, 9, 10, 11, 12", "\n777, 9, 10, 11, 12, 5, 6, 7, 8")
     (tmp_path / "a.inp").write_text(text)
     _, cells, _, warnings = read(capsys, tmp_path / "a.inp")
-    assert "turned round: 777" in warnings and (cells == CELLS).all()
+    assert "renumbered: 777" in warnings and (cells == CELLS).all()

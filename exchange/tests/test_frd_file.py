@@ -1,4 +1,4 @@
-"""What CalculiX writes is read to the digit; damage is named with its line."""
+"""Results of CalculiX are read exactly; errors in damaged files name the line."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Meshes that Gmsh made: every version and form gives the same mesh and all of its groups."""
+"""Gmsh's meshes: every version and encoding gives the same mesh and all of its groups."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def edited(tmp_path, form, *changes):
         ("2.2", b"\n2 0.1 0 0\n", b"\n1 0.1 0 0\n", "node 1 given twice"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n-2 0.1 0 0\n", "node -2: ids of nodes must not be negative"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n2.5 0.1 0 0\n", "no whole number"),
-        ("2.2", b" 9 2 10 25 ", b" 9 99 10 25 ", "element .* names node 99, which is not there"),
+        ("2.2", b" 9 2 10 25 ", b" 9 99 10 25 ", "element .* names node 99, which does not exist"),
         ("2.2", b" 9 2 10 25 ", b" 9 9 10 25 ", "1 of 12 elements name a node twice"),
         ("2.2", b"\n36\n", b"\n37\n", "Nodes"),
         ("2.2", b"\n36\n", b"\n-36\n", "Nodes"),
@@ -85,7 +85,7 @@ def test_node_without_element_is_left_out(tmp_path, capsys):
     path = edited(tmp_path, "2.2", (b"$Nodes\n36\n", b"$Nodes\n37\n4000000000 7 7 7\n"))
     points, _, sets, warnings = read(capsys, path)
     assert len(points) == 36 and sets == expected_sets(points)
-    assert "1 node of no hexahedron left out, as they have no mass: 4000000000" in warnings
+    assert "dropped 1 node of no hexahedron, hence without mass: 4000000000" in warnings
 
 
 def test_group_without_nodes_of_hexahedra_is_left_out(tmp_path, capsys):
@@ -93,7 +93,7 @@ def test_group_without_nodes_of_hexahedra_is_left_out(tmp_path, capsys):
     path = edited(tmp_path, "4.1", (b"$PhysicalNames\n6", b"$PhysicalNames\n7"), (old, new))
     _, _, sets, warnings = read(capsys, path)
     assert set(sets) == set(GROUPS)
-    assert "set 'nothing' has no node of a hexahedron: left out" in warnings
+    assert "dropped set 'nothing': it has no node of a hexahedron" in warnings
 
 
 def test_an_entity_may_have_no_nodes(tmp_path, capsys):
@@ -108,7 +108,7 @@ def test_an_entity_may_have_no_nodes(tmp_path, capsys):
     "other, told", [(True, "type 'hexahedron of 20"), (False, "has only line")]
 )
 def test_how_gmsh_makes_hexahedra_is_told(tmp_path, capsys, other, told):
-    """Where a file has none: other elements of volume, or none because no group saves them."""
+    """Files without hexahedra: with other volume elements, or none as no group saves them."""
     text = (DATA / "block-2.2.msh").read_bytes().decode()
     begin, end = text.index("$Elements"), text.index("$EndElements")
     lines = text[begin:end].splitlines()[2:]
@@ -125,7 +125,7 @@ def test_names_keep_spaces_and_letters_but_no_slashes(tmp_path, capsys):
     path = edited(tmp_path, "4.1", (b'"foot"', "\"Fuß/left 'a'\"".encode()))
     _, _, sets, warnings = read(capsys, path)
     assert len(sets["Fuß_left 'a'"]) == 9
-    assert "is called 'Fuß_left 'a''" in warnings
+    assert "is renamed 'Fuß_left 'a''" in warnings
 
 
 @pytest.mark.parametrize("form", FORMS)

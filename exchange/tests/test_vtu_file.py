@@ -1,4 +1,4 @@
-"""VTK's unstructured grids in all encodings that meshio knows, and what it would read wrongly."""
+"""VTK's unstructured grids in all encodings of meshio, and files that it would misread."""
 
 import base64
 
@@ -40,11 +40,19 @@ def test_cells_that_the_library_leaves_out_are_refused(tmp_path, capsys):
 @pytest.mark.parametrize(
     "kind, cells, told",
     [
-        ("tetra", [[0, 1, 2, 4]], "1 of type 'tetra', beside 0 hexahedra"),
+        ("tetra", [[0, 1, 2, 4]], "1 of type 'tetra', besides 0 hexahedra"),
         ("wedge", [[0, 1, 2, 4, 5, 6]] * 2, "2 of type 'wedge'"),
-        ("quad", [[0, 1, 2, 3]], "has only quad; hexahedra of eight nodes are required"),
-        ("hexahedron", [[0, 1, 2, 3, 4, 5, 6, 12]], "element 0 names node 12, which is not there"),
-        ("hexahedron", [[0, 1, 2, 3, 4, 5, 6, -1]], "element 0 names node -1, which is not there"),
+        ("quad", [[0, 1, 2, 3]], "has only quad; eight-node hexahedra are required"),
+        (
+            "hexahedron",
+            [[0, 1, 2, 3, 4, 5, 6, 12]],
+            "element 0 names node 12, which does not exist",
+        ),
+        (
+            "hexahedron",
+            [[0, 1, 2, 3, 4, 5, 6, -1]],
+            "element 0 names node -1, which does not exist",
+        ),
     ],
 )
 def test_other_cells_are_refused(tmp_path, capsys, kind, cells, told):

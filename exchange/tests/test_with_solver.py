@@ -1,4 +1,4 @@
-"""The solver with files of other programs: exit codes, messages, the same answers to the bit."""
+"""The solver with files of other programs: exit codes, messages, bit-identical answers."""
 
 import json
 import os
@@ -91,7 +91,7 @@ def test_what_is_put_right_is_told_and_the_run_goes_on(tmp_path):
     write(tmp_path / "own.vtu", POINTS / 20, mirrored, point_data=masks)
     done = succeeds("run", case_of(tmp_path, "own.vtu"))
     assert done.stderr.startswith(
-        f"warning: {tmp_path}/own.vtu: 2 of 2 elements were numbered mirr"
+        f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
     )
     assert "at rest" in done.stdout
 
@@ -115,7 +115,7 @@ def test_files_that_are_no_mesh(tmp_path):
     refused("verify", case, told="own.msh: $Nodes has no $EndNodes")
     tetrahedra = write(tmp_path / "own.vtu", cells=[[0, 1, 2, 4]], kind="tetra")
     refused(
-        "run", case_of(tmp_path, tetrahedra.name), *output, told="1 of type 'tetra', beside 0 hex"
+        "run", case_of(tmp_path, tetrahedra.name), *output, told="1 of type 'tetra', besides 0 hex"
     )
     assert sorted(file.name for file in tmp_path.iterdir()) == ["own.msh", "own.toml", "own.vtu"]
 
@@ -389,10 +389,10 @@ def test_a_score_comes_to_the_verdicts_and_on_the_page(answered):
         (["answer.h5", "--name", "a/b"], "--name must have no '/'"),
         (["answer.h5", "--json", "none/a.json"], "none/a.json: cannot be written"),
         (["answer.h5", "--seconds", "1", "--steps", "1", "--add-to", "answer.h5"], "is no file of"),
-        (["golden.h5", "--case", "column"], "45 rows; required are 0 to 495, or 1 to 496"),
+        (["golden.h5", "--case", "column"], "45 rows must be 0 to 495 or 1 to 496"),
         (
             ["answer.h5", "--case", "column"],
-            "nodes of the case are in the file at no distance below",
+            "nodes of the case have no node of the file within",
         ),
     ],
 )

@@ -8,7 +8,7 @@ from problem import GOLDEN, TRUTH, MixedProblem
 
 
 def _prescribed(pair, nodes_of, components=(0, 1, 2)):
-    """What is prescribed on a regular 2 x 2 x 2 block: (points, components, values) by dof."""
+    """The prescribed dofs of a regular 2 x 2 x 2 block: (points, components, values)."""
     points, cells, _ = distorted_block(n=2, distortion=0.0)
     condition = Condition(nodes_of(points), components, 1.0 + points)
     problem = MixedProblem(HexMesh(points, cells, (condition,)), pair, "neo-hookean", MATERIAL)

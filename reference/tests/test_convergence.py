@@ -1,4 +1,4 @@
-"""Richardson's extrapolation: exact on sequences whose limit is known, and what is stored of it."""
+"""Richardson's extrapolation is exact on sequences with a known limit, and its result is stored."""
 
 import math
 
@@ -43,7 +43,7 @@ def test_two_meshes_take_the_assumed_order():
     found = richardson([coarse, fine], assumed_order=2.0)
     assert (found.order, found.origin) == (2.0, "assumed")
     assert np.abs(found.limit - LIMIT).max() < 1e-14
-    # What the coarse field lacks is 4/3 of the difference, what the fine one lacks 1/3.
+    # The error of the coarse field is 4/3 of the difference, that of the fine one 1/3.
     difference = fine - coarse
     assert np.allclose(found.limit - coarse, 4 / 3 * difference, rtol=1e-12)
     assert np.allclose(found.limit - fine, difference / 3, rtol=1e-12)
@@ -61,7 +61,7 @@ def test_lower_orders_than_an_elastic_edge_allows_are_not_used():
     found = richardson(fields, assumed_order=2.0)
     assert found.order == 1.0
     assert found.origin == "the lowest, measured 0.30"
-    # At order 1 the finest field lacks as much as its difference to the one before.
+    # At order 1 the error of the finest field equals its difference from the previous one.
     assert np.allclose(found.limit - fields[2], fields[2] - fields[1], rtol=1e-12)
 
 

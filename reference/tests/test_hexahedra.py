@@ -1,4 +1,4 @@
-"""Uniform subdivision keeps the geometry, the nodes and what is prescribed at them."""
+"""Uniform subdivision preserves the geometry, the nodes and their prescribed values."""
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def test_old_nodes_come_first_and_conditions_are_inherited():
     fine = refine(coarse)
     n = len(coarse.points)
     assert (fine.points[:n] == coarse.points).all()  # exact: copied
-    # The boundary of the cube is made of whole faces of the set, so the fine boundary is, too ...
+    # The boundary of the cube consists of whole faces of the set; so does the fine boundary ...
     on_boundary = ((fine.points == 0) | (fine.points == 1)).any(axis=1)
     prescribed, imposed = fine.imposed()
     assert (prescribed == on_boundary[:, None]).all()

@@ -1,4 +1,4 @@
-"""Wrong input ends with exit code 2 (3 when there is no equilibrium) and leaves no file behind."""
+"""Wrong input gives exit code 2 (3 if there is no equilibrium) and leaves no file behind."""
 
 import pytest
 
@@ -19,7 +19,7 @@ def _run(folder, kind="golden", mesh="mesh.h5", options=()):
 
 
 def test_other_gauss_points(folder):
-    """The file says how many, and on a distorted mesh the answer tells."""
+    """The file records their number, and on a distorted mesh they change the answer."""
     answers = []
     for options in ((), ("--gauss", "2"), ("--gauss", "3")):
         assert _run(folder, options=options) == 0
@@ -112,7 +112,7 @@ def test_bad_usage():
 
 
 def test_no_equilibrium(folder, capsys):
-    # Both ends held, the upper one pushed through the lower one: the elements must invert.
+    # Both ends are held and the upper one is pushed through the lower one: elements must invert.
     (folder / "block.toml").write_text(CASE.replace("[0.0, 0.0, 0.1]", "[0.0, 0.0, -1.2]"))
     assert _run(folder) == 3
     assert "no equilibrium" in capsys.readouterr().err

@@ -1,6 +1,6 @@
-"""Every law in UFL against the solver's own: the same displacements and the same energy.
+"""Every law in UFL gives the same displacements and energy as the solver's law.
 
-The solver's element `tl-mean-dilatation` is the golden's, so that on one mesh only the laws differ.
+The solver's `tl-mean-dilatation` is the golden's element, so on one mesh only the laws differ.
 """
 
 import h5py
@@ -19,7 +19,7 @@ from laws import LAWS, VISCOELASTIC, parameters
 from mesh_file import load_case_mesh, make_mesh
 from problem import GOLDEN, MixedProblem
 
-# Numbers of soft tissue, by parameter; what a law that is new here has beside them is guessed.
+# Values for soft tissue, by parameter; parameters that are not listed are given a default guess.
 NUMBERS = {
     "young_modulus": "3000.0",
     "poisson_ratio": "0.45",
@@ -41,13 +41,13 @@ OF_LAW = {"st-venant-kirchhoff": {"poisson_ratio": "0.1"}}
 
 
 def _material(law):
-    """The keys of a law's table, but for `law` and `density`."""
+    """The keys of a law's table other than `law` and `density`."""
     numbers = NUMBERS | OF_LAW.get(law.removeprefix(VISCOELASTIC), {})
     guess = {name: "1000.0" if name.endswith("modulus") else "1.0" for name in parameters(law)}
     return "\n".join(f"{name} = {numbers.get(name, guess[name])}" for name in guess)
 
 
-# Stretched by a third, sheared by as much, with free sides: every part of a law takes part.
+# Stretched by a third, sheared by as much, with free sides: this exercises every term of a law.
 CASE = (
     BLOCK[: BLOCK.index("[mesh]")]
     + """
@@ -101,17 +101,17 @@ def test_the_solver_has_the_same_law(law, tmp_path):
     mesh, _ = load_case_mesh(case, tmp_path / "mesh.h5")
     problem = MixedProblem(mesh, GOLDEN, case.law, case.material)
     newton.solve(problem, 4, 1e-10)
-    # The solver stops at forces of 1e-11 of the reactions, which is 1e-11 in displacements, too. A
-    # c01 of 149 instead of 150 gives 1e-4.
+    # The solver stops at forces of 1e-11 of the reactions, which means 1e-11 in displacements. A
+    # c01 of 149 instead of 150 changes them by 1e-4.
     difference = computed - problem.nodal_displacement()
     assert np.abs(difference).max() < 1e-7 * mesh.largest_imposed()
-    # Displacements do not see a common factor of all moduli; the energy does. Its error is of
-    # second order in that of the displacements.
+    # A common factor of all moduli does not change displacements, but does change the energy, whose
+    # error is of second order in that of the displacements.
     assert abs(energy / _energy(problem, law, case.material) - 1) < 1e-9
 
 
 def _energy(problem, law, material):
-    """Integral of the law's energy at the present displacement and pressure, J."""
+    """Integral of the law's energy at the current displacement and pressure, J."""
     u, p = problem.displacement, problem.pressure
     domain = u.function_space.mesh
     numbers = {name: fem.Constant(domain, value) for name, value in material.items()}

@@ -1,4 +1,4 @@
-"""Vertex order and node numbers survive the way into dolfinx and back."""
+"""Vertex order and node numbers survive the conversion to dolfinx and back."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def test_affine_displacement_comes_back_in_the_callers_numbering(pair):
 
 
 def test_a_shuffled_mesh_gives_shuffled_displacements():
-    # The trap itself: the same block under another numbering, solved for a non-affine answer.
+    # The pitfall itself: the same block under another numbering, solved for a non-affine answer.
     mesh = affine_patch(GRADIENT, bulge=0.1)
     order = np.random.default_rng(7).permutation(len(mesh.points))  # old number of each new node
     (old,) = mesh.conditions

@@ -15,8 +15,8 @@ GRADIENT = [[0.2, 0.1, -0.1], [0.05, -0.1, 0.15], [-0.1, 0.1, 0.05]]
 PAIRS = pytest.mark.parametrize("pair", [GOLDEN, TRUTH], ids=lambda pair: pair.name)
 LAW = "neo-hookean"
 TOLERANCE = 1e-10
-# The last correction is at most TOLERANCE, and quadratic convergence leaves much less behind it:
-# what remains is round-off, 2.2e-16 times a condition number of a few thousand.
+# The last correction is at most TOLERANCE, and with quadratic convergence the remaining error is
+# much smaller: only round-off, 2.2e-16 times a condition number of a few thousand.
 EXACT = 1e-11
 
 
@@ -74,7 +74,7 @@ def _lateral_stretch(stretch):
 
 @PAIRS
 def test_eliminating_the_pressure_changes_nothing(pair):
-    # The condensed solution must satisfy both rows of the mixed system, each on its own.
+    # The condensed solution must satisfy each of the two rows of the mixed system.
     mesh = affine_patch(GRADIENT, bulge=0.2)
     problem = MixedProblem(mesh, pair, LAW, MATERIAL)
     solve(problem, 2, TOLERANCE)
@@ -85,7 +85,7 @@ def test_eliminating_the_pressure_changes_nothing(pair):
 
 
 def test_load_steps_do_not_matter():
-    # Pressed so far that in one load step the first corrections would invert elements.
+    # Compressed so far that in one load step the first corrections would invert elements.
     mesh = pressed_block((0.0, 0.0, -0.5))
     answers = []
     for load_steps in (1, 7):

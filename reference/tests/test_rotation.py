@@ -1,4 +1,4 @@
-"""Node sets that turn: where their nodes are, at every load and on split meshes."""
+"""Rotating node sets: positions of their nodes at every load and on split meshes."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,7 @@ def test_largest_imposed_is_that_of_the_way():
         mesh = HexMesh(points, cells, (Condition(points[:, 2] == 1, (0, 1, 2), beside, turn),))
         chord = np.sqrt(2) * np.sin(min(abs(angle), np.pi) / 2)
         assert abs(mesh.largest_imposed() - 0.2 - chord) < 1e-15
-        # A turned set has no mirror plane, though its final values may be zero.
+        # A rotating set has no mirror plane, though its final values may be zero.
         assert halve(mesh)[1] == []
 
 

@@ -1,4 +1,4 @@
-"""The stored goldens and truths belong to the cases of this checkout and can be made again."""
+"""The stored goldens and truths belong to the cases of this checkout and are reproducible."""
 
 from functools import cache
 
@@ -43,7 +43,7 @@ def test_stored_result_belongs_to_its_case(kind, name, mesh_of):
     assert attributes["kind"] == kind
     # Another compiler may change the last bits of a coordinate (tan, pow): a few 2.2e-16.
     assert np.abs(points - file.points).max() < 1e-14 * np.abs(points).max()
-    # Exact where it is prescribed: a result in another order of nodes fails here.
+    # Prescribed values are exact: a result with its nodes in another order fails here.
     prescribed, values = mesh.imposed()
     assert (displacement[prescribed] == values[prescribed]).all()
     assert attributes["last_correction"] < attributes["newton_tolerance"]
@@ -58,7 +58,7 @@ def test_golden_can_be_made_again(name, mesh_of, tmp_path):
     _, displacement, attributes = read_reference(output)
     _, stored, _ = read_reference(path_of("golden", name))
     # Solved to a last correction below 1e-10; other libraries and thread counts change round-off
-    # only. 1e-8 of the imposed displacement is what the solver is judged with at the finest.
+    # only. 1e-8 of the imposed displacement is the tightest tolerance used for the solver.
     difference = np.linalg.norm(displacement - stored, axis=1).max()
     assert difference < 1e-8 * attributes["largest_imposed"]
 
@@ -68,7 +68,7 @@ def test_golden_knows_its_distance_from_the_truth(name):
     golden, truth = (path_of(kind, name) for kind in KINDS)
     _, _, attributes = read_reference(golden)
     errors = compare.golden_error(golden, truth)
-    # Stored from the same numbers: equal but for the order of a sum.
+    # Computed from the same numbers: equal except for the order of a sum.
     assert errors[0] == pytest.approx(attributes["discretisation_error_max"], rel=1e-12)
     assert errors[1] == pytest.approx(attributes["discretisation_error_rms"], rel=1e-12)
 

@@ -1,4 +1,4 @@
-"""Half a symmetric mesh gives the whole answer, and a mesh without symmetry is left alone."""
+"""Half a symmetric mesh gives the whole answer; a mesh without symmetry is left unchanged."""
 
 import numpy as np
 import pytest

@@ -25,17 +25,17 @@ def _pulled(mesh, total, moment=(0.0, 0.0, 0.0), nodes_of=lambda x: x[:, 2] == 1
 @PAIRS
 def test_sum_and_moment(pair):
     points, cells, _ = distorted_block(n=2)
-    # A face that is no rectangle, and not at the origin: its upper edge is shorter.
+    # A trapezoidal face (its upper edge is shorter) away from the origin.
     points[:, 0] = 2 + points[:, 0] * (1 - 0.4 * points[:, 1])
     total, moment = np.array([0.3, -0.2, 0.5]), np.array([0.1, 0.4, -0.7])
     held = Condition(points[:, 2] == 0, (0, 1, 2), np.zeros_like(points))
     mesh = _pulled(HexMesh(points, cells, (held,)), total, moment)
     problem = MixedProblem(mesh, pair, LAW, MATERIAL)
     problem.load = 0.5
-    forces = problem.mixed_residual()[0].reshape(-1, 3)  # at rest: less the loads, nothing else
+    forces = problem.mixed_residual()[0].reshape(-1, 3)  # undeformed: minus the loads only
     at = problem.displacement.function_space.tabulate_dof_coordinates()
     arms = at - mesh.tractions[0].centre
-    # Sums of about a hundred numbers of the order of 1; Q2 holds bilinear places exactly.
+    # Sums of about a hundred numbers of order 1; Q2 represents bilinear positions exactly.
     assert np.abs(forces.sum(axis=0) + 0.5 * total).max() < 1e-13
     assert np.abs(np.cross(arms, forces).sum(axis=0) + 0.5 * moment).max() < 1e-13
 
@@ -135,7 +135,7 @@ def test_variants(tmp_path):
     assert find_case(tmp_path, "bar-1-b") == path
     assert find_case(tmp_path, "bar-1-c") is None
     with pytest.raises(
-        InputError, match="has 4 variants, and one must be named; known: bar-1-a, bar-1-b"
+        InputError, match="has 4 variants; name one of them; known: bar-1-a, bar-1-b"
     ):
         read_case(path)
     with pytest.raises(InputError, match="has no case 'bar-1-c'"):

@@ -1,4 +1,4 @@
-"""The accuracy figures of the project, and the order of the nodes along a profile line."""
+"""The project's accuracy figures, and the order of nodes along a profile line."""
 
 from dataclasses import dataclass
 

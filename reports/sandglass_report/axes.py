@@ -1,4 +1,4 @@
-"""What several charts need of an Axes: percent scales, labels that keep apart."""
+"""Axes of charts: percent scales, labels that do not overlap."""
 
 import math
 
@@ -52,10 +52,10 @@ def spread(positions, gap, low, high):
 
 
 def label_points(axes, labels, size=7.5):
-    """Writes labels beside their points, to the side with more room, without overlaps.
+    """Writes labels next to their points, on the side with more space, without overlaps.
 
     labels: list of (x, y, text, colour) in data coordinates; scales and limits must be set.
-    Labels of both sides keep apart from each other, since narrow panels let them meet.
+    Overlaps between the two sides are also avoided, as they can occur in narrow panels.
     """
     if not labels:
         return
@@ -67,7 +67,7 @@ def label_points(axes, labels, size=7.5):
     for (x, y, text, colour), point, height in zip(labels, at, heights):
         on_the_left = point[0] < box.x0 + 0.5 * box.width
         up = (height - point[1]) / pixels_per_point
-        # A label that was pushed off its point's height may reach under or over the point.
+        # A label that was moved vertically may extend below or above its point.
         aside = 8 if abs(up) < size else 0
         axes.annotate(
             text,

@@ -1,4 +1,4 @@
-"""Bending and locking: deflections of cantilevers over Poisson's ratio and fineness."""
+"""Bending and locking: deflections of cantilevers over Poisson's ratio and mesh density."""
 
 import re
 
@@ -6,13 +6,13 @@ from sandglass_report import style
 from sandglass_report.plates import MUTED, Panel, Plate
 
 VARIANT = re.compile(r"(?P<elements>\d+) nu(?P<nu>0?\.\d+)")
-CEILING = 1.45  # what is farther off stands at the edge
+CEILING = 1.45  # values beyond are drawn at the edge
 
 
 def bending_plates(tips, palette):
     """Two plates, over Poisson's ratio and over elements, or none without such a family.
 
-    tips: of the verdicts. A family counts whose variants are "ELEMENTS nuVALUE".
+    tips: of the verdicts. Uses families whose variants are named "ELEMENTS nuVALUE".
     """
     found = {}
     for tip in tips:
@@ -49,7 +49,7 @@ def bending_plates(tips, palette):
         )
         for nu in dict.fromkeys((ratios[0], *ratios[-2:]))
     )
-    note = "Deflection of the tip over that of the truth; 1 is right, less is too stiff."
+    note = "Deflection of the tip over that of the truth; 1 is exact, less is too stiff."
     return (
         Plate("locking", "Locking: as the body becomes incompressible", locking, 3, note, legend),
         Plate("bending", "Bending: as elements become finer", bending, 3, note, legend),
@@ -62,7 +62,7 @@ def _panel(name, title, across, values, curves, palette):
     def draw(axes):
         axes.axhline(1.0, color=MUTED, lw=0.9, ls="--")
         for i, (method, ratios) in enumerate(curves.items()):
-            # A little to the side, so that equal methods show beside each other.
+            # Slightly shifted, so that equal methods are visible next to each other.
             aside = 0.012 * (i - len(curves) / 2)
             known = [(x + aside, r) for x, r in enumerate(ratios) if r is not None]
             if not known:

@@ -16,13 +16,13 @@ FROM_THE_SIDE = View(azimuth=16.0, elevation=14.0)
 
 
 def view_of(points):
-    """A direction of sight on points (n, 3): slender bodies from the side, others from above."""
+    """A viewing direction for points (n, 3): slender bodies from the side, others from above."""
     size = np.ptp(points, axis=0)
     return FROM_THE_SIDE if size[2] > 3 * max(size[0], size[1]) else ALL_ROUND
 
 
 def gallery_panel(subject):
-    """A case at rest and deformed, side by side at one scale; None when no run left a mesh."""
+    """A case, undeformed and deformed, side by side at one scale; None if it has no mesh."""
     if subject.points is None:
         return None
     u, source = _best_known(subject)
@@ -39,7 +39,7 @@ def gallery_panel(subject):
         draw_surface(axes, subject.points + u + aside, faces, view, BODY, marked, True)
         frame(axes, limits)
 
-    alt = f"{subject.name}: at rest (left) and deformed (right, {source})."
+    alt = f"{subject.name}: undeformed (left) and deformed (right, {source})."
     wide, high = limits[1] - limits[0]
     return Panel(f"case.{subject.name}", subject.name, alt, draw, 300, round(300 * high / wide))
 
@@ -84,14 +84,14 @@ def _shape_panel(subject, name, letter, shape, view, limits):
 
 
 def _scale_setters(subject, shapes):
-    """Bodies that set the common scale; one that bursts the others' bounds is cut off by it."""
+    """Bodies that set the common scale; one that greatly exceeds the others is cut off."""
     bodies = [subject.points + u for _, u, _ in shapes if u is not None]
     extent = min(np.ptp(body, axis=0).max() for body in bodies)
     return [body for body in bodies if np.ptp(body, axis=0).max() < 1.6 * extent]
 
 
 def _best_known(subject):
-    """The displacement to show for a case, and where it comes from."""
+    """The displacement to show for a case, and its source."""
     if subject.golden is not None:
         return subject.golden.displacement, "golden"
     (method, _), u = next(iter(subject.displacements.items()))
@@ -112,7 +112,7 @@ def _colour(palette, method):
 
 
 def _pale(colour):
-    """A body's form of a line's colour: light enough for shading to show."""
+    """A line's colour adapted to bodies: light enough for shading to be visible."""
     if colour == BODY:
         return colour
     return tuple(1 - 0.62 * (1 - np.array(to_rgb(colour))))

@@ -1,4 +1,4 @@
-"""Error against cost of a step: fixed methods as points, adaptive ones as lines."""
+"""Error against cost per step: fixed methods as points, adaptive ones as lines."""
 
 from common.errors import InputError
 from common.files import read_json
@@ -13,7 +13,8 @@ LIMIT = 0.0034  # the paper's error on its profile line
 def read_costs(paths):
     """Case -> (cost, Rung) of files of `sandglass choose --all --json`. Raises InputError.
 
-    cost: of a step, in steps of UNIT of the same file. Of a rung in several files the first counts.
+    cost: of a step, over that of UNIT in the same file. If several files have a rung, the first is
+    used.
     """
     cases = {}
     for path in paths:
@@ -29,7 +30,7 @@ def read_costs(paths):
 
 
 def _is_shown(rung):
-    """Steps in double on the user's own mesh that have an answer, with the strength a user gets."""
+    """Rungs with an answer in double on the user's own mesh, with default kappa."""
     own = rung.precision == "double" and rung.mesh == OWN_MESH and rung.kappa is None
     return own and rung.step and rung.step_size and rung.error is not None
 
@@ -46,7 +47,7 @@ def curve_plate(cases):
         "the adaptive method from loose to strict accuracy; the dashed line is "
         f"{style.exact_percent(LIMIT)}."
     )
-    return Plate("adaptive", "How much accuracy for how much time", panels, 2, note, legend)
+    return Plate("adaptive", "Accuracy against time", panels, 2, note, legend)
 
 
 def _panel(case, found, palette):

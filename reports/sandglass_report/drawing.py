@@ -1,4 +1,4 @@
-"""The command line of the scripts that draw static figures from files."""
+"""The shared command line of the scripts that draw static figures from files."""
 
 import argparse
 from pathlib import Path
@@ -11,7 +11,7 @@ from sandglass_report.plates import save_plate
 def draw(description, files_help, plates_of, arguments=None):
     """Saves the plates of plates_of(files) and prints their paths. Returns the exit code.
 
-    description: of the command, whose first line is shown. files_help: what the files are.
+    description: of the command; its first line is shown. files_help: description of the files.
     plates_of: from a list of Paths to a list of Plates. arguments: of the command line.
     """
 

@@ -1,4 +1,4 @@
-"""What the project claims, what tests it, by which oracle; which planted mistakes are noticed."""
+"""The project's claims with their tests and oracles, and the detection of planted mistakes."""
 
 import re
 from dataclasses import dataclass
@@ -14,19 +14,19 @@ COLUMNS = ("mutant", "mistake", "verdict", "by", "s", "revision")
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence of the project, and what it rests on."""
+    """A claim of the project, and its evidence."""
 
     says: str
-    oracle: str  # what knows the right answer
+    oracle: str  # the source of the right answer
     tests: tuple  # paths of files below the root of the tree
     figure: str  # section of the page that shows it, or ""
     limits: tuple = ()  # Limits of the verdicts that measure it
-    noticed: int = 0  # planted mistakes that these tests noticed
+    noticed: int = 0  # planted mistakes that these tests detected first
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A planted mistake and what became of it."""
+    """A planted mistake and its outcome."""
 
     name: str
     mistake: str
@@ -38,14 +38,14 @@ class Mutant:
 
 @dataclass(frozen=True)
 class Evidence:
-    """All of the section; `made` is the line of the mutants' table that says when and how."""
+    """The data of the section; `made` is the line of the mutants' table on its making."""
 
     claims: tuple = ()
     mutants: tuple = ()
     made: str = ""
 
     def worst_first(self):
-        """The mutants: those that no test noticed, those that were not run, and the rest."""
+        """The mutants: first those that no test detected, then those not run, then the rest."""
         order = {"survived": 0, "not run": 1}
         return sorted(self.mutants, key=lambda mutant: order.get(mutant.verdict, 2))
 
@@ -57,8 +57,8 @@ class Evidence:
 def read_evidence(claims, mutants, root, limits):
     """Evidence from a TOML file of claims and the table of mutants; each may be absent.
 
-    root: of the tree, where the tests are. limits: of the verdicts. Raises InputError when a file
-    is broken, or when a claim names a test or a limit that is not there.
+    root: of the tree that contains the tests. limits: of the verdicts. Raises InputError if a file
+    is broken or a claim names a test or a limit that does not exist.
     """
     files = _files_of_suites(Path(root))
     made, found = _read_mutants(Path(mutants), files)
@@ -66,7 +66,7 @@ def read_evidence(claims, mutants, root, limits):
 
 
 def _read_claims(path, root, limits, mutants):
-    """The claims of a file; none without it."""
+    """The claims of a file; none if it is missing."""
     if not path.is_file():
         return ()
     found = read_toml(path)
@@ -81,7 +81,7 @@ def _claim(where, table, root, limits, mutants):
     says, tests = entry(where, table, "says", str), tuple(entry(where, table, "tests", list))
     for test in tests:
         if not (root / test).is_file():
-            raise InputError(f"{where}: {says!r}: there is no test {test}")
+            raise InputError(f"{where}: {says!r}: test {test} does not exist")
     return Claim(
         says,
         entry(where, table, "oracle", str),
@@ -93,7 +93,7 @@ def _claim(where, table, root, limits, mutants):
 
 
 def _limit(where, says, words, limits):
-    """The limit "CASE METHOD KAPPA FIGURE" of the verdicts; None where the case was not run."""
+    """The limit "CASE METHOD KAPPA FIGURE" of the verdicts; None if the case was not run."""
     case, method, kappa, figure = (words.split() + [""] * 4)[:4]
     of_case = [limit for limit in limits if limit.case == case]
     for limit in of_case:
@@ -114,13 +114,13 @@ def _files_of_suites(root):
 
 
 def _read_mutants(path, files):
-    """(the line that says how it was made, mutants) of the table; nothing without a file."""
+    """(the line on its making, mutants) of the table; empty if the file is missing."""
     if not path.is_file():
         return "", ()
     lines = path.read_text(encoding="utf-8").splitlines()
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if "|" in line]
     if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
-        raise InputError(f"{path}: not the table of ci/mutants: its columns must be {COLUMNS}")
+        raise InputError(f"{path}: not the table of verification/mutants/run.py: its columns must be {COLUMNS}")
     made = next((line for line in lines if line.startswith("Made by")), "")
     return made, tuple(_mutant(row, files) for row in rows[2:])
 

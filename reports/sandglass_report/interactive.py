@@ -1,4 +1,4 @@
-"""The data of the page's scripts: the main chart's points and Plotly itself, packed."""
+"""The data of the page's scripts: the main chart's points, and Plotly itself, compressed."""
 
 import base64
 import functools
@@ -9,12 +9,12 @@ from sandglass_report import style
 from sandglass_report.measured import OWN_MESH
 from sandglass_report.points import families, fronts
 
-# Findings of verify that say that a method fails, not that it is inexact.
+# Findings of verify that mean failure, not inaccuracy.
 FAILURES = ("hourglassing", "locking", "inverted", "unstable", "not at rest")
 
 
 def chart_data(points, palette):
-    """What chart.js reads: points, fronts, adaptive lines, and the methods' colours and marks."""
+    """The data for chart.js: points, fronts, adaptive lines, and the methods' colours and marks."""
     return {
         "own_mesh": OWN_MESH,
         "points": [p.as_record() | {"fails": not p.ok or p.finding in FAILURES} for p in points],

@@ -12,7 +12,7 @@ NAMES = {"max": "max, all nodes", "profile": "max, profile", "rms": "rms"}
 
 
 def kappa_panels(subject, palette):
-    """Two panels of a case that has kappa curves: error to the golden and to the truth."""
+    """Two panels of a case with kappa curves: error to the golden and to the truth."""
     if not _curves(subject, "golden") and not _curves(subject, "truth"):
         return ()
     limits = _limits(subject)
@@ -20,7 +20,7 @@ def kappa_panels(subject, palette):
 
 
 def kappa_plates(subjects, palette):
-    """One static figure per case that has kappa curves."""
+    """One static figure per case with kappa curves."""
     plates = []
     for subject in subjects:
         panels = kappa_panels(subject, palette)
@@ -35,7 +35,7 @@ def kappa_plates(subjects, palette):
 def _curves(subject, reference):
     """method -> runs in order of kappa, for the methods with at least two points.
 
-    A curve that lies on one before it, of the same formulas computed otherwise, is left out.
+    A curve that coincides with an earlier one (the same formulas computed differently) is omitted.
     """
     curves = {}
     for run in subject.runs:
@@ -53,7 +53,7 @@ def _curves(subject, reference):
 
 
 def _levels(subject):
-    """The golden's own distances from the truth, by figure."""
+    """The golden's distances from the truth, by figure."""
     own = subject.golden_to_truth()
     return {} if own is None else {name: getattr(own, name) for name, _, _ in FIGURES}
 
@@ -78,7 +78,7 @@ def _panel(subject, palette, reference, limits):
         helpers.percent_scale(axes.yaxis, limits)
         axes.set_xlabel("κ")
         axes.figure.canvas.draw()
-        # The strokes say which figure it is, for all methods alike: one method's ends are named.
+        # Strokes mean the same figure for all methods, so the ends are named for one only.
         labels = [_draw_curve(axes, m, r, palette, reference) for m, r in curves.items()]
         _draw_auto(axes, curves, palette)
         _label_ends(axes, [(*end[:3], style.INK[0]) for end in labels[0]])
@@ -93,7 +93,7 @@ def _panel(subject, palette, reference, limits):
 def _draw_curve(axes, method, runs, palette, reference):
     """The three curves of a method; returns the labels of their ends."""
     labels = []
-    for name, dashes, width in reversed(FIGURES):  # the last label comes out on top
+    for name, dashes, width in reversed(FIGURES):  # the last label is drawn on top
         points = [(r.kappa, getattr(getattr(r, reference), name)) for r in runs]
         points = [(k, max(e, style.FLOOR)) for k, e in points if e is not None]
         if not points:
@@ -109,7 +109,7 @@ def _draw_curve(axes, method, runs, palette, reference):
 
 
 def _draw_auto(axes, curves, palette):
-    """A line at the kappa that `auto` takes; one, for it belongs to the material."""
+    """A line at the value of kappa auto, which depends only on the material."""
     for method, runs in list(curves.items())[:1]:
         for run in runs:
             if run.kappa_is_auto:
@@ -146,7 +146,7 @@ def _label_ends(axes, labels):
 
 
 def _draw_levels(axes, levels, curves, reference):
-    """The golden's own distance from the truth: below it, nearer to the golden is no gain."""
+    """The golden's distance from the truth: below it, a smaller error to the golden is no gain."""
     for name, dashes, _ in FIGURES:
         if levels.get(name):
             axes.axhline(levels[name], color=style.GOLDEN[0], linestyle=dashes, linewidth=1.3)
@@ -166,7 +166,7 @@ def _draw_levels(axes, levels, curves, reference):
 
 
 def _free_place(axes, levels, curves, reference):
-    """Where a label at the max level is farthest from all else: (fraction across, above?)."""
+    """The place for a label at the max level with most space: (fraction across, whether above)."""
     box = axes.get_window_extent()
     to_pixels = axes.transData.transform
     level = to_pixels((axes.get_xlim()[0], levels["max"]))[1]

@@ -13,7 +13,7 @@ from sandglass_report.plates import Panel, Plate
 
 @dataclass(frozen=True)
 class Line:
-    """One answer along the profile line: name, (n, 3) displacements of all nodes in m, strokes."""
+    """One answer along the profile line: name, displacements (n, 3) of all nodes in m, strokes."""
 
     name: str
     u: np.ndarray
@@ -35,7 +35,7 @@ def line_plate(subject, experiment, palette):
 
 
 def _lines(subject, palette):
-    """Truth, golden, and the main runs of the methods that the paper's figure compares."""
+    """Truth, golden, and the main runs of the methods compared in the paper's figure."""
     lines = []
     if subject.golden is not None:
         strokes = {"color": style.GOLDEN[0], "linewidth": 4.5, "alpha": 0.75, "zorder": 2}
@@ -58,7 +58,7 @@ def _lines(subject, palette):
 
 
 def _shape_panel(name, subject, lines):
-    """The line in its own plane, deformed, every answer over the other."""
+    """The deformed line in its own plane, with all answers overlaid."""
     nodes, _ = subject.profile()
     rest = subject.points[nodes]
     across, up = _plane(rest, subject, nodes)
@@ -75,7 +75,7 @@ def _shape_panel(name, subject, lines):
             axes.plot(*_path(points, across, up, closed), **line.strokes, label=line.name)
             if line.name in ("golden", "truth", paper.METHOD):
                 known.append(points)
-        # A method that fails may fly off; the sound answers set the scale.
+        # A failing method may be far off; the sound answers set the scale.
         seen = np.vstack(known)[:, [across, up]]
         low, high = seen.min(axis=0), seen.max(axis=0)
         pad = 0.06 * (high - low).max()
@@ -88,7 +88,7 @@ def _shape_panel(name, subject, lines):
 
     names = ", ".join(line.name for line in lines)
     alt = f"{subject.name}: the deformed profile line of {names}."
-    return Panel(name, "deformed line (dotted: at rest)", alt, draw, 400, 380)
+    return Panel(name, "deformed line (dotted: undeformed)", alt, draw, 400, 380)
 
 
 def _error_panel(name, subject, lines, reference):
@@ -118,7 +118,7 @@ def _error_panel(name, subject, lines, reference):
             axes.set_xticks(range(-180, 181, 90))
             axes.set_xlabel(f"angle {subject.profile_order.replace('-', ' ')}, degrees (0: top)")
         else:
-            axes.set_xlabel(f"{subject.profile_order} at rest, m")
+            axes.set_xlabel(f"undeformed {subject.profile_order}, m")
         for i, (line, errors) in enumerate(nil):
             axes.text(
                 0.02,
@@ -135,7 +135,7 @@ def _error_panel(name, subject, lines, reference):
 
 
 def _is_golden(line, subject):
-    """Whether an answer other than the golden is the golden for every eye."""
+    """Whether an answer other than the golden cannot be told from it by eye."""
     if line.name in ("golden", "truth") or subject.golden is None:
         return False
     distances = relative_distances(line.u, subject.golden.displacement, subject.unit)
@@ -143,10 +143,10 @@ def _is_golden(line, subject):
 
 
 def _shade_imposed(axes, subject, nodes, along):
-    """Shades the parts of the line whose nodes are held or driven: there is no error there."""
+    """Shades the parts of the line whose nodes are held or driven, where the error is zero."""
     for name, value in subject.imposed:
         inside = np.isin(nodes, subject.sets.get(name, ()))
-        # Runs of neighbours that are inside, as (first, last) positions.
+        # Runs of consecutive nodes inside, as (first, last) indices.
         edges = np.flatnonzero(np.diff(np.concatenate([[0], inside.astype(int), [0]])))
         spans = [(first, last - 1) for first, last in edges.reshape(-1, 2)]
         for first, last in spans:
@@ -165,7 +165,7 @@ def _shade_imposed(axes, subject, nodes, along):
 
 
 def _plane(rest, subject, nodes):
-    """The two axes (across, up) of the picture: those in which the line lies or moves most."""
+    """The two axes (across, up) of the picture: those in which the line extends or moves most."""
     moved = rest if subject.golden is None else rest + subject.golden.displacement[nodes]
     extent = np.ptp(np.vstack([rest, moved]), axis=0)
     thin = int(np.argmin(extent))
@@ -174,7 +174,7 @@ def _plane(rest, subject, nodes):
 
 
 def _path(points, across, up, closed):
-    """Coordinates to draw; a closed line returns to its first node."""
+    """Coordinates to draw; the first node is repeated at the end of a closed line."""
     if closed:
         points = np.vstack([points, points[:1]])
     return points[:, across], points[:, up]

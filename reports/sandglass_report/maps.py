@@ -1,4 +1,4 @@
-"""Failure maps: what becomes of every method along two axes, one small map per method."""
+"""Failure maps: the outcome of every method along two axes, one small map per method."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,8 @@ CELL = 30  # pixels
 GOLDEN_FAILS = "the golden fails"
 REFUSED = "not taken"
 
-# Outcome -> colour and letter; the letter tells what colours do not, and is the command line's own.
+# Outcome -> colour and letter; the letter is that of the command line, for those who cannot see
+# the colours.
 OUTCOMES = {
     "good": ("#9bd3ae", "."),
     "inaccurate": ("#f3dd85", "o"),
@@ -37,14 +38,14 @@ def read_maps(path):
 
 
 def outcome(cell):
-    """The word for a cell: its finding, or why there is none."""
+    """The word for a cell: its finding, or the reason why there is none."""
     if cell["refused"]:
         return REFUSED
     return cell["finding"] or GOLDEN_FAILS
 
 
 def words_in(cell):
-    """What stands in a cell: where the method works its error in percent, else a letter."""
+    """The text of a cell: the error in percent if the method works, otherwise a letter."""
     word = outcome(cell)
     if word not in ("good", "inaccurate"):
         return OUTCOMES[word][1]
@@ -72,7 +73,7 @@ def _plate(document, one):
     axes = [axis for axis in (one["x"], one["y"]) if axis]
     note = "; ".join(f"{axis['name']}: {axis['meaning']}" for axis in axes)
     note += ". Numbers: largest distance in % from the golden's element on this mesh"
-    note += f"; good up to {limit}, unless an axis says otherwise"
+    note += f"; good up to {limit}, unless an axis states another limit"
     title = f"{case}: " + " and ".join(axis["name"] for axis in axes)
     return Plate(f"stability.{case}.{one['name']}", title, panels, COLUMNS, note, legend)
 
@@ -119,7 +120,7 @@ class MapTable:
 
 @dataclass(frozen=True)
 class MapText:
-    """A map of a case in words: one table per method."""
+    """A map of a case as text: one table per method."""
 
     name: str  # of the figure that has the same map
     title: str
@@ -152,13 +153,13 @@ def _text(document, one):
 
 
 def _whole(cell):
-    """All of a cell in words."""
+    """All details of a cell, as text."""
     error = (cell["symptoms"] or {}).get("error")
     return outcome(cell) + ("" if error is None else f", {style.percent(error)}")
 
 
 def kept(document):
-    """The document with what the page shows of each cell, errors to three digits."""
+    """The document reduced to what the page shows of each cell, with errors to three digits."""
     cells = {one["name"]: [_kept(cell) for cell in one["cells"]] for one in document["maps"]}
     return document | {"maps": [one | {"cells": cells[one["name"]]} for one in document["maps"]]}
 

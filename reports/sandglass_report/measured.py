@@ -1,4 +1,4 @@
-"""What other commands than verify leave: counts, times, ladders, maps. All may be absent."""
+"""Files of commands other than verify: counts, times, ladders, maps. All may be absent."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +10,11 @@ from sandglass_report.maps import read_maps
 BENCH = "sandglass bench --threads 1 --json build/bench.json"
 FLOPS = "sandglass flops --json build/flops.json"
 REST = "sandglass bench --rest --json build/rest.json"
-CURVES = "ci/curves"
+CURVES = "reports/curves"
 MAPS = "sandglass stability CASE --json build/stability/CASE.json"
 
 OWN_MESH = "own mesh"
-# What `choose` measures against when no stored reference is asked for: the golden's own element.
+# The reference of `choose` if no stored one is requested: the golden's element.
 STAND_IN = "tl-mean-dilatation"
 REFERENCE_NAMES = {"golden": "golden", "truth": "truth", STAND_IN: "golden"}
 
@@ -78,16 +78,16 @@ class Count:
 
 @dataclass(frozen=True)
 class Source:
-    """A file that the page reads: how it is made, and what it says about its making."""
+    """A file that the page reads: the command that makes it, and its metadata."""
 
     path: str
     command: str
-    facts: dict | None  # None: the file is not there
+    facts: dict | None  # None: the file is missing
 
 
 @dataclass(frozen=True)
 class Measured:
-    """All that is there."""
+    """The contents of all files."""
 
     rungs: tuple = ()
     steps: tuple = ()
@@ -100,8 +100,8 @@ class Measured:
 def read_measured(bench, flops, rest, curves, maps, kept_maps):
     """Measured from three files and three folders of JSON files, each of which may be absent.
 
-    kept_maps: earlier maps, which stand in for cases that have none in maps.
-    Raises InputError when one is there and broken.
+    kept_maps: earlier maps, for cases that have none in maps.
+    Raises InputError if a file exists but is broken.
     """
     sources = []
 
@@ -126,7 +126,7 @@ def read_measured(bench, flops, rest, curves, maps, kept_maps):
 
 
 def _files(folder, command, sources):
-    """The JSON files of a folder; when there is none, that is noted."""
+    """The JSON files of a folder; if there are none, that is recorded."""
     found = sorted(Path(folder).glob("*.json"))
     if not found:
         sources.append(Source(f"{folder}/*.json", command, None))
@@ -134,7 +134,7 @@ def _files(folder, command, sources):
 
 
 def _document(path, command, sources):
-    """The document of a file, which is noted."""
+    """The document of a file, which is recorded as a source."""
     document = read_json(path)
     sources.append(Source(str(path), command, facts(document)))
     return document

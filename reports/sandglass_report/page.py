@@ -1,4 +1,4 @@
-"""The page: what the template needs, and how it and the figures are written."""
+"""The page: collects the data of the templates, and writes the page and its figures."""
 
 import base64
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from sandglass_report.points import make_points
 
 TEMPLATES = Path(__file__).parent / "templates"
 
-# What a claim calls a section -> the id of its heading.
+# A claim's name for a section -> the id of the section's heading.
 ANCHORS = {"chart": "chart-head"} | {
     name: name
     for name in ("paper", "shapes", "bending", "maps", "kappa", "golden", "limits", "runs")
@@ -23,19 +23,19 @@ ANCHORS = {"chart": "chart-head"} | {
 
 @dataclass(frozen=True)
 class Inputs:
-    """All that the page is made of."""
+    """All data of the page."""
 
     verdicts: object  # Verdicts
     verdicts_path: Path
     subjects: tuple
     measured: object  # Measured
     evidence: object  # Evidence
-    pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not computed anew
+    pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not recomputed
 
 
 @dataclass(frozen=True)
 class PaperSection:
-    """One experiment of the paper: our plates and our figures beside its figure."""
+    """One experiment of the paper: our plates and figures, to compare with its figures."""
 
     experiment: paper.Experiment
     subject: object  # Subject, or None when the case was not run
@@ -46,10 +46,10 @@ class PaperSection:
 
 
 def write_report(inputs, page):
-    """Writes the page, and its static figures to the folder figures/ beside it.
+    """Writes the page, and its static figures to the folder figures/ next to it.
 
-    page: path of the HTML file. The page is written whole or not at all. Returns its size in bytes.
-    Raises InputError when a file cannot be written.
+    page: path of the HTML file, which is written completely or not at all. Returns its size in
+    bytes. Raises InputError if a file cannot be written.
     """
     palette = style.Palette(inputs.verdicts.methods)
     sections = tuple(_paper_section(e, inputs.subjects, palette) for e in paper.EXPERIMENTS)
@@ -76,7 +76,7 @@ def write_report(inputs, page):
 
 
 def _environment():
-    """Templates with the filters that they use."""
+    """The templates' environment with their filters."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
@@ -97,7 +97,7 @@ def _environment():
 
 
 def _of_verdicts(inputs, palette):
-    """What the templates need of runs, cases and limits."""
+    """The templates' data about runs, cases and limits."""
     verdicts, subjects = inputs.verdicts, inputs.subjects
     costs = speed.cost_limits(verdicts.runs)
     return {
@@ -123,7 +123,7 @@ def _of_verdicts(inputs, palette):
 
 
 def _of_measured(inputs, palette):
-    """What the templates need of what other commands left, and of the main chart."""
+    """The templates' data about the main chart and the files of other commands."""
     found, names = inputs.measured, [subject.name for subject in inputs.subjects]
     elements = {s.name: None if s.cells is None else len(s.cells) for s in inputs.subjects}
     points = make_points(inputs.verdicts.runs, elements, found)
@@ -184,7 +184,7 @@ def _static_plates(inputs, palette, sections):
     gallery = tuple(p for p in (bodies.gallery_panel(s) for s in subjects) if p is not None)
     if gallery:
         found.append(
-            plates.Plate("cases", "The cases, at rest and deformed", gallery, len(gallery))
+            plates.Plate("cases", "The cases, undeformed and deformed", gallery, len(gallery))
         )
     return found
 

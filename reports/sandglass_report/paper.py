@@ -1,4 +1,4 @@
-"""The paper's own figures, which ours are laid beside.
+"""The paper's own figures, for comparison with ours.
 
 Joldes, Wittek and Miller: An efficient hourglass control implementation for the uniform strain
 hexahedron using the Total Lagrangian formulation. Commun. Numer. Meth. Engng 24 (2008) 1315.
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Experiment:
-    """One experiment of the paper and the case that repeats it."""
+    """One experiment of the paper and the case that replicates it."""
 
     case: str
     title: str
@@ -28,7 +28,7 @@ WITHOUT_CONTROL = "tl-none"
 LINE_METHODS = (WITHOUT_CONTROL, METHOD, "ul-perturbation", "tl-full", "tl-mean-dilatation")
 UPDATED = "ul-perturbation"
 TIMED_CASE = "ellipsoid-indentation"
-FIRST_CASE = "column"  # what the page shows first: every method is told apart on it
+FIRST_CASE = "column"  # shown first on the page, as it separates all methods
 
 # Table I: operations per element of the hourglass control. (words, our method, figure)
 TABLE_1 = (
@@ -43,10 +43,10 @@ TABLE_2 = (
     ("enhanced assumed strain, Updated Lagrangian (ABAQUS Explicit)", "ul-enhanced", 13.7),
 )
 
-# What the figures show; the pictures are the publisher’s and stay there.
+# Descriptions of the figures; the pictures are the publisher’s and not reproduced.
 FIGURES = {
-    1: "The ellipsoid at rest and deformed.",
-    2: "Surface nodes in y = 0: TLED over ABAQUS’s hybrid hexahedra; 0.34 % apart at most.",
-    3: "The column at rest; deformed without control, a zigzag; deformed with it, smooth.",
-    4: "A line of nodes on the column’s side: TLED over ABAQUS; 1.4 % apart at most.",
+    1: "The ellipsoid, undeformed and deformed.",
+    2: "Surface nodes in y = 0: TLED and ABAQUS’s hybrid hexahedra, at most 0.34 % apart.",
+    3: "The column undeformed; deformed without control, a zigzag; deformed with control, smooth.",
+    4: "A line of nodes on the column’s side: TLED and ABAQUS, at most 1.4 % apart.",
 }

@@ -52,27 +52,27 @@ BASE = {
 
 @dataclass(frozen=True)
 class Panel:
-    """One drawing. `draw` fills an Axes; title and text are plain words, sizes CSS pixels."""
+    """One drawing. `draw` fills an Axes; title and alt are plain text, sizes are in CSS pixels."""
 
     name: str  # for file names and ids: a-z, 0-9, - and .
     title: str
-    alt: str  # what a reader who sees no picture should know
+    alt: str  # alternative text for readers who cannot see the picture
     draw: Callable
     width: int = 320
     height: int = 270
-    missing: str = ""  # why there is nothing to draw; the page then shows this instead
+    missing: str = ""  # the reason why there is nothing to draw, shown instead
 
 
 @dataclass(frozen=True)
 class Plate:
-    """Panels that belong together, `columns` abreast in the static figure."""
+    """Panels that belong together, in `columns` columns in the static figure."""
 
     name: str
     title: str
     panels: tuple
     columns: int
     note: str = ""
-    legend: tuple = ()  # (words, colour, mark) of what the panels leave unnamed
+    legend: tuple = ()  # (words, colour, mark) of items without a label in the panels
 
 
 def inline_svg(panel):
@@ -91,7 +91,7 @@ def inline_svg(panel):
 
 
 def themed(svg, panel):
-    """Matplotlib's SVG document as an element for a page: small, without ids of others' names."""
+    """Matplotlib's SVG document as a compact element for a page, with unique ids."""
     start = svg.index("<svg")
     svg = svg[start:]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
@@ -108,13 +108,13 @@ def themed(svg, panel):
     svg = re.sub(r'(?<= d=")[^"]+', lambda m: _rounded(m[0]), svg)
     for name, (light, _) in style.THEMED.items():
         svg = re.sub(rf"{light}\b", f"var({name})", svg)
-    # The page's own font: the text is narrower in it than in the one it was laid out with.
+    # The page's own font is narrower than the one the text was laid out with.
     svg = re.sub(r"'DejaVu Sans'(, [^;\"]*)?", "var(--font)", svg)
     return re.sub(r"\n\s*", "\n", svg).strip()
 
 
 def save_plate(plate, folder):
-    """Writes the plate to folder as NAME.svg and NAME.png, on white. Returns the two paths."""
+    """Writes the plate to a folder as NAME.svg and NAME.png, on white. Returns the two paths."""
     rows = -(-len(plate.panels) // plate.columns)
     unused = rows * plate.columns - len(plate.panels)
     width = plate.columns * plate.panels[0].width / PIXELS_PER_INCH
@@ -147,7 +147,7 @@ def save_plate(plate, folder):
 
 
 def _draw_legend(figure, entries):
-    """Names beside their marks, to the right of all panels."""
+    """A legend of names and marks, to the right of all panels."""
     share = LEGEND_WIDTH / figure.get_figwidth()
     figure.get_layout_engine().set(rect=(0, 0, 1 - share, 1))
     marks = [
@@ -159,7 +159,7 @@ def _draw_legend(figure, entries):
 
 
 def _draw(panel, axes):
-    """Fills an Axes with the panel, or with the reason why there is none."""
+    """Fills an Axes with the panel, or with the reason why it is empty."""
     if not panel.missing:
         panel.draw(axes)
         return
@@ -170,12 +170,12 @@ def _draw(panel, axes):
 
 
 def _own_id(name, used, prefix):
-    """An id with the panel's name in front, when something refers to it; no id otherwise."""
+    """An id prefixed with the panel's name if something refers to it; no id otherwise."""
     return f' id="{prefix}-{name}"' if name in used else ""
 
 
 def _rounded(path):
-    """Path data with two decimals: a hundredth of a point is more than a screen shows."""
+    """Path data with two decimals: a hundredth of a point is beyond a screen's resolution."""
     return re.sub(r"-?\d+\.\d+", lambda m: f"{float(m[0]):.2f}".rstrip("0").rstrip("."), path)
 
 

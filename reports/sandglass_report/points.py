@@ -1,8 +1,8 @@
 """The points of the main chart: every method, mesh and precision with all errors and costs.
 
-Runs of `verify` bring the errors to both references; `choose` brings other precisions, coarser
-meshes, the adaptive family, and costs that were measured one after another with nothing beside.
-What belongs to the same choice becomes one point.
+Runs of `verify` provide the errors to both references; `choose` provides other precisions, coarser
+meshes, the adaptive family, and costs that were measured one at a time on an idle machine.
+Data of the same choice are merged into one point.
 """
 
 import itertools
@@ -25,7 +25,7 @@ SCALED = "verify, scaled to what choose measures"
 
 @dataclass
 class Point:
-    """One choice on one case; errors are fractions by figure, costs seconds; None is not known."""
+    """One choice on one case: errors (fractions, by figure) and costs (s); None if unknown."""
 
     case: str
     method: str
@@ -51,7 +51,7 @@ class Point:
         return getattr(self, reference).get(figure)
 
     def found(self):
-        """The finding of verify; without one what choose said, against the golden if it did."""
+        """The finding of verify or, if there is none, of choose, preferably against the golden."""
         if self.finding or not self.judged:
             return self.finding
         name = min(reference for reference, _ in self.judged)
@@ -64,17 +64,17 @@ class Point:
         return ", ".join(words) + f" ({self.golden_is or name})"
 
     def as_record(self):
-        """The point as the page's script reads it: without what is not known, rounded."""
+        """The point as read by the page's script: rounded, without unknown values."""
         rounded = {k: _rounded(v) for k, v in asdict(self).items() if k != "judged"}
         rounded["finding"] = self.found()
         return {k: v for k, v in rounded.items() if v not in (None, {})}
 
 
 def make_points(runs, elements, measured):
-    """Points of all cases of the verdicts, those of a case together.
+    """Points of all cases of the verdicts, grouped by case.
 
     runs: of the verdicts. elements: case -> number of elements of its mesh, or None.
-    measured: what other commands left.
+    measured: the files of other commands.
     """
     points = {}
     with_golden = {run.case for run in runs if run.golden is not None}
@@ -101,10 +101,10 @@ def make_points(runs, elements, measured):
 
 
 def _bring_to_one_scale(points, loaded):
-    """Scales the costs that only verify knows to those of choose, where both know a case.
+    """Scales the costs measured only by verify to those of choose, if both measured a case.
 
-    loaded: key of a point -> s, what verify measured. Its runs share the machine, so that their
-    times are too long, all by about the same factor: the median of those that both have.
+    loaded: key of a point -> s, as measured by verify. Its runs share the machine, so their times
+    are too long by about the same factor, which is the median over the points that both measured.
     """
     factors = {}
     for key, step in loaded.items():
@@ -120,7 +120,7 @@ def _bring_to_one_scale(points, loaded):
 
 
 def _of_run(run, elements):
-    """The point of a run; its costs were measured while other runs were under way."""
+    """The point of a run; its costs were measured while other runs were in progress."""
     step = None if elements is None else 1e-9 * run.ns_per_element_step * elements
     known = step is not None and step > 0
     return Point(
@@ -132,7 +132,7 @@ def _of_run(run, elements):
         run.precision,
         OWN_MESH,
         elements,
-        finding=(run.finding or "no golden to tell by") if run.ok else run.status,
+        finding=(run.finding or "no golden to compare with") if run.ok else run.status,
         ok=run.ok,
         golden=_errors(run.golden),
         truth=_errors(run.truth),
@@ -158,7 +158,7 @@ def _of_rung(rung):
 
 
 def _add_rung(point, rung):
-    """Takes what a rung knows into a point. The first measured cost stays."""
+    """Adds the data of a rung to a point. The cost measured first is kept."""
     point.judged.setdefault((rung.reference, rung.tolerance), rung.reason)
     if rung.error is not None:
         getattr(point, rung.reference).setdefault("max", rung.error)
@@ -175,16 +175,16 @@ def _errors(accuracy):
 
 
 def _rounded(value):
-    """Five digits are more than a chart shows."""
+    """A number rounded to five digits, more than a chart can show."""
     if isinstance(value, float):
         return float(f"{value:.5g}")
     return {k: _rounded(v) for k, v in value.items()} if isinstance(value, dict) else value
 
 
 def pareto_front(costs, errors):
-    """Positions of those that no other beats in cost and error, from the cheapest on.
+    """Indices of the points that no other beats in cost and error, cheapest first.
 
-    Errors below style.FLOOR count as equal, and of equals the cheaper one stays.
+    Errors below style.FLOOR count as equal; among equals the cheaper one is kept.
     """
     order = sorted(range(len(costs)), key=lambda i: (costs[i], max(errors[i], style.FLOOR)))
     front, least = [], float("inf")
@@ -199,7 +199,7 @@ def pareto_front(costs, errors):
 def fronts(points):
     """The front of every view: 'case|reference|figure|cost|mesh|precision' -> positions.
 
-    On a front stand methods as they come that have an answer at rest.
+    A front consists of methods with their default settings that come to rest.
     """
     found = {}
     for case in dict.fromkeys(point.case for point in points):
@@ -226,7 +226,7 @@ def _front_of_view(points, positions, reference, figure, cost, mesh, precision):
 
 
 def families(points):
-    """Lines of the adaptive methods: lists of positions from loose to strict accuracy.
+    """Lines of the adaptive methods: lists of indices from loose to strict accuracy.
 
     One for each case, method, precision and mesh with at least two accuracies.
     """

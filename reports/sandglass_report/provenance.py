@@ -1,4 +1,4 @@
-"""Where every figure of the page comes from: machine, program, cases, meshes and references."""
+"""The origin of every figure on the page: machine, program, cases, meshes and references."""
 
 import hashlib
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ VERIFY = "sandglass verify --json build/verdicts.json --results build/verify"
 
 @dataclass(frozen=True)
 class CaseOrigin:
-    """The hashes of a case and what its references are."""
+    """The hashes of a case, and its references."""
 
     case: str
     case_hash: str
@@ -27,12 +27,12 @@ class CaseOrigin:
 
 
 def program(verdicts):
-    """(name, value) of what ran and where."""
+    """(name, value) about the program and the machine."""
     return [(NAMES.get(name, name), value) for name, value in verdicts.provenance.items()]
 
 
 def sources(verdicts, path, measured):
-    """All files that the page reads, verdicts first; those of one folder and one making as one."""
+    """All files that the page reads, verdicts first; files of one folder and origin are grouped."""
     groups = {}
     for source in measured.sources:
         made = [(source.facts or {}).get(name) for name in ("revision", "processor")]
@@ -48,13 +48,13 @@ def sources(verdicts, path, measured):
 
 
 def _short(path):
-    """A path without the place of the tree on this machine."""
+    """A path relative to the root of the tree, if it is inside."""
     path = Path(path)
     return "/".join(path.parts[-2:]) if path.is_absolute() else path.as_posix()
 
 
 def of_another_revision(source, verdicts):
-    """Whether a file was made by another revision than the verdicts, as far as it says."""
+    """Whether a file states another revision than that of the verdicts."""
     own = (source.facts or {}).get("revision")
     return own is not None and own != verdicts.provenance.get("revision")
 
@@ -84,5 +84,5 @@ def _words(about):
 
 
 def _hash(displacement):
-    """SHA-256 of the displacements' bytes, its first sixteen digits."""
+    """The first sixteen digits of the SHA-256 of the displacements' bytes."""
     return hashlib.sha256(displacement.astype("<f8").tobytes()).hexdigest()[:16]

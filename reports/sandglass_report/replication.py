@@ -1,4 +1,4 @@
-"""The paper's Tables I and II beside our counts and times."""
+"""The paper's Tables I and II with our counts and times."""
 
 from dataclasses import dataclass
 

@@ -1,7 +1,7 @@
 """Deformed bodies as pictures: the surface of a hexahedral mesh, projected, sorted and shaded.
 
-A parallel projection with the painter's algorithm on the boundary faces only. It keeps lengths
-equal in all three directions and lets several bodies share one scale, which mplot3d does not.
+A parallel projection with the painter's algorithm on the boundary faces only. Unlike mplot3d, it
+uses the same scale in all three directions, and several bodies can share one scale.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ LIGHT = np.array([-0.45, -0.55, 0.70]) / np.linalg.norm(
 
 @dataclass(frozen=True)
 class View:
-    """Direction of sight by azimuth and elevation, degrees: 0, 0 looks along +y, x to the right."""
+    """Viewing direction by azimuth and elevation, degrees: 0, 0 looks along +y, x to the right."""
 
     azimuth: float
     elevation: float
@@ -39,8 +39,8 @@ def draw_surface(axes, points, faces, view, colour, marked=(), sound=False):
     """Draws a surface into an Axes.
 
     points: (n, 3), m, deformed. faces: (k, 4) node numbers. colour: of the body. marked: pairs
-    (node set, colour): faces whose four nodes are all in the set take that colour. sound: the body
-    is known not to be turned inside out, so that the faces that look away can be left out.
+    (node set, colour): faces whose four nodes are all in the set have that colour. sound: no
+    element is inverted, so that faces directed away from the viewer can be left out.
     """
     flat, near = view.project(points)
     colours = np.tile(to_rgb(colour), (len(faces), 1))
@@ -50,7 +50,7 @@ def draw_surface(axes, points, faces, view, colour, marked=(), sound=False):
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-    # A tangled body shows its inside; both sides are lit, so that it still reads as a surface.
+    # A tangled body shows its inside; both sides are lit, so that it still looks like a surface.
     facing = np.sign(normal @ view.axes()[2])[:, None]
     light = LIGHT @ np.array([view.axes()[0], -view.axes()[2], view.axes()[1]])
     brightness = 0.70 + 0.32 * np.clip((facing * normal) @ light, 0, 1)
@@ -70,7 +70,7 @@ def draw_surface(axes, points, faces, view, colour, marked=(), sound=False):
 
 
 def window(bodies, view, margin=0.04):
-    """Limits ((2,) low, (2,) high) of a picture that holds all bodies (list of (n, 3) points)."""
+    """Limits ((2,) low, (2,) high) of a picture of all bodies (list of (n, 3) points)."""
     flat = np.vstack([view.project(points)[0] for points in bodies])
     low, high = flat.min(axis=0), flat.max(axis=0)
     pad = margin * (high - low).max()

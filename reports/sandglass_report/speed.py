@@ -1,4 +1,4 @@
-"""The speed-accuracy chart: error against cost, one point per method and kappa."""
+"""The chart of error against cost, with one point per method and kappa."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ MOST_LABELS = 4  # more names than these do not fit at their points
 
 
 def speed_panels(subject, palette, costs):
-    """Four panels of a case: max and rms error, to the golden and to the truth, same scales."""
+    """Four panels of a case: max and rms error, to golden and truth, with the same scales."""
     limits = error_limits(subject)
     return tuple(
         _panel(subject, palette, reference, figure, words, limits, costs)
@@ -25,7 +25,7 @@ def speed_panels(subject, palette, costs):
 
 
 def speed_plate(subjects, palette, costs):
-    """All cases against the golden in one static figure, wide enough to be read on a README."""
+    """All cases against the golden in one static figure, readable in a README."""
     panels = [
         replace(
             _panel(subject, palette, "golden", "max", "max over all nodes", limits, costs),
@@ -43,8 +43,8 @@ def speed_plate(subjects, palette, costs):
         min(3, len(subjects)),
         note="Error: largest distance of any node from the golden, the mixed element on the same "
         "mesh, in % of the imposed displacement. "
-        "Large marks: the method as it comes; small ones: other values of kappa; bar: middle half "
-        "of the timings. Triangle: below the scale.",
+        "Large marks: methods with default settings; small ones: other values of kappa; bar: "
+        "middle half of the timings. Triangle: below the scale.",
         legend=tuple((m, palette.colour(m), palette.mark(m)) for m in palette.methods),
     )
 
@@ -56,7 +56,7 @@ def cost_limits(runs):
 
 
 def error_limits(subject):
-    """Common limits of a case's error axes, fractions; what lies below FLOOR does not count."""
+    """Common limits of a case's error axes, fractions; errors below FLOOR are ignored."""
     errors = [
         getattr(accuracy, figure)
         for run in subject.runs
@@ -78,8 +78,8 @@ def _panel(subject, palette, reference, figure, words, limits, costs):
         helpers.log_scale(axes.xaxis, costs)
         helpers.percent_scale(axes.yaxis, limits)
         axes.set_xlabel("ns per element and step")
-        axes.figure.canvas.draw()  # the layout must stand before labels are pushed apart
-        labels = []  # x, y, colour, text, and what of it stays where names do not fit
+        axes.figure.canvas.draw()  # the layout must be final before labels are pushed apart
+        labels = []  # x, y, colour, text, and the part of it that is kept if names do not fit
         for method in dict.fromkeys(run.method for run in found):
             of_method = [run for run in found if run.method == method]
             labels += _draw_method(axes, of_method, palette, reference, figure, limits)
@@ -101,11 +101,11 @@ def _panel(subject, palette, reference, figure, words, limits, costs):
 
 
 def _draw_method(axes, runs, palette, reference, figure, limits):
-    """Points of one method, those of its kappa curve joined; returns the main points' labels."""
+    """Points of one method, its kappa curve as a line; returns the main points' labels."""
     colour, mark = palette.colour(runs[0].method), palette.mark(runs[0].method)
     lowest = limits[0] * 1.5
-    # Kappa does not change the work of a step: all its runs time the same thing. The points stand
-    # at the median of these times, and a bar at the main one shows their middle half.
+    # Kappa does not affect the work of a step, so all runs time the same work. The points are at
+    # the median of these times, and a bar at the main one shows their middle half.
     times = [run.ns_per_element_step for run in runs]
     early, x, late = np.quantile(times, (0.25, 0.5, 0.75))
     height = {id(run): max(getattr(getattr(run, reference), figure), lowest) for run in runs}
@@ -138,7 +138,7 @@ def _draw_method(axes, runs, palette, reference, figure, limits):
 
 
 def _name_missing(axes, subject, reference):
-    """Names the methods whose main run has no figure, so that their absence is seen."""
+    """Lists the methods whose main run has no figure, so that their absence is visible."""
     missing = [r.method for r in subject.runs if r.is_main and getattr(r, reference) is None]
     if missing:
         words = "failed: " + ", ".join(missing)
@@ -155,7 +155,7 @@ def _name_missing(axes, subject, reference):
 
 
 def _in_words(runs, reference, figure):
-    """The main points as a sentence, for readers who do not see the picture."""
+    """The main points as a sentence, for readers who cannot see the picture."""
     parts = []
     for run in (run for run in runs if run.is_main):
         error = style.percent(getattr(getattr(run, reference), figure))

@@ -6,8 +6,8 @@ from pathlib import Path
 
 METHODS_HEADER = Path(__file__).resolve().parents[2] / "solver/element/methods.hpp"
 
-# Okabe and Ito's colours, told apart by colour-blind readers, and a brighter form for dark pages;
-# the last ones need their marks to be told apart.
+# Okabe and Ito's colours, distinguishable for colour-blind readers, and a brighter form for dark
+# pages; the last ones are distinguishable only together with their marks.
 METHOD_COLOURS = (
     ("#d55e00", "#ff8a45"),  # vermilion
     ("#0072b2", "#4aa8e8"),  # blue
@@ -45,7 +45,7 @@ THEMED = {
     "--bad": BAD,
 } | {f"--method-{i}": colours for i, colours in enumerate(METHOD_COLOURS)}
 
-# Errors below this are zero for every reader; they are drawn on this line and named.
+# Errors below this count as zero; they are drawn on this line and labelled.
 FLOOR = 1e-5
 
 FIGURE_NAMES = {
@@ -56,14 +56,14 @@ FIGURE_NAMES = {
 
 
 def why_empty(subject, reference):
-    """Why a chart of a case against a reference has nothing to show."""
+    """The reason why a chart of a case against a reference is empty."""
     if getattr(subject, reference) is None:
         return f"no {reference} is stored for this case yet"
     return f"no run has a figure against the {reference}"
 
 
 def solver_methods(header=METHODS_HEADER):
-    """Names of the solver's methods in the order of its list, as the verdicts have them."""
+    """Names of the solver's methods in the order of its list, as in the verdicts."""
     header = Path(header)
     text = header.read_text(encoding="utf-8")
     each = "".join(
@@ -75,7 +75,7 @@ def solver_methods(header=METHODS_HEADER):
 
 
 class Palette:
-    """Colour and mark of every method; the solver's list gives the order, nothing else does."""
+    """Colour and mark of every method, determined by the order of the solver's list only."""
 
     def __init__(self, methods):
         self._index = {method: i for i, method in enumerate(methods)}
@@ -98,7 +98,7 @@ class Palette:
         return f"--method-{self._index[method] % len(METHOD_COLOURS)}"
 
     def mark(self, method):
-        """Marker of matplotlib; beyond the colours' number the pairs differ still."""
+        """Marker of matplotlib; pairs of colour and marker differ even if colours repeat."""
         shift = self._index[method] // len(METHOD_COLOURS)
         return METHOD_MARKS[(self._index[method] + shift) % len(METHOD_MARKS)]
 
@@ -124,7 +124,7 @@ def exact_percent(fraction):
 
 
 def plain(value, digits=3):
-    """A number with so many significant digits, never in exponent form."""
+    """A number with this many significant digits, never in exponent form."""
     if value == 0:
         return "0"
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))

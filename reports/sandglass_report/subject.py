@@ -1,4 +1,4 @@
-"""One case with everything known about it: mesh, references, runs and their displacements."""
+"""One case with all its data: mesh, references, runs and their displacements."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +12,7 @@ from common.result_file import text_of
 from sandglass_report.accuracy import accuracy, ordered_profile
 from sandglass_report.verdicts import REFERENCES
 
-# verdicts.json and a recomputation differ by rounding of the square root only, see the tests.
+# verdicts.json and a recomputation differ only by rounding of the square root; see the tests.
 AGREEMENT = 1e-9
 HOURGLASS = "hourglass_energy_density"
 
@@ -27,7 +27,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Subject:
-    """A case, its mesh (None when no run left a file), its references and its runs."""
+    """A case, its mesh (None if no run has a result file), its references and its runs."""
 
     name: str
     requirement: str
@@ -46,11 +46,11 @@ class Subject:
     hashes: dict = field(default_factory=dict)  # of the case and its mesh, as the results have them
 
     def main_run(self, method):
-        """The run of a method as it comes (kappa auto where it has one), or None."""
+        """The run of a method with its default settings (kappa auto, if it has one), or None."""
         return next((r for r in self.runs if r.method == method and r.is_main), None)
 
     def displacement(self, method):
-        """Displacements (n, 3), m, of a method's main run, or None when it left none."""
+        """Displacements (n, 3), m, of a method's main run, or None if there are none."""
         return self.displacements.get((method, None))
 
     def profile(self):
@@ -60,7 +60,7 @@ class Subject:
         return ordered_profile(self.points, self.sets[self.profile_set], self.profile_order)
 
     def golden_to_truth(self):
-        """Accuracy of the golden itself against the truth, or None when one is missing."""
+        """Accuracy of the golden relative to the truth, or None if one is missing."""
         if self.golden is None or self.truth is None:
             return None
         nodes = self.sets.get(self.profile_set)
@@ -71,8 +71,8 @@ def read_subjects(verdicts, cases, references, results, files=()):
     """A Subject for every case of the verdicts.
 
     cases: folder of case files. references: folder with golden/ and truth/. results: folder with
-    the result files of the runs. files: case files from elsewhere, before those of the folder where
-    they have the same name. Raises InputError when a file is missing, broken or of others.
+    the result files of the runs. files: other case files, which take precedence over those of the
+    folder. Raises InputError if a file is missing, is broken or belongs to other runs.
     """
     case_files = _case_files(Path(cases), files)
     return tuple(
@@ -82,7 +82,7 @@ def read_subjects(verdicts, cases, references, results, files=()):
 
 
 def _case_files(folder, files=()):
-    """name of a case -> (path, tables) for every case file in the folder, and for others."""
+    """Case name -> (path, tables) for every case file in the folder, and for the others."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder of cases")
     found = {}
@@ -137,7 +137,7 @@ def _read_subject(verdicts, name, case_files, references, results):
 
 
 def _result_files(runs, folder):
-    """(run, path) of every run that left a file; a run that came to rest must have left one."""
+    """(run, path) of every run with a result file; a run that came to rest must have one."""
     found = []
     for run in runs:
         path = folder / run.file_name
@@ -146,7 +146,7 @@ def _result_files(runs, folder):
         elif run.ok:
             raise InputError(
                 f"{path}: no such result file, but the verdicts say that {run.label} on {run.case} "
-                f"is ok; make both in one go: sandglass verify --json FILE --results {folder}"
+                f"is ok; make both in one run: sandglass verify --json FILE --results {folder}"
             )
     return found
 
@@ -171,7 +171,7 @@ def _read_results(files):
                 raise InputError(f"{path}: not a result file of this solver: {error}") from error
         if own != hashes or u.shape != mesh["points"].shape:
             raise InputError(
-                f"{path}: made for another case or mesh than {files[0][1].name}; run verify anew"
+                f"{path}: belongs to another case or mesh than {files[0][1].name}; run verify again"
             )
         key = run.method, None if run.is_main else run.kappa
         displacements[key] = u
@@ -181,7 +181,7 @@ def _read_results(files):
 
 
 def _imposed(tables):
-    """(set name, value) of all that is imposed: zero where the set is held."""
+    """(set name, value) of all imposed motions; zero for held sets."""
     moved = [(d["set"], tuple(map(float, d["value"]))) for d in tables.get("displacement", [])]
     for turned in tables.get("rotation", []):
         axis, angle = turned["axis"], float(turned["angle"])
@@ -191,7 +191,7 @@ def _imposed(tables):
 
 
 def _unit(tables, references):
-    """The largest imposed displacement, m; where sets turn, as the references have it."""
+    """The largest imposed displacement, m; if sets rotate, the one stored in the references."""
     if "rotation" in tables:
         for reference in references.values():
             if reference is not None:
@@ -201,30 +201,30 @@ def _unit(tables, references):
 
 
 def _read_reference(path, name, hashes, points):
-    """The Reference in a file, None when there is no file; points of the runs' mesh, or None."""
+    """The Reference in a file, None if there is no file. points: of the runs' mesh, or None."""
     if not path.is_file():
         return None
     with _open(path) as file:
         attributes = {key: text_of(value) for key, value in file.attrs.items()}
         if "displacement" not in file:
-            raise InputError(f"{path}: dataset displacement is missing: not a reference")
+            raise InputError(f"{path}: dataset displacement is missing; not a reference")
         displacement = file["displacement"][...]
     for key, expected in hashes.items():
         if attributes.get(key) != expected:
             raise InputError(
                 f"{path}: {key} is {attributes.get(key)}, but the runs have {expected}; the "
-                f"reference was made for another case or mesh: reference/regenerate {name}"
+                f"reference belongs to another case or mesh; run reference/regenerate {name}"
             )
     if points is not None and displacement.shape != points.shape:
         raise InputError(
             f"{path}: displacement has shape {displacement.shape}, but the mesh of the runs has "
-            f"{points.shape}; make it anew: reference/regenerate {name}"
+            f"{points.shape}; regenerate it: reference/regenerate {name}"
         )
     return Reference(displacement, attributes)
 
 
 def _require_same_runs(subject, files):
-    """Raises InputError unless the result files give the very figures of the verdicts."""
+    """Raises InputError unless the result files give the figures of the verdicts."""
     profile = None if subject.profile_set is None else subject.sets.get(subject.profile_set)
     for run, path in files:
         u = subject.displacements[run.method, None if run.is_main else run.kappa]
@@ -236,7 +236,7 @@ def _require_same_runs(subject, files):
             if abs(found.max - told.max) > AGREEMENT * max(1.0, told.max):
                 raise InputError(
                     f"{path}: its largest error against the {kind} is {found.max:.6g}, but the "
-                    f"verdicts say {told.max:.6g}: they come from different runs; run verify anew"
+                    f"verdicts say {told.max:.6g}: they come from different runs; run verify again"
                 )
 
 

@@ -13,14 +13,14 @@ class TipTable:
     rows: tuple  # (method, (Tip or None per variant))
 
     def ratio(self, tip):
-        """Computed over reference, None where the run failed or nothing is known."""
+        """Computed over reference; None if the run failed or there is no reference."""
         if tip is None or not tip.ok:
             return None
         return tip.to_truth if self.reference == "the truth" else tip.to_published
 
 
 def tip_tables(tips):
-    """The tables of all families, in the order of the file; over the truth where there is one."""
+    """The tables of all families, in the order of the file; relative to the truth if available."""
     tables = []
     for family in dict.fromkeys(tip.family for tip in tips):
         own = [tip for tip in tips if tip.family == family]

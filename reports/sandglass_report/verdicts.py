@@ -1,4 +1,4 @@
-"""Reading verdicts.json: what ran, how near it came, and which limits hold."""
+"""Reads verdicts.json: the runs, their errors, and the limits."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ class Run:
     kappa_is_auto: bool
     precision: str
     status: str
-    finding: str | None  # how it went wrong, or "good"; None without a golden to tell by
+    finding: str | None  # how it failed, or "good"; None without a golden to compare with
     golden: Accuracy | None
     truth: Accuracy | None
     operations: int  # per element and step
@@ -38,12 +38,12 @@ class Run:
 
     @property
     def is_main(self):
-        """Whether this is the method as it comes, not a point of its kappa curve."""
+        """Whether the method ran with its default settings, not as a point of its kappa curve."""
         return self.kappa is None or self.kappa_is_auto
 
     @property
     def label(self):
-        """The method's name, with its kappa where it has one."""
+        """The method's name, with its kappa if it has one."""
         if self.kappa is None:
             return self.method
         return f"{self.method} κ {'auto' if self.kappa_is_auto else f'{self.kappa:g}'}"
@@ -71,7 +71,7 @@ class Tip:
 
 @dataclass(frozen=True)
 class Limit:
-    """One expectation of a case and what came of it; figures are fractions."""
+    """One expectation of a case and its outcome; figures are fractions."""
 
     case: str
     method: str
@@ -102,12 +102,12 @@ class Verdicts:
 
     @property
     def methods(self):
-        """Names of the methods, in the order of the file, which is the solver's."""
+        """Names of the methods, in the order of the file, which is that of the solver."""
         return tuple(dict.fromkeys(run.method for run in self.runs))
 
 
 def read_verdicts(path):
-    """Verdicts of a verdicts.json. Raises InputError when it is missing or not one."""
+    """Verdicts of a verdicts.json. Raises InputError if it is missing or invalid."""
     document = read_json(path, f"sandglass verify --json {path} --results FOLDER")
     runs = tuple(as_dataclass(Run, *found) for found in entries(path, document, "records"))
     if not runs:

@@ -1,6 +1,6 @@
-"""What the 3D viewer of the page shows: surfaces of deformed bodies with a colour for every face.
+"""Data of the page's 3D viewer: surfaces of deformed bodies with a colour for every face.
 
-All arrays are small integers in base64: places in steps of 1/65535 of the box that holds them (the
+All arrays are small integers in base64: positions in steps of 1/65535 of their bounding box (the
 width of a picture is a few thousand pixels), colours in steps of 1/255 of their scale.
 """
 
@@ -17,7 +17,7 @@ STOPS = 32  # of a colour scale; the page draws the nearest one
 LEAST_ERROR = 1e-5  # fractions; the logarithmic scale of errors begins here
 GOLDEN = "golden"
 
-# How a face may be coloured: words, unit, scale and colour map that colour-blind readers can read.
+# The colourings of faces: words, unit, scale and colour map (readable for colour-blind readers).
 COLOURS = {
     "error": ("distance from the golden", "% of the imposed displacement", "log", "viridis"),
     "volume": ("volume ratio, det F", "deformed over undeformed", "linear", "PuOr"),
@@ -31,7 +31,7 @@ def volumes(points, cells):
 
 
 def viewer_data(subjects):
-    """The cases that left a mesh, and the colour scales, ready for JSON."""
+    """The cases with a mesh, and the colour scales, ready for JSON."""
     return {
         "scales": {
             name: {"words": words, "unit": unit, "scale": scale, "map": _stops(colours)}
@@ -95,9 +95,9 @@ def _fields(subject, name, u, at_rest):
 
 
 def _limits(fields):
-    """Ends of the colour scales of a case, the same for all its answers; none for what none has.
+    """Limits of the colour scales of a case, the same for all its answers.
 
-    Answers that fail would stretch them: a scale ends at twice what the middle answer reaches.
+    Failing answers would stretch them, so a scale ends at twice the median of the answers' maxima.
     """
     limits = {}
     errors = [f["error"].max() for n, f in fields.items() if "error" in f and n != GOLDEN]
@@ -122,7 +122,7 @@ def _levels(values, limits):
 
 
 def _places(points):
-    """Points (n, 3) as integers in the box that holds them."""
+    """Points (n, 3) as integers in their bounding box."""
     low, high = points.min(axis=0), points.max(axis=0)
     size = max(float((high - low).max()), 1e-300)
     steps = np.rint(65535 * (points - low) / size)
@@ -136,6 +136,6 @@ def _packed(values, kind):
 
 
 def _stops(name):
-    """A colour map as hexadecimal colours, without its darkest shades, which hide edges."""
+    """A colour map as hexadecimal colours, without its darkest shades, as they hide edges."""
     shades = (255 * colormaps[name](np.linspace(0.08, 0.98, STOPS))[:, :3]).round().astype(int)
     return ["#%02x%02x%02x" % tuple(int(c) for c in shade) for shade in shades]

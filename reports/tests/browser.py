@@ -9,11 +9,11 @@ import tempfile
 import time
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-PATIENCE = 60.0  # seconds for one answer: far more than it takes on a busy machine
+PATIENCE = 60.0  # seconds for one answer: much longer than needed on a busy machine
 
 
 class Browser:
-    """One page of one browser. Use as a context; `complaints` holds all that its console said."""
+    """One page of one browser, used as a context; `complaints` is the output of its console."""
 
     def __init__(self, width=1280, height=900, dark=False, phone=False, script=True):
         self.complaints, self.requests = [], []
@@ -37,13 +37,13 @@ class Browser:
         self._call("Emulation.setDeviceMetricsOverride", mobile=phone, **size)
 
     def open(self, path):
-        """Opens a file and waits until it is loaded: until then the page before it answers."""
+        """Opens a file and waits until it is loaded: before that the previous page answers."""
         loader = self._call("Page.navigate", url=f"file://{path}")["loaderId"]
         self._wait(lambda: self._loader() == loader, f"{path} never came")
         self.until("document.readyState === 'complete'")
 
     def run(self, expression):
-        """The value of a JavaScript expression in the page, a promise's too."""
+        """The value of a JavaScript expression in the page; promises are awaited."""
         found = self._call(
             "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
         )
@@ -52,11 +52,11 @@ class Browser:
         return found["result"].get("value")
 
     def until(self, expression):
-        """Waits until an expression is true, and fails where it never becomes so."""
+        """Waits until an expression is true; fails if it never is."""
         self._wait(lambda: self.run(expression), f"never true: {expression}")
 
     def _loader(self):
-        """Which loading of a page the window shows."""
+        """The identifier of the page load that the window shows."""
         return self._call("Page.getFrameTree")["frameTree"]["frame"]["loaderId"]
 
     def _wait(self, comes_true, told):
@@ -66,7 +66,7 @@ class Browser:
             time.sleep(0.05)
 
     def picture(self, path, selector=None):
-        """Saves what an element looks like, or the window, as a PNG."""
+        """Saves a PNG of an element or of the window."""
         options = {}
         if selector:
             box = self.run(
@@ -90,7 +90,7 @@ class Browser:
         self._wait(self._forgotten, f"{self._folder} cannot be removed")
 
     def _forgotten(self):
-        """Whether the profile is gone: helpers of a killed browser write on for a moment."""
+        """Whether the profile is removed: helpers of a killed browser continue writing briefly."""
         shutil.rmtree(self._folder, ignore_errors=True)
         return not os.path.exists(self._folder)
 
@@ -111,7 +111,7 @@ class Browser:
         os.close(write_theirs)
 
     def _call(self, method, **parameters):
-        """One command; what the page tells in between is noted."""
+        """Sends one command; records the page's messages in the meantime."""
         self._number += 1
         message = {"id": self._number, "method": method, "params": parameters}
         if hasattr(self, "_session"):

@@ -6,5 +6,5 @@ from synthetic import DataSet
 
 @pytest.fixture
 def data(tmp_path):
-    """A data set as `sandglass verify` would leave it: one case, four runs, one of them failed."""
+    """A data set like that of `sandglass verify`: one case, four runs, one of them failed."""
     return DataSet(tmp_path)

@@ -52,7 +52,7 @@ def test_profile_around_an_axis_is_in_order_of_the_angle(order, first, last):
 
 @pytest.mark.skipif(not os.path.exists(BINARY), reason="the solver is not built")
 def test_figures_are_the_solvers_own(tmp_path):
-    """The solver writes displacements and figures; the same formulas must give the same figures."""
+    """From the solver's displacements, the same formulas must give the solver's figures."""
     verdicts_file, results = tmp_path / "verdicts.json", tmp_path / "results"
     words = ["verify", "column", "--json", verdicts_file, "--results", results]
     output_of(BINARY, *words, allowed=(0, 1), cwd=ROOT)

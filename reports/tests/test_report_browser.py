@@ -1,4 +1,4 @@
-"""The page in a headless Chromium: it draws, its controls work, it asks for nothing."""
+"""The page in a headless Chromium: it draws, its controls work, it requests nothing."""
 
 import pytest
 from browser import CHROMIUM, Browser
@@ -26,7 +26,7 @@ def page(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def browser(page):
-    """A browser that shows the page, drawn."""
+    """A browser that shows the page after drawing."""
     with Browser() as found:
         found.open(page)
         found.until(DRAWN)
@@ -204,5 +204,5 @@ def test_a_method_that_stands_for_the_golden_is_named(tmp_path, browser):
         told = "document.querySelector('#chart [name=reference]').options[0].textContent"
         assert other.run(told) == "tl-mean-dilatation (no golden)"
         axis = "document.querySelector('#chart .plot').layout.yaxis.title.text"
-        assert other.run(axis) == "error to tl-mean-dilatation, largest of all nodes"
+        assert other.run(axis) == "error to tl-mean-dilatation, largest over all nodes"
         assert browser.run(axis).startswith("error to the golden, ")

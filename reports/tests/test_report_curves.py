@@ -1,4 +1,4 @@
-"""Curves of the adaptive method: what is drawn, in which unit; broken files are refused."""
+"""Curves of the adaptive method: contents and units; broken files are rejected."""
 
 import json
 import subprocess
@@ -25,7 +25,7 @@ def write(path, rungs, case="block"):
 
 
 def test_costs_are_in_steps_of_the_unit_of_their_own_file(tmp_path):
-    """Two files of one case are two measurements: each is over the unit of its own."""
+    """Two files of one case are two measurements: each is relative to its own unit."""
     one = write(
         tmp_path / "1", [rung("tl-perturbation", 2e-5), rung("tl-adaptive", 3e-5, accuracy=0.01)]
     )

@@ -1,4 +1,4 @@
-"""Claims and mutants: what belongs together, what is refused; the tree's own claims hold."""
+"""Claims and mutants: their association, rejected files; the tree's own claims are valid."""
 
 import json
 
@@ -12,7 +12,7 @@ from sandglass_report.page import ANCHORS
 
 TABLE = """# Mutants
 
-Made by `ci/mutants` on a day, revision r: 2 killed, 1 not run, 1 survived.
+Made by `verification/mutants/run.py` on a day, revision r: 2 killed, 1 not run, 1 survived.
 
 | mutant | mistake | verdict | by | s | revision |
 |---|---|---|---|---|---|
@@ -81,7 +81,7 @@ def test_both_files_may_be_absent(tree):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("some_test.cpp", "other_test.cpp", "there is no test verification/other_test.cpp"),
+        ("some_test.cpp", "other_test.cpp", "test verification/other_test.cpp does not exist"),
         ("tl-perturbation auto", "tl-perturbation best", "no limit"),
         ('oracle = "arithmetic"', "", "oracle"),
         ("[[claim]]", "[[claim", "claims.toml"),
@@ -100,7 +100,7 @@ def test_a_claim_about_a_case_that_was_not_run_shows_no_figure(tree):
 
 def test_a_table_of_another_shape_is_refused(tree):
     tree.write_mutants(TABLE.replace("| s |", "|"))
-    with pytest.raises(InputError, match="ci/mutants"):
+    with pytest.raises(InputError, match="verification/mutants/run.py"):
         tree.read()
 
 

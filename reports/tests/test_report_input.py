@@ -7,7 +7,7 @@ from make_report import main
 
 
 def refused(data, capsys, *words):
-    """Asserts that the report is refused with these words and that nothing is left behind."""
+    """Asserts that the report fails with these words and that nothing is left behind."""
     assert main(data.arguments) == 2
     text = capsys.readouterr().err
     assert text.startswith("error: ") and text.count("\n") == 1
@@ -55,7 +55,7 @@ def test_a_case_without_a_file(data, capsys):
 
 
 def test_a_case_from_elsewhere(data, capsys):
-    """It is taken, before one of the folder with the same name; one that is not there is told."""
+    """It takes precedence over the folder's one of the same name; a missing one is an error."""
     own, there = data.folder / "own.toml", data.folder / "cases/column.toml"
     own.write_text(there.read_text().replace("[case]", '[case]\nx = "own"', 1))
     there.unlink()

@@ -1,4 +1,4 @@
-"""Failure maps as pictures: every cell is there, and broken files are refused."""
+"""Failure maps as pictures: every cell is present, and broken files are rejected."""
 
 import json
 import subprocess
@@ -34,8 +34,8 @@ def document(cells, xs=(1.0, 2.0), ys=(0.3,)):
 
 
 def test_every_outcome_has_a_colour_and_a_letter_of_its_own():
-    """The words are the solver's; a new one must be given a colour here."""
-    header = ROOT / "solver" / "comparison" / "finding.cpp"
+    """The words are the solver's; a new one needs a colour here."""
+    header = ROOT / "suite" / "comparison" / "finding.cpp"
     words = [line.split('"')[1] for line in header.read_text().splitlines() if 'return "' in line]
     assert set(words) <= set(OUTCOMES) and len(words) == 7
     assert len({colour for colour, _ in OUTCOMES.values()}) == len(OUTCOMES)

@@ -1,4 +1,4 @@
-"""Files of other commands: what is read, what may be absent, and what is refused."""
+"""Files of other commands: what is read, what may be absent, and what is rejected."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from sandglass_report.replication import table_1, table_2
 
 
 def read(data):
-    """What is there of the data set's optional files."""
+    """The data set's optional files that exist."""
     names = ("bench.json", "flops.json", "rest.json", "curves", "maps", "kept-maps")
     return read_measured(*(data.folder / name for name in names))
 
@@ -18,7 +18,7 @@ def test_what_is_absent_is_named_with_its_command(data):
     assert not (found.rungs or found.steps or found.rests or found.counts or found.maps)
     assert all(source.facts is None for source in found.sources)
     commands = " ".join(source.command for source in found.sources)
-    for word in ("bench --threads", "flops", "bench --rest", "ci/curves", "stability CASE"):
+    for word in ("bench --threads", "flops", "bench --rest", "reports/curves", "stability CASE"):
         assert word in commands
 
 

@@ -1,4 +1,4 @@
-"""Points of the main chart: what becomes one point, what is beaten by none, which costs count."""
+"""Points of the main chart: merging of data, Pareto fronts, and which costs count."""
 
 import json
 

@@ -1,1 +1,1 @@
-"""Compares what the solver does now with what it did when its baseline was accepted."""
+"""Compares the solver's present figures with its accepted baseline."""

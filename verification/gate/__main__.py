@@ -18,7 +18,7 @@ from .bench import read_bench
 from .compare import compare, undecided
 from .records import Run, read_bits, read_flops, read_verdicts
 
-# What a source tells of.
+# The areas of figures that a source provides.
 SOURCES = {
     "accuracy": ("accuracy",),
     "operations": ("operations",),
@@ -32,7 +32,7 @@ def arguments(given):
     parser = argparse.ArgumentParser(prog="ci/gate", description=__doc__.splitlines()[0])
     add = parser.add_argument
     add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")
-    add("--baseline", type=Path, default="ci/baseline.json", help="default: %(default)s")
+    add("--baseline", type=Path, default="verification/gate/baseline.json", help="default: %(default)s")
     add(
         "--verdicts",
         metavar="FILE",
@@ -64,12 +64,12 @@ def arguments(given):
 
 
 def say(text):
-    """A line about what is going on."""
+    """Prints a line of progress."""
     print(f"gate: {text}", file=sys.stderr, flush=True)
 
 
 def find(options, baseline):
-    """The Run: what files tell, and the program where there are none."""
+    """The Run, from files or, if there are none, from the program."""
     run = Run()
     folder = options.output
     folder.mkdir(parents=True, exist_ok=True)
@@ -94,7 +94,7 @@ def find(options, baseline):
 
 
 def bench_files(options, baseline, folder):
-    """Files of as many processes of bench as it takes to tell, or `most`."""
+    """Files of as many processes of bench as a decision takes, at most `most`."""
     files = []
     while True:
         say(f"running for speed, process {len(files) + 1}")
@@ -108,7 +108,7 @@ def bench_files(options, baseline, folder):
 
 
 def gate(given):
-    """Everything; returns the exit code. Raises InputError or ComputationError."""
+    """Runs the gate; returns the exit code. Raises InputError or ComputationError."""
     options = arguments(given)
     known = options.baseline.exists() or not options.accept
     baseline = baselines.read(options.baseline) if known else baselines.Baseline()

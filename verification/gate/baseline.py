@@ -1,4 +1,4 @@
-"""The baseline: what was accepted, when and why.
+"""The baseline: the accepted figures, with date and reason.
 
 One JSON file, one record a line, so that its diffs can be read.
 """
@@ -32,22 +32,22 @@ class Baseline:
     machine: str | None = None
 
     def knows(self, area, machine):
-        """Whether what was accepted of an area holds on a machine."""
+        """Whether the accepted figures of an area apply to a machine."""
         own = _figures(area, self.machines.get(machine, []))
         return bool(own) or self._is_common(area, machine)
 
     def of(self, area, machine):
-        """All records of an area on a machine; a machine that is not known has none of its own."""
+        """All records of an area on a machine; an unknown machine has none of its own."""
         common = () if area in OF_MACHINE else self.records
         return _figures(area, [*common, *self.machines.get(machine, [])])
 
     def replace(self, area, machine, figures_by_name):
-        """Puts other records in the place of those of an area."""
+        """Replaces the records of an area."""
         if self._is_common(area, machine):
             self.records = _replaced(self.records, area, figures_by_name)
         elif area in OF_MACHINE:
             self._replace_own(area, machine, figures_by_name)
-        else:  # what the first machine found stays
+        else:  # the figures of the first machine are kept
             first = _figures(area, self.records)
             common = {name: first.get(name, here) for name, here in figures_by_name.items()}
             own = {n: here for n, here in figures_by_name.items() if _differ(common[n], here)}
@@ -55,7 +55,7 @@ class Baseline:
             self._replace_own(area, machine, own)
 
     def _is_common(self, area, machine):
-        """Whether what a machine finds of an area is that of all machines."""
+        """Whether the figures of an area are the same on all machines."""
         if area in MAY_DIFFER:
             return machine in (None, self.machine)
         return area not in OF_MACHINE
@@ -66,12 +66,12 @@ class Baseline:
 
 
 def _figures(area, records):
-    """Figures by name of an area; later records take the place of earlier ones."""
+    """Figures of an area by name; later records replace earlier ones."""
     return {record.name: record.figures for record in records if record.area == area}
 
 
 def _replaced(records, area, figures_by_name):
-    """The records with others in the place of those of an area."""
+    """The records with those of an area replaced."""
     kept = [record for record in records if record.area != area]
     kept += [Record(area, name, figures) for name, figures in figures_by_name.items()]
     return sorted(kept, key=lambda record: (AREAS.index(record.area), record.name))
@@ -155,20 +155,20 @@ def text_of(baseline):
 
 
 def write(path, baseline):
-    """Writes the file whole or not at all. Raises InputError."""
+    """Writes the file atomically. Raises InputError."""
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, text_of(baseline))
 
 
 def _rounded(value):
-    """An error or ratio as it is kept; counts as they are."""
+    """A figure as stored: errors and ratios are rounded, counts are not."""
     if isinstance(value, Interval):
         return Interval(*(_rounded(part) for part in (value.low, value.median, value.high)))
     return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
 
 
 def _accepted(area, outcomes, figures):
-    """What the baseline keeps of a record: figures that are the same stay what they were.
+    """A record as stored in the baseline: figures that count as the same keep their old value.
 
     So errors cannot creep by less than their margin each time, and a diff shows what changed.
     """
@@ -181,7 +181,7 @@ def _accepted(area, outcomes, figures):
 
 
 def accept(baseline, run, areas, reason, date):
-    """Makes what a run found the baseline's records of `areas`, and writes down why.
+    """Replaces the baseline's records of `areas` by those of a run, and records the reason.
 
     Returns the changes by area. Raises InputError where a ratio has no interval.
     """

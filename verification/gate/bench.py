@@ -1,4 +1,4 @@
-"""Memory, forces and speed out of the files of several processes of `sandglass bench --json`.
+"""Memory, forces and speed from the files of several processes of `sandglass bench --json`.
 
 Ratios are of the best times of one process each, in which all variants were timed in turn: what
 disturbs a batch makes it slower, so that the best is what moves least on a busy machine. Over
@@ -14,8 +14,8 @@ from common.records import NUMBER, entry
 from .interval import Interval
 from .records import Record, entries_of, machine_of, unique
 
-# A method is held against the geometric mean of these, itself left out: the time of a single method
-# is an unsteady measure, and nothing would be held against it.
+# A method is compared with the geometric mean of these, excluding itself: the time of a single
+# method is too noisy, and that method could not be compared itself.
 PACEMAKERS = (
     "linear",
     "tl-assumed-strain",
@@ -26,7 +26,7 @@ PACEMAKERS = (
     "tl-perturbation",
     "tl-stabilization-matrix",
 )
-# No step but a product with a matrix: 3.0 or 3.6 ns, by where it lies in memory. A trend.
+# Not a step but a matrix product: 3.0 or 3.6 ns depending on its placement in memory. A trend.
 UNSTEADY = ("linear-condensed",)
 TWINS = {  # Updated Lagrangian methods and the same control in Total Lagrangian form
     "ul-assumed-strain": "tl-assumed-strain",
@@ -57,7 +57,7 @@ def _variants(path, document):
 
 
 def _name(variant):
-    """A variant as it is shown."""
+    """A variant as text."""
     case, elements, method, kernel, precision, threads = variant
     unit = "thread" if threads == 1 else "threads"
     return f"{case} of {elements}, {method}, {kernel} {precision}, {threads} {unit}"
@@ -69,7 +69,7 @@ def _with(variant, **changed):
 
 
 def _pace(variant, variants):
-    """The geometric mean time of the other pacemakers, ns; None where one has no time."""
+    """The geometric mean time of the other pacemakers, ns; None if one has no time."""
     makers = [
         variants.get(_with(variant, method=name)) for name in PACEMAKERS if name != variant[2]
     ]
@@ -79,7 +79,7 @@ def _pace(variant, variants):
 
 
 def _ratios_of_all(variant, variants, document):
-    """Ratios of the pace of all: to the processor's peak, and of packs to plain numbers."""
+    """Ratios of the overall pace: to the processor's peak, and of packs to plain numbers."""
     variant = _with(variant, method="pace")
     pace, ratios = _pace(variant, variants), {}
     peak = document.get("peak_gflops", {}).get(variant[4], {}).get(str(variant[5]))
@@ -147,7 +147,7 @@ def read_bench(paths):
 
 
 def _memory(variant, found):
-    """Bytes and allocations of a step; where processes differ, the worst."""
+    """Bytes and allocations of a step; the worst, if processes differ."""
     figures = {"bytes": max(timed["bytes_per_element_step"] for timed in found)}
     allocations = [timed.get("allocations_per_step") for timed in found]
     if None not in allocations:

@@ -1,4 +1,4 @@
-"""Runs the program and leaves what it found as JSON files in a folder."""
+"""Runs the program and writes its figures as JSON files to a folder."""
 
 import os
 import subprocess
@@ -10,9 +10,9 @@ import h5py
 from common.files import write_json
 from common.program import binary, output_of
 
-# A mesh that stays in a cache: what is compared is arithmetic, not the traffic of neighbours. Many
-# short processes tell more than few long ones: where a program lies in memory moves its best times
-# by 1 %.
+# A mesh that stays in cache, so that arithmetic is compared, not the memory traffic of other
+# programs. Many short processes are better than few long ones: the placement of a program in
+# memory changes its best times by 1 %.
 BENCH = ("--elements", 600, "--threads", 1, "--repetitions", 20)
 PROCESSES = 12
 # A quasi-static and a dynamic run; methods that answer by condensation have no motion.
@@ -20,7 +20,7 @@ BIT_CASES = {"column": (), "bar-wave": ("linear-condensed",)}
 
 
 def verdicts(folder):
-    """The file of `sandglass verify`, in double. Broken limits are the business of ci/verify."""
+    """The file of `sandglass verify`, in double. Broken limits are left to ci/verify."""
     file = folder / "verdicts.json"
     output_of(binary(), "verify", "--json", file, allowed=(0, 1))
     return file
@@ -34,7 +34,7 @@ def flops(folder):
 
 
 def bench(folder, name):
-    """The file of one process of `sandglass bench`. Wrong forces are told in the file."""
+    """The file of one process of `sandglass bench`. Wrong forces are reported in the file."""
     file = folder / f"{name}.json"
     output_of(binary(), "bench", *BENCH, "--json", file, allowed=(0, 1))
     return file
@@ -44,13 +44,13 @@ def _run(case, method, precision, threads, file):
     """Runs a case; its exit code."""
     command = [binary(), "run", case, "--method", method, "--precision", precision]
     command += ["--threads", str(threads), "-o", file]
-    # Threads that wait busily would take the processor of those they wait for.
+    # Threads that spin would take the processor from those they wait for.
     environment = os.environ | {"OMP_WAIT_POLICY": "passive"}
     return subprocess.run(command, capture_output=True, env=environment).returncode
 
 
 def _difference(one, two):
-    """What differs between two result files, or an empty text."""
+    """The differences between two result files, or an empty text."""
     if one.exists() != two.exists():
         return "only one of them has a result"
     if not one.exists() or one.read_bytes() == two.read_bytes():
@@ -67,7 +67,7 @@ def _difference(one, two):
 
 
 def _bits(case, method, precision):
-    """What differs between the runs of a case with 1 and with 2 threads, or an empty text."""
+    """The differences between the runs of a case with 1 and 2 threads, or an empty text."""
     with tempfile.TemporaryDirectory() as folder:
         files = [Path(folder) / "1-thread.h5", Path(folder) / "2-threads.h5"]
         codes = [
@@ -78,7 +78,7 @@ def _bits(case, method, precision):
 
 
 def bits(folder):
-    """A file that tells of every method whether 1 and 2 threads give the same bits."""
+    """A file that states for every method whether 1 and 2 threads give the same bits."""
     methods = [
         line.split()[0] for line in output_of(binary(), "methods").splitlines() if line.strip()
     ]

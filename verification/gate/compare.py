@@ -1,4 +1,4 @@
-"""The rules: what is found, against what the baseline holds. Pure functions."""
+"""The rules that compare figures with the baseline. Pure functions."""
 
 import math
 from dataclasses import dataclass
@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from .interval import FEWEST
 from .records import OF_MACHINE
 
-# One build repeats its errors to the bit; another compiler or instruction set rounds otherwise, and
-# the search for rest ends elsewhere. README.md tells how far that was seen to move errors.
+# One build reproduces its errors exactly; another compiler or instruction set rounds differently,
+# and relaxation ends elsewhere. README.md states how much this was seen to change errors.
 RELATIVE = 1e-3
 FLOOR = {"double": 2e-7, "float": 1e-4}  # fractions of the largest imposed displacement
-SPEED_LIMIT = 0.01  # so far an interval may lie above that of the baseline
+SPEED_LIMIT = 0.01  # largest gap allowed between the baseline's interval and one above it
 
 SAME, BETTER, WORSE, BROKEN, VANISHED, NEW, NOISY, UNGATED = (
     "same",
@@ -27,7 +27,7 @@ FAILING = (WORSE, BROKEN, VANISHED)
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one figure."""
+    """The outcome of the comparison of one figure."""
 
     area: str
     name: str
@@ -44,21 +44,21 @@ class Outcome:
 
 
 def judge_status(baseline, found):
-    """Of a run: 'ok' or 'failed'."""
+    """Compares the status of a run: 'ok' or 'failed'."""
     if baseline == found:
         return SAME, ""
     return (WORSE, "no longer comes to rest") if found == "failed" else (BETTER, "comes to rest")
 
 
 def judge_exact(baseline, found):
-    """Of a count that no machine changes: fewer is better."""
+    """Compares a count that does not depend on the machine: fewer is better."""
     if found == baseline:
         return SAME, ""
     return (WORSE if found > baseline else BETTER), f"{found - baseline:+g}; must be equal"
 
 
 def judge_error(baseline, found, precision):
-    """Of an error: a fraction of the largest imposed displacement."""
+    """Compares an error: a fraction of the largest imposed displacement."""
     margin = RELATIVE * baseline + FLOOR[precision]
     if abs(found - baseline) <= margin:
         return SAME, ""
@@ -67,7 +67,7 @@ def judge_error(baseline, found, precision):
 
 
 def judge_ratio(baseline, found):
-    """Of two Intervals of a ratio of times: worse lies wholly above, SPEED_LIMIT between."""
+    """Compares two Intervals of a ratio of times: worse lies wholly above, by SPEED_LIMIT."""
     line = baseline.high * (1.0 + SPEED_LIMIT)
 
     def change(value):
@@ -85,7 +85,7 @@ def judge_ratio(baseline, found):
 
 
 def judge_promise(figure, found):
-    """Of what is promised whatever the baseline says: None where nothing is."""
+    """Checks rules that do not depend on the baseline; None if there is none."""
     if figure == "differs":
         return (BROKEN, found) if found else (SAME, "")
     if figure == "allocations":
@@ -94,7 +94,7 @@ def judge_promise(figure, found):
 
 
 def judge(area, name, figure, baseline, found):
-    """Verdict and reason of a figure that both have."""
+    """Verdict and reason for a figure present in both."""
     if figure == "status":
         return judge_status(baseline, found)
     if area == "accuracy":
@@ -143,5 +143,5 @@ def compare(baseline, run, areas):
 
 
 def undecided(outcomes):
-    """Whether more processes could change what is said of speed."""
+    """Whether more processes could change a verdict on speed."""
     return any(o.area == "speed" and o.verdict in (NOISY, WORSE) for o in outcomes)

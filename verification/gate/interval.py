@@ -1,15 +1,15 @@
-"""Where the median of something noisy lies."""
+"""A confidence interval for the median of a noisy quantity."""
 
 import math
 from dataclasses import dataclass
 
 CONFIDENCE = 0.99
-FEWEST = 8  # with fewer samples even their whole range holds the median less often than that
+FEWEST = 8  # with fewer samples even their whole range contains the median with less confidence
 
 
 @dataclass(frozen=True)
 class Interval:
-    """Holds the median of what was sampled with CONFIDENCE, whatever its distribution."""
+    """Contains the median of the sampled quantity with CONFIDENCE, whatever its distribution."""
 
     low: float
     median: float

@@ -1,4 +1,4 @@
-"""What was found: figures by area and name, read from the JSON files of the program's commands."""
+"""Figures by area and name, read from the JSON files of the program's commands."""
 
 from dataclasses import dataclass, field
 
@@ -6,8 +6,8 @@ from common.errors import InputError
 from common.files import read_json
 from common.records import entries, entry
 
-# Where figures come from; those of the last two hold for one machine only, and those of the first
-# may differ on another: instruction sets round otherwise, and adaptive elements rise by packs.
+# The areas of figures. Those of the last two apply to one machine only, and those of the first may
+# differ on another: instruction sets round differently, and adaptivity raises whole packs.
 AREAS = ("accuracy", "operations", "bits", "forces", "memory", "speed")
 OF_MACHINE = ("memory", "speed")
 MAY_DIFFER = ("accuracy",)
@@ -16,7 +16,7 @@ ORIGIN = ("processor", "compiler", "build_flags")
 
 @dataclass(frozen=True)
 class Record:
-    """Figures of one thing. A figure is a number, a text, or of speed an Interval."""
+    """Figures of one thing. A figure is a number, a text or, for speed, an Interval."""
 
     area: str
     name: str
@@ -25,14 +25,14 @@ class Record:
 
 @dataclass
 class Run:
-    """What one run of the gate found."""
+    """The figures found by one run of the gate."""
 
     records: list = field(default_factory=list)
     revision: str | None = None
-    machine: str | None = None  # see machine_of; None where no file tells
+    machine: str | None = None  # see machine_of; None if no file states it
 
     def add(self, path, records, document):
-        """Takes the records of a file. Raises InputError when of another program or machine."""
+        """Adds the records of a file. Raises InputError if of another program or machine."""
         machine = machine_of(path, document) if "processor" in document else None
         self.revision = _agreed(path, "revision", document.get("revision"), self.revision)
         self.machine = _agreed(path, "machine", machine, self.machine)
@@ -40,12 +40,12 @@ class Run:
 
 
 def machine_of(path, document):
-    """What bytes and times depend on besides the code: processor, compiler, flags."""
+    """All that bytes and times depend on besides the code: processor, compiler, flags."""
     return "; ".join(entry(path, document, key, str) for key in ORIGIN)
 
 
 def _agreed(path, what, found, known):
-    """What a file tells and what others told; either may be None. Raises InputError."""
+    """The common value stated by one file and by others, either None. Raises InputError."""
     if found and known not in (found, None):
         raise InputError(f"{path}: {what} = {found!r} must be {known!r}, as of the others")
     return found or known
@@ -61,7 +61,7 @@ def entries_of(path, document, key, required):
 
 
 def unique(path, records):
-    """The records, of which no two may have one name. Raises InputError."""
+    """The records, whose names must be unique. Raises InputError."""
     seen = set()
     for record in records:
         if (record.area, record.name) in seen:
@@ -96,7 +96,7 @@ def read_verdicts(path):
             if kappa is not None:
                 kappa = "auto" if one.get("kappa_is_auto") else f"{kappa:g}"
             parts = (one["case"], one["method"], kappa and f"kappa {kappa}", one["precision"])
-            # Where a run that failed stopped is chance.
+            # The point where a failed run stopped is arbitrary.
             ok = one["status"] == "ok"
             figures = {"status": "ok", **_errors(one)} if ok else {"status": "failed"}
             records.append(Record("accuracy", ", ".join(filter(None, parts)), figures))
@@ -112,7 +112,7 @@ def read_flops(path):
     for _, one in entries_of(path, document, "records", required):
         name = ", ".join(one[key] for key in ("method", "law", "form", "part"))
         records.append(Record("operations", name, {count: one[count] for count in counts}))
-    # A law's table repeats a part of the method at whose point it is counted.
+    # A law's table repeats parts of the method with which it was counted.
     return unique(path, list({(r.area, r.name): r for r in records}.values())), document
 
 

@@ -1,4 +1,4 @@
-"""What is told of a comparison: a table, a JUnit file, a Markdown file, and the trend of times."""
+"""Reports of a comparison: a table, a JUnit file, a Markdown file, and the trend of times."""
 
 import csv
 import io
@@ -17,7 +17,7 @@ SILENT = (SAME, UNGATED)  # counted, not listed
 
 
 def _shown(value):
-    """A figure as it is shown."""
+    """A figure as text."""
     if value is None:
         return "-"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
@@ -30,7 +30,7 @@ def _cells(outcome):
 
 
 def _listed(outcomes, most):
-    """Rows worth a line, the worst first, so many of each verdict at most; how many more."""
+    """The rows to list, worst first, with a maximum per verdict; and the number left out."""
     rows, left_out = [], Counter()
     for verdict in VERDICTS:
         of_verdict = [o for o in outcomes if o.verdict == verdict and verdict not in SILENT]
@@ -41,7 +41,7 @@ def _listed(outcomes, most):
 
 
 def _counts(outcomes):
-    """How many figures of each area got which verdict: a heading and rows."""
+    """The number of figures per area and verdict: a heading and rows."""
     counts = Counter((outcome.area, outcome.verdict) for outcome in outcomes)
     areas = list(dict.fromkeys(outcome.area for outcome in outcomes))
     there = [verdict for verdict in VERDICTS if any(counts[area, verdict] for area in areas)]
@@ -58,7 +58,7 @@ def _aligned(rows):
 
 
 def verdict_line(outcomes):
-    """The last line: what came of it."""
+    """The last line: the overall outcome."""
     failing = sum(outcome.fails for outcome in outcomes)
     counts = Counter(outcome.verdict for outcome in outcomes)
     parts = [f"{len(outcomes)} figures", f"{failing} regressions"]
@@ -80,7 +80,7 @@ def table(outcomes):
 
 
 def _markdown_table(rows):
-    """A Markdown table; bars in cells would end them."""
+    """A Markdown table; bars in cells are escaped."""
     rows = [[cell.replace("|", "\\|") for cell in row] for row in rows]
     lines = ["| " + " | ".join(row) + " |" for row in rows]
     lines.insert(1, "|" + "---|" * len(rows[0]))
@@ -88,13 +88,13 @@ def _markdown_table(rows):
 
 
 def _times(run):
-    """Names of what was timed, and best ns per element and step."""
+    """Names of the timed variants, and their best ns per element and step."""
     timed = [record for record in run.records if "trend ns" in record.figures]
     return {record.name: record.figures["trend ns"] for record in timed}
 
 
 def _trend(baseline, run):
-    """Rows of times, never judged: variant, ns of the baseline, ns found."""
+    """Rows of times, which are not compared: variant, ns of the baseline, ns found."""
     before = baseline.of("speed", run.machine)
     return [
         (name, f"{before[name]['trend ns']:.2f}" if name in before else "-", f"{ns:.2f}")

@@ -1,4 +1,4 @@
-"""Runs of the tree without a mistake: what fails there is a false alarm."""
+"""Runs of the unchanged tree: a failure there is a false alarm."""
 
 import threading
 
@@ -19,18 +19,18 @@ class CleanRuns:
         self._running, self._lock = 0, threading.Lock()
 
     def missing(self):
-        """How many runs nobody has begun."""
+        """The number of runs that have not been started."""
         alarms = self._known["alarms"]
         wanted = max(self._wanted, 2) if len(alarms) == 1 and alarms[0] else self._wanted
         return max(0, wanted - len(alarms) - self._running)
 
     def is_done(self):
-        """Whether there have been as many runs as wanted."""
+        """Whether all requested runs are done."""
         with self._lock:
             return self.missing() == 0 and self._running == 0
 
     def work(self, worker):
-        """Runs all tests in a worker's copy again and again, until no run is missing."""
+        """Runs all tests in a worker's copy repeatedly, until no run is missing."""
         while self._begin():
             alarms, seconds = [], {}
             for program in worker.programs():
@@ -55,7 +55,7 @@ class CleanRuns:
             print(f"clean tree: {told}", flush=True)
 
     def conclude(self):
-        """Raises RuntimeError when a test has failed in every run: no verdict would count."""
+        """Raises RuntimeError if a test failed in every run, as no verdict would be valid."""
         always = set.intersection(*map(set, self._known["alarms"]))
         if always:
             raise RuntimeError(f"the clean tree fails: {', '.join(sorted(always))}")

@@ -26,7 +26,7 @@ class Patch:
 
 
 def read_patch(path):
-    """The Patch of a file. Raises ValueError when its head or its diff is missing."""
+    """The Patch of a file. Raises ValueError if its head or its diff is missing."""
     text = path.read_text(encoding="utf-8")
     head, found, _ = text.partition("\n--- ")
     files = tuple(re.findall(r"^\+\+\+ b/(\S+)", text, re.MULTILINE))
@@ -39,5 +39,5 @@ def read_patch(path):
 
 
 def read_patches():
-    """All of them, by number."""
+    """All patches, by number."""
     return [read_patch(path) for path in sorted(FOLDER.glob("*.patch"))]

@@ -1,4 +1,4 @@
-"""What became of the mutants: a JSON file for each under build/, and the table RESULTS.md."""
+"""Results of the mutants: a JSON file for each under build/, and the table RESULTS.md."""
 
 import collections
 import datetime
@@ -16,13 +16,13 @@ CLEAN = "clean"
 
 
 def store(name, result):
-    """Keeps a result, a dict, under a mutant's name."""
+    """Stores a result, a dict, under a mutant's name."""
     STORE.mkdir(parents=True, exist_ok=True)
     write_json(STORE / f"{name}.json", result)
 
 
 def stored(name):
-    """The result kept under a name, or None."""
+    """The result stored under a name, or None."""
     try:
         return json.loads((STORE / f"{name}.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -30,7 +30,7 @@ def stored(name):
 
 
 def killers():
-    """How many mutants each program has killed, as far as results are stored."""
+    """The number of mutants that each program has killed, among the stored results."""
     found = collections.Counter()
     for path in STORE.glob("[0-9]*.json"):
         found[(stored(path.stem) or {}).get("program")] += 1
@@ -48,7 +48,7 @@ def rows_of(text):
 
 
 def _row(patch, before):
-    """A mutant's cells: its stored result, else what the table said before."""
+    """A mutant's cells, from its stored result or else from the previous table."""
     result = stored(patch.name)
     if result is None or result["patch"] != patch.digest:
         verdict = before.get(patch.name, ["", "", "not run", "-", "-", "-"])[2:]
@@ -58,14 +58,14 @@ def _row(patch, before):
 
 
 def write_table(patches, revision):
-    """Writes RESULTS.md anew from what is stored; returns its rows."""
+    """Rewrites RESULTS.md from the stored results; returns its rows."""
     before = rows_of(TABLE.read_text(encoding="utf-8")) if TABLE.exists() else {}
     rows = [_row(patch, before) for patch in patches]
     verdicts = [row[2] for row in rows]
     counts = ", ".join(f"{verdicts.count(v)} {v}" for v in sorted(set(verdicts)))
     clean = stored(CLEAN)
     text = "# Mutants\n\n"
-    text += f"Made by `ci/mutants` on {datetime.date.today()}, revision {revision}: {counts}.\n"
+    text += f"Made by `verification/mutants/run.py` on {datetime.date.today()}, revision {revision}: {counts}.\n"
     if clean:
         runs, alarms = len(clean["alarms"]), sum(map(len, clean["alarms"]))
         text += f"The tree without a mistake: runs {runs}, false alarms {alarms}.\n"

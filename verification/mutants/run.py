@@ -1,4 +1,4 @@
-"""Mutation tests: does a test fail when somebody makes a mistake that people make?
+"""Mutation tests: does a test fail for every plausible mistake?
 
 Each patch of this folder is applied to a copy of HEAD, built and tested until the first failure.
 Prints what killed each mutant and writes RESULTS.md. Finished mutants are kept under
@@ -31,7 +31,7 @@ from worker import OutOfTime, Stopped, Worker
 
 
 def git(*arguments):
-    """What git says about the checkout."""
+    """The output of a git command in the checkout."""
     command = ["git", "-C", str(ROOT), *arguments]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
@@ -47,7 +47,7 @@ def tree_digest():
 
 
 def result_of(worker, patch, programs, timeout):
-    """What becomes of one mutant, as it is stored."""
+    """The result of one mutant, as stored."""
     started = time.monotonic()
     result = {"patch": patch.digest, "by": "", "program": ""}
     try:
@@ -57,7 +57,7 @@ def result_of(worker, patch, programs, timeout):
     else:
         result["verdict"] = "equivalent" if patch.equivalent else "survived"
         if failure:
-            # A test that hangs would be noticed, too.
+            # A test that hangs would also be noticed.
             hangs = failure.kind == "timeout"
             result["verdict"] = "killed" if hangs else failure.kind
             result["by"] = failure.by + (" (timeout)" if hangs else "")
@@ -95,7 +95,7 @@ def is_finished(patch, tree):
 
 
 def chosen_patches(names):
-    """The patches whose names begin with one of those given, or all. Raises InputError."""
+    """The patches whose names begin with one of the given names, or all. Raises InputError."""
     patches = read_patches()
     if not names:
         return patches
@@ -106,7 +106,7 @@ def chosen_patches(names):
 
 
 def conclude(verdicts, stopped):
-    """Prints how often each verdict was given; the exit code that they stand for."""
+    """Prints the number of mutants per verdict; returns the exit code."""
     for verdict in sorted(set(verdicts)):
         print(f"{verdicts.count(verdict):4} {verdict}")
     if stopped or {"broken", "no verdict", "not run"} & set(verdicts):
@@ -115,7 +115,7 @@ def conclude(verdicts, stopped):
 
 
 def run(options, stop):
-    """Everything; returns the exit code. Raises InputError."""
+    """Runs the mutants; returns the exit code. Raises InputError."""
     patches = chosen_patches(options.names)
     tree, revision = tree_digest(), git("rev-parse", "--short=12", "HEAD").strip()
     todo = queue.Queue()
@@ -137,7 +137,7 @@ def run(options, stop):
                 work(worker, todo, options, tree, revision)
         except Stopped:
             pass
-        except Exception as error:  # the other workers end, and the user hears of it
+        except Exception as error:  # the other workers end, and the error is reported
             errors.append(error)
             stop.set()
 
@@ -159,7 +159,9 @@ def run(options, stop):
 def main():
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        prog="ci/mutants", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="verification/mutants/run.py",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutants, or how they begin: 017")
     parser.add_argument("--jobs", type=int, default=1, help="copies side by side (default 1)")

@@ -1,4 +1,4 @@
-"""A copy of the tree with a build folder of its own, in which mutants are built and tested."""
+"""A copy of the tree with its own build folder, in which mutants are built and tested."""
 
 import contextlib
 import fcntl
@@ -16,10 +16,10 @@ from pathlib import Path
 from common.program import ROOT
 
 PRESET = "quick"
-MEMORY = 8 << 30  # bytes that a test program may take: a mistake may allocate without end
-# What takes long to compile has a large object file: seconds for any file, and for each megabyte.
+MEMORY = 8 << 30  # bytes that a test program may use: a mistake may allocate without end
+# Sources that compile slowly have large object files: seconds per file, and per megabyte.
 SECONDS_TO_COMPILE = (3, 5)
-SLOWER = 20  # a program that takes so many times longer than on the clean tree hangs
+SLOWER = 20  # a program that takes this many times longer than on the clean tree hangs
 SHORTEST_LIMIT = 120  # s
 # Folders of Python tests, with the folders whose modules they use; SOLVER is the built program.
 SOLVER = "solver"
@@ -35,11 +35,11 @@ PYTHON = "/usr/bin/python3"
 
 
 class Stopped(Exception):
-    """Somebody wants the run to end."""
+    """The run was interrupted."""
 
 
 class OutOfTime(Exception):
-    """A command ran into its limit."""
+    """A command exceeded its time limit."""
 
 
 @dataclass(frozen=True)
@@ -98,10 +98,10 @@ class Worker:
         self.tree = self.folder / "tree"
         self.build = self.tree / "build" / PRESET
         self.cli = self.build / "sandglass"
-        # The same paths in every run, so that ccache knows what it has compiled before.
+        # The same paths in every run, so that ccache recognizes earlier compilations.
         own = {"CCACHE_BASEDIR": str(self.tree), "CCACHE_NOHASHDIR": "1"}
         own |= {"SANDGLASS_BINARY": str(self.cli), "GIT_CEILING_DIRECTORIES": str(self.folder)}
-        # Waiting threads must not spin: there are more of them than processors.
+        # Waiting threads must not spin, as there are more of them than processors.
         own |= {"PYTHONDONTWRITEBYTECODE": "1", "OMP_WAIT_POLICY": "passive"}
         self._environment = os.environ | own
 
@@ -123,7 +123,7 @@ class Worker:
         self._lock.close()
 
     def programs(self):
-        """What tests here, with the sizes of its objects."""
+        """The test programs here, with the sizes of their objects."""
         programs = programs_of(self.tree)
         for program in programs:
             if not program.is_python:
@@ -180,7 +180,7 @@ class Worker:
         return self.cli if program.is_python else self.build / "verification" / program.name
 
     def _test(self, program, left):
-        """Runs a program until its first failure, which is returned, for at most `left` seconds."""
+        """Runs a program for at most `left` seconds until its first failure, which is returned."""
         limit = max(SHORTEST_LIMIT, SLOWER * program.seconds)
         output = self.folder / "output.txt"
         try:
@@ -208,7 +208,7 @@ class Worker:
 
     @contextlib.contextmanager
     def _applied(self, patch):
-        """The tree with a patch; gives the time from which on files are the mutant's."""
+        """The tree with a patch; yields the time after which files are the mutant's."""
         before = {self.tree / name: (self.tree / name).stat() for name in patch.files}
         content = {path: path.read_bytes() for path in before}
         time.sleep(0.05)  # clocks of file systems tick slowly
@@ -223,7 +223,7 @@ class Worker:
             self._remove_built(since)
 
     def _remove_built(self, since):
-        """Removes what was built of a mutant; the rest is as old as the sources say, and stays."""
+        """Removes the files built from a mutant; all others are up to date and stay."""
         for path in self.build.rglob("*"):
             is_built = path.suffix in (".o", ".a") or (not path.suffix and os.access(path, os.X_OK))
             if is_built and path.is_file() and path.stat().st_mtime >= since:
@@ -269,7 +269,7 @@ class Worker:
 
 
 def _free_folder():
-    """A folder that no other run uses, and the open lock that says so."""
+    """A folder that no other run uses, and its open lock."""
     base = Path(tempfile.gettempdir()) / f"sandglass-mutants-{os.getuid()}"
     base.mkdir(mode=0o700, exist_ok=True)
     for number in range(1000):
@@ -287,13 +287,13 @@ def _free_folder():
 
 
 def _failed_names(text):
-    """The tests that a program's text says have failed, in order, each once."""
+    """The failed tests in a program's output, in order, each once."""
     names = re.findall(r"^\[  FAILED  \] ([^\s,]+/?[^\s,]*)(?:,| \()", text, re.MULTILINE)
     names += re.findall(r"^(?:FAILED|ERROR) (\S+)", text, re.MULTILINE)
     return list(dict.fromkeys(names))
 
 
 def _running(text, program):
-    """The test that was running when the text broke off."""
+    """The test that was running when the output broke off."""
     names = re.findall(r"^\[ RUN      \] (\S+)", text, re.MULTILINE)
     return names[-1] if names else program.name

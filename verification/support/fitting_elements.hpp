@@ -4,7 +4,7 @@
 #include "support/random_hexahedra.hpp"
 #include "support/sample_law.hpp"
 
-/// Random elements for any kernel: what it refuses by nature, or where it would be inverted, is drawn again.
+/// Random elements for any kernel: unsupported or inverted ones are drawn again.
 namespace sandglass::verification {
 
 /// Reference coordinates that the kernel accepts.

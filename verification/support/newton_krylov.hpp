@@ -5,7 +5,7 @@
 
 namespace sandglass::verification {
 
-/// F(x) = 0 with what a Newton-Krylov method needs of it.
+/// F(x) = 0 as needed by a Newton-Krylov method.
 struct NonlinearSystem {
   using Vector = std::vector<double>;
   std::function<Vector(const Vector& x)> residual;

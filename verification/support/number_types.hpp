@@ -10,7 +10,7 @@ namespace sandglass::verification {
 /// The number types that kernels run on: vocabulary_test.cpp asks of each what scalar.hpp promises.
 using NumberTypes = TypeList<double, float, Pack<double>, Pack<float>, Dual<double>, Counted>;
 
-/// What a number is worth without what its type adds: a slope, a tally, the other lanes.
+/// The plain value of a number, without its slope, tally or other lanes.
 template <class Number>
 double plain_value(const Number& x) {
   if constexpr (requires { x.lanes; }) {

@@ -20,7 +20,7 @@ inline std::size_t index(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// A case without mesh and loads; tests fill in what they are about.
+/// A case without mesh and loads, to be completed by tests.
 inline Case plain_case(const AnyLaw& law, double density = 1000.0) {
   Case scene;
   scene.file = "made-in-a-test.toml";
@@ -77,7 +77,7 @@ inline std::vector<int> nodes_where(const NodalField& points,
   return nodes;
 }
 
-/// Keeps everything that a stepper tells.
+/// Records all reports of a stepper.
 class Recorder final : public Observer {
  public:
   void frame(const Frame& frame) override { frames.push_back(frame); }

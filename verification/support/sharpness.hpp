@@ -21,7 +21,7 @@ struct Sample {
   NodalField u;
 };
 
-/// What a sample looks like: as it comes, flat, or slender, one to ten.
+/// The shape of a sample: random, flat, or slender, one to ten.
 struct Shape {
   double thickness;  ///< of the third axis over the first
   double width;      ///< of the second
@@ -103,7 +103,7 @@ double true_over_bound(const Sample& sample, const typename Pair::Law& law,
   return truth * dt * dt / 4.0;
 }
 
-/// Whether a law gives way somewhere in a sample, so that there is no stiffness to compare a bound with.
+/// Whether a law loses its stiffness somewhere in a sample, so that a bound cannot be compared.
 template <class Law>
 bool gives_way(const Sample& sample) {
   return std::ranges::any_of(sample.mesh.cells, [&](const Hexahedron& cell) {

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-/// What the two oracles share of SUNDIALS' interface in C.
+/// The parts of SUNDIALS' C interface that the two oracles share.
 namespace sandglass::verification {
 
-/// Throws where a function of SUNDIALS says that it failed.
+/// Throws if a function of SUNDIALS reports failure.
 inline void require_success(int flag, const std::string& function) {
   if (flag < 0) throw std::runtime_error(function + " failed with " + std::to_string(flag));
 }
 
-/// A context of its own for each problem.
+/// A separate context for each problem.
 class SundialsContext {
  public:
   SundialsContext() { require_success(SUNContext_Create(nullptr, &context_), "SUNContext_Create"); }

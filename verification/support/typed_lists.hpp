@@ -22,7 +22,7 @@ struct MethodWithLaw {
   static std::string label() { return std::string(Method::name) + " " + std::string(Law::name); }
 };
 
-/// A pair whose force follows from the displacements of one element, so that it can be looked at by itself.
+/// A pair whose force follows from the displacements of one element, so that it can be tested alone.
 template <class MethodType, class LawType>
 struct ElasticMethodWithLaw : MethodWithLaw<MethodType, LawType> {
   using Formulation = NodalForm<FormulationOf<MethodType, LawType>>;
@@ -60,7 +60,7 @@ struct Product<TypeList<EveryMethod...>, LawList> {
   using type = Concatenated<typename WithEveryLaw<EveryMethod, LawList>::type...>;
 };
 
-/// Whether an element with its constants is all that a method needs beside the displacements.
+/// Whether a method needs nothing but an element's constants and displacements.
 template <class Kernel>
 inline constexpr bool stands_alone =
     !Kernel::remembers && !Kernel::needs_coordinates && !Kernel::averages_over_nodes;

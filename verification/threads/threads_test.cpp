@@ -64,7 +64,7 @@ TYPED_TEST(ThreadsTest, motion_with_a_law_that_remembers) {
   }
 }
 
-/// As `sandglass verify` runs them: each by itself, on scene and model of all.
+/// As in `sandglass verify`: each runs alone, on the common scene and model.
 TEST(Threads, share_a_model) {
   const Scene scene = block(sample_law<NeoHookean>(0.45), true);
   const Model model(scene, {.method = "tl-perturbation"});

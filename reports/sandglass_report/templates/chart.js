@@ -1,6 +1,6 @@
-// The main chart: error against cost, with a tolerance and a budget that grey out what fails.
+// The main chart: error against cost, with a tolerance and a budget; marks beyond either are grey.
 const words = {
-  max: "largest of all nodes", profile: "largest on the profile line", rms: "root mean square",
+  max: "largest over all nodes", profile: "largest on the profile line", rms: "root mean square",
   step: "one step", simulated: "a simulated second", rest: "coming to rest",
 };
 const LEAST = 1e-5; // errors below are drawn here
@@ -22,12 +22,12 @@ function startChart(Plotly) {
     own: get("own").checked, double: get("double").checked, curves: get("curves").checked,
     tolerance: 10 ** get("tolerance").value, budget: 10 ** get("budget").value,
   });
-  /** What the errors of a case are to: the golden, or a method that stands for one that is not there, or the truth. */
+  /** The reference of a case's errors: the golden, a method that stands in for a missing one, or the truth. */
   const standIn = (name) => data.points.find((p) => p.case === name && p.golden_is)?.golden_is;
   const named = (reference, name) => (reference === "truth" ? "the truth" : (standIn(name) ?? "the golden"));
   const errorOf = (p, view) => p[view.reference]?.[view.figure];
 
-  /** Positions of the points that a view shows. */
+  /** Indices of the points that a view shows. */
   const shown = (view) =>
     data.points.flatMap((p, i) =>
       p.case === view.case && errorOf(p, view) !== undefined && p[view.cost] > 0 && !hidden.has(p.method) &&
@@ -35,19 +35,19 @@ function startChart(Plotly) {
       (view.curves || p.as_it_comes) ? [i] : []);
   const keeps = (p, view) => p.ok && errorOf(p, view) <= view.tolerance && p[view.cost] <= view.budget;
 
-  /** All that is known of a point, as lines. */
+  /** All details of a point, as lines. */
   function describe(p) {
     const errors = (name) =>
-      p[name] ? ["max", "profile", "rms"].filter((f) => f in p[name]).map((f) => `${f} ${percent(p[name][f])}`).join(", ") : "not known";
+      p[name] ? ["max", "profile", "rms"].filter((f) => f in p[name]).map((f) => `${f} ${percent(p[name][f])}`).join(", ") : "unknown";
     const costs = ["step", "simulated", "rest"].filter((c) => p[c]).map((c) => `${words[c]} ${seconds(p[c])}`);
     return [
       `<b>${escaped(p.method)}</b> on ${escaped(p.case)}`,
-      [p.kappa !== undefined && `κ ${digits(p.kappa)}${p.as_it_comes ? " (auto)" : ""}`, p.accuracy && `asked for ${percent(p.accuracy)}`,
+      [p.kappa !== undefined && `κ ${digits(p.kappa)}${p.as_it_comes ? " (auto)" : ""}`, p.accuracy && `accuracy ${percent(p.accuracy)} requested`,
         p.precision].filter(Boolean).join(", "),
       `${escaped(p.mesh)}${p.elements ? `, ${p.elements} elements` : ""}`,
       `to ${named("golden", p.case)}: ${errors("golden")}`,
       `to ${named("truth", p.case)}: ${errors("truth")}`,
-      `cost: ${costs.join(", ") || "not known"}`,
+      `cost: ${costs.join(", ") || "unknown"}`,
       `finding: ${escaped(p.finding).replace(/(.{60,90}?) /g, "$1<br>   ")}`,
       `cost measured by ${p.measured_by}`,
     ].join("<br>");
@@ -119,20 +119,20 @@ function startChart(Plotly) {
       annotations: [
         note({ xref: "paper", x: 0, xanchor: "left", yanchor: "bottom", y: Math.log10(view.tolerance), text: `tolerance ${percent(view.tolerance)}` }),
         note({ yref: "paper", y: 0.02, yanchor: "bottom", xanchor: "right", textangle: -90,
-          ...(beyond ? { xref: "paper", x: 1 } : { x: Math.log10(view.budget) }), text: `budget ${seconds(view.budget)}${beyond ? ", farther right" : ""}` }),
+          ...(beyond ? { xref: "paper", x: 1 } : { x: Math.log10(view.budget) }), text: `budget ${seconds(view.budget)}${beyond ? ", further right" : ""}` }),
       ],
     };
   }
 
-  /** The sentence and the table below the chart: what keeps both limits, cheapest first. */
+  /** The sentence and the table below the chart: the points within both limits, cheapest first. */
   function tell(view, positions) {
     const enough = positions.filter((i) => keeps(data.points[i], view)).sort((a, b) => data.points[a][view.cost] - data.points[b][view.cost]);
     const best = data.points[enough[0]];
     const mesh = (p) => (p.mesh === data.own_mesh ? p.mesh : `mesh of ${p.elements} elements`);
-    const name = (p) => [p.method + (p.accuracy ? ` asked for ${percent(p.accuracy)}` : ""), p.precision, mesh(p)].join(", ");
+    const name = (p) => [p.method + (p.accuracy ? ` with accuracy ${percent(p.accuracy)}` : ""), p.precision, mesh(p)].join(", ");
     tools.querySelector(".answer").textContent = best
-      ? `Cheapest within ${percent(view.tolerance)} and ${seconds(view.budget)}: ${name(best)}: ${percent(errorOf(best, view))} at ${seconds(best[view.cost])}. ${enough.length} of ${positions.length} keep both.`
-      : `None of the ${positions.length} shown keeps ${percent(view.tolerance)} and ${seconds(view.budget)}.`;
+      ? `Cheapest within ${percent(view.tolerance)} and ${seconds(view.budget)}: ${name(best)}: ${percent(errorOf(best, view))} at ${seconds(best[view.cost])}. ${enough.length} of ${positions.length} are within both.`
+      : `None of the ${positions.length} shown is within ${percent(view.tolerance)} and ${seconds(view.budget)}.`;
     const cell = (text, kind) => Object.assign(document.createElement("td"), { textContent: text, className: kind ?? "" });
     tools.querySelector("tbody").replaceChildren(...enough.slice(0, 8).map((i) => {
       const p = data.points[i];
@@ -167,7 +167,7 @@ function startChart(Plotly) {
     return Plotly.react(plot, traces, layout(view, positions), options).then(() => (tools.dataset.drawn = key));
   }
 
-  /** The budget's slider reaches over what the case and the kind of cost have. */
+  /** Fits the range of the budget's slider to the costs of the case. */
   function newBudget() {
     const view = read();
     const costs = data.points.filter((p) => p.case === view.case && p[view.cost] > 0).map((p) => Math.log10(p[view.cost]));
@@ -210,7 +210,7 @@ function startChart(Plotly) {
     }));
 }
 
-// Plotly is packed into the page: unpacked here, run, and the static pictures make way.
+// Unpacks and runs Plotly, which is compressed in the page, and hides the static pictures.
 (async () => {
   const packed = document.querySelector("#plotly");
   if (!packed || !window.DecompressionStream) return;

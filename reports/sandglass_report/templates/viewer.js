@@ -1,4 +1,4 @@
-// The 3D viewer: two bodies side by side, drawn far faces first, with one camera for both.
+// The 3D viewer: two bodies side by side, far faces drawn first, with a common camera.
 (() => {
   const holder = document.querySelector("#viewer");
   const data = JSON.parse(document.querySelector("#viewer-data").textContent);
@@ -12,7 +12,7 @@
   const places = ({ low, size, xyz }) =>
     Float64Array.from(new Uint16Array(bytes(xyz).buffer), (v, i) => low[i % 3] + (v / 65535) * size);
 
-  // A case with its arrays decoded; kept, for switching back.
+  // A case with its arrays decoded, cached for switching back.
   const decoded = new Map();
   function open(name) {
     if (!decoded.has(name)) {
@@ -37,7 +37,7 @@
     return body.decoded.get(name);
   }
 
-  // Rows: right, up, towards the viewer; as sandglass_report/shapes.py has them.
+  // Rows: right, up, towards the viewer, as in sandglass_report/shapes.py.
   function axes(azimuth = camera.azimuth, elevation = camera.elevation) {
     const [a, e] = [azimuth, elevation].map((d) => (d * Math.PI) / 180);
     const [ca, sa, ce, se] = [Math.cos(a), Math.sin(a), Math.cos(e), Math.sin(e)];
@@ -51,8 +51,8 @@
     return out;
   };
 
-  // The middle and the width and height, from the case's own side, of what sets the scale: the body at rest and
-  // the golden, or the answer shown where there is none.
+  // Centre, width and height, in the case's default view, of the bodies that set the scale: the undeformed one and
+  // the golden, or the answer shown if there is no golden.
   function bounds(body) {
     const known = [body.rest, answer(body, body.answers.golden ? "golden" : get("left").value).points];
     const spans = (points) => {
@@ -138,7 +138,7 @@
   function caption(body, name, key) {
     if (name === "at rest") return "at rest";
     const shown = answer(body, name);
-    const largest = shown.largest === null || name === "golden" ? "" : `: at most ${number(100 * shown.largest)} % from the golden`;
+    const largest = shown.largest === null || name === "golden" ? "" : `: up to ${number(100 * shown.largest)} % from the golden`;
     const missing = shown.levels[key] ? "" : ` (grey: it has no ${data.scales[key].words})`;
     return (name === "golden" ? "golden, the mixed element" : name) + largest + missing;
   }

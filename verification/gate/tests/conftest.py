@@ -1,4 +1,4 @@
-"""A folder of files that the gate is called with, before and after its first baseline."""
+"""A folder of input files for the gate, before and after its first baseline."""
 
 import gate_documents
 import pytest

@@ -1,4 +1,4 @@
-"""Documents as the solver's commands write them, and a folder in which the gate gets them."""
+"""Documents as written by the solver's commands, and a folder with which to run the gate."""
 
 import copy
 import json
@@ -72,7 +72,7 @@ def process(number, slower=None, share=0.0, **changed):
 
 
 class Folder:
-    """Files that a gate is called with; `call` gives exit code and output."""
+    """Input files for the gate; `call` returns exit code and output."""
 
     def __init__(self, path, capsys):
         self.path, self.capsys = path, capsys
@@ -82,7 +82,7 @@ class Folder:
         self.bench = [process(number) for number in range(PROCESSES)]
 
     def move_to(self, processor):
-        """What is found from here on, another processor finds."""
+        """All later figures are from another processor."""
         for document in (self.verdicts, *self.bench):
             document["processor"] = processor
 

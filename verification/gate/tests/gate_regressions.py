@@ -1,4 +1,4 @@
-"""What may go wrong: changes to the documents of a folder, and what the gate must say of each."""
+"""Regressions: changes to the documents of a folder, and the gate's expected answer to each."""
 
 from gate.compare import BROKEN, VANISHED, WORSE
 from gate_documents import PROCESSES, process

@@ -1,4 +1,4 @@
-"""ci/gate --accept: what the baseline keeps, why, and how it is written."""
+"""ci/gate --accept: the contents of the baseline, the reasons, and the file."""
 
 import json
 
@@ -37,7 +37,7 @@ def test_accepting_one_source_leaves_the_others(accepted):
 
 
 def test_errors_cannot_creep(accepted):
-    """Each step is within the margin; accepting keeps the first figure all the same."""
+    """Each step is within the margin; accepting nevertheless keeps the first figure."""
     margin = RELATIVE * 0.01 + FLOOR["double"]
     figures = accepted.verdicts["records"][0]["golden"]
     before = accepted.baseline()["records"]
@@ -62,7 +62,7 @@ def accuracy(records):
 
 
 def test_errors_that_another_machine_finds_are_its_own(accepted):
-    """Whoever comes back to the first machine finds what was accepted there."""
+    """Back on the first machine, the figures accepted there still apply."""
     change_error(accepted)  # column, tl-full
     accepted.move_to("Abacus 4")
     code, text = accepted.call()
@@ -102,7 +102,7 @@ def test_errors_of_a_machine_do_not_make_its_times_known(accepted):
 
 
 def test_operations_are_those_of_all_machines(accepted):
-    """No machine changes a count, so that another one's takes the place of the first's."""
+    """Counts do not depend on the machine, so those of another machine replace the first's."""
     add_a_multiplication(accepted)
     accepted.move_to("Abacus 4")
     accepted.accept()

@@ -1,4 +1,4 @@
-"""What the gate runs: the real program where it is quick, elsewhere a script that plays it."""
+"""The gate's runs of the program: the real one where it is quick, elsewhere a script."""
 
 import json
 
@@ -25,7 +25,7 @@ done
 
 @pytest.fixture
 def play(tmp_path, monkeypatch):
-    """Makes a script the program under test, with these commands in the place of `run`."""
+    """Replaces the program under test by a script with these commands instead of `run`."""
 
     def made(body="", code=3):
         script = tmp_path / "program"
@@ -38,14 +38,14 @@ def play(tmp_path, monkeypatch):
 
 
 def answers(folder, *values):
-    """Files one.h5, two.h5 ... with such displacements."""
+    """Files one.h5, two.h5 ... with these displacements."""
     for name, value in zip(("one", "two"), values):
         with h5py.File(folder / f"{name}.h5", "w") as file:
             file["frames/0001/displacement"] = np.full((3, 3), value)
 
 
 def told(folder):
-    """What bits.json says of the double run of column."""
+    """The entry of bits.json for the double run of column."""
     records = json.loads(collect.bits(folder).read_text())["records"]
     assert len(records) == 2 * len(collect.BIT_CASES)
     return {record["name"]: record["differs"] for record in records}
@@ -95,7 +95,7 @@ def test_program_that_fails_is_exit_code_3(play, capsys):
 
 
 def test_operations_of_the_program_itself(tmp_path, capsys):
-    """The one source that takes no time: accepted, it passes; with one more, it fails."""
+    """The one quick source: once accepted, it passes; with one more operation, it fails."""
     baseline = tmp_path / "baseline.json"
     options = ["operations", "--baseline", str(baseline), "-o", str(tmp_path)]
     assert command.main([*options, "--accept", "--reason", "a test"]) == 0

@@ -1,4 +1,4 @@
-"""ci/gate says what has changed: terminal, Markdown, JUnit; and fails when it must."""
+"""ci/gate reports changes in terminal, Markdown and JUnit, and fails when it must."""
 
 import pytest
 from gate import __main__ as command
@@ -110,7 +110,7 @@ def test_too_few_processes_cannot_tell(accepted):
 
 
 def test_disturbed_processes_do_not_matter(accepted):
-    """One of twelve may be slow in any way: the interval leaves it out."""
+    """One of twelve may be arbitrarily slow: the interval excludes it."""
     for record in accepted.bench[5]["records"][::2]:
         record["ns_best"] *= 1.5
     assert accepted.call()[0] == 0

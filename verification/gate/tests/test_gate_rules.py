@@ -1,4 +1,4 @@
-"""Intervals and rules at, below and above their lines; ratios are of one process."""
+"""Intervals and rules at, below and above their limits; ratios within one process."""
 
 import pytest
 from gate.bench import read_bench
