@@ -49,14 +49,12 @@ bool is_small(const Mesh& mesh, const Hexahedron& cell, const Vector& middle, co
 CoarseStiffness::CoarseStiffness(const Scene& scene, const CoarseGrid& grid)
     : grid_(grid),
       size_(3 * grid.nodes()),
-      stride_((size_ + strip - 1) / strip * strip),
       lambda_(std::visit([](const auto& law) { return lame_lambda(law); }, scene.description.law)),
       mu_(std::visit([](const auto& law) { return law.shear_modulus(); }, scene.description.law)),
       cells_(grid.cells()),
-      fixed_(stride_ * stride_),
+      fixed_(size_ * size_),
       matrix_(fixed_.size()),
-      panel_(panel * stride_),
-      diagonal_(stride_) {
+      solver_(size_) {
   for (std::size_t c = 0; c < cells_.size(); ++c) cells_[c].nodes = grid.nodes_of(c);
   const NodalField free = free_components(scene);
   const auto& hexahedra = scene.mesh.cells;
@@ -93,7 +91,7 @@ void CoarseStiffness::add_fixed_element(const Scene& scene, const Hexahedron& ce
   for (const auto& [a, A] : gradients) {
     for (const auto& [b, B] : gradients) {
       for (int i = 0; i < 3; ++i) {
-        double* row = &fixed_[(3 * a + at(i)) * stride_ + 3 * b];
+        double* row = &fixed_[(3 * a + at(i)) * size_ + 3 * b];
         for (int j = 0; j < 3; ++j) row[j] += lambda * A(i, i) * B(j, j) + mu * A(i, j) * B(j, i);
         row[i] += mu * (A(i, 0) * B(i, 0) + A(i, 1) * B(i, 1) + A(i, 2) * B(i, 2));
       }
@@ -134,87 +132,6 @@ void CoarseStiffness::assemble() {
         }
       }
     }
-  }
-}
-
-/// Inverts the panel's own block by the sweep operator (Goodnight 1979), which needs no exchange, for the
-/// matrix is positive. A function that adds nothing to those before it (all its nodes are constrained, or it
-/// repeats them) is left out: its row becomes zero.
-void CoarseStiffness::invert_block(std::size_t first, double floor, Block& B) const {
-  for (std::size_t p = 0; p < panel; ++p) {
-    for (std::size_t q = 0; q < panel; ++q) B[p][q] = panel_[p * stride_ + first + q];
-  }
-  for (std::size_t k = 0; k < panel; ++k) {
-    const double pivot = B[k][k], original = diagonal_[first + k];
-    const bool left_out = pivot <= 1e-6 * original || original <= floor;
-    const double reciprocal = left_out ? 0.0 : 1.0 / pivot;
-    const std::array<double, panel> row = B[k];
-    for (std::size_t p = 0; p < panel; ++p) {
-      for (std::size_t q = 0; q < panel; ++q) B[p][q] -= reciprocal * row[p] * row[q];
-    }
-    for (std::size_t p = 0; p < panel; ++p) B[k][p] = B[p][k] = reciprocal * row[p];
-    B[k][k] = -reciprocal;
-  }
-  for (auto& row : B) {
-    for (double& x : row) x = -x;
-  }
-}
-
-/// The sweep operator on the lower triangle, several pivots at a time: with V their columns and B the inverse
-/// of their block, A <- A - V B V^T elsewhere, V B in their columns and -B in their block. In the end A holds
-/// its negative inverse.
-void CoarseStiffness::invert() {
-  const std::size_t n = stride_;
-  for (std::size_t i = 0; i < n; ++i) diagonal_[i] = entry(i, i);
-  const double floor = 1e-8 * *std::max_element(diagonal_.begin(), diagonal_.end());
-  Block B;
-  for (std::size_t first = 0; first < n; first += panel) {
-    const double* const V = panel_.data();
-    for (std::size_t p = 0; p < panel; ++p) {
-      for (std::size_t j = 0; j < n; ++j) {
-        panel_[p * n + j] = j <= first + p ? entry(first + p, j) : entry(j, first + p);
-      }
-    }
-    invert_block(first, floor, B);
-    for (std::size_t i = 0; i < n; ++i) {
-      double* const row = &entry(i, 0);
-      if (i >= first && i < first + panel) {
-        const auto& b = B[i - first];
-        for (std::size_t j = 0; j < first; ++j) row[j] = product(b, V + j);
-        for (std::size_t q = 0; q < panel; ++q) row[first + q] = -b[q];
-        continue;
-      }
-      std::array<double, panel> w;
-      for (std::size_t p = 0; p < panel; ++p) w[p] = product(B[p], V + i);
-#pragma omp simd
-      for (std::size_t j = 0; j <= i; ++j) row[j] -= product(w, V + j);
-      if (i >= first) std::copy(w.begin(), w.end(), row + first);
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) entry(i, j) = entry(j, i) = -entry(i, j);
-  }
-}
-
-/// A strip of entries of c at a time, which stays in registers. The matrix is symmetric: its rows are its
-/// columns.
-void CoarseStiffness::solve(const CoarseVector& q, CoarseVector& c) const {
-  for (std::size_t first = 0; first < stride_; first += strip) {
-    std::array<double, strip> even{}, odd{};  // two chains of additions
-    const double* column = matrix_.data() + first;
-    for (std::size_t j = 0; j + 1 < size_; j += 2, column += 2 * stride_) {
-#pragma omp simd
-      for (std::size_t i = 0; i < strip; ++i) {
-        even[i] += column[i] * q[j];
-        odd[i] += column[stride_ + i] * q[j + 1];
-      }
-    }
-    if (size_ % 2 == 1) {  // else no column is left
-#pragma omp simd
-      for (std::size_t i = 0; i < strip; ++i) even[i] += column[i] * q[size_ - 1];
-    }
-    const std::size_t left = std::min(strip, size_ - first);
-    for (std::size_t i = 0; i < left; ++i) c[first + i] = even[i] + odd[i];
   }
 }
 

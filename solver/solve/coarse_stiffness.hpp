@@ -3,6 +3,7 @@
 #include "problem/model.hpp"
 #include "solve/coarse_grid.hpp"
 #include "solve/coarse_transfer.hpp"
+#include "solve/semidefinite_solver.hpp"
 
 namespace sandglass {
 
@@ -12,7 +13,7 @@ struct ElementTangent {
   double volume;           ///< reference volume, m^3
 };
 
-/// The tangent stiffness on a coarse grid and its inverse, by the law's moduli at rest (N/m). Elements that
+/// The tangent stiffness on a coarse grid, factorised, by the law's moduli at rest (N/m). Elements that
 /// are free and small see the gradients of the grid's functions at their centre, pushed forward with their
 /// own deformation. Elements that touch a constraint, or are no smaller than the grid's cells, see the
 /// functions as their nodes take them, exactly, but stay as they are at rest.
@@ -22,8 +23,8 @@ class CoarseStiffness {
 
   std::size_t size() const { return size_; }
 
-  /// Takes the tangent at a deformation and inverts it. `tangent_of(e)` gives the ElementTangent of element
-  /// e.
+  /// Takes the tangent at a deformation and factorises it. `tangent_of(e)` gives the ElementTangent of
+  /// element e.
   template <class TangentOf>
   void update(const TangentOf& tangent_of, int threads) {
     in_parallel(cells_.size(), threads, [&](std::size_t c) {
@@ -33,11 +34,11 @@ class CoarseStiffness {
         add_element(T, grid_.gradients(local), tangent_of(element));
     });
     assemble();
-    invert();
+    solver_.factorise(matrix_);
   }
 
-  /// c = A^-1 q.
-  void solve(const CoarseVector& q, CoarseVector& c) const;
+  /// c = A^-1 q. What a function adds that only moves constrained nodes is zero.
+  void solve(const CoarseVector& q, CoarseVector& c) { solver_.solve(q, c); }
 
  private:
   /// Sums of V G_ai G_bj over the elements of a cell, G_a the gradients of its eight functions.
@@ -57,33 +58,16 @@ class CoarseStiffness {
   void add_fixed_element(const Scene& scene, const Hexahedron& cell, const NodalField& free);
   void assemble();
 
-  /// Pivots taken at a time.
-  static constexpr std::size_t panel = 8;
-  using Block = std::array<std::array<double, panel>, panel>;
-
-  void invert_block(std::size_t first, double floor, Block& B) const;
-  void invert();
-  /// b . V_j for a row j of the panel's columns.
-  double product(const std::array<double, panel>& b, const double* V_j) const {
-    double sum = b[0] * V_j[0];
-    for (std::size_t p = 1; p < panel; ++p) sum += b[p] * V_j[p * stride_];
-    return sum;
-  }
-  double& entry(std::size_t row, std::size_t column) { return matrix_[row * stride_ + column]; }
+  double& entry(std::size_t row, std::size_t column) { return matrix_[row * size_ + column]; }
 
   CoarseGrid grid_;
-  /// Entries of a coarse vector that are solved for together.
-  static constexpr std::size_t strip = 32;
-
   std::size_t size_;
-  std::size_t stride_;  // of the rows of the matrix, whole strips
   double lambda_;
   double mu_;
   std::vector<Cell> cells_;
   std::vector<double> fixed_;   // what does not follow the deformation
-  std::vector<double> matrix_;  // A, then its inverse; by rows
-  std::vector<double> panel_;   // columns of the pivots, one after another
-  std::vector<double> diagonal_;
+  std::vector<double> matrix_;  // A, by rows
+  SemidefiniteSolver solver_;
 };
 
 }  // namespace sandglass

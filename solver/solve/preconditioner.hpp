@@ -28,7 +28,7 @@ class Preconditioner {
   }
 
   /// c = A^-1 q.
-  void solve(const CoarseVector& q, CoarseVector& c) const { stiffness_.solve(q, c); }
+  void solve(const CoarseVector& q, CoarseVector& c) { stiffness_.solve(q, c); }
 
   /// Takes the coarse vector c that `apply` adds.
   void take(const CoarseVector& c) { transfer_.take(c); }
