@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "app/allocations.hpp"
 #include "app/bench_table.hpp"
 #include "app/commands.hpp"
 #include "app/execution_options.hpp"
@@ -58,7 +57,6 @@ BenchPlan make_plan(const BenchOptions& options) {
   if (plan.threads.empty()) plan.threads = available_processors() > 1 ? std::vector{1, 2} : std::vector{1};
   require_count("--repetitions", options.repetitions, 1'000'000);
   plan.settings.repetitions = options.repetitions;
-  plan.settings.allocations = allocations;
   return plan;
 }
 

@@ -82,8 +82,7 @@ TEST(Adaptive, every_level_by_itself_is_its_method) {
     SCOPED_TRACE(Method::name);
     const Model fixed(scene, {std::string(Method::name)});
     State<double> state = state_at(elements, u), expected = state_at(elements_of(fixed), u);
-    state.levels.assign(state.levels.size(), level);
-    elements.regroup(state);
+    elements.set_levels(state, std::vector<double>(scene.mesh.cells.size(), level));
     expect_same(numbers_in(forces(elements, state)), numbers_in(forces(elements_of(fixed), expected)));
     const auto energies = elements.energies(state), wanted_energies = elements_of(fixed).energies(expected);
     expect_same({energies.strain, energies.hourglass}, {wanted_energies.strain, wanted_energies.hourglass});
@@ -125,8 +124,8 @@ TEST(Adaptive, mixed_levels_add_up) {
   for (const int threads : {1, 2, 3}) {
     const Model model(scene, {.method = "tl-adaptive", .threads = threads});
     State<double> state = state_at(elements_of(model), u);
-    state.levels = levels;
-    elements_of(model).regroup(state);
+    elements_of(model).set_levels(state, levels);
+    EXPECT_EQ(elements_of(model).levels(state), levels);
     const NodalField together = forces(elements_of(model), state);
     if (first) {
       EXPECT_EQ(together, *first) << threads;
@@ -221,19 +220,19 @@ TEST(Adaptive, levels_follow_the_rule) {
 
   const Adaptation up = elements.adapt(state, rows, length, 0.5 * length);
   std::array<std::size_t, 3> seen{};
-  EXPECT_EQ(state.levels, by_the_rule(length, std::vector<double>(defects.size(), 2.0)));
-  for (const double level : state.levels) ++seen[static_cast<std::size_t>(level)];
+  const std::vector<double> before = elements.levels(state);
+  EXPECT_EQ(before, by_the_rule(length, std::vector<double>(defects.size(), 2.0)));
+  for (const double level : before) ++seen[static_cast<std::size_t>(level)];
   EXPECT_EQ(up.promoted, seen[1] + seen[2]);
   EXPECT_EQ(up.demoted, 0U);
   for (const std::size_t count : seen) EXPECT_GT(count, 5U) << "a level that was not tried";
 
-  const std::vector<double> before = state.levels;
   const double longer = 3.0 * length;
   EXPECT_EQ(elements.adapt(state, rows, longer, 0.0).demoted, 0U);
-  EXPECT_EQ(state.levels, before);
+  EXPECT_EQ(elements.levels(state), before);
   const Adaptation down = elements.adapt(state, rows, longer, 0.5 * longer);
   EXPECT_GT(down.demoted, 0U);
-  EXPECT_EQ(state.levels, by_the_rule(0.5 * longer, before));
+  EXPECT_EQ(elements.levels(state), by_the_rule(0.5 * longer, before));
 }
 
 NodalField at_rest(const Scene& scene, const MethodChoice& choice) {
@@ -289,8 +288,7 @@ TEST(Adaptive, answers_rest_at_their_levels) {
   const auto& elements = elements_of(model);
   Body<double> body(model, elements);
   body.state() = state_at(elements, told.frames.back().u);
-  body.state().levels = told.frames.back().levels;
-  elements.regroup(body.state());
+  elements.set_levels(body.state(), told.frames.back().levels);
   body.impose(1.0);
   body.evaluate_forces();
   EXPECT_LT(body.residual(), 1.01 * scene.description.relaxation.tolerance);
@@ -396,8 +394,10 @@ TEST(Adaptive, wrong_input_is_refused) {
   const Model model(scene, {"tl-adaptive"});
   State<double> state = elements_of(model).rest();
   for (const double level : {-1.0, 0.5, 3.0, std::nan("")}) {
-    state.levels[3] = level;
-    EXPECT_TRUE(contains(input_error([&] { elements_of(model).regroup(state); }), "element level"));
+    std::vector<double> levels = elements_of(model).levels(state);
+    levels[3] = level;
+    EXPECT_TRUE(
+        contains(input_error([&] { elements_of(model).set_levels(state, levels); }), "element level"));
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "app/allocations.hpp"
 #include "base/error.hpp"
 #include "benchmark/bench.hpp"
 #include "benchmark/force_check.hpp"
@@ -12,6 +11,7 @@
 #include "benchmark/stepped_model.hpp"
 #include "benchmark/work.hpp"
 #include "mesh/box.hpp"
+#include "support/allocations.hpp"
 #include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
@@ -115,37 +115,15 @@ TEST(Measure, wrong_forces_get_no_time) {
   EXPECT_EQ(right.checks, 1);
 }
 
-/// Allocates twice in every step, once with a stronger alignment, and when it goes back.
-class Greedy final : public Candidate {
- public:
-  NodalField forces() override { return {{1.0, 0.0, 0.0}}; }
-  void restart() override { kept_ = std::make_unique<int>(0); }
-  void step() override {
-    kept_ = std::make_unique<int>(1);
-    aligned_ = std::make_unique<Aligned>();
-  }
-  void require_healthy() override {}
-
- private:
-  struct alignas(128) Aligned {
-    int value = 0;
-  };
-  std::unique_ptr<int> kept_;
-  std::unique_ptr<Aligned> aligned_;
-};
-
-TEST(Measure, counts_allocations_of_steps_where_told_how) {
-  const NodalField reference{{1.0, 0.0, 0.0}};
-  Greedy greedy;
-  Fake thrifty(1.0);
-  const std::vector<Entry> entries{{&greedy, &reference, 1e-12}, {&thrifty, &reference, 1e-12}};
-  const auto proceed = [](double) { return true; };
-  auto timings = measure(
-      entries, {.repetitions = 1, .batch_seconds = 1e-6, .allocations = sandglass::allocations}, proceed);
-  EXPECT_EQ(timings[0].allocations_per_step, 2.0);
-  EXPECT_EQ(timings[1].allocations_per_step, 0.0);
-  timings = measure(entries, {.repetitions = 1, .batch_seconds = 1e-6}, proceed);
-  EXPECT_FALSE(timings[0].allocations_per_step);
+/// Tests that nothing is allocated would tell nothing were calls not counted.
+TEST(Allocations, are_counted_with_any_alignment) {
+  constexpr std::align_val_t alignment{128};
+  const long before = allocations();
+  void* plain = ::operator new(1);
+  void* aligned = ::operator new(1, alignment);
+  EXPECT_EQ(allocations() - before, 2);
+  ::operator delete(plain);
+  ::operator delete(aligned, alignment);
 }
 
 TEST(Measure, ends_when_told) {
@@ -190,6 +168,20 @@ TYPED_TEST(SteppedModelTest, stays_healthy_for_good) {
     model->restart();
     for (int step = 0; step < 10000; ++step) model->step();
     EXPECT_NO_THROW(model->require_healthy());
+  }
+}
+
+TYPED_TEST(SteppedModelTest, steps_allocate_nothing) {
+  const Scene scene = box_scene(576);
+  for (const auto& choice : variants_of({{std::string(TypeParam::name)},
+                                         {Precision::double_precision, Precision::single_precision},
+                                         {1, 2},
+                                         {}})) {
+    const auto model = make_stepped_model(scene, choice);
+    model->step();  // threads start once
+    const long before = allocations();
+    for (int step = 0; step < 20; ++step) model->step();
+    EXPECT_EQ(allocations(), before) << name_of(choice.precision) << " " << choice.threads;
   }
 }
 

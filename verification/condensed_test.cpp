@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "app/allocations.hpp"
 #include "base/error.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/layered_cholesky.hpp"
+#include "support/allocations.hpp"
 #include "support/distorted_bar.hpp"
 #include "support/temporary_folder.hpp"
 

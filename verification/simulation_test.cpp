@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "app/allocations.hpp"
 #include "io/case_file.hpp"
 #include "sandglass/mesh_arrays.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
+#include "support/allocations.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 

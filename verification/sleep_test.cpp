@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/distances.hpp"
 #include "base/error.hpp"
+#include "mesh/distances.hpp"
 #include "mesh/mesh_part.hpp"
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"

@@ -68,10 +68,6 @@ def test_figures_are_there_and_positive(tiny):
                 assert record[figure] > 0.0, (figure, record)
 
 
-def test_steps_allocate_nothing(tiny):
-    assert {record["allocations_per_step"] for record in tiny[1]["records"]} == {0.0}
-
-
 def test_figures_follow_from_each_other(tiny):
     document = tiny[1]
     for r in document["records"]:

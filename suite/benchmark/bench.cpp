@@ -28,7 +28,6 @@ Speed speed_of(const Timing& timing, const BenchRecord& record, double memory_gb
   speed.p99_us = 1e6 * quantile(timing.seconds_of_a_step, 0.99);
   speed.max_us = 1e6 * quantile(timing.seconds_of_a_step, 1.0);
   speed.steps = static_cast<long>(timing.seconds_of_a_step.size());
-  speed.allocations_per_step = timing.allocations_per_step;
   if (record.stable_step) speed.real_time = *record.stable_step / median;
   speed.gflops = record.work.operations / speed.ns.median;
   speed.peak_share = speed.gflops / record.ceiling.gflops;

@@ -30,7 +30,6 @@ struct Speed {
   double p99_us;  ///< of single steps
   double max_us;  ///< of single steps
   long steps;     ///< timed
-  std::optional<double> allocations_per_step;
   std::optional<double> real_time;  ///< simulated seconds per wall second at the stable step
   double gflops;                    ///< counted operations over the median
   double peak_share;                ///< of the peak with so many threads

@@ -43,7 +43,6 @@ Json to_record(const BenchRecord& record) {
           {"step_p99_us", figure([](const Speed& s) { return s.p99_us; })},
           {"step_max_us", figure([](const Speed& s) { return s.max_us; })},
           {"steps_timed", record.speed ? Json(record.speed->steps) : Json(nullptr)},
-          {"allocations_per_step", figure([](const Speed& s) { return s.allocations_per_step; })},
           {"operations_per_element_step", record.work.operations},
           {"bytes_per_element_step", record.work.bytes},
           {"gflops", figure([](const Speed& s) { return s.gflops; })},

@@ -51,14 +51,6 @@ void time_batches(Candidate& candidate, int steps, Timing& timing) {
   }
 }
 
-/// Of one batch, for all: every batch goes through the same states.
-double count_allocations(Candidate& candidate, int steps, long (*allocations)()) {
-  candidate.restart();
-  const long before = allocations();
-  for (int s = 0; s < steps; ++s) candidate.step();
-  return static_cast<double>(allocations() - before) / steps;
-}
-
 }  // namespace
 
 std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSettings& settings,
@@ -80,9 +72,6 @@ std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSetting
     candidate.require_healthy();
     timings[n].seconds_per_step.clear();
     timings[n].seconds_of_a_step.clear();
-    if (settings.allocations != nullptr) {
-      timings[n].allocations_per_step = count_allocations(candidate, steps[n], settings.allocations);
-    }
     order.push_back(n);
   }
   for (int repetition = 0; repetition < settings.repetitions; ++repetition) {

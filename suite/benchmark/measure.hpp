@@ -43,7 +43,6 @@ struct Timing {
   double force_difference;                     ///< relative to the reference
   std::vector<double> seconds_per_step;        ///< mean of each batch
   std::vector<double> seconds_of_a_step;       ///< single steps
-  std::optional<double> allocations_per_step;  ///< none where nobody counts them
 };
 
 struct MeasureSettings {
@@ -51,7 +50,6 @@ struct MeasureSettings {
   /// A batch is as many steps as fit, at least one: shorter than the time for which a system gives a
   /// processor to somebody else, so that most batches run undisturbed on a busy machine too.
   double batch_seconds = 5e-4;
-  long (*allocations)() = nullptr;  ///< calls of operator new so far, where somebody counts them
 };
 
 /// Called between batches with the share of the work done; returning false ends the work.

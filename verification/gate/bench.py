@@ -147,12 +147,9 @@ def read_bench(paths):
 
 
 def _memory(variant, found):
-    """Bytes and allocations of a step; the worst, if processes differ."""
-    figures = {"bytes": max(timed["bytes_per_element_step"] for timed in found)}
-    allocations = [timed.get("allocations_per_step") for timed in found]
-    if None not in allocations:
-        figures["allocations"] = max(allocations)
-    return Record("memory", _name(variant), figures)
+    """Bytes of a step; the most, if processes differ."""
+    most = max(timed["bytes_per_element_step"] for timed in found)
+    return Record("memory", _name(variant), {"bytes": most})
 
 
 def _forces(variant, found):

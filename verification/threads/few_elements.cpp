@@ -1,5 +1,5 @@
-/// Every method with one law that remembers nothing and, where it can, one that does, on packs of doubles:
-/// the threaded loops do not differ between laws, and the thread sanitizer need not see minutes of kernels.
+/// Every method on packs of doubles alone: the threaded loops do not differ between number types, and the
+/// thread sanitizer need not see minutes of kernels.
 
 #include <array>
 
@@ -9,31 +9,10 @@
 
 namespace sandglass {
 
-namespace {
-
-template <class Method>
-ForceOf<Pack<double>> few(const Mesh& mesh, const AnyLaw& any_law, const HourglassSettings& settings,
-                          int threads) {
-  ForceOf<Pack<double>> elements;
-  const auto make = [&]<class Law>(const Law& law) {
-    if constexpr (knows_law<Method, Law>) {
-      elements = std::make_unique<AssemblyOf<Method, Law, Pack<double>>>(mesh, law, settings, threads);
-    }
-  };
-  if (const auto* law = std::get_if<NeoHookean>(&any_law)) {
-    make(*law);
-  } else {
-    make(std::get<Viscoelastic<NeoHookean>>(any_law));
-  }
-  return elements;
-}
-
-}  // namespace
-
 template <class Method>
 MethodEntry method_entry() {
   MethodEntry entry = method_facts<Method>();
-  entry.assemble_packed_double = &few<Method>;
+  entry.assemble_packed_double = &assemble<KernelOwner<Method>, Pack<double>>;
   return entry;
 }
 

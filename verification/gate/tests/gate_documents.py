@@ -60,7 +60,6 @@ def process(number, slower=None, share=0.0, **changed):
                     "status": "ok",
                     "ns_best": time * (1.0 + share * (method == slower or slower == "all")),
                     "bytes_per_element_step": 614.4,
-                    "allocations_per_step": 0.0,
                 }
             )
     return (

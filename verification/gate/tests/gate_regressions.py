@@ -52,10 +52,6 @@ def slow_everything(folder):
     folder.bench = [process(n, "all", 0.03) for n in range(PROCESSES)]
 
 
-def allocate_once(folder):
-    folder.bench[3]["records"][0]["allocations_per_step"] = 0.05
-
-
 def move_a_byte(folder):
     for document in folder.bench:
         document["records"][0]["bytes_per_element_step"] += 0.1
@@ -88,7 +84,6 @@ REGRESSIONS = {
     slow_everything: (
         *("speed", "box of 576, pace, pack double, 1 thread", "ns at peak flops", WORSE),
     ),
-    allocate_once: ("memory", "box of 576, linear, pack double, 1 thread", "allocations", BROKEN),
     move_a_byte: ("memory", "box of 576, linear, pack double, 1 thread", "bytes", WORSE),
     compute_wrong_forces: (
         "forces",
