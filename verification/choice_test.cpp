@@ -112,7 +112,7 @@ TEST(Choose, takes_the_first_that_suffices) {
     EXPECT_EQ(judgement.reason.empty(), outcome != Outcome::refused) << name_of(rung);
     EXPECT_TRUE(outcome != Outcome::not_tried || !judgement.error);
   }
-  for (const auto& mesh : choice.coarser) EXPECT_EQ(mesh.kept, *mesh.judgement.error <= 0.02);
+  for (const auto& mesh : choice.coarser) EXPECT_EQ(mesh.kept, *mesh.judgement.error <= 0.02) << mesh.judgement.reason;
   const Judgement& chosen = choice.attempts[*choice.chosen].judgement;
   EXPECT_LE(*chosen.error, 0.02);
   EXPECT_GT(*chosen.smallest_jacobian, 0.0);

@@ -7,15 +7,15 @@
 
 namespace sandglass {
 
-/// Solves A x = b for a dense, symmetric, positive semidefinite matrix by Eigen's Cholesky factorisation. A
-/// row whose diagonal entry is below 1e-8 of the largest is left out, and x is zero there. The others are
-/// scaled to a diagonal of 1, to which `shift` is added: it keeps the factorisation from breaking down where
-/// rows depend on each other, and changes x where A has eigenvalues of its size. The bits depend on the
-/// numbers alone: one thread computes them, in memory that is always aligned alike.
+/// Solves A x = b for a dense, symmetric, positive semidefinite matrix by Eigen's LDL^T factorisation with
+/// pivoting. A row whose diagonal entry is below `smallest_diagonal` of the largest is left out, and x is zero
+/// there. The others are scaled to a diagonal of 1, and those whose pivot is below `smallest_pivot` depend on
+/// the others up to roundoff: they are left out too. The bits depend on the numbers alone: one thread computes
+/// them, in memory that is always aligned alike.
 class SemidefiniteSolver {
  public:
-  /// Far below the softest motions of a body on a coarse grid, far above the roundoff of a factorisation.
-  static constexpr double shift = 1e-10;
+  static constexpr double smallest_diagonal = 1e-8;
+  static constexpr double smallest_pivot = 1e-6;
 
   explicit SemidefiniteSolver(std::size_t size);
   SemidefiniteSolver(const SemidefiniteSolver&) = delete;
@@ -25,7 +25,7 @@ class SemidefiniteSolver {
   /// Takes A, size x size; its entries must be finite.
   void factorise(const std::vector<double>& A);
 
-  /// x = A^-1 b; b must be in the range of A. Allocates nothing.
+  /// x with A x = b in the rows that are not left out. Allocates nothing.
   void solve(std::span<const double> b, std::span<double> x);
 
  private:
