@@ -153,8 +153,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "bench",
       "time of every method per element and step, beside what the machine can do.\n"
-      "All variants are timed in turn in one process, after their forces were compared with those of the\n"
-      "scalar double kernel; one that is wrong gets no time, and the exit code is 1. Traffic counts every\n"
+      "All variants are timed in turn in one process, after their forces were compared with those in double\n"
+      "precision on one thread; one that is wrong gets no time, and the exit code is 1. sandglass-scalar has\n"
+      "kernels that compute one element at a time too, and compares with those. Traffic counts every\n"
       "constant and row of a step once. Above 100 % of memory a mesh stays in a cache; the roofline holds "
       "it\n"
       "against the triad over arrays of its own size.\n"

@@ -69,9 +69,9 @@ def dynamic(text, **numbers):
     return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
-def sandglass(*arguments, **options):
+def sandglass(*arguments, program=BINARY, **options):
     """Runs the program; returns its outcome with its output."""
-    command = [BINARY, *map(str, arguments)]
+    command = [program, *map(str, arguments)]
     return subprocess.run(
         command, capture_output=True, text=True, timeout=120 * PATIENCE, **options
     )

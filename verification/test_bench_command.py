@@ -9,7 +9,7 @@ import re
 import subprocess
 
 import pytest
-from command_line import BLOCK, dynamic, methods, sandglass
+from command_line import BINARY, BLOCK, dynamic, methods, sandglass
 
 FIGURES = (
     "ns_per_element_step",
@@ -34,6 +34,9 @@ FIGURES = (
 )
 
 
+# The same program with the kernels that compute one element at a time.
+SCALAR = BINARY + "-scalar"
+
 # A condensed method answers at once: it takes no steps in time.
 WITHOUT_MOTION = {"linear-condensed"}
 OF_MOTION = {"stable_step_seconds", "simulated_seconds_per_second"}
@@ -43,7 +46,8 @@ OF_MOTION = {"stable_step_seconds", "simulated_seconds_per_second"}
 def tiny(tmp_path_factory):
     """One short run of everything: its output and its file."""
     file = tmp_path_factory.mktemp("bench") / "bench.json"
-    outcome = sandglass(*"bench --elements 64 --repetitions 1 --threads 1 2 --json".split(), file)
+    command = "bench --elements 64 --repetitions 1 --threads 1 2 --json".split()
+    outcome = sandglass(*command, file, program=SCALAR)
     assert outcome.returncode == 0, outcome.stderr
     return outcome.stdout, json.loads(file.read_text())
 
@@ -147,7 +151,7 @@ def test_condensed_methods_are_left_out_of_large_meshes(tmp_path):
     outcome = sandglass(*"bench --elements 20000".split(), *choice.split(), json_file)
     assert outcome.returncode == 0
     records = json.loads(json_file.read_text())["records"]
-    assert len(records) == 2  # the scalar kernel is always included
+    assert len(records) == 1
     for record in records:
         assert record["status"].startswith("left out: ") and record["status"] in outcome.stdout
         assert record["ns_per_element_step"] is None
@@ -159,6 +163,7 @@ def test_a_case_and_a_choice(block):
         *f"bench {block} --methods tl-full --precision float --threads 1".split(),
         *"--repetitions 2 --json".split(),
         json_file,
+        program=SCALAR,
     )
     assert outcome.returncode == 0
     records = json.loads(json_file.read_text())["records"]
@@ -168,6 +173,17 @@ def test_a_case_and_a_choice(block):
     ]
     assert all(r["ratio_to_tl_perturbation"] is None for r in records)
     assert all(r["speedup_over_scalar_double"] > 0.0 for r in records)
+
+
+def test_without_scalar_kernels_packs_are_compared_with_doubles(block):
+    json_file = block.parent / "packs.json"
+    command = f"bench {block} --methods tl-full --threads 1 --repetitions 1 --json".split()
+    outcome = sandglass(*command, json_file)
+    assert outcome.returncode == 0, outcome.stderr
+    double, single = json.loads(json_file.read_text())["records"]
+    assert (double["kernel"], single["kernel"]) == ("pack", "pack")
+    assert double["force_difference"] == 0.0 and single["force_difference"] > 0.0
+    assert double["speedup_over_scalar_double"] is None
 
 
 @pytest.mark.parametrize(

@@ -26,4 +26,10 @@ ForceOf<Number> assemble(const Mesh& mesh, const KernelLaw& kernel_law, const Ho
   return std::make_unique<Loop>(mesh, elastic, elastic, elastic, settings, threads);
 }
 
+template <class Method>
+ForceOf<double> assemble_scalar(const Mesh& mesh, const KernelLaw& law, const HourglassSettings& settings,
+                                int threads) {
+  return assemble<Method, double>(mesh, law, settings, threads);
+}
+
 }  // namespace sandglass

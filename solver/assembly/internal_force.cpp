@@ -30,6 +30,10 @@ void require_sensible(const MethodChoice& choice, const MethodEntry& method) {
 
 }  // namespace
 
+bool has_scalar_kernels() {
+  return methods().front().assemble_scalar_double != nullptr;
+}
+
 AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice,
                                      double density) {
   const MethodEntry& method = method_named(choice.method);
@@ -43,6 +47,9 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& any_law, co
   }
   const HourglassSettings settings{choice.kappa, density, choice.kappa_modulus};
   if (choice.kernel == KernelWidth::scalar) {
+    if (!has_scalar_kernels()) {
+      throw InputError("kernel: this program has no scalar kernels; sandglass-scalar has");
+    }
     return method.assemble_scalar_double(mesh, law, settings, choice.threads);
   }
   if (choice.precision == Precision::double_precision) {

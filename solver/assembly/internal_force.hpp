@@ -115,6 +115,9 @@ constexpr std::string_view name_of(Precision precision) {
 /// How many elements a kernel computes at a time: as many as a register holds, or one, for comparison.
 enum class KernelWidth { pack, scalar };
 
+/// Whether this program was linked with `sandglass_scalar`.
+bool has_scalar_kernels();
+
 /// What an adaptive method aims at unless told.
 inline constexpr double default_accuracy = 0.003;
 

@@ -37,7 +37,7 @@ struct MethodEntry {
 
   Assemble<Pack<double>>* assemble_packed_double = nullptr;
   Assemble<Pack<float>>* assemble_packed_float = nullptr;
-  Assemble<double>* assemble_scalar_double = nullptr;
+  Assemble<double>* assemble_scalar_double = nullptr;  ///< none unless a program links `sandglass_scalar`
 
   /// The number that `auto` stands for; none when the method takes no kappa.
   std::optional<double> (*auto_kappa)(const CalledLaw&, KappaModulus) = nullptr;
@@ -57,6 +57,12 @@ struct MethodEntry {
 template <class Method, class Number>
 ForceOf<Number> assemble(const Mesh& mesh, const KernelLaw& law, const HourglassSettings& settings,
                          int threads);
+
+/// The same, one element at a time, to compare with. Weak: null in a program without `sandglass_scalar`, for
+/// these kernels serve tests and benchmarks alone. Defined in `assembly/assemble.hpp`.
+template <class Method>
+[[gnu::weak]] ForceOf<double> assemble_scalar(const Mesh& mesh, const KernelLaw& law,
+                                              const HourglassSettings& settings, int threads);
 
 /// The entry of a method. Defined in `assembly/method_entry_of.hpp`.
 template <class Method>

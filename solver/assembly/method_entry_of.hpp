@@ -44,7 +44,7 @@ MethodEntry method_entry() {
   MethodEntry entry = method_facts<Method>();
   entry.assemble_packed_double = &assemble<KernelOwner<Method>, Pack<double>>;
   entry.assemble_packed_float = &assemble<KernelOwner<Method>, Pack<float>>;
-  entry.assemble_scalar_double = &assemble<KernelOwner<Method>, double>;
+  entry.assemble_scalar_double = &assemble_scalar<KernelOwner<Method>>;
   entry.auto_kappa = &detail::auto_kappa_of<Method>;
   entry.operations = &detail::operations_of<Method>;
   entry.traffic = &detail::traffic_with<Method>;

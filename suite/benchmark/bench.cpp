@@ -37,9 +37,10 @@ Speed speed_of(const Timing& timing, const BenchRecord& record, double memory_gb
   return speed;
 }
 
-/// The forces that all variants of a method must find.
+/// The forces that all variants of a method must find: those of the scalar kernel, where there is one.
 NodalField reference_forces(const Scene& scene, const std::string& method) {
-  return make_stepped_model(scene, {.method = method, .kernel = KernelWidth::scalar})->forces();
+  const auto kernel = has_scalar_kernels() ? KernelWidth::scalar : KernelWidth::pack;
+  return make_stepped_model(scene, {.method = method, .kernel = kernel})->forces();
 }
 
 /// Variants that are in memory at the same time.
@@ -111,7 +112,9 @@ std::vector<MethodChoice> variants_of(const BenchPlan& plan) {
       for (const Precision precision : plan.precisions) {
         variants.push_back({.method = method, .precision = precision, .threads = threads});
       }
-      variants.push_back({.method = method, .threads = threads, .kernel = KernelWidth::scalar});
+      if (has_scalar_kernels()) {
+        variants.push_back({.method = method, .threads = threads, .kernel = KernelWidth::scalar});
+      }
     }
   }
   return variants;

@@ -58,7 +58,7 @@ struct BenchRecord {
 /// Whether what was computed is wrong.
 bool is_wrong(const BenchRecord& record);
 
-/// Every variant of the plan; the scalar double kernel is always among them, for it is the yardstick.
+/// Every variant of the plan, and the scalar kernel in double precision where the program has it.
 std::vector<MethodChoice> variants_of(const BenchPlan& plan);
 
 /// Measures all variants on a scene in turn. When they do not all fit into memory, those that do are measured

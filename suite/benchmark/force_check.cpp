@@ -34,7 +34,7 @@ double force_limit(Precision precision, const AnyLaw& any_law) {
 std::string force_status(double difference, double limit) {
   if (difference < limit) return "ok";
   return fmt::format(
-      "wrong result: forces differ from the scalar double kernel's by {:.2e} of the largest; "
+      "wrong result: forces differ from the method's in double precision by {:.2e} of the largest; "
       "must be below {:.2g}",
       difference, limit);
 }

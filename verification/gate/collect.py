@@ -34,9 +34,12 @@ def flops(folder):
 
 
 def bench(folder, name):
-    """The file of one process of `sandglass bench`. Wrong forces are reported in the file."""
+    """The file of one process of `bench`, scalar kernels included, by the program next to it that has them.
+
+    Wrong forces are reported in the file.
+    """
     file = folder / f"{name}.json"
-    output_of(binary(), "bench", *BENCH, "--json", file, allowed=(0, 1))
+    output_of(binary().with_name("sandglass-scalar"), "bench", *BENCH, "--json", file, allowed=(0, 1))
     return file
 
 
