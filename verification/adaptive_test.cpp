@@ -342,7 +342,7 @@ TEST(Adaptive, floats_settle_too) {
     relax(Model(scene, choice), in_double);
     choice.precision = Precision::single_precision;
     const Relaxation answer = relax(Model(scene, choice), in_float);
-    EXPECT_TRUE(at_rest(answer, choice.precision));
+    EXPECT_TRUE(in_equilibrium(answer, choice.precision));
     EXPECT_LT(distance(scene, answer.u, exact), 2.0 * accuracy) << accuracy;
     int lower = 0;
     const auto &a = in_double.frames.back().levels, &b = in_float.frames.back().levels;

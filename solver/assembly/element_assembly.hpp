@@ -41,7 +41,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   State<Real> rest() const override {
     State<Real> state = Base::rest();
-    state.history.resize(history_numbers * layout_->levels() +
+    state.history.resize(history_numbers * layout_->ranks() +
                          (Base::averages_over_nodes ? 4 * layout_->rows() : 0));
     return state;
   }
@@ -122,7 +122,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   /// Where the volumes around nodes stand, of elements that average over nodes.
   Real* volumes_of(State<Real>& state) const {
-    return state.history.data() + history_numbers * layout_->levels();
+    return state.history.data() + history_numbers * layout_->ranks();
   }
 
   Law law_;
@@ -167,10 +167,10 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
                        std::vector<Defects>& defects) const {
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const auto& group = layout_->groups[g];
-      for (std::size_t k = 0; k < group.levels; ++k) {
+      for (std::size_t k = 0; k < group.ranks; ++k) {
         const auto squares = squared_defects(u, mobility, group.first_face + k);
         for (int lane = 0; lane < width; ++lane) {
-          const int e = layout_->elements[(group.first_level + k) * width + static_cast<std::size_t>(lane)];
+          const int e = layout_->elements[(group.first_rank + k) * width + static_cast<std::size_t>(lane)];
           if (e < 0) continue;
           for (std::size_t level = 0; level < top; ++level) {
             defects[static_cast<std::size_t>(e)][level] =
@@ -257,12 +257,12 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
       const ElementGroups::Group group = groups.groups[g];
       FaceMotion lower = this->template gather_face<Method>(groups, state, volumes, group.first_face);
       Faces carried{};
-      for (std::size_t k = 0; k < group.levels; ++k) {
-        const std::size_t block = group.first_level + k;
+      for (std::size_t k = 0; k < group.ranks; ++k) {
+        const std::size_t block = group.first_rank + k;
         const auto& element = part.blocks[block - part.first_block];
         const FaceMotion upper =
             this->template gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
-        if (this->streams_) prefetch_block(part, state, block + levels_ahead);
+        if (this->streams_) prefetch_block(part, state, block + ranks_ahead);
         auto remembered = this->template history<Method>(state, block);
         if (timeless) remembered.law = {};  // nothing of it counts, and a trial that failed may have left it
         const Modes<Number> f = Kernel::force(
@@ -273,7 +273,7 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
         carried = upper_face(f);
         lower = upper;
       }
-      scatter_face_modes(carried, force, groups, group.first_face + group.levels);
+      scatter_face_modes(carried, force, groups, group.first_face + group.ranks);
     }
   }
 

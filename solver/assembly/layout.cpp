@@ -75,15 +75,15 @@ std::size_t longest(const std::vector<Strip>& strips) {
 }
 
 /// Puts strips side by side.
-class Grouping {
+class StripPacker {
  public:
-  Grouping(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
+  StripPacker(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
 
   /// The strips in pieces of at most so many elements. row_of(node) is called for the nodes of each group in
   /// turn; lanes to spare run along the rows from `spare_row` on.
   template <class RowOf>
-  void add(std::vector<Strip> open, std::size_t most_levels, std::size_t spare_row, const RowOf& row_of) {
-    while (!open.empty()) add_group(choose(open, most_levels), spare_row, row_of);
+  void add(std::vector<Strip> open, std::size_t most_ranks, std::size_t spare_row, const RowOf& row_of) {
+    while (!open.empty()) add_group(choose(open, most_ranks), spare_row, row_of);
   }
 
   std::size_t groups() const { return groups_.groups.size(); }
@@ -91,8 +91,8 @@ class Grouping {
   /// Whether a group from number `first` on has a lane without a strip.
   bool has_spare_lanes(std::size_t first) const {
     if (first >= groups()) return false;
-    const auto level = static_cast<std::ptrdiff_t>(groups_.groups[first].first_level * at(groups_.width));
-    return std::find(groups_.elements.begin() + level, groups_.elements.end(), -1) != groups_.elements.end();
+    const auto rank = static_cast<std::ptrdiff_t>(groups_.groups[first].first_rank * at(groups_.width));
+    return std::find(groups_.elements.begin() + rank, groups_.elements.end(), -1) != groups_.elements.end();
   }
 
   ElementGroups finish() { return std::move(groups_); }
@@ -110,8 +110,8 @@ class Grouping {
 
   /// Takes up to `width` pieces of equal length off the open strips: first such that share no node, for a
   /// processor waits when lanes add to one row in turn; then any.
-  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_levels) {
-    const std::size_t length = piece_length(open, most_levels);
+  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_ranks) {
+    const std::size_t length = piece_length(open, most_ranks);
     std::vector<Strip> chosen;
     ++round_;
     for (const bool apart : {true, false}) {
@@ -153,7 +153,7 @@ class Grouping {
   template <class RowOf>
   void add_group(const std::vector<Strip>& strips, std::size_t spare_row, const RowOf& row_of) {
     const std::size_t length = strips.front().length(), width = at(groups_.width);
-    groups_.groups.push_back({groups_.levels(), groups_.face_places.size() / (4 * width), length});
+    groups_.groups.push_back({groups_.ranks(), groups_.face_places.size() / (4 * width), length});
     for (const auto& strip : strips) {
       for (const auto& face : strip.faces) {
         for (const int node : face) row_of(node);
@@ -182,8 +182,8 @@ class Grouping {
 std::vector<int> Layout::elements_of(const Chunk& chunk) const {
   std::vector<int> found;
   for (std::size_t g = chunk.first; g < chunk.last; ++g) {
-    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_level * at(width));
-    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].levels * at(width)),
+    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_rank * at(width));
+    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].ranks * at(width)),
                  std::back_inserter(found), [](int e) { return e >= 0; });
   }
   return found;
@@ -205,31 +205,31 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
     return at(row);
   };
   std::vector<int> spare;  // nodes whose coordinates the spare rows take: the longest strip of each chunk
-  Grouping grouping(width, layout.nodes);
+  StripPacker packer(width, layout.nodes);
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t begin = chunk_begin(order.size(), n, c), end = chunk_begin(order.size(), n, c + 1);
     const auto strips = cut_into_strips(mesh, neighbours, std::span(order).subspan(begin, end - begin));
-    const std::size_t first = grouping.groups(), first_row = layout.rows(),
-                      spare_row = layout.nodes + spare.size(), spare_levels = longest(strips);
-    grouping.add(strips, spare_levels, spare_row, number);
-    layout.chunks.push_back({first, grouping.groups(), first_row, layout.rows(), spare_row, spare_levels});
-    if (spare_rows == SpareRows::where_needed && !grouping.has_spare_lanes(first)) continue;
+    const std::size_t first = packer.groups(), first_row = layout.rows(),
+                      spare_row = layout.nodes + spare.size(), spare_ranks = longest(strips);
+    packer.add(strips, spare_ranks, spare_row, number);
+    layout.chunks.push_back({first, packer.groups(), first_row, layout.rows(), spare_row, spare_ranks});
+    if (spare_rows == SpareRows::where_needed && !packer.has_spare_lanes(first)) continue;
     const auto longest_strip = std::find_if(
-        strips.begin(), strips.end(), [&](const Strip& strip) { return strip.length() == spare_levels; });
+        strips.begin(), strips.end(), [&](const Strip& strip) { return strip.length() == spare_ranks; });
     for (const auto& face : longest_strip->faces) spare.insert(spare.end(), face.begin(), face.end());
   }
   for (std::size_t node = 0; node < layout.nodes; ++node) number(static_cast<int>(node));  // in no element
   layout.node_of_row.insert(layout.node_of_row.end(), spare.begin(), spare.end());
-  static_cast<ElementGroups&>(layout) = grouping.finish();
+  static_cast<ElementGroups&>(layout) = packer.finish();
   return layout;
 }
 
 ElementGroups groups_within(const Layout& layout, const Layout::Chunk& chunk, const Mesh& mesh,
                             const NodeElements& neighbours, std::span<const int> elements) {
-  Grouping grouping(layout.width, layout.nodes);
-  grouping.add(cut_into_strips(mesh, neighbours, elements), chunk.spare_levels, chunk.spare_row,
-               [&](int node) { return at(layout.row_of_node[at(node)]); });
-  return grouping.finish();
+  StripPacker packer(layout.width, layout.nodes);
+  packer.add(cut_into_strips(mesh, neighbours, elements), chunk.spare_ranks, chunk.spare_row,
+             [&](int node) { return at(layout.row_of_node[at(node)]); });
+  return packer.finish();
 }
 
 }  // namespace sandglass

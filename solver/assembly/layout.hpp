@@ -8,22 +8,22 @@
 namespace sandglass {
 
 /// Elements as a time loop goes through them: strips of equal length side by side, `width` of them to a
-/// group, level by level, so that the elements of one level are computed together. Lanes without a strip of
+/// group, rank by rank, so that the elements of one rank are computed together. Lanes without a strip of
 /// their own run along spare rows, which have the coordinates of nodes of the mesh and stay at rest, so that
 /// kernels need no branch.
 struct ElementGroups {
   struct Group {
-    std::size_t first_level;  ///< into `elements`, counted in levels
-    std::size_t first_face;   ///< into `face_places`, counted in faces; a group has one more than levels
-    std::size_t levels;
+    std::size_t first_rank;  ///< into `elements`, counted in ranks
+    std::size_t first_face;  ///< into `face_places`, counted in faces; a group has one more than ranks
+    std::size_t ranks;
   };
 
   int width = 1;
   std::vector<Place> face_places;  ///< [face][corner][lane], places of rows
-  std::vector<int> elements;       ///< [level][lane]; -1 in spare lanes
+  std::vector<int> elements;       ///< [rank][lane]; -1 in spare lanes
   std::vector<Group> groups;
 
-  std::size_t levels() const { return elements.size() / static_cast<std::size_t>(width); }
+  std::size_t ranks() const { return elements.size() / static_cast<std::size_t>(width); }
 
   /// Where the rows of one corner of a face stand, one per lane.
   const Place* places(std::size_t face, std::size_t corner) const {
@@ -37,14 +37,14 @@ struct ElementGroups {
 /// first meet them.
 struct Layout : ElementGroups {
   /// Groups first to last - 1, which are the first to meet rows first_row to last_row - 1. Spare rows for
-  /// strips of up to `spare_levels` elements begin at `spare_row`, where the chunk has any.
+  /// strips of up to `spare_ranks` elements begin at `spare_row`, where the chunk has any.
   struct Chunk {
     std::size_t first;
     std::size_t last;
     std::size_t first_row;
     std::size_t last_row;
     std::size_t spare_row;
-    std::size_t spare_levels;
+    std::size_t spare_ranks;
   };
 
   std::size_t nodes = 0;         ///< of the mesh; rows from here on are spare

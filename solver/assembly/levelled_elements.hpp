@@ -84,9 +84,9 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     } else {
       for (const auto& chunk : layout_->chunks) plan->chunks.push_back(only_part(mesh, chunk));
     }
-    plan_at_rest_ = std::move(plan);
+    undeformed_plan_ = std::move(plan);
     using Cheapest = typename std::tuple_element_t<0, Parts>::Element;
-    streams_ = layout_->levels() * sizeof(Cheapest) > cached_bytes;
+    streams_ = layout_->ranks() * sizeof(Cheapest) > cached_bytes;
   }
 
   const Layout& layout() const override { return *layout_; }
@@ -96,7 +96,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     State<Real> state;
     state.u.resize(layout_->rows());
     state.increment.resize(layout_->rows());
-    state.levels = plan_at_rest_;
+    state.levels = undeformed_plan_;
     return state;
   }
 
@@ -209,8 +209,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       for (std::size_t g = part.first; g < part.last; ++g) {
         const auto group = part.groups->groups[g];
         FaceMotion lower = gather_face<Method>(*part.groups, state, volumes.data(), group.first_face);
-        for (std::size_t k = 0; k < group.levels; ++k) {
-          const std::size_t block = group.first_level + k;
+        for (std::size_t k = 0; k < group.ranks; ++k) {
+          const std::size_t block = group.first_rank + k;
           const FaceMotion upper =
               gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
           visit.template operator()<Method>(
@@ -267,7 +267,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     part.groups = layout_;
     part.first = chunk.first;
     part.last = chunk.last;
-    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_level;
+    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_rank;
     fill_blocks(part, mesh);
     return parts;
   }
@@ -308,7 +308,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   void fill_blocks(Part<Method>& part, const Mesh& mesh) const {
     for (std::size_t g = part.first; g < part.last; ++g) {
       const auto& group = part.groups->groups[g];
-      for (std::size_t k = 0; k < group.levels; ++k) {
+      for (std::size_t k = 0; k < group.ranks; ++k) {
         part.blocks.push_back(element_block<KernelOf<Method>, Number>(
             mesh, *part.groups, layout_->node_of_row, group.first_face + k, setup_law_, settings_));
       }
@@ -325,17 +325,17 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
         const ElementGroups::Group group = groups.groups[g];
         Faces lower = gather_face_modes<Number>(state.u, groups, group.first_face);
         NodalVolumes<Number> carried{};
-        for (std::size_t k = 0; k < group.levels; ++k) {
+        for (std::size_t k = 0; k < group.ranks; ++k) {
           const Faces upper = gather_face_modes<Number>(state.u, groups, group.first_face + k + 1);
           ElementMotion<Number> motion;
           motion.u = modes_between(lower, upper);
           const auto own =
-              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_level + k - part.first_block]);
+              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_rank + k - part.first_block]);
           scatter_volumes(carried, own, groups, group.first_face + k, volumes);
           carried = own;
           lower = upper;
         }
-        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.levels, volumes);
+        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.ranks, volumes);
       }
     }
   }
@@ -351,7 +351,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   }
 
   std::unique_ptr<const Regrouping> regrouping_;  // of methods that adapt
-  std::shared_ptr<const Plan> plan_at_rest_;
+  std::shared_ptr<const Plan> undeformed_plan_;
 };
 
 }  // namespace sandglass

@@ -25,13 +25,13 @@ struct MethodEntry {
   std::string_view name;
   std::string_view summary;
   int integration_points = 0;
-  bool controls_hourglass = false;     ///< something resists hourglass modes, or tries to
-  bool damps_only = false;             ///< what resists them resists velocities alone
-  bool takes_kappa = false;            ///< a user may choose the strength of its hourglass control
-  bool kappa_matters_at_rest = false;  ///< and that changes its answers at rest
-  bool is_linear = false;              ///< forces are linear in the displacements, f = K u
-  bool is_condensed = false;           ///< answers by condensation instead of steps
-  bool knows_relaxation = true;        ///< takes notice of laws that relax
+  bool controls_hourglass = false;         ///< something resists hourglass modes, or tries to
+  bool damps_only = false;                 ///< what resists them resists velocities alone
+  bool takes_kappa = false;                ///< a user may choose the strength of its hourglass control
+  bool kappa_affects_equilibrium = false;  ///< and that changes its answers at rest
+  bool is_linear = false;                  ///< forces are linear in the displacements, f = K u
+  bool is_condensed = false;               ///< answers by condensation instead of steps
+  bool knows_relaxation = true;            ///< takes notice of laws that relax
   std::vector<std::string_view> levels =
       {};  ///< of an adaptive method, methods from the cheapest on; else none
 

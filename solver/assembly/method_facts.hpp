@@ -19,7 +19,7 @@ MethodEntry method_facts() {
       .controls_hourglass = Method::integration_points > 1 || !std::is_same_v<Hourglass, NoHourglassControl>,
       .damps_only = DampsOnly<Hourglass>,
       .takes_kappa = Hourglass::takes_kappa,
-      .kappa_matters_at_rest = kappa_matters_at_rest<Method>,
+      .kappa_affects_equilibrium = kappa_affects_equilibrium<Method>,
       .is_linear = is_linear<Method>,
       .is_condensed = is_condensed<Method>,
       .knows_relaxation = knows_law<Method, Viscoelastic<CalledLaw>>,

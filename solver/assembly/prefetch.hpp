@@ -10,7 +10,7 @@ inline constexpr std::size_t cached_bytes = std::size_t{2} << 20U;
 
 /// Levels between the one that is computed and the one whose numbers are sent for: far enough for memory to
 /// answer, near enough for the first cache.
-inline constexpr std::size_t levels_ahead = 3;
+inline constexpr std::size_t ranks_ahead = 3;
 
 /// Asks for so many bytes.
 inline void prefetch(const void* start, std::size_t size) {

@@ -41,9 +41,9 @@ inline HourglassFluctuation hourglass_fluctuation(const NodalVectors<double>& X)
   return fluctuation;
 }
 
-/// The tangent dP_ij/dH_kl at rest (Pa) of the isochoric part of a law, in row 3 i + j and column 3 k + l.
+/// The tangent dP_ij/dH_kl (Pa) of the isochoric part of an undeformed law, in row 3 i + j and column 3 k + l.
 template <class Law>
-Matrix<double, 9, 9> isochoric_tangent_at_rest(const Law& law) {
+Matrix<double, 9, 9> undeformed_isochoric_tangent(const Law& law) {
   Matrix<double, 9, 9> tangent;
   for (int kl = 0; kl < 9; ++kl) {
     Tensor<Dual<double>> H = from_double<Dual<double>>(Tensor<double>{});

@@ -22,7 +22,7 @@ concept DampsOnly = requires {
 
 /// Whether the strength of a method's hourglass control matters to a body at rest.
 template <class Method>
-inline constexpr bool kappa_matters_at_rest =
+inline constexpr bool kappa_affects_equilibrium =
     Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
 
 /// Whether a method's forces are linear in the displacements, f = K u.

@@ -15,7 +15,7 @@ struct StabilizationMatrix {
   template <class Law>
   static HourglassMatrix<double> matrix(const NodalVectors<double>& X, const Law& law) {
     const HourglassFluctuation fluctuation = hourglass_fluctuation(X);
-    const Matrix<double, 9, 9> C = isochoric_tangent_at_rest(law);
+    const Matrix<double, 9, 9> C = undeformed_isochoric_tangent(law);
     Matrix<double, 12, 12> K{};
     for (std::size_t p = 0; p < 8; ++p) {
       Matrix<double, 9, 12> gradient{};  // of the displacement that each q_ai makes

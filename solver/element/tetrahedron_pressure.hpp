@@ -53,7 +53,7 @@ struct OwnPressure {
 
 /// Averaged nodal pressures (Bonet & Burton 1998; Joldes, Wittek & Miller 2009): a quarter of each
 /// tetrahedron belongs to each of its nodes; with J_I the volume ratio of what belongs to node I and V_I its
-/// volume at rest the energy is
+/// undeformed volume the energy is
 ///   sum_e V_e W_iso(F_e) + sum_I V_I U(J_I),
 /// whence the pressure of a tetrahedron is the mean of its nodes' p_I = U'(J_I), and its stress
 /// P_iso(F) + p cof F: Bonet and Burton's. Joldes et al. give the law (Jbar/J)^(1/3) F instead, with Jbar the

@@ -58,10 +58,10 @@ class CalledLaw : public QuadraticVolume<CalledLaw> {
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk) const;
 
-  /// The same of the law as it relaxes; see `relaxing_tangent_bound`.
+  /// The same of the law as it relaxes; see `viscoelastic_tangent_bound`.
   template <class T>
-  TangentBound<T> relaxing_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                         const T& bulk) const;
+  TangentBound<T> viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
+                                             const T& bulk) const;
 
   template <class T>
   Tensor<T> small_strain_stress(const Tensor<T>& strain) const;

@@ -60,10 +60,10 @@ TangentBound<T> CalledLaw::tangent_bound(const Tensor<T>& H, const T& J_minus_on
 }
 
 template <class T>
-TangentBound<T> CalledLaw::relaxing_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                                  const T& bulk) const {
+TangentBound<T> CalledLaw::viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
+                                                      const T& bulk) const {
   return visit<0>(
-      [&](const auto& law) { return sandglass::relaxing_tangent_bound(law, H, J_minus_one, p, bulk); });
+      [&](const auto& law) { return sandglass::viscoelastic_tangent_bound(law, H, J_minus_one, p, bulk); });
 }
 
 template <class T>

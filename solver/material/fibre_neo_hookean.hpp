@@ -34,13 +34,13 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&FibreNeoHookean::young_modulus, "young_modulus", "Pa", Range::positive(),
-                  "Young's modulus at rest of the solid without fibres"},
+                  "initial Young's modulus of the solid without fibres"},
         Parameter{&FibreNeoHookean::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
-                  "Poisson's ratio at rest of the solid without fibres"},
+                  "initial Poisson's ratio of the solid without fibres"},
         Parameter{&FibreNeoHookean::fibre_modulus, "fibre_modulus", "Pa", Range::at_least(0.0),
                   "what fibres add to Young's modulus along them, the solid being incompressible"},
         Parameter{&FibreNeoHookean::fibre_direction, "fibre_direction", "-", Range::any(),
-                  "direction [x, y, z] of the fibres at rest, of any length but zero"}};
+                  "direction [x, y, z] of the fibres in the undeformed body; its length does not matter"}};
   }
 
   std::optional<BrokenRule> broken_rule() const {
@@ -54,7 +54,7 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
   constexpr double bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
 
-  /// The stress (Pa) at rest for a small strain: K tr(e) I + 2 mu dev(e) + k (a.dev(e) a) dev(a a^T).
+  /// The stress (Pa) of a small strain from the undeformed state: K tr(e) I + 2 mu dev(e) + k (a.dev(e) a) dev(a a^T).
   template <class T>
   Tensor<T> small_strain_stress(const Tensor<T>& strain) const {
     const Tensor<T> isochoric = deviator(strain);

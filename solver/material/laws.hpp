@@ -25,13 +25,13 @@ inline std::string_view name_of(const AnyLaw& any_law) {
   return std::visit([]<class Law>(const Law&) { return Law::name; }, any_law);
 }
 
-/// Lame's first parameter at rest, lambda = K - 2/3 mu, in Pa.
+/// Lame's first parameter of the undeformed state, lambda = K - 2/3 mu, in Pa.
 template <class Law>
 constexpr double lame_lambda(const Law& law) {
   return law.bulk_modulus() - 2.0 / 3.0 * law.shear_modulus();
 }
 
-/// Young's modulus at rest, in Pa.
+/// Young's modulus of the undeformed state, in Pa.
 template <class Law>
 constexpr double young_modulus(const Law& law) {
   const double mu = law.shear_modulus(), lambda = lame_lambda(law);

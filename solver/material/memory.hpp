@@ -84,7 +84,7 @@ class RecallingLaw : public QuadraticVolume<RecallingLaw<LawAtStep, Memories>> {
     for (std::size_t q = 0; q < points; ++q) alone[q] = {T(1), at[q].change, T(0)};
     law_.elastic().weighted_piola(count, alone.data(), H, VP);
     for (std::size_t q = 0; q < points; ++q) {
-      VP[q] = at_point(q).relaxed_piola(VP[q], at[q].V, H[q], at[q].change, at[q].p);
+      VP[q] = at_point(q).decayed_piola(VP[q], at[q].V, H[q], at[q].change, at[q].p);
     }
   }
 

@@ -25,7 +25,7 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
     return std::tuple{
         Parameter{&MooneyRivlin::c10, "c10", "Pa", Range::positive(), "factor of the first invariant"},
         Parameter{&MooneyRivlin::c01, "c01", "Pa", Range::at_least(0.0), "factor of the second invariant"},
-        Parameter{&MooneyRivlin::bulk, "bulk_modulus", "Pa", Range::positive(), "bulk modulus at rest"}};
+        Parameter{&MooneyRivlin::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
   constexpr double shear_modulus() const { return 2.0 * (c10 + c01); }

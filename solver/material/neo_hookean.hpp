@@ -21,9 +21,9 @@ struct NeoHookean : FirstInvariant<NeoHookean> {
 
   static constexpr auto parameters() {
     return std::tuple{Parameter{&NeoHookean::young_modulus, "young_modulus", "Pa", Range::positive(),
-                                "Young's modulus at rest"},
+                                "initial Young's modulus"},
                       Parameter{&NeoHookean::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
-                                "Poisson's ratio at rest"}};
+                                "initial Poisson's ratio"}};
   }
 
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }

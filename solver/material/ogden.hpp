@@ -14,7 +14,7 @@ namespace sandglass {
 
 /// Ogden's law in isochoric principal stretches lbar_a = J^(-1/3) l_a, with two terms,
 ///   W = sum_p 2 mu_p / alpha_p^2 (lbar_1^alpha_p + lbar_2^alpha_p + lbar_3^alpha_p - 3) + K/2 (J - 1)^2.
-/// The sum of the mu_p is the shear modulus at rest: the convention of ABAQUS, and of Miller and Chinzei for
+/// The sum of the mu_p is the initial shear modulus: the convention of ABAQUS, and of Miller and Chinzei for
 /// the brain (J. Biomech. 35 (2002) 483: mu = 842 Pa, alpha = -4.7 at once). alpha = 2 is the neo-Hookean
 /// law, 2 and -2 together Mooney and Rivlin's, 0 Hencky's. Energies in J/m^3, stresses in Pa, per reference
 /// volume.
@@ -38,7 +38,7 @@ struct Ogden : QuadraticVolume<Ogden> {
         Parameter{&Ogden::alpha1, "alpha1", "-", Range::any(), "exponent of the first term"},
         Parameter{&Ogden::mu2, "mu2", "Pa", Range::at_least(0.0), "shear modulus of the second term", false},
         Parameter{&Ogden::alpha2, "alpha2", "-", Range::any(), "exponent of the second term", false},
-        Parameter{&Ogden::K, "bulk_modulus", "Pa", Range::positive(), "bulk modulus at rest"}};
+        Parameter{&Ogden::K, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
   constexpr double shear_modulus() const { return mu1 + mu2; }

@@ -17,7 +17,7 @@ namespace sandglass {
 /// softening_stretch.
 ///
 /// It is no sum of an isochoric and a volumetric part. What is called isochoric here is W - K/2 (J - 1)^2,
-/// whose tangent at rest is isochoric; elements that average K/2 (J - 1)^2 therefore average the pressure.
+/// whose undeformed tangent is isochoric; elements that average K/2 (J - 1)^2 therefore average the pressure.
 /// Away from rest that part is not positive: within such an element K (tr E)^2 stands against K (J - 1)^2,
 /// and the element gives way when K |dev b|^2 grows beyond a few mu. A block drawn and sheared with
 /// tl-mean-dilatation stood 30 % at nu = .25, 20 % at .3, 10 % at .4 and not that at .45. Other methods use
@@ -36,9 +36,9 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
 
   static constexpr auto parameters() {
     return std::tuple{Parameter{&StVenantKirchhoff::young_modulus, "young_modulus", "Pa", Range::positive(),
-                                "Young's modulus at rest"},
+                                "initial Young's modulus"},
                       Parameter{&StVenantKirchhoff::poisson_ratio, "poisson_ratio", "-",
-                                Range::between(-1.0, 0.5), "Poisson's ratio at rest"}};
+                                Range::between(-1.0, 0.5), "initial Poisson's ratio"}};
   }
 
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }

@@ -53,10 +53,10 @@ TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H) {
 /// of the whole alone, what answers is something between the whole and its volumetric part, and where the
 /// isochoric part softens, the volumetric part is the stiffer.
 template <class Law, class T>
-TangentBound<T> relaxing_tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                       const T& bulk) {
-  if constexpr (requires { law.relaxing_tangent_bound(H, J_minus_one, p, bulk); }) {
-    return law.relaxing_tangent_bound(H, J_minus_one, p, bulk);
+TangentBound<T> viscoelastic_tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one,
+                                           const T& p, const T& bulk) {
+  if constexpr (requires { law.viscoelastic_tangent_bound(H, J_minus_one, p, bulk); }) {
+    return law.viscoelastic_tangent_bound(H, J_minus_one, p, bulk);
   } else if constexpr (requires { law.tangent_bound(H); }) {
     const T J = T(1) + J_minus_one;
     const T own_p = law.pressure(J_minus_one), own_bulk = law.bulk_tangent(J_minus_one);

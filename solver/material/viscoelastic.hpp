@@ -20,7 +20,7 @@ inline constexpr std::string_view viscoelastic_prefix = "viscoelastic-";
 inline constexpr std::string_view viscoelastic_suffix = "; shear stress relaxes with two times";
 
 /// How one relaxing part goes on in a step: Q <- Q + decay (share S_old - Q) + follow (S_new - S_old).
-struct RelaxationStep {
+struct ViscousStep {
   double share;          ///< g, of the isochoric stress that this part takes away in the end
   double inverse_share;  ///< 1/g; 0 where g is
   double decay;          ///< 1 - exp(-dt/tau)
@@ -28,7 +28,7 @@ struct RelaxationStep {
 
   /// The factors of a step of `seconds`, 0 to infinite, for the relaxation time `time` (s). Both go to 0 with
   /// the step without cancellation, and to 1 and g when it is infinite.
-  static RelaxationStep of(double share, double time, double seconds) {
+  static ViscousStep of(double share, double time, double seconds) {
     if (!(share > 0.0)) return {0.0, 0.0, 0.0, 0.0};
     const double x = seconds / time;
     const double decay = -std::expm1(-x);
@@ -51,9 +51,9 @@ struct RelaxationStep {
 
 /// What a viscoelastic law keeps at a point, in the frame of the reference configuration, Pa.
 template <class T>
-struct RelaxationMemory {
+struct ViscousMemory {
   Symmetric<T> S;                       ///< isochoric second Piola-Kirchhoff stress of the elastic law
-  std::array<Symmetric<T>, 2> relaxed;  ///< Q_i, what has relaxed of it by now
+  std::array<Symmetric<T>, 2> decayed;  ///< Q_i, what has decayed of it by now
 };
 
 /// A viscoelastic law at one point: it answers like an elastic law, and what it is told goes into the memory.
@@ -63,7 +63,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
  public:
   static constexpr bool splits_volume = Law::splits_volume;
 
-  ViscoelasticPoint(const Law& elastic, const std::array<RelaxationStep, 2>& terms, Memory& memory)
+  ViscoelasticPoint(const Law& elastic, const std::array<ViscousStep, 2>& terms, Memory& memory)
       : elastic_(elastic), terms_(terms), memory_(memory) {}
 
   double shear_modulus() const { return elastic_.shear_modulus(); }
@@ -72,12 +72,12 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   /// V P as of an elastic law, and one step in time: P = F (S_iso - sum_i Q_i) + p cof F.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
-    return relaxed_piola(elastic_.weighted_piola(T(1), H, change, T(0)), V, H, change, p);
+    return decayed_piola(elastic_.weighted_piola(T(1), H, change, T(0)), V, H, change, p);
   }
 
   /// The same from the elastic law's isochoric stress P (Pa).
   template <class T>
-  Tensor<T> relaxed_piola(const Tensor<T>& P, const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+  Tensor<T> decayed_piola(const Tensor<T>& P, const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                           const T& p) const {
     const Tensor<T> cof_F = deformation_cofactor(H);
     const Tensor<T> Q = relax(P, cof_F, change);
@@ -102,7 +102,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   /// of the springs of the relaxing parts, whose stresses are h_i = g_i S - Q_i:
   ///   W = g_inf W_iso + sum_i h_i : h_i / (4 g_i mu) * W_iso / (S : S / (4 mu)).
   /// The last factor, 1 near rest, is the elastic law's own compliance at this strain. So the energy is the
-  /// elastic one as long as nothing has relaxed, g_inf times it when all has, never negative, and exact for
+  /// elastic one as long as nothing has decayed, g_inf times it when all has, never negative, and exact for
   /// small strains; in between, at large strains, the model has no potential in closed form.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
@@ -123,7 +123,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   /// second variation, where max(|Q_i|, |h_i|) bounds each part for any step because b + (b - a) <= 1.
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk) const {
-    return relaxing_tangent_bound(elastic_, H, J_minus_one, p, bulk) + memory_bound(H);
+    return viscoelastic_tangent_bound(elastic_, H, J_minus_one, p, bulk) + memory_bound(H);
   }
 
  private:
@@ -131,7 +131,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   TangentBound<T> memory_bound(const Tensor<T>& H) const {
     TangentBound<T> bound{T(0), T(0)};
     for (std::size_t i = 0; i < 2; ++i) {
-      const Tensor<T> a = to_space(full(memory_.relaxed[i]), H), b = to_space(full(spring_stress<T>(i)), H);
+      const Tensor<T> a = to_space(full(memory_.decayed[i]), H), b = to_space(full(spring_stress<T>(i)), H);
       bound.gradient = bound.gradient + sqrt(max(double_dot(a, a), double_dot(b, b)));
     }
     return bound;
@@ -142,7 +142,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   /// h_i, the stress of relaxing part i that is still there.
   template <class T>
   Symmetric<T> spring_stress(std::size_t i) const {
-    return T(terms_[i].share) * memory_.S - memory_.relaxed[i];
+    return T(terms_[i].share) * memory_.S - memory_.decayed[i];
   }
 
   /// F Q F^T for symmetric Q.
@@ -162,7 +162,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
     for (std::size_t i = 0; i < 2; ++i) {
       const auto g = T(terms_[i].share), decay = T(terms_[i].decay), follow = T(terms_[i].follow);
       for (int n = 0; n < 6; ++n) {
-        T& Q = memory_.relaxed[i](n, 0);
+        T& Q = memory_.decayed[i](n, 0);
         Q = Q + (decay * (g * memory_.S(n, 0) - Q) + follow * advance(n, 0));
         sum(n, 0) = i == 0 ? Q : sum(n, 0) + Q;
       }
@@ -172,7 +172,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   }
 
   const Law& elastic_;
-  const std::array<RelaxationStep, 2>& terms_;
+  const std::array<ViscousStep, 2>& terms_;
   Memory& memory_;
 };
 
@@ -182,7 +182,7 @@ class ViscoelasticStep {
  public:
   using Elastic = Law;
 
-  ViscoelasticStep(const Law& elastic, const std::array<RelaxationStep, 2>& terms)
+  ViscoelasticStep(const Law& elastic, const std::array<ViscousStep, 2>& terms)
       : elastic_(elastic), terms_(terms) {}
 
   /// The instantaneous response.
@@ -196,7 +196,7 @@ class ViscoelasticStep {
 
  private:
   Law elastic_;
-  std::array<RelaxationStep, 2> terms_;
+  std::array<ViscousStep, 2> terms_;
 };
 
 /// Viscoelasticity of any law by a Prony series of two terms: the isochoric second Piola-Kirchhoff stress
@@ -207,7 +207,7 @@ class ViscoelasticStep {
 /// Simo 1987, CMAME 60:153; for TLED: Taylor, Comas, Cheng, Passenger, Hawkes, Atkinson and Ourselin 2009,
 /// Med. Image Anal. 13:234, who take a step of first order).
 ///
-/// The memory holds what has relaxed, Q_i = g_i S_iso - h_i, instead of h_i: S = S_elastic - sum_i Q_i. It is
+/// The memory holds what has decayed, Q_i = g_i S_iso - h_i, instead of h_i: S = S_elastic - sum_i Q_i. It is
 /// the same in exact arithmetic, and in floating point it begins with zero: a body that has had no time to
 /// relax is the elastic one, and the small changes of a slow term are added to a small number. Each step
 /// rounds Q by u |Q|, u half a unit in the last place, and forgets earlier errors with exp(-dt/tau): the
@@ -217,7 +217,7 @@ class ViscoelasticStep {
 /// response. So is the stiffness that hourglass controls take from the moduli, which does not relax. Either
 /// choice is wrong some of the time; a block bent by a third of its length in half of tau_1, 81 % of whose
 /// stress relaxes, is off by .7 to 1.1 % of the mean dilatation hexahedron's answer when just bent and by 2.0
-/// to 3.1 % when all has relaxed, with the relaxed moduli by 2.5 to 6.0 % and .2 to .4 %. Too stiff is the
+/// to 3.1 % when all has decayed, with the decayed moduli by 2.5 to 6.0 % and .2 to .4 %. Too stiff is the
 /// smaller evil. Who looks at slow answers only may multiply kappa by g_inf.
 template <class Law>
 struct Viscoelastic : Law {
@@ -230,7 +230,7 @@ struct Viscoelastic : Law {
   double time_2 = 0.0;
 
   template <class T>
-  using Memory = RelaxationMemory<T>;
+  using Memory = ViscousMemory<T>;
 
   static constexpr auto parameters() {
     using Self = Viscoelastic;
@@ -268,8 +268,7 @@ struct Viscoelastic : Law {
   /// The law for a step of so many seconds.
   ViscoelasticStep<Law> at_step(double seconds) const {
     return {*this,
-            {RelaxationStep::of(relaxation_1, time_1, seconds),
-             RelaxationStep::of(relaxation_2, time_2, seconds)}};
+            {ViscousStep::of(relaxation_1, time_1, seconds), ViscousStep::of(relaxation_2, time_2, seconds)}};
   }
 };
 

@@ -14,7 +14,7 @@ enum class Demotion { never, where_enough, reluctant };
 /// while elements rise, ever more seldom while none does. Elements only go up: in every vibration one that
 /// goes down where its hourglass modes pass through zero, and up again where they are wide, would take energy
 /// from nowhere.
-class Judgements {
+class AdaptionSchedule {
  public:
   bool due() { return ++checks_ >= next_; }
 

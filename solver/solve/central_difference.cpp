@@ -177,7 +177,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   CentralDifference<Real> scheme(model, elements);
   Body<Real>& body = scheme.body();
   Adaption<Real> adaption(model, body);
-  Judgements judgements;
+  AdaptionSchedule adaption_schedule;
   Motion motion;
   int frames = 0;
   StrainEnergies energies;  // of the last report
@@ -201,7 +201,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   const auto keep = [&](auto archive) {
     scheme.keep(archive);
     archive("frames", frames);
-    judgements.keep(archive);
+    adaption_schedule.keep(archive);
     archive("smallest step", motion.smallest_step);
   };
   const auto checkpoint = [&] {
@@ -228,7 +228,8 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {
       body.require_healthy(scheme.step());
       report();
-      if (adaption.active() && judgements.due()) judgements.done(scheme.adapt(adaption, energies));
+      if (adaption.active() && adaption_schedule.due())
+        adaption_schedule.done(scheme.adapt(adaption, energies));
       scheme.choose_step();
       observer.resumable(checkpoint);
     }

@@ -18,21 +18,21 @@ class CoarseGrid {
 
   /// A place in the grid.
   struct Location {
-    std::size_t cell;
-    std::array<double, 3> local;  ///< 0 to 1 within the cell
+    std::size_t box;
+    std::array<double, 3> local;  ///< 0 to 1 within the box
   };
   Location locate(const Vector& point) const;
 
-  /// Size of a cell, m.
-  const Vector& cell_size() const { return size_; }
+  /// Size of a box, m.
+  const Vector& box_size() const { return size_; }
 
-  std::size_t cells() const { return count(0) * count(1) * count(2); }
+  std::size_t boxes() const { return count(0) * count(1) * count(2); }
   std::size_t nodes() const { return (count(0) + 1) * (count(1) + 1) * (count(2) + 1); }
 
-  /// The nodes of a cell: x alternates first, then y, then z.
-  std::array<std::size_t, 8> nodes_of(std::size_t cell) const;
+  /// The nodes of a box: x alternates first, then y, then z.
+  std::array<std::size_t, 8> nodes_of(std::size_t box) const;
 
-  /// The functions of a cell's nodes at a place within it, -.
+  /// The functions of a box's nodes at a place within it, -.
   static std::array<double, 8> weights(const std::array<double, 3>& local);
 
   /// Their gradients, 1/m.

@@ -15,7 +15,7 @@ struct ElementTangent {
 
 /// The tangent stiffness on a coarse grid, factorised, by the law's moduli at rest (N/m). Elements that
 /// are free and small see the gradients of the grid's functions at their centre, pushed forward with their
-/// own deformation. Elements that touch a constraint, or are no smaller than the grid's cells, see the
+/// own deformation. Elements that touch a constraint, or are no smaller than the boxes of the grid, see the
 /// functions as their nodes take them, exactly, but stay as they are at rest.
 class CoarseStiffness {
  public:
@@ -27,10 +27,10 @@ class CoarseStiffness {
   /// element e.
   template <class TangentOf>
   void update(const TangentOf& tangent_of, int threads) {
-    in_parallel(cells_.size(), threads, [&](std::size_t c) {
-      Products& T = cells_[c].products;
+    in_parallel(boxes_.size(), threads, [&](std::size_t c) {
+      Products& T = boxes_[c].products;
       T.fill(0.0);
-      for (const auto& [element, local] : cells_[c].elements)
+      for (const auto& [element, local] : boxes_[c].elements)
         add_element(T, grid_.gradients(local), tangent_of(element));
     });
     assemble();
@@ -41,14 +41,14 @@ class CoarseStiffness {
   void solve(const CoarseVector& q, CoarseVector& c) { solver_.solve(q, c); }
 
  private:
-  /// Sums of V G_ai G_bj over the elements of a cell, G_a the gradients of its eight functions.
+  /// Sums of V G_ai G_bj over the elements of a box, G_a the gradients of its eight functions.
   using Products = std::array<double, std::size_t{24} * 24>;
 
   struct Element {
     std::size_t index;
     std::array<double, 3> local;  ///< where its centre lies
   };
-  struct Cell {
+  struct Box {
     std::array<std::size_t, 8> nodes;
     std::vector<Element> elements;  ///< free and small, by their centres
     Products products;
@@ -64,7 +64,7 @@ class CoarseStiffness {
   std::size_t size_;
   double lambda_;
   double mu_;
-  std::vector<Cell> cells_;
+  std::vector<Box> boxes_;
   std::vector<double> fixed_;   // what does not follow the deformation
   std::vector<double> matrix_;  // A, by rows
   SemidefiniteSolver solver_;

@@ -19,7 +19,7 @@ namespace sandglass {
 class ConjugateGradient {
  public:
   /// What to do after a trial.
-  enum class Verdict {
+  enum class Action {
     move,   ///< update u, g and p
     retry,  ///< keep u, g and p, and evaluate at the new length()
     fail    ///< no length along p gives a number
@@ -57,11 +57,11 @@ class ConjugateGradient {
   /// Takes the sums of the updated direction.
   void take(const DirectionSums& sums) { direction_ = sums; }
 
-  Verdict judge(const TrialSums& sums) {
+  Action assess(const TrialSums& sums) {
     if (!std::isfinite(sums.p_d) || !std::isfinite(sums.d_P_d)) return retry(1.0 / farthest);
     if (direction_.g_p >= 0.0 || sums.p_d <= 0.0) {
       restart();
-      return Verdict::move;
+      return Action::move;
     }
     move_ = -direction_.g_p / sums.p_d;
     if ((move_ < 1.0 / 3.0 || move_ > 3.0) && retries_ < most_retries) {
@@ -71,7 +71,7 @@ class ConjugateGradient {
     turn_ = std::max(0.0, move_ * (sums.g_P_d + move_ * sums.d_P_d) / direction_.g_P_g);
     length_ *= move_;
     retries_ = 0;
-    return Verdict::move;
+    return Action::move;
   }
 
  private:
@@ -86,9 +86,9 @@ class ConjugateGradient {
     retries_ = 0;
   }
 
-  Verdict retry(double factor) {
+  Action retry(double factor) {
     length_ *= factor;
-    return ++retries_ > most_retries ? Verdict::fail : Verdict::retry;
+    return ++retries_ > most_retries ? Action::fail : Action::retry;
   }
 
   DirectionSums direction_;

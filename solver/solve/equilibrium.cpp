@@ -83,14 +83,14 @@ void Equilibrium<Real>::restart() {
 
 template <class Real>
 bool Equilibrium<Real>::step() {
-  switch (method_.judge(sums_)) {
-    case ConjugateGradient::Verdict::move:
+  switch (method_.assess(sums_)) {
+    case ConjugateGradient::Action::move:
       advance();
       break;
-    case ConjugateGradient::Verdict::retry:
+    case ConjugateGradient::Action::retry:
       retry();
       break;
-    case ConjugateGradient::Verdict::fail:
+    case ConjugateGradient::Action::fail:
       return false;
   }
   evaluate();

@@ -62,7 +62,7 @@ class Preconditioner {
   Rows<Real> free_;                            // 1, or 0 on constrained components and in spare rows
   Rows<Real> diagonal_;                        // xx, yy, zz of the inverse blocks
   Rows<Real> mixed_;                           // yz, zx, xy
-  std::vector<Real> tangents_;                 // [level][F^-1 by rows, V][lane]
+  std::vector<Real> tangents_;                 // [rank][F^-1 by rows, V][lane]
   std::vector<std::size_t> place_of_element_;  // into tangents_
   CoarseTransfer<Real> transfer_;
   CoarseStiffness stiffness_;

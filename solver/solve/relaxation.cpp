@@ -27,7 +27,7 @@ class Search {
         observer_(observer),
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
-        levels_(model, equilibrium_.body()),
+        load_levels_(model, equilibrium_.body()),
         no_velocity_(model.masses().size()),
         reactions_(model.scene().constraints.size(), 0.0) {}
 
@@ -44,11 +44,11 @@ class Search {
         keep(CheckpointWriter(checkpoint));
         return checkpoint;
       });
-      levels_.predict(body());
+      load_levels_.predict(body());
       if (body().healthy() && solve()) {
-        finish_level();
+        finish_load_level();
       } else if (!ended_) {
-        retry_level();
+        retry_load_level();
       }
     }
     result_.u = body().field(body().state().u);
@@ -66,7 +66,7 @@ class Search {
 
   /// At this residual elements may choose their levels: what is left moves none of them from one to another
   /// that does not show it again at the end.
-  static constexpr double tolerance_of_levels = 1e-3;
+  static constexpr double tolerance_for_adaption = 1e-3;
 
   /// Evaluations after which a level begins anew from where it is, with a new preconditioner; then twice as
   /// many. So it does once when the residual stagnates, which frees it from the rounding of the secants.
@@ -80,23 +80,23 @@ class Search {
   template <class Archive>
   void keep(Archive archive) {
     equilibrium_.keep(archive);
-    levels_.keep(archive, body());
+    load_levels_.keep(archive, body());
     archive("reaction", reactions_);
     archive("load path", load_path_);
     archive("work", work_);
   }
 
   double tolerance() const {
-    if (!levels_.full()) return std::max(settings_.tolerance, tolerance_on_the_way);
-    if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_of_levels);
+    if (!load_levels_.full()) return std::max(settings_.tolerance, tolerance_on_the_way);
+    if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_for_adaption);
     return settings_.tolerance;
   }
 
   /// Relative time: the load gone through, and at the end the evaluations over those that led there.
   double time() const {
-    if (!levels_.full()) return levels_.travelled();
+    if (!load_levels_.full()) return load_levels_.travelled();
     const auto before = static_cast<double>(std::max(1L, first_evaluation_));
-    return levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
+    return load_levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
   }
 
   /// Whether the forces at this load are in balance, within the tolerance or the rounding, and no element is
@@ -132,7 +132,7 @@ class Search {
   /// the full load they do so until they are settled at a moderate residual, where they may go down the first
   /// time, and once more at the end; going up only, that ends.
   bool settle() {
-    if (!levels_.full()) {
+    if (!load_levels_.full()) {
       adaption_.apply(body(), Demotion::reluctant);
       return false;
     }
@@ -143,19 +143,19 @@ class Search {
     return true;
   }
 
-  void finish_level() {
-    result_.converged = levels_.full() && !result_.stagnated;
-    ended_ = levels_.full();
+  void finish_load_level() {
+    result_.converged = load_levels_.full() && !result_.stagnated;
+    ended_ = load_levels_.full();
     add_work();
     report();
     if (ended_) return;
-    observer_.frame(body().frame(levels_.travelled(), no_velocity_));
-    levels_.solved(body());
+    observer_.frame(body().frame(load_levels_.travelled(), no_velocity_));
+    load_levels_.solved(body());
   }
 
-  void retry_level() {
+  void retry_load_level() {
     const State<Real> failed = body().state();
-    if (levels_.failed(body())) return;
+    if (load_levels_.failed(body())) return;
     body().state() = failed;
     body().require_healthy(equilibrium_.evaluations());
     throw ComputationError(
@@ -168,12 +168,13 @@ class Search {
     const long evaluations = equilibrium_.evaluations();
     ended_ = evaluations >= settings_.max_steps;
     if (evaluations % settings_.check_interval != 0) return;
-    if (levels_.full()) report();
+    if (load_levels_.full()) report();
     const double residual = equilibrium_.residual();
     const double digits =
         std::log(std::clamp(residual, settings_.tolerance, 1.0)) / std::log(settings_.tolerance);
     result_.interrupted = !observer_.proceed(
-        evaluations, levels_.full() ? 0.3 + 0.7 * digits : 0.3 * levels_.travelled() / levels_.way(),
+        evaluations,
+        load_levels_.full() ? 0.3 + 0.7 * digits : 0.3 * load_levels_.travelled() / load_levels_.way(),
         residual);
     ended_ = ended_ || result_.interrupted;
   }
@@ -181,7 +182,7 @@ class Search {
   /// Work of imposed displacements and forces over a level, from the mean of the forces at its ends.
   void add_work() {
     const auto& constraints = model_.scene().constraints;
-    const auto moved = levels_.moved();
+    const auto moved = load_levels_.moved();
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const ImposedPath& path = constraints[k].path;
       const double force = body().reactions()[k];
@@ -191,14 +192,14 @@ class Search {
       reactions_[k] = force;
     }
     const double path = body().load_path();
-    work_ += (levels_.load() - 0.5 * levels_.increment()) * (path - load_path_);
+    work_ += (load_levels_.load() - 0.5 * load_levels_.increment()) * (path - load_path_);
     load_path_ = path;
   }
 
   void report() {
     const StrainEnergies energies = body().energies();
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
-                       energies.hourglass, work_, equilibrium_.residual(), levels_.increment()});
+                       energies.hourglass, work_, equilibrium_.residual(), load_levels_.increment()});
   }
 
   const Model& model_;
@@ -206,7 +207,7 @@ class Search {
   Observer& observer_;
   Equilibrium<Real> equilibrium_;
   Adaption<Real> adaption_;
-  LoadLevels<Real> levels_;
+  LoadLevels<Real> load_levels_;
   NodalField no_velocity_;
   Relaxation result_;
   std::vector<double> reactions_;
@@ -220,7 +221,7 @@ class Search {
 
 }  // namespace
 
-bool at_rest(const Relaxation& relaxation, Precision precision) {
+bool in_equilibrium(const Relaxation& relaxation, Precision precision) {
   return relaxation.converged || (relaxation.stagnated && precision == Precision::single_precision);
 }
 
@@ -228,7 +229,7 @@ std::string outcome(const Relaxation& relaxation, Precision precision) {
   if (relaxation.converged) return "at rest";
   if (relaxation.interrupted) return fmt::format("interrupted at step {}", relaxation.steps);
   if (!relaxation.stagnated) return fmt::format("not at rest after {} steps", relaxation.steps);
-  if (at_rest(relaxation, precision)) return "at rest within the rounding of single precision";
+  if (in_equilibrium(relaxation, precision)) return "at rest within the rounding of single precision";
   return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
 }
 

@@ -31,7 +31,7 @@ Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from 
 
 /// Whether the answer is as good as asked for, or as the numbers allow: in single precision the rounding of
 /// the forces may keep the residual above the tolerance.
-bool at_rest(const Relaxation& relaxation, Precision precision);
+bool in_equilibrium(const Relaxation& relaxation, Precision precision);
 
 /// How the search ended, in words: "at rest", or why not.
 std::string outcome(const Relaxation& relaxation, Precision precision);

@@ -105,9 +105,9 @@ struct Updated<TypeList<EveryMethod...>> {
 
 /// The methods that run laws which relax.
 template <class List>
-struct Relaxing;
+struct ViscoelasticIn;
 template <class... EveryMethod>
-struct Relaxing<TypeList<EveryMethod...>> {
+struct ViscoelasticIn<TypeList<EveryMethod...>> {
   using type = Concatenated<TypeList<>, std::conditional_t<knows_law<EveryMethod, Viscoelastic<NeoHookean>>,
                                                            TypeList<EveryMethod>, TypeList<>>...>;
 };
@@ -140,11 +140,11 @@ using PairsOf =
                                           typename detail::Split<ElasticLaws>::others>::type>;
 
 /// The methods that run laws which relax.
-using RelaxingMethods = detail::Relaxing<Methods>::type;
-using RelaxingMethodTypes = detail::AsTestTypes<RelaxingMethods>::type;
+using ViscoelasticMethods = detail::ViscoelasticIn<Methods>::type;
+using ViscoelasticMethodTypes = detail::AsTestTypes<ViscoelasticMethods>::type;
 
 using MethodWithLawTypes = detail::AsTestTypes<Concatenated<
-    PairsOf<Methods>, detail::Product<RelaxingMethods, TypeList<Viscoelastic<NeoHookean>>>::type>>::type;
+    PairsOf<Methods>, detail::Product<ViscoelasticMethods, TypeList<Viscoelastic<NeoHookean>>>::type>>::type;
 
 /// What integrates its resistances in time comes to rest where the path leads it, what relaxes takes its
 /// time, and what damps loses energy; who expects one answer takes these.
