@@ -41,7 +41,8 @@ inline HourglassFluctuation hourglass_fluctuation(const NodalVectors<double>& X)
   return fluctuation;
 }
 
-/// The tangent dP_ij/dH_kl (Pa) of the isochoric part of an undeformed law, in row 3 i + j and column 3 k + l.
+/// The tangent dP_ij/dH_kl (Pa) of the isochoric part of an undeformed law, in row 3 i + j and column 3 k +
+/// l.
 template <class Law>
 Matrix<double, 9, 9> undeformed_isochoric_tangent(const Law& law) {
   Matrix<double, 9, 9> tangent;

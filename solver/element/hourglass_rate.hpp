@@ -33,7 +33,9 @@ struct RateHourglassControl : Form {
     HourglassModes<T> Q;
   };
 
-  /// Q <- R Q + K gamma^T v dt: what was there turns with the spin of L, the rate is added.
+  /// Q <- R Q + K gamma^T v dt (N): the resistances rotate with the spin of L, and those to the hourglass
+  /// velocities of the step are added (eq. 3 and eq. 4 in the current configuration, without the factors
+  /// 1/sqrt 8).
   template <class T>
   static HourglassModes<T> resistance(const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
                                       History<T>& history) {

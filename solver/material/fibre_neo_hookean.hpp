@@ -54,7 +54,7 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
   constexpr double bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
 
-  /// The stress (Pa) of a small strain from the undeformed state: K tr(e) I + 2 mu dev(e) + k (a.dev(e) a) dev(a a^T).
+  /// The stress (Pa) of a small strain e: K tr(e) I + 2 mu dev(e) + k (a.dev(e) a) dev(a a^T).
   template <class T>
   Tensor<T> small_strain_stress(const Tensor<T>& strain) const {
     const Tensor<T> isochoric = deviator(strain);

@@ -11,7 +11,7 @@ namespace sandglass {
 struct TlAssumedStrain {
   static constexpr std::string_view name = "tl-assumed-strain";
   static constexpr std::string_view summary =
-      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), computed in the undeformed shape";
+      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), undeformed shape";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = RestHourglassControl<AssumedStrain>;

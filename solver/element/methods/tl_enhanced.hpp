@@ -11,7 +11,7 @@ namespace sandglass {
 struct TlEnhanced {
   static constexpr std::string_view name = "tl-enhanced";
   static constexpr std::string_view summary =
-      "one point, Total Lagrangian, enhanced assumed strain after Puso, computed in the undeformed shape";
+      "one point, Total Lagrangian, enhanced assumed strain after Puso, undeformed shape";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = RestHourglassControl<EnhancedStrain>;
