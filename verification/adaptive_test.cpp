@@ -392,7 +392,7 @@ TEST(Adaptive, wrong_input_is_refused) {
   relaxing.description.law = sample_law<Viscoelastic<NeoHookean>>(0.45);
   EXPECT_TRUE(contains(input_error([&] { Model(relaxing, {"tl-adaptive"}); }), "relaxes"));
   const Model model(scene, {"tl-adaptive"});
-  State<double> state = elements_of(model).rest();
+  State<double> state = elements_of(model).undeformed();
   for (const double level : {-1.0, 0.5, 3.0, std::nan("")}) {
     std::vector<double> levels = elements_of(model).levels(state);
     levels[3] = level;

@@ -310,7 +310,7 @@ TEST(SubnormalTest, fading_displacements_give_no_force_and_leave_the_processor_a
   const Mesh mesh = box({1, 1, 1}, {2, 2, 2});
   const auto elements =
       std::get<1>(make_internal_force(mesh, law, {"tl-perturbation", {}, Precision::single_precision}));
-  State<float> state = elements->rest();
+  State<float> state = elements->undeformed();
   for (auto& row : state.u) row = {{1e-40F, -2e-40F, 3e-40F, 0.0F}};
   Rows<float> force(state.u.size());
   elements->evaluate(state, force);

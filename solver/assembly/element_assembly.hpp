@@ -39,8 +39,8 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
                   const HourglassSettings& settings, int threads)
       : Base(mesh, elastic, settings, threads), law_(law) {}
 
-  State<Real> rest() const override {
-    State<Real> state = Base::rest();
+  State<Real> undeformed() const override {
+    State<Real> state = Base::undeformed();
     state.history.resize(history_numbers * layout_->ranks() +
                          (Base::averages_over_nodes ? 4 * layout_->rows() : 0));
     return state;

@@ -73,7 +73,7 @@ NodalField to_field(const Rows<Real>& rows, const Layout& layout) {
 
 template <class Real>
 State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u) {
-  State<Real> state = elements.rest();
+  State<Real> state = elements.undeformed();
   state.u = to_rows<Real>(u, elements.layout());
   state.increment = state.u;
   return state;

@@ -62,7 +62,7 @@ class InternalForce {
   virtual const Layout& layout() const = 0;
 
   /// The body at rest.
-  virtual State<Real> rest() const = 0;
+  virtual State<Real> undeformed() const = 0;
 
   /// Whether the forces follow from the increment of the state too; else nobody needs to write it.
   virtual bool needs_increment() const = 0;

@@ -92,7 +92,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   const Layout& layout() const override { return *layout_; }
   bool needs_increment() const override { return uses_increment; }
 
-  State<Real> rest() const override {
+  State<Real> undeformed() const override {
     State<Real> state;
     state.u.resize(layout_->rows());
     state.increment.resize(layout_->rows());
@@ -161,8 +161,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
     if constexpr (KernelOf<Method>::averages_over_nodes) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
-        const auto [change, rest, unused] = gather<Number>(volumes, groups.places(face, corner));
-        motion.dilatation[corner] = change / rest;
+        const auto [change, reference, unused] = gather<Number>(volumes, groups.places(face, corner));
+        motion.dilatation[corner] = change / reference;
       }
     }
     return motion;
@@ -345,7 +345,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
                               const ElementGroups& groups, std::size_t face, Real* volumes) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
       scatter_add<Number>({below.change[4 + corner] + above.change[corner],
-                           below.rest[4 + corner] + above.rest[corner], Number(Real(0))},
+                           below.reference[4 + corner] + above.reference[corner], Number(Real(0))},
                           volumes, groups.places(face, corner));
     }
   }

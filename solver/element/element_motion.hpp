@@ -21,7 +21,7 @@ struct ElementMotion {
 template <class T>
 struct NodalVolumes {
   std::array<T, 8> change;
-  std::array<T, 8> rest;
+  std::array<T, 8> reference;
 };
 
 /// The history of an element that remembers nothing: its force follows from the displacements.

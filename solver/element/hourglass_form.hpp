@@ -58,7 +58,7 @@ Matrix<T, 12, 12> matrix_of(const Stiffness& stiffness) {
 /// the form's own shape, which is less to load and to multiply than twelve rows of twelve. It follows the
 /// mean deformation.
 template <class Form>
-struct RestHourglassControl {
+struct ReferenceHourglassControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
   static constexpr bool follows_deformation = true;

@@ -115,9 +115,9 @@ struct LinearOnePoint {
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const typename Hourglass::template Element<T>& control,
                            const NoHistory<T>& history, const Law& law) {
-    ElementMotion<T> rest = motion;
-    rest.u = {};
-    return OnePoint::stiffness_bound<Hourglass>(rest, element, control, history, law);
+    ElementMotion<T> undeformed = motion;
+    undeformed.u = {};
+    return OnePoint::stiffness_bound<Hourglass>(undeformed, element, control, history, law);
   }
 };
 

@@ -109,7 +109,7 @@ std::array<Counted, 8> averages(const typename Kernel::template Element<Counted>
   auto dilatation = counted<std::array<Counted, 8>>(tally, 1e-3);
   for (std::size_t corner = 0; corner < 4; ++corner) {
     const Counted change = carried.change[4 + corner] + volumes.change[corner];
-    dilatation[4 + corner] = change / (carried.rest[4 + corner] + volumes.rest[corner]);
+    dilatation[4 + corner] = change / (carried.reference[4 + corner] + volumes.reference[corner]);
   }
   return dilatation;
 }

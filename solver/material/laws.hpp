@@ -15,9 +15,11 @@ using AnyLaw = VariantOf<Laws>;
 
 /// The laws that kernels are compiled for: the neo-Hookean one, and the others behind calls.
 using KernelLaw = std::variant<NeoHookean, CalledLaw, Viscoelastic<CalledLaw>>;
+
+/// The law as kernels take it.
 KernelLaw kernel_law(const AnyLaw& law);
 
-/// The elastic law, or the instantaneous response of one that relaxes, behind calls.
+/// The elastic law, or the instantaneous response of a viscoelastic one, behind calls.
 CalledLaw elastic_law(const KernelLaw& law);
 
 /// The name of a law chosen at run time.

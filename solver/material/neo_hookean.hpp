@@ -10,8 +10,8 @@ namespace sandglass {
 
 /// The nearly incompressible neo-Hookean law of ABAQUS and of the TLED paper,
 ///   W = mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2,
-/// written in the displacement gradient H = F - I so that nothing cancels near rest. Energies in J/m^3,
-/// stresses in Pa, per reference volume.
+/// written in the displacement gradient H = F - I, so that nothing cancels near the undeformed state.
+/// Energies in J/m^3, stresses in Pa, per reference volume.
 struct NeoHookean : FirstInvariant<NeoHookean> {
   static constexpr std::string_view name = "neo-hookean";
   static constexpr std::string_view summary = "isochoric neo-Hookean with a quadratic volumetric energy";

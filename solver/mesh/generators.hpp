@@ -10,7 +10,7 @@
 
 namespace sandglass {
 
-/// THE list of mesh generators. A new one is a header, its source and one entry here.
+/// The list of mesh generators. A new one is a header, its source and one entry here.
 using Generators = TypeList<BoxMesh, EllipsoidMesh, CylinderMesh, BeamMesh, CurvedBeamMesh, TaperedPanelMesh>;
 
 using AnyGenerator = VariantOf<Generators>;

@@ -42,10 +42,10 @@ constexpr NodalVectors<double> parent_gradient(const std::array<double, 3>& xi) 
   return gradient;
 }
 
-/// Where the points of the 2x2x2 Gauss rule stand on the parent axes: 1/sqrt(3).
+/// The coordinate of the points of the 2x2x2 Gauss rule on the parent axes: 1/sqrt(3).
 inline constexpr double gauss_coordinate = 0.57735026918962576451;
 
-/// The eight points of the 2x2x2 Gauss rule, one beside each corner; every weight is 1.
+/// The eight points of the 2x2x2 Gauss rule, in the order of the nearest corners; every weight is 1.
 constexpr std::array<std::array<double, 3>, 8> gauss_points() {
   std::array<std::array<double, 3>, 8> points{};
   for (int q = 0; q < 8; ++q) {

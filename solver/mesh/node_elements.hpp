@@ -7,7 +7,7 @@
 
 namespace sandglass {
 
-/// For each node the elements around it.
+/// The elements around each node of a mesh.
 class NodeElements {
  public:
   explicit NodeElements(const Mesh& mesh);

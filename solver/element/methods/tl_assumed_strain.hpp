@@ -14,7 +14,7 @@ struct TlAssumedStrain {
       "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), undeformed shape";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
-  using Hourglass = RestHourglassControl<AssumedStrain>;
+  using Hourglass = ReferenceHourglassControl<AssumedStrain>;
 };
 
 }  // namespace sandglass

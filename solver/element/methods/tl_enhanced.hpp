@@ -14,7 +14,7 @@ struct TlEnhanced {
       "one point, Total Lagrangian, enhanced assumed strain after Puso, undeformed shape";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
-  using Hourglass = RestHourglassControl<EnhancedStrain>;
+  using Hourglass = ReferenceHourglassControl<EnhancedStrain>;
 };
 
 }  // namespace sandglass
