@@ -11,10 +11,10 @@
 /// Set-up only, in double.
 namespace sandglass {
 
-/// The fluctuation of the displacement gradient at the 2x2x2 Gauss points. The hourglass displacements
-/// q = gamma^T u say all of it: du_i/dX_j = H_ij + sum_a q_ai gradient(a, j), exactly and on any shape.
+/// The fluctuation of the displacement gradient at the 2x2x2 Gauss points. It is determined by the hourglass
+/// displacements q = gamma^T u: du_i/dX_j = H_ij + sum_a q_ai gradient(a, j), exactly and for any shape.
 struct HourglassFluctuation {
-  std::array<Matrix<double, 4, 3>, 8> gradient;  ///< 1/m^2 x m = 1/m per m of hourglass displacement
+  std::array<Matrix<double, 4, 3>, 8> gradient;  ///< per m of hourglass displacement, 1/m
   std::array<double, 8> weight;                  ///< det(dX/dxi), m^3
 };
 

@@ -9,7 +9,7 @@
 /// Lagrangian ones once, as a matrix.
 namespace sandglass {
 
-/// nu/(1-nu) at rest: how much plane stress differs from plane strain.
+/// nu/(1-nu) of the undeformed state, as in plane stress.
 template <class Law>
 double plane_ratio(const Law& law) {
   const double lambda = lame_lambda(law);
@@ -54,9 +54,9 @@ Matrix<T, 12, 12> matrix_of(const Stiffness& stiffness) {
   return K;
 }
 
-/// A form as the control of a Total Lagrangian element: its stiffness at rest is computed once and kept in
-/// the form's own shape, which is less to load and to multiply than twelve rows of twelve. It follows the
-/// mean deformation.
+/// A form as the control of a Total Lagrangian element: its stiffness in the reference configuration is
+/// computed once and stored in the form's own structure, which is smaller than a 12 x 12 matrix. The control
+/// follows the mean deformation.
 template <class Form>
 struct ReferenceHourglassControl {
   static constexpr bool active = true;
@@ -87,7 +87,7 @@ struct ReferenceHourglassControl {
     return T(0.5) * double_dot(r, element.resistance(r));
   }
 
-  /// As for any matrix, N/m.
+  /// The bound (N/m) of HourglassMatrixControl for the matrix of the form.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
     return HourglassMatrixControl<Form>::stiffness_bound(gamma, {symmetric_part(matrix_of<T>(element))});
