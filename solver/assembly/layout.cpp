@@ -14,9 +14,9 @@ std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// Elements that fit into a processor's second cache with their nodes.
+/// The number of elements that fit into a processor's second-level cache with their nodes.
 constexpr std::size_t elements_per_chunk = 2048;
-/// Meshes below this size stay in one chunk: cutting them up would cost more than threads bring.
+/// Meshes below this size form one chunk: dividing them would cost more than threads gain.
 constexpr std::size_t smallest_cut_mesh = 256;
 
 /// Elements sorted along the longest side of the mesh; those of one layer, equal up to roundoff, keep their
@@ -41,12 +41,12 @@ std::vector<int> sorted_along_the_mesh(const Mesh& mesh) {
   return order;
 }
 
-/// Where chunk c of n begins in a list of `size`.
+/// The index at which chunk c of n begins in a list of `size`.
 std::size_t chunk_begin(std::size_t size, std::size_t n, std::size_t c) {
   return size * c / n;
 }
 
-/// Whether slabs two apart share no node.
+/// Whether slabs other than neighbours share no node.
 bool neighbours_only_touch(const Mesh& mesh, const std::vector<int>& order, std::size_t n) {
   std::vector<std::size_t> lowest(mesh.points.size(), n);
   for (std::size_t c = 0; c < n; ++c) {
@@ -74,13 +74,13 @@ std::size_t longest(const std::vector<Strip>& strips) {
   return most;
 }
 
-/// Puts strips side by side.
+/// Packs strips of equal length side by side into groups.
 class StripPacker {
  public:
   StripPacker(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
 
-  /// The strips in pieces of at most so many elements. row_of(node) is called for the nodes of each group in
-  /// turn; lanes to spare run along the rows from `spare_row` on.
+  /// Adds strips, cut into pieces of at most `most_ranks` elements. row_of(node) is called for the nodes of
+  /// each group in turn; spare lanes run along the rows from `spare_row` on.
   template <class RowOf>
   void add(std::vector<Strip> open, std::size_t most_ranks, std::size_t spare_row, const RowOf& row_of) {
     while (!open.empty()) add_group(choose(open, most_ranks), spare_row, row_of);
@@ -88,7 +88,7 @@ class StripPacker {
 
   std::size_t groups() const { return groups_.groups.size(); }
 
-  /// Whether a group from number `first` on has a lane without a strip.
+  /// Whether one of the groups from number `first` on has a lane without a strip.
   bool has_spare_lanes(std::size_t first) const {
     if (first >= groups()) return false;
     const auto rank = static_cast<std::ptrdiff_t>(groups_.groups[first].first_rank * at(groups_.width));
@@ -98,7 +98,7 @@ class StripPacker {
   ElementGroups finish() { return std::move(groups_); }
 
  private:
-  /// The greatest length that allows `width` pieces, or 1 when elements are too few.
+  /// The greatest length that allows `width` pieces, or 1 if there are too few elements.
   std::size_t piece_length(const std::vector<Strip>& open, std::size_t most) const {
     for (std::size_t length = std::min(most, longest(open)); length > 1; --length) {
       std::size_t pieces = 0;
@@ -108,8 +108,8 @@ class StripPacker {
     return 1;
   }
 
-  /// Takes up to `width` pieces of equal length off the open strips: first such that share no node, for a
-  /// processor waits when lanes add to one row in turn; then any.
+  /// Cuts up to `width` pieces of equal length off the open strips: preferably pieces that share no node,
+  /// since lanes that add to the same row in turn stall the processor.
   std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_ranks) {
     const std::size_t length = piece_length(open, most_ranks);
     std::vector<Strip> chosen;
@@ -140,7 +140,7 @@ class StripPacker {
     return true;
   }
 
-  /// Takes the first elements off a strip.
+  /// Cuts the first `length` elements off a strip.
   static Strip cut(Strip& strip, std::size_t length) {
     const auto n = static_cast<std::ptrdiff_t>(length);
     Strip piece{{strip.faces.begin(), strip.faces.begin() + n + 1},
@@ -173,7 +173,7 @@ class StripPacker {
   }
 
   ElementGroups groups_;
-  std::vector<int> taken_by_;  // round in which a node was last chosen
+  std::vector<int> taken_by_;  // the round in which each node was last chosen
   int round_ = -1;
 };
 
@@ -204,7 +204,8 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
     }
     return at(row);
   };
-  std::vector<int> spare;  // nodes whose coordinates the spare rows take: the longest strip of each chunk
+  std::vector<int>
+      spare;  // nodes whose coordinates spare rows have: those of the longest strip of each chunk
   StripPacker packer(width, layout.nodes);
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t begin = chunk_begin(order.size(), n, c), end = chunk_begin(order.size(), n, c + 1);

@@ -23,12 +23,12 @@ namespace sandglass {
 template <class Levels, class Number>
 class LevelledElements;
 
-/// The elements of a mesh, each at one of the levels of its method; a method that does not adapt has one. The
-/// elements of a chunk that share a level stand in groups of their own, in blocks of as many as `Number`
-/// computes at a time, so that loops are those of one kernel and packs are full. What is here knows no law.
+/// The elements of a mesh, each at one of the levels of its method; a method that is not adaptive has one
+/// level. The elements of a chunk at the same level form groups, in blocks of as many elements as `Number`
+/// has lanes, so that each loop runs one kernel with full packs. Everything here is independent of the law.
 ///
-/// Loops run along the strips of a group: a face's nodes are gathered once, their modes serve the elements on
-/// both sides, and the forces of both leave together.
+/// Loops run along the strips of a group: the nodes of a face are gathered once, their modes serve the
+/// elements on both sides, and the forces of both are scattered together.
 template <class... Methods, class Number>
 class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<typename Lanes<Number>::Scalar> {
  protected:
@@ -37,7 +37,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   using Real = typename Lanes<Number>::Scalar;
   using Faces = FaceModes<Number>;
 
-  /// A method's elements with the law of their set-up; what is law-free of them does not depend on it.
+  /// A method's elements with the law of their set-up; what is used here does not depend on the law.
   template <class Method>
   using KernelOf = FormulationOf<Method, CalledLaw>;
 
@@ -54,16 +54,16 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     std::shared_ptr<const ElementGroups> groups;
     std::size_t first = 0;
     std::size_t last = 0;
-    std::size_t first_block = 0;  // where the blocks of the first group stand among those of `groups`
+    std::size_t first_block = 0;  // index of the first group's first block among those of `groups`
     std::vector<Element> blocks;
   };
 
   /// One part for each level.
   using Parts = std::tuple<Part<Methods>...>;
 
-  /// Chunks are values that never change: plans share those whose elements have the same levels.
+  /// Chunks are immutable: plans share those whose elements have the same levels.
   struct Plan final : ElementLevels {
-    std::vector<std::size_t> levels;  // of each element; empty where there is but one
+    std::vector<std::size_t> levels;  // of each element; empty if there is only one
     std::vector<std::shared_ptr<const Parts>> chunks;
   };
 
@@ -110,7 +110,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       std::vector<std::size_t> wanted;
       for (const double level : levels) {
         if (!(level >= 0.0 && level <= static_cast<double>(top)) || level != std::floor(level)) {
-          throw InputError("checkpoint: 'element level' must hold levels of the method");
+          throw InputError("checkpoint: 'element level' must contain levels of the method");
         }
         wanted.push_back(static_cast<std::size_t>(level));
       }
@@ -185,8 +185,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     return motion;
   }
 
-  /// Sets each row of `volumes`, four numbers, to the change of volume around the node and to that volume at
-  /// rest (m^3).
+  /// Sets each row of `volumes`, four numbers, to the change of volume around the node and to the reference
+  /// volume (m^3).
   void sum_volumes(const State<Real>& state, Real* volumes) const {
     const Plan& plan = plan_of(state);
     sum_over_chunks(*layout_, threads_, volumes, [&](std::size_t c) {
@@ -194,9 +194,9 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  /// Calls visit.operator()<Method>(motion, element, block, for_each_lane) for every block of elements, with
-  /// its number among the groups that it stands in; for_each_lane calls back with the number of the element
-  /// in each lane that has one.
+  /// Calls visit.operator()<Method>(motion, element, block, for_each_lane) for every block of elements, where
+  /// `block` is its index among those of its groups, and for_each_lane(use) calls use(e, lane) for each lane
+  /// with the number of its element.
   template <class Visit>
   void for_each_block(const State<Real>& state, const Visit& visit) const {
     std::vector<Real> volumes;
@@ -245,11 +245,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   CalledLaw setup_law_;
   HourglassSettings settings_;
   int threads_;
-  Rows<Real> coordinates_;  // only where kernels need them, or constants of other levels
-  bool streams_ = false;    // constants do not stay in the cache from step to step
+  Rows<Real> coordinates_;  // only if kernels need them, or adaptive methods
+  bool streams_ = false;    // whether constants do not remain in the cache from step to step
 
  private:
-  /// What it takes to give elements other levels.
+  /// The data needed for changing the levels of elements.
   struct Regrouping {
     Regrouping(const Mesh& body, const Layout& layout) : mesh(body), neighbours(body) {
       for (const auto& chunk : layout.chunks) elements.push_back(layout.elements_of(chunk));

@@ -8,7 +8,7 @@
 
 namespace sandglass {
 
-/// What an entry says of a method without its kernels.
+/// The entry of a method without its kernels.
 template <class Method>
 MethodEntry method_facts() {
   using Hourglass = typename Method::Hourglass;
@@ -22,7 +22,7 @@ MethodEntry method_facts() {
       .kappa_affects_equilibrium = kappa_affects_equilibrium<Method>,
       .is_linear = is_linear<Method>,
       .is_condensed = is_condensed<Method>,
-      .knows_relaxation = knows_law<Method, Viscoelastic<CalledLaw>>,
+      .knows_viscoelasticity = knows_law<Method, Viscoelastic<CalledLaw>>,
       .levels = level_names<Method>()};
 }
 

@@ -12,9 +12,8 @@ namespace sandglass {
 /// An hourglass control of this element is given its whole Deformation and has
 ///   resistance(now, control, history)  the hourglass resistances Q (N); advances the history,
 ///   energy(now, control, history)      the stored energy (J) that can be released,
-///   stiffness_bound(body, gamma, now, control, history)  a bound (N/m) of the element's tangent, given that
-///   of
-///                                      its body.
+///   stiffness_bound(body, gamma, now, control, history)  a bound (N/m) of the element's tangent from that of
+///   its body.
 struct UpdatedOnePoint {
   static constexpr bool needs_increment = true;
   static constexpr bool needs_coordinates = true;
