@@ -14,7 +14,7 @@ std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// 1 for components that may move, 0 for others.
+/// 1 for free components, 0 for constrained ones.
 NodalField free_components(const Scene& scene) {
   NodalField free(scene.mesh.points.size(), Vector{1.0, 1.0, 1.0});
   for (const auto& constraint : scene.constraints) free[at(constraint.node)][at(constraint.component)] = 0.0;
@@ -33,7 +33,8 @@ Vector centre(const Mesh& mesh, const Hexahedron& cell) {
   return sum;
 }
 
-/// Whether the functions of a grid hardly bend within a hexahedron: it is not much wider than half a box.
+/// Whether the functions of a grid are nearly linear within a hexahedron: it is not much wider than half a
+/// box.
 bool is_small(const Mesh& mesh, const Hexahedron& cell, const Vector& middle, const CoarseGrid& grid) {
   return std::all_of(cell.begin(), cell.end(), [&](int n) {
     bool near = true;

@@ -10,7 +10,7 @@ namespace sandglass {
 /// Three numbers for each node of a coarse grid.
 using CoarseVector = std::vector<double>;
 
-/// The way between rows and a coarse grid: trilinear functions Z_n at each row.
+/// The transfer between rows and a coarse grid: trilinear functions Z_n at each row.
 template <class Real>
 class CoarseTransfer {
  public:
@@ -19,7 +19,7 @@ class CoarseTransfer {
   /// q = sum_n Z_n^T r_n. Constrained components of r must be zero.
   void restrict_to_coarse(const Rows<Real>& r, CoarseVector& q, int threads);
 
-  /// Takes a coarse vector for `from_coarse`.
+  /// Sets the coarse vector for `from_coarse`.
   void take(const CoarseVector& c);
 
   /// Z_n c for the rows from number `k` on, constrained components included.
@@ -39,9 +39,9 @@ class CoarseTransfer {
 
  private:
   std::vector<std::array<std::size_t, 8>> box_nodes_;
-  std::vector<std::size_t> first_;      // of each box, into the next two
+  std::vector<std::size_t> first_;      // index of each box into the next two
   std::vector<Place> places_;           // rows in the order of boxes
-  std::vector<Pack<Real, 8>> weights_;  // the functions of the box's nodes there
+  std::vector<Pack<Real, 8>> weights_;  // values of the functions of the box's nodes
   std::vector<std::array<double, 24>> sums_;
   Rows<Real> local_;                // place in the box, 0 to 1
   std::vector<Place> box_begin_;    // of each row, into coefficients_

@@ -8,10 +8,10 @@ namespace sandglass {
 
 namespace {
 
-/// What a rank's elements leave for the coarse stiffness: F^-1 and V.
+/// The numbers per element for the coarse stiffness: F^-1 and V.
 constexpr std::size_t tangent_numbers = 10;
 
-/// Share of an element's stiffness bound in its nodal blocks, which keeps them firm against hourglassing.
+/// The share of an element's stiffness bound in its nodal blocks, which resists hourglassing.
 constexpr double bound_share = 0.25;
 
 }  // namespace
@@ -62,7 +62,7 @@ void Preconditioner<Real>::add_elements(const Body<Real>& body, const std::vecto
   }
 }
 
-/// V ((lambda + mu) g g^T + mu |g|^2 I) at each node, with g the spatial gradient of its function, and a
+/// Adds V ((lambda + mu) g g^T + mu |g|^2 I) at each node, with g the spatial gradient of its function, and a
 /// share of the stiffness bound.
 template <class Real>
 template <class Number>
@@ -107,7 +107,7 @@ template <class Number>
   }
 }
 
-/// Inverts the blocks by cofactors, as if constrained components were not there; their entries become zero.
+/// Inverts the blocks by cofactors without constrained components, whose entries become zero.
 template <class Real>
 void Preconditioner<Real>::invert_blocks(int threads) {
   for_each_block(4 * free_.size(), threads, [&](std::size_t first, std::size_t last) {

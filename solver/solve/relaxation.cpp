@@ -17,7 +17,7 @@ namespace sandglass {
 
 namespace {
 
-/// The search through all levels, as it is told to the observer.
+/// The search through all load levels, with reports to the observer.
 template <class Real>
 class Search {
  public:
@@ -61,22 +61,23 @@ class Search {
   }
 
  private:
-  /// On the way to the full load this residual is good enough to predict from.
+  /// A residual that is sufficient for predictions, below the full load.
   static constexpr double tolerance_on_the_way = 0.1;
 
-  /// At this residual elements may choose their levels: what is left moves none of them from one to another
-  /// that does not show it again at the end.
+  /// The residual at which elements first choose their levels at the full load; levels that would still
+  /// change at smaller residuals are corrected at the end.
   static constexpr double tolerance_for_adaption = 1e-3;
 
-  /// Evaluations after which a level begins anew from where it is, with a new preconditioner; then twice as
-  /// many. So it does once when the residual stagnates, which frees it from the rounding of the secants.
+  /// Evaluations after which a search restarts from its present displacements, with a new preconditioner;
+  /// then twice as many. It also restarts once when the residual stagnates, which removes the roundoff of the
+  /// secants.
   static constexpr long first_renewal = 500;
 
   static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
 
   Body<Real>& body() { return equilibrium_.body(); }
 
-  /// What the next level reads; see checkpoint.hpp.
+  /// The data that the next load level depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive archive) {
     equilibrium_.keep(archive);
@@ -92,15 +93,15 @@ class Search {
     return settings_.tolerance;
   }
 
-  /// Relative time: the load gone through, and at the end the evaluations over those that led there.
+  /// Relative time: the length of the load path, plus, at the full load, evaluations over those up to there.
   double time() const {
     if (!load_levels_.full()) return load_levels_.travelled();
     const auto before = static_cast<double>(std::max(1L, first_evaluation_));
     return load_levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
   }
 
-  /// Whether the forces at this load are in balance, within the tolerance or the rounding, and no element is
-  /// inverted.
+  /// Searches the equilibrium at this load; whether it was found, within the tolerance or roundoff, with no
+  /// element inverted.
   bool solve() {
     first_evaluation_ = equilibrium_.evaluations();
     long renewal = first_renewal;
@@ -128,9 +129,9 @@ class Search {
     return body().healthy();
   }
 
-  /// Lets elements choose their levels for the displacements as they stand; whether the search goes on. At
-  /// the full load they do so until they are settled at a moderate residual, where they may go down the first
-  /// time, and once more at the end; going up only, that ends.
+  /// Lets elements choose their levels at the present displacements; whether the search must continue. At the
+  /// full load this is repeated until levels no longer change, first at a moderate residual, then at the
+  /// tolerance. Elements are demoted only the first time; repeated promotions must end.
   bool settle() {
     if (!load_levels_.full()) {
       adaption_.apply(body(), Demotion::reluctant);
@@ -159,11 +160,13 @@ class Search {
     body().state() = failed;
     body().require_healthy(equilibrium_.evaluations());
     throw ComputationError(
-        "the forces found no balance, however short the way; remedy: impose less, or refine the mesh",
+        "no equilibrium was found, however small the increment of the load; remedy: impose less, or refine "
+        "the "
+        "mesh",
         Breakdown::no_balance);
   }
 
-  /// Ends the run when the observer wants it or the evaluations are used up.
+  /// Ends the run if the observer requests it or the evaluations are used up.
   void check() {
     const long evaluations = equilibrium_.evaluations();
     ended_ = evaluations >= settings_.max_steps;
@@ -179,7 +182,8 @@ class Search {
     ended_ = ended_ || result_.interrupted;
   }
 
-  /// Work of imposed displacements and forces over a level, from the mean of the forces at its ends.
+  /// Adds the work of imposed displacements and forces over a load level, from the mean of the forces at its
+  /// ends.
   void add_work() {
     const auto& constraints = model_.scene().constraints;
     const auto moved = load_levels_.moved();
@@ -213,9 +217,9 @@ class Search {
   std::vector<double> reactions_;
   double load_path_ = 0.0;
   double work_ = 0.0;
-  long first_evaluation_ = 0;  // of this level
-  bool lowered_ = false;       // elements have gone down at the full load
-  bool settled_ = false;       // and then asked for no more at a moderate residual
+  long first_evaluation_ = 0;  // of this load level
+  bool lowered_ = false;       // whether elements had the opportunity to be demoted at the full load
+  bool settled_ = false;       // whether levels no longer changed at a moderate residual
   bool ended_ = false;
 };
 
