@@ -315,7 +315,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
   }
 
-  /// Adds the volumes of a part, as forces are added.
+  /// Adds the nodal volumes of a part, in the order of the forces.
   template <class Method>
   [[gnu::flatten, gnu::aligned(64)]] void add_volumes(const Part<Method>& part, const State<Real>& state,
                                                       Real* volumes) const {
@@ -340,7 +340,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
   }
 
-  /// Adds to the rows of a face what the element below and the one above have there.
+  /// Adds the volumes of the elements below and above a face to its rows.
   static void scatter_volumes(const NodalVolumes<Number>& below, const NodalVolumes<Number>& above,
                               const ElementGroups& groups, std::size_t face, Real* volumes) {
     for (std::size_t corner = 0; corner < 4; ++corner) {

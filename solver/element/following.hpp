@@ -34,6 +34,7 @@ struct FollowedDeformation {
   T phi;  ///< unset if the control does not grow
 };
 
+/// The mean deformation of a displacement gradient H.
 template <class Hourglass, class T>
 FollowedDeformation<T> followed_deformation(const Tensor<T>& H, const VolumeChange<T>& change) {
   const T r = change.inverse_root;

@@ -28,7 +28,7 @@ struct ElementConstants {
 
 /// An element: kinematics (from displacements to strains and from stresses to forces), an hourglass control
 /// and a material law. All functions are templated on the number type T: double, a pack, a counting or a dual
-/// number.
+/// number. Kinematics and controls implement functions of the same names, which are documented here.
 template <class Kinematics, class Hourglass, class Law>
 struct Formulation {
   template <class T>

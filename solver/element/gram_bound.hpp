@@ -6,7 +6,7 @@
 #include "math/symmetric_matrix.hpp"
 
 /// Upper bounds of the largest eigenvalue of sums of stiffnesses that act on different nodes of an element.
-/// Adding up the largest eigenvalue of each would cost a factor of three: seldom do they meet in one mode.
+/// The sum of their largest eigenvalues would be three times too large, since their modes differ.
 namespace sandglass {
 
 /// An upper bound of the largest eigenvalue of sum_n c_n g_n g_n^T, c_n >= 0, g_n in R^24. With A the matrix

@@ -85,6 +85,7 @@ struct EnhancedStrain {
     T bound() const { return block_row_sum_bound(matrix_of<T>(*this)); }
   };
 
+  /// The stiffness in a configuration with nodal coordinates x (m, in modes) and the geometry `current`.
   template <class T>
   static Stiffness<T> stiffness(const Modes<T>& x, const OnePoint::Element<T>& current,
                                 const Element<T>& element) {

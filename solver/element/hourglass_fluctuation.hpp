@@ -7,8 +7,8 @@
 #include "math/symmetric_matrix.hpp"
 #include "mesh/hexahedron.hpp"
 
-/// What one point does not see of a deformation: the part of the displacement gradient whose mean vanishes.
-/// Set-up only, in double.
+/// The part of the displacement gradient whose mean vanishes, which one point misses. For set-up, in double
+/// precision.
 namespace sandglass {
 
 /// The fluctuation of the displacement gradient at the 2x2x2 Gauss points. It is determined by the hourglass

@@ -4,9 +4,9 @@
 #include "element/one_point.hpp"
 #include "material/laws.hpp"
 
-/// Hourglass stiffnesses with a physical meaning: from an element's shape and its law's moduli at rest,
-/// without a parameter. Updated Lagrangian controls evaluate them for the current shape in every step; Total
-/// Lagrangian ones once, as a matrix.
+/// Physical hourglass stiffnesses, without a parameter: they follow from an element's shape and its law's
+/// initial moduli. Updated Lagrangian controls evaluate them for the current shape in every step, Total
+/// Lagrangian ones once.
 namespace sandglass {
 
 /// nu/(1-nu) of the undeformed state, as in plane stress.

@@ -4,7 +4,12 @@
 #include "element/gram_bound.hpp"
 #include "element/tetrahedron_split.hpp"
 
-/// The pressure of a tetrahedron: policies of `Tetrahedra`.
+/// The pressure of a tetrahedron: policies of `Tetrahedra`. Each has
+///   around(motion)                       what the pressure depends on of the surrounding elements,
+///   pressures(dilatation, around, law)   the pressure (Pa) of each tetrahedron from J - 1,
+///   volumetric_energy(...)               the element's share of the volumetric energy, J,
+///   own_bulk_tangent(dilatation, law)    the bulk tangent (Pa) of a tetrahedron's own volume change,
+///   shared_bulk_bound(...)               a bound (N/m) of the stiffness due to shared pressures.
 namespace sandglass {
 
 /// One pressure per tetrahedron: the linear tetrahedron, which locks as nu -> 1/2.

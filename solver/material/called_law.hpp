@@ -26,6 +26,7 @@ class CalledLaw : public QuadraticVolume<CalledLaw> {
   double shear_modulus() const { return shear_modulus_; }
   double bulk_modulus() const { return bulk_modulus_; }
 
+  /// The isochoric strain energy density, J/m^3.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const;
 
@@ -63,6 +64,7 @@ class CalledLaw : public QuadraticVolume<CalledLaw> {
   TangentBound<T> viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
                                              const T& bulk) const;
 
+  /// The stress (Pa) of a small strain.
   template <class T>
   Tensor<T> small_strain_stress(const Tensor<T>& strain) const;
 

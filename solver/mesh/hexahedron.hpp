@@ -5,7 +5,7 @@
 #include "math/matrix.hpp"
 
 /// Geometry of the trilinear hexahedron: nodes in VTK order, shape functions, hourglass base vectors, mean
-/// gradients. Set-up only, in double; kernels meet the results.
+/// gradients. For set-up, in double precision.
 namespace sandglass {
 
 /// Parent coordinates (xi, eta, zeta) of the eight nodes, VTK order.
@@ -67,6 +67,7 @@ struct PointGradient {
   double measure;
 };
 
+/// Gradients and measure at the parent point xi of a hexahedron with corners X (m).
 constexpr PointGradient point_gradient(const NodalVectors<double>& X, const std::array<double, 3>& xi) {
   const Tensor<double> jacobian = parent_jacobian(X, xi);
   return {parent_gradient(xi) * inverse(jacobian), determinant(jacobian)};

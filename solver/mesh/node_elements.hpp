@@ -11,6 +11,8 @@ namespace sandglass {
 class NodeElements {
  public:
   explicit NodeElements(const Mesh& mesh);
+
+  /// The elements around a node, in ascending order.
   std::span<const int> around(int node) const;
 
  private:

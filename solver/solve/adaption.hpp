@@ -49,6 +49,7 @@ class AdaptionSchedule {
 template <class Real>
 class Adaption {
  public:
+  /// For a body of the model, with the accuracy of the model's method choice.
   Adaption(const Model& model, const Body<Real>& body);
 
   /// Whether there are levels to choose.

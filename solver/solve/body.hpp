@@ -12,8 +12,10 @@ namespace sandglass {
 template <class Real>
 class Body {
  public:
+  /// The undeformed body, without loads.
   Body(const Model& model, const InternalForce<Real>& elements);
 
+  /// The present state; see State.
   const State<Real>& state() const { return state_; }
   State<Real>& state() { return state_; }
 
@@ -62,7 +64,10 @@ class Body {
   /// Rows in the numbering of the mesh.
   NodalField field(const Rows<Real>& rows) const { return to_field(rows, layout()); }
 
+  /// Strain and hourglass energy, J.
   StrainEnergies energies() const { return elements_.energies(state_); }
+
+  /// A frame of the present state at `time` (s) with velocities v (m/s).
   Frame frame(double time, NodalField v) const;
 
   /// Throws ComputationError when a displacement is not finite or an element is inverted.

@@ -19,6 +19,7 @@ struct ElementTangent {
 /// nodal values of the functions, but in the undeformed state.
 class CoarseStiffness {
  public:
+  /// Sorts the elements of a scene into the boxes of the grid; `update` must follow.
   CoarseStiffness(const Scene& scene, const CoarseGrid& grid);
 
   std::size_t size() const { return size_; }

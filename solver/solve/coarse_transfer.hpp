@@ -14,6 +14,7 @@ using CoarseVector = std::vector<double>;
 template <class Real>
 class CoarseTransfer {
  public:
+  /// Between a grid around `points` (m) and the rows of a layout.
   CoarseTransfer(const CoarseGrid& grid, const NodalField& points, const Layout& layout);
 
   /// q = sum_n Z_n^T r_n. Constrained components of r must be zero.

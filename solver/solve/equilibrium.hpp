@@ -13,6 +13,7 @@ namespace sandglass {
 template <class Real>
 class Equilibrium {
  public:
+  /// For the undeformed body of the model; `start` must follow.
   Equilibrium(const Model& model, const InternalForce<Real>& elements);
 
   /// The body; its forces and displacements are those of the last evaluation. Callers that move it must set

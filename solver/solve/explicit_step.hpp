@@ -9,6 +9,7 @@ namespace sandglass {
 template <class Real>
 class ExplicitStep {
  public:
+  /// For the undeformed body of the model.
   ExplicitStep(const Model& model, const InternalForce<Real>& elements);
 
   Body<Real>& body() { return body_; }

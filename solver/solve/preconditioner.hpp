@@ -15,6 +15,7 @@ namespace sandglass {
 template <class Real>
 class Preconditioner {
  public:
+  /// For a body of the model; `update` must follow.
   Preconditioner(const Model& model, const InternalForce<Real>& elements, const Body<Real>& body);
 
   /// Recomputes both parts at a body's displacements; none of its elements may be inverted.

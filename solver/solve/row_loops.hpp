@@ -38,6 +38,7 @@ Sum sum_over_blocks(std::size_t n, int threads, const Function& function) {
   return sum;
 }
 
+/// Sets all rows to zero.
 template <class Real>
 void clear(Rows<Real>& rows, int threads) {
   Real* x = numbers_of(rows);
@@ -45,6 +46,7 @@ void clear(Rows<Real>& rows, int threads) {
                  [=](std::size_t first, std::size_t last) { std::fill(x + first, x + last, Real(0)); });
 }
 
+/// The sum over all rows of their scalar products.
 template <class Real>
 double dot(const Rows<Real>& a, const Rows<Real>& b, int threads) {
   const Real *x = numbers_of(a), *y = numbers_of(b);

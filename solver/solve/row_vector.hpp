@@ -13,6 +13,7 @@ using RowVector = typename detail::VectorOf<T, W>::Vector;
 template <class T>
 inline constexpr int row_vector_width = std::max(4, native_width<T>);
 
+/// W numbers from `numbers` on.
 template <int W, class T>
 RowVector<T, W> load(const T* numbers) {
   RowVector<T, W> vector;
@@ -20,6 +21,7 @@ RowVector<T, W> load(const T* numbers) {
   return vector;
 }
 
+/// Writes a vector to `numbers`.
 template <class T, class Vector>
 void store(const Vector& vector, T* numbers) {
   std::memcpy(numbers, &vector, sizeof vector);
