@@ -103,7 +103,7 @@ struct Updated<TypeList<EveryMethod...>> {
                                       TypeList<EveryMethod>, TypeList<>>...>;
 };
 
-/// The methods that run laws which relax.
+/// The methods that support viscoelastic laws.
 template <class List>
 struct ViscoelasticIn;
 template <class... EveryMethod>
@@ -139,7 +139,7 @@ using PairsOf =
                  typename detail::Product<TypeList<TlPerturbation, TlMeanDilatation>,
                                           typename detail::Split<ElasticLaws>::others>::type>;
 
-/// The methods that run laws which relax.
+/// The methods that support viscoelastic laws.
 using ViscoelasticMethods = detail::ViscoelasticIn<Methods>::type;
 using ViscoelasticMethodTypes = detail::AsTestTypes<ViscoelasticMethods>::type;
 
