@@ -256,8 +256,8 @@ Answer answer_at_rest(const Model& model, const std::optional<double>& sleep, Ob
   const std::string ending = outcome(found, precision);
   print_outcome(model,
                 fmt::format("{} after {} steps, residual {:.2e}", ending, found.steps, found.residual));
-  return {std::move(found.u), at_rest(found, precision) ? "complete" : ending, found.steps, found.seconds,
-          found.adaption_seconds};
+  return {std::move(found.u), in_equilibrium(found, precision) ? "complete" : ending, found.steps,
+          found.seconds, found.adaption_seconds};
 }
 
 Answer answer_in_motion(const Model& model, Observer& observer, const Checkpoint* from) {

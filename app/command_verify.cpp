@@ -64,7 +64,7 @@ std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision prec
     for (const MethodEntry& method : methods()) {
       tasks.push_back({&subject, {std::string(method.name), {}, precision}});
       // A condensed method's curve is that of the method it condenses.
-      if (!method.kappa_matters_at_rest || method.is_condensed) continue;
+      if (!method.kappa_affects_equilibrium || method.is_condensed) continue;
       for (const double kappa : subject.scene.description.kappas) {
         tasks.push_back({&subject, {std::string(method.name), kappa, precision}});
       }

@@ -97,7 +97,7 @@ class _Numbers:
         try:
             return np.array(found, dtype="S").astype("i8" if kind[0] == "i" else kind)
         except (ValueError, OverflowError) as error:
-            raise InputError(f"{self.where} has what is no number: {error}") from error
+            raise InputError(f"{self.where} contains an invalid number: {error}") from error
 
     def kind(self, number):
         """The entry of KINDS for Gmsh's number. Raises InputError."""

@@ -342,7 +342,7 @@ TEST(Adaptive, floats_settle_too) {
     relax(Model(scene, choice), in_double);
     choice.precision = Precision::single_precision;
     const Relaxation answer = relax(Model(scene, choice), in_float);
-    EXPECT_TRUE(at_rest(answer, choice.precision));
+    EXPECT_TRUE(in_equilibrium(answer, choice.precision));
     EXPECT_LT(distance(scene, answer.u, exact), 2.0 * accuracy) << accuracy;
     int lower = 0;
     const auto &a = in_double.frames.back().levels, &b = in_float.frames.back().levels;
@@ -390,9 +390,9 @@ TEST(Adaptive, wrong_input_is_refused) {
   }
   Scene relaxing = scene;
   relaxing.description.law = sample_law<Viscoelastic<NeoHookean>>(0.45);
-  EXPECT_TRUE(contains(input_error([&] { Model(relaxing, {"tl-adaptive"}); }), "relaxes"));
+  EXPECT_TRUE(contains(input_error([&] { Model(relaxing, {"tl-adaptive"}); }), "viscoelastic"));
   const Model model(scene, {"tl-adaptive"});
-  State<double> state = elements_of(model).rest();
+  State<double> state = elements_of(model).undeformed();
   for (const double level : {-1.0, 0.5, 3.0, std::nan("")}) {
     std::vector<double> levels = elements_of(model).levels(state);
     levels[3] = level;

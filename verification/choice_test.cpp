@@ -73,7 +73,7 @@ TEST(Ladder, has_every_method) {
     constexpr bool without_answer = DampsOnly<typename Method::Hourglass> || zero_energy_modes<Method>() > 6;
     EXPECT_EQ(unfit, without_answer ? 1 : 0) << Method::name;
     EXPECT_EQ(in_float, without_answer ? 0 : in_double) << Method::name;
-    EXPECT_GE(in_double, kappa_matters_at_rest<Method> ? 3 : 1) << Method::name;
+    EXPECT_GE(in_double, kappa_affects_equilibrium<Method> ? 3 : 1) << Method::name;
     EXPECT_GE(automatic, 1) << Method::name;
   });
   EXPECT_EQ(make_ladder(meshes, {.methods = {"linear"}}).size(), 6u);

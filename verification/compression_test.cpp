@@ -284,7 +284,7 @@ class Block {
     for (auto& d : u) {
       for (std::size_t i = 0; i < 3; ++i) d[i] *= stretches[i] - 1.0;
     }
-    const State<double> there = reached(elements_->rest(), u).first;
+    const State<double> there = reached(elements_->undeformed(), u).first;
     // Differences of forces linear to 1e-6 of an element's size, known to 1e-16 over that: 1e-9 of stiffness.
     constexpr double step = 1e-6;
     const std::size_t size = free_.size();

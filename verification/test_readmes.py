@@ -308,10 +308,12 @@ def test_functions_that_a_table_of_theory_names_are_there(document):
         assert re.search(rf"\b{name.split('::')[-1]}\b[^;]*[({{]", code), name
 
 
-def test_every_equation_of_the_paper_is_in_the_theory():
+def test_every_equation_of_the_paper_is_in_the_theory_and_in_the_code():
     text = "".join(DOCUMENTS[document] for document in THEORY)
-    rows = "".join(re.findall(r"^\| (\(.*?)[a-z]", text, re.MULTILINE))
-    assert [int(number) for number in re.findall(r"\((\d+)\)", rows)] == list(range(1, 16))
+    rows = "".join(re.findall(r"^\| (eq\. .*?):", text, re.MULTILINE))
+    assert [int(number) for number in re.findall(r"eq\. (\d+)", rows)] == list(range(1, 16))
+    code = "".join(file.read_text() for file in (ROOT / "solver").rglob("*.hpp"))
+    assert set(re.findall(r"\beq\. (\d+)", code)) == {str(number) for number in range(1, 16)}
 
 
 def test_operations_of_the_control_are_those_that_are_counted():

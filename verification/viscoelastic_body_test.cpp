@@ -25,7 +25,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr double density = 1000.0;
 
 template <class Method>
-class RelaxingBodyTest : public ::testing::Test {
+class ViscoelasticBodyTest : public ::testing::Test {
  protected:
   static std::string method() { return std::string(Method::name); }
   static Model model(const Scene& scene, Precision precision = Precision::double_precision) {
@@ -33,11 +33,11 @@ class RelaxingBodyTest : public ::testing::Test {
   }
 };
 
-TYPED_TEST_SUITE(RelaxingBodyTest, RelaxingMethodTypes, EntryName);
+TYPED_TEST_SUITE(ViscoelasticBodyTest, ViscoelasticMethodTypes, EntryName);
 
 /// A distorted element under a uniform strain, held: every method answers with f = V h P^T of the relaxing
 /// stress. An element whose points share a memory, or that takes it one step too far, fails here.
-TYPED_TEST(RelaxingBodyTest, uniform_strain_relaxes_as_the_law) {
+TYPED_TEST(ViscoelasticBodyTest, uniform_strain_relaxes_as_the_law) {
   RandomGeometry random(41);
   for (int n = 0; n < 10; ++n) {
     const Law law = sample_law<Law>(0.45);
@@ -78,7 +78,7 @@ TYPED_TEST(RelaxingBodyTest, uniform_strain_relaxes_as_the_law) {
 }
 
 /// Without time a law has relaxed, whatever was before: a trial that gave no numbers leaves nothing behind.
-TYPED_TEST(RelaxingBodyTest, trials_without_numbers_are_forgotten_where_time_plays_no_part) {
+TYPED_TEST(ViscoelasticBodyTest, trials_without_numbers_are_forgotten_where_time_plays_no_part) {
   using Kernel = FormulationOf<TypeParam, NeoHookean>;
   if constexpr (Kernel::remembers || Kernel::needs_increment) return;  // its control depends on the path
   const Mesh mesh = box({1, 1, 1}, {2, 1, 1});
@@ -156,7 +156,7 @@ Scene sliding_bar(const Law& law, const Mesh& mesh, double speed) {
   return make_scene(description, mesh, sets);
 }
 
-TYPED_TEST(RelaxingBodyTest, oscillation_is_damped_as_in_closed_form) {
+TYPED_TEST(ViscoelasticBodyTest, oscillation_is_damped_as_in_closed_form) {
   const double h = 0.02;
   Law law = sample_law<Law>(0.25);
   const double omega = std::sqrt(2.0 * p_wave_modulus(law) / (density * h * h));
@@ -196,7 +196,7 @@ Scene plane_waves() {
   return scene;
 }
 
-TYPED_TEST(RelaxingBodyTest, plane_waves_are_those_of_every_method) {
+TYPED_TEST(ViscoelasticBodyTest, plane_waves_are_those_of_every_method) {
   if constexpr (FormulationOf<TypeParam, Law>::averages_over_nodes)
     return;  // pressures meet their neighbours'
   const Scene scene = plane_waves();
@@ -211,7 +211,7 @@ TYPED_TEST(RelaxingBodyTest, plane_waves_are_those_of_every_method) {
 
 /// A body left to itself loses energy, and what it stores is never negative. Central differences let the sum
 /// swing by about (omega dt)^2 / 4 of it, 1 % at a tenth of the stable step.
-TYPED_TEST(RelaxingBodyTest, free_oscillation_loses_energy) {
+TYPED_TEST(ViscoelasticBodyTest, free_oscillation_loses_energy) {
   const Scene scene = plane_waves();
   Recorder recorder;
   integrate(this->model(scene), recorder);
@@ -227,7 +227,7 @@ TYPED_TEST(RelaxingBodyTest, free_oscillation_loses_energy) {
 
 /// Single precision: as for elastic bodies eps per step and radian, and the memories' u |Q| per step, which
 /// is below the stress.
-TYPED_TEST(RelaxingBodyTest, single_precision_stays_within_its_budget) {
+TYPED_TEST(ViscoelasticBodyTest, single_precision_stays_within_its_budget) {
   const Scene scene = plane_waves();
   Observer silent;
   const Motion exact = integrate(this->model(scene), silent);
@@ -240,7 +240,7 @@ TYPED_TEST(RelaxingBodyTest, single_precision_stays_within_its_budget) {
 }
 
 /// The neo-Hookean law that the viscoelastic one is when all has relaxed.
-NeoHookean relaxed_law(const Law& law) {
+NeoHookean long_term_law(const Law& law) {
   const double mu = law.remaining_share() * law.shear_modulus(), K = law.bulk_modulus();
   return {.young_modulus = 9 * K * mu / (3 * K + mu), .poisson_ratio = (3 * K - 2 * mu) / (2 * (3 * K + mu))};
 }
@@ -255,7 +255,7 @@ template <class Method>
 SameStiffness same_stiffness(const Law& law) {
   SameStiffness kappa;
   if constexpr (Method::Hourglass::takes_kappa) {
-    const NeoHookean relaxed = relaxed_law(law);
+    const NeoHookean relaxed = long_term_law(law);
     kappa.relaxed = Method::Hourglass::auto_kappa(relaxed);
     kappa.viscoelastic = *kappa.relaxed * p_wave_modulus(relaxed) / p_wave_modulus(law);
   }
@@ -278,11 +278,11 @@ Scene bent_block(const AnyLaw& law) {
 }
 
 /// Where time plays no part forces and energies are those of the elastic body with the relaxed shear modulus.
-TYPED_TEST(RelaxingBodyTest, without_time_it_is_the_elastic_body_with_the_relaxed_shear_modulus) {
+TYPED_TEST(ViscoelasticBodyTest, without_time_it_is_the_elastic_body_with_the_relaxed_shear_modulus) {
   if constexpr (comparable<TypeParam>) {
     const Law law = sample_law<Law>(0.45);
     const auto kappa = same_stiffness<TypeParam>(law);
-    const Scene viscoelastic = bent_block(law), elastic = bent_block(relaxed_law(law));
+    const Scene viscoelastic = bent_block(law), elastic = bent_block(long_term_law(law));
     NodalField u;
     for (const auto& X : elastic.mesh.points) {
       u.push_back({0.2 * X[2] * std::sin(30 * X[1]), 0.1 * X[0], 0.3 * X[2] * std::cos(20 * X[0])});
@@ -299,15 +299,15 @@ TYPED_TEST(RelaxingBodyTest, without_time_it_is_the_elastic_body_with_the_relaxe
 }
 
 template <class Method>
-class RelaxedBodyTest : public ::testing::Test {};
-TYPED_TEST_SUITE(RelaxedBodyTest, PathIndependentMethodTypes, EntryName);
+class LongTermBodyTest : public ::testing::Test {};
+TYPED_TEST_SUITE(LongTermBodyTest, PathIndependentMethodTypes, EntryName);
 
 /// So are quasi-static answers, where there is but one: modes without energy may come to rest anywhere.
-TYPED_TEST(RelaxedBodyTest, comes_to_rest_where_the_elastic_body_does) {
+TYPED_TEST(LongTermBodyTest, comes_to_rest_where_the_elastic_body_does) {
   if constexpr (knows_law<TypeParam, Law> && comparable<TypeParam> && zero_energy_modes<TypeParam>() == 6) {
     const Law law = sample_law<Law>(0.45);
     const auto kappa = same_stiffness<TypeParam>(law);
-    const Scene viscoelastic = bent_block(law), elastic = bent_block(relaxed_law(law));
+    const Scene viscoelastic = bent_block(law), elastic = bent_block(long_term_law(law));
     Observer silent;
     const Relaxation relaxed =
         relax(Model(viscoelastic, {std::string(TypeParam::name), kappa.viscoelastic}), silent);
@@ -375,7 +375,7 @@ TEST(ViscoelasticCase, wrong_parameters_are_refused_with_their_line) {
   EXPECT_TRUE(
       contains(sum, "hold.toml:16: material.relaxation_2 = 0.4 must be below 1 - relaxation_1 = 0.4"));
   const std::string time = error_of("relaxation_1 = 0.6\ntime_1 = 0.5\nrelaxation_2 = 0.3");
-  EXPECT_TRUE(contains(time, "material.time_2 = 0 must be positive, for relaxation_2 = 0.3 is"));
+  EXPECT_TRUE(contains(time, "material.time_2 = 0 must be positive because relaxation_2 = 0.3 is"));
 }
 
 /// A block of brain tissue, held from t = 0.2 s on after a ramp about 0.1 s. Being nearly incompressible it

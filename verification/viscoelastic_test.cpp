@@ -28,7 +28,7 @@ class ViscoelasticTest : public ::testing::Test {
   /// A point of the law, led along a path.
   struct Point {
     Law law;
-    RelaxationMemory<double> memory{};
+    ViscousMemory<double> memory{};
 
     /// The first Piola-Kirchhoff stress (Pa) at H, reached in the given time (s).
     Tensor<double> to(const Tensor<double>& H, double seconds) {
@@ -64,11 +64,11 @@ class ViscoelasticTest : public ::testing::Test {
 TYPED_TEST_SUITE(ViscoelasticTest, LawTypes, EntryName);
 
 TYPED_TEST(ViscoelasticTest, name_and_parameters_are_the_laws_and_its_own) {
-  using Relaxing = Viscoelastic<TypeParam>;
-  EXPECT_EQ(Relaxing::name, "viscoelastic-" + std::string(TypeParam::name));
-  EXPECT_EQ(std::tuple_size_v<decltype(Relaxing::parameters())>,
+  using ViscoelasticLaw = Viscoelastic<TypeParam>;
+  EXPECT_EQ(ViscoelasticLaw::name, "viscoelastic-" + std::string(TypeParam::name));
+  EXPECT_EQ(std::tuple_size_v<decltype(ViscoelasticLaw::parameters())>,
             std::tuple_size_v<decltype(TypeParam::parameters())> + 4);
-  static_assert(law_remembers<Relaxing> && !law_remembers<TypeParam>);
+  static_assert(law_remembers<ViscoelasticLaw> && !law_remembers<TypeParam>);
 }
 
 /// Held still, a stress relaxes as the exponentials, whatever the steps; the first one, which goes there, is
@@ -239,7 +239,7 @@ TYPED_TEST(ViscoelasticTest, kirchhoff_stress_is_that_of_the_piola_stress) {
     const auto P = point.to(H, dt);
     EXPECT_LT(largest_entry(tau - V * (P * transpose(identity<double>() + H))), 4 * this->tolerance(law, H));
     EXPECT_LT(largest_entry(full(memory.S) - full(point.memory.S)), this->tolerance(law, H));
-    RelaxationMemory<double> fresh{};
+    ViscousMemory<double> fresh{};
     const auto instantaneous = kirchhoff(law.at_step(1e-18).recalling(fresh), H);
     EXPECT_LT(largest_entry(instantaneous - kirchhoff(elastic, H)), 4 * this->tolerance(law, H));
   }
@@ -259,8 +259,8 @@ TYPED_TEST(ViscoelasticTest, tangent_bound_holds) {
     for (const double dt : {1e-6, 0.3, 30.0, infinity}) {
       Matrix<double, 9, 9> slack{};
       for (int k = 0; k < 9; ++k) {
-        RelaxationMemory<D> memory{constant(point.memory.S), {}};
-        for (std::size_t i = 0; i < 2; ++i) memory.relaxed[i] = constant(point.memory.relaxed[i]);
+        ViscousMemory<D> memory{constant(point.memory.S), {}};
+        for (std::size_t i = 0; i < 2; ++i) memory.decayed[i] = constant(point.memory.decayed[i]);
         const Tensor<double> F = identity<double>() + H;
         const auto dH = along(H, unit<3, 3>(static_cast<std::size_t>(k)) * F);
         const auto current = slope(law.at_step(dt).recalling(memory).piola(dH)) * transpose(F);
@@ -278,10 +278,10 @@ TYPED_TEST(ViscoelasticTest, tangent_bound_holds) {
 
 /// The factors of a step, from steps that vanish to infinite ones, against long double. The difference as
 /// written, 1 - (1 - e^-x)/x, would be off by eps/x.
-TEST(RelaxationStepTest, factors_have_all_their_digits) {
+TEST(ViscousStepTest, factors_have_all_their_digits) {
   const double share = 0.45;
   for (double x = 1e-15; x < 1e3; x *= 1.3) {
-    const auto step = RelaxationStep::of(share, 2.0, 2.0 * x);
+    const auto step = ViscousStep::of(share, 2.0, 2.0 * x);
     const long double y = 2.0 * x / 2.0;
     const long double decay = -std::expm1(-y);
     const long double series = y / 2 * (1 - y / 3 * (1 - y / 4 * (1 - y / 5 * (1 - y / 6))));
@@ -289,13 +289,13 @@ TEST(RelaxationStepTest, factors_have_all_their_digits) {
     EXPECT_NEAR(static_cast<double>(step.decay / decay), 1.0, 4 * eps) << x;
     EXPECT_NEAR(static_cast<double>(step.follow / (share * lag)), 1.0, 8 * eps) << x;
   }
-  const auto never = RelaxationStep::of(share, 2.0, 0.0);
+  const auto never = ViscousStep::of(share, 2.0, 0.0);
   EXPECT_EQ(never.decay, 0.0);
   EXPECT_EQ(never.follow, 0.0);
-  const auto forever = RelaxationStep::of(share, 2.0, infinity);
+  const auto forever = ViscousStep::of(share, 2.0, infinity);
   EXPECT_EQ(forever.decay, 1.0);
   EXPECT_EQ(forever.follow, share);
-  const auto absent = RelaxationStep::of(0.0, 0.0, infinity);
+  const auto absent = ViscousStep::of(0.0, 0.0, infinity);
   EXPECT_EQ(absent.decay + absent.follow + absent.inverse_share, 0.0);
 }
 
@@ -323,8 +323,8 @@ TEST(ViscoelasticPrecision, does_not_drift_in_a_hundred_thousand_steps) {
   for (const double slow : {50.0, 5e4}) {
     law.time_2 = slow;
     const auto at = law.at_step(dt);
-    RelaxationMemory<double> exact{};
-    RelaxationMemory<float> rounded{};
+    ViscousMemory<double> exact{};
+    ViscousMemory<float> rounded{};
     std::array<double, 2> budget{};
     for (int n = 0; n < steps; ++n) {
       Tensor<float> H{};
@@ -335,16 +335,16 @@ TEST(ViscoelasticPrecision, does_not_drift_in_a_hundred_thousand_steps) {
       at.recalling(rounded).piola(H);
       const std::array<double, 2> tau{law.time_1, law.time_2};
       for (std::size_t i = 0; i < 2; ++i) {
-        const double Q = std::sqrt(norm_square(exact.relaxed[i]));
+        const double Q = std::sqrt(norm_square(exact.decayed[i]));
         budget[i] += 3.0 * u * Q - dt / tau[i] * budget[i];
       }
     }
     for (std::size_t i = 0; i < 2; ++i) {
       Symmetric<double> difference{};
       for (int k = 0; k < 6; ++k) {
-        difference(k, 0) = static_cast<double>(rounded.relaxed[i](k, 0)) - exact.relaxed[i](k, 0);
+        difference(k, 0) = static_cast<double>(rounded.decayed[i](k, 0)) - exact.decayed[i](k, 0);
       }
-      const double size = std::sqrt(norm_square(exact.relaxed[i]));
+      const double size = std::sqrt(norm_square(exact.decayed[i]));
       const double error = std::sqrt(norm_square(difference));
       EXPECT_LT(error, budget[i] + 16.0 * u * size) << "term " << i << " slow " << slow;
       EXPECT_LT(error, 1e-2 * size) << "term " << i << " slow " << slow;

@@ -15,11 +15,11 @@ ForceOf<Number> assemble(const Mesh& mesh, const KernelLaw& kernel_law, const Ho
     using Loop = ForceLoop<Levels, CalledLaw, NeoHookean, Number>;
     return std::make_unique<Loop>(mesh, elastic, elastic, *law, settings, threads);
   }
-  using Relaxing = Viscoelastic<CalledLaw>;
-  if constexpr (knows_law<Method, Relaxing>) {
-    if (const auto* law = std::get_if<Relaxing>(&kernel_law)) {
-      return std::make_unique<ForceLoop<Levels, Relaxing, Relaxing, Number>>(mesh, elastic, *law, *law,
-                                                                             settings, threads);
+  using ViscoelasticLaw = Viscoelastic<CalledLaw>;
+  if constexpr (knows_law<Method, ViscoelasticLaw>) {
+    if (const auto* law = std::get_if<ViscoelasticLaw>(&kernel_law)) {
+      return std::make_unique<ForceLoop<Levels, ViscoelasticLaw, ViscoelasticLaw, Number>>(
+          mesh, elastic, *law, *law, settings, threads);
     }
   }
   using Loop = ForceLoop<Levels, CalledLaw, CalledLaw, Number>;

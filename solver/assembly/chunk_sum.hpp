@@ -9,7 +9,7 @@ namespace sandglass {
 
 namespace detail {
 
-/// Clears the rows that a chunk is the first to meet.
+/// Clears the rows that occur first in a chunk.
 template <class Real>
 void clear_rows_of(const Layout::Chunk& chunk, Real* rows) {
   std::fill(rows + place_of_row(chunk.first_row), rows + place_of_row(chunk.last_row), Real(0));
@@ -17,10 +17,10 @@ void clear_rows_of(const Layout::Chunk& chunk, Real* rows) {
 
 }  // namespace detail
 
-/// Clears the rows, four numbers each, and adds to them what add(c) adds, chunk by chunk. Each thread takes a
-/// run of slabs and goes through it as 0, 2, 1, 4, 3, ...: at every node the slab of even number comes before
-/// its neighbour, as it does for any number of threads, and finds what it needs still in the cache. The last
-/// slab of a run waits for the thread that has the next one.
+/// Clears the rows, four numbers each, and calls add(c) for every chunk c, which adds to them. Each thread
+/// takes a run of chunks in the order 0, 2, 1, 4, 3, ...: at every node the even chunk adds before the odd
+/// one, for any number of threads, and data shared by neighbours is still in the cache. The last chunk of a
+/// run waits for the thread of the next run.
 template <class Real, class Add>
 void sum_over_chunks(const Layout& layout, int threads, Real* rows, const Add& add) {
   const std::size_t count = layout.chunks.size(), pairs = (count + 1) / 2;

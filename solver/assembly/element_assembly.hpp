@@ -9,8 +9,8 @@
 
 namespace sandglass {
 
-/// The elements of a mesh with a law: all that does not run in every step. Laws are called here, so that one
-/// class serves all that remember nothing, and another those that relax.
+/// The elements of a mesh with a law: all functions that do not run in every step. Laws are called here, so
+/// that one class serves all elastic laws, and a second one all viscoelastic laws.
 template <class Levels, class Law, class Number>
 class ElementAssembly;
 
@@ -26,7 +26,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   using KernelOf = FormulationOf<Method, Law>;
 
   static_assert(!Base::adapts || !law_remembers<Law>,
-                "what is remembered at one point says nothing of eight");
+                "the memory of one integration point does not determine that of eight");
   static constexpr bool remembers = (KernelOf<Methods>::remembers || ...);
 
   template <class Method>
@@ -39,9 +39,9 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
                   const HourglassSettings& settings, int threads)
       : Base(mesh, elastic, settings, threads), law_(law) {}
 
-  State<Real> rest() const override {
-    State<Real> state = Base::rest();
-    state.history.resize(history_numbers * layout_->levels() +
+  State<Real> undeformed() const override {
+    State<Real> state = Base::undeformed();
+    state.history.resize(history_numbers * layout_->ranks() +
                          (Base::averages_over_nodes ? 4 * layout_->rows() : 0));
     return state;
   }
@@ -120,27 +120,27 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     }
   }
 
-  /// Where the volumes around nodes stand, of elements that average over nodes.
+  /// The volumes around nodes in the history, for elements that average over nodes.
   Real* volumes_of(State<Real>& state) const {
-    return state.history.data() + history_numbers * layout_->levels();
+    return state.history.data() + history_numbers * layout_->ranks();
   }
 
   Law law_;
 
  private:
-  /// What each level but the highest lacks of it, as a displacement (m); see `adapt`.
+  /// For each level except the highest its difference from the highest, as a displacement (m); see `adapt`.
   using Defects = std::array<double, top>;
 
-  /// The lowest level whose defect is no longer than `length`.
+  /// The lowest level whose defect is at most `length` (m).
   static std::size_t cheapest(const Defects& defects, double length) {
     std::size_t level = 0;
     while (level < top && !(defects[level] <= length)) ++level;
     return level;
   }
 
-  /// Lanes of a chunk that a level leaves empty are computed with the others: the elements of the level below
-  /// that come nearest to needing it take them. As many lanes as packs have, whatever `Number` is, so that
-  /// the levels are the same for all.
+  /// Fills the lanes of a chunk that a level would leave empty, since empty lanes cost as much: with the
+  /// elements of the level below that are closest to needing it. The number of lanes is that of packs for
+  /// every `Number`, so that all choose the same levels.
   static void fill_lanes(const std::vector<int>& elements, const std::vector<Defects>& defects,
                          std::vector<std::size_t>& wanted) {
     constexpr std::size_t lanes = Lanes<Pack<Real>>::width;
@@ -161,16 +161,16 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     }
   }
 
-  /// Sets the defects of the elements of a chunk. Constants of all levels are computed anew from the
-  /// coordinates: few are at hand.
+  /// Sets the defects of the elements of a chunk. The constants of all levels are recomputed from the
+  /// coordinates, since those of most levels are not stored.
   void measure_defects(const Layout::Chunk& chunk, const Rows<Real>& u, const Rows<Real>& mobility,
                        std::vector<Defects>& defects) const {
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const auto& group = layout_->groups[g];
-      for (std::size_t k = 0; k < group.levels; ++k) {
+      for (std::size_t k = 0; k < group.ranks; ++k) {
         const auto squares = squared_defects(u, mobility, group.first_face + k);
         for (int lane = 0; lane < width; ++lane) {
-          const int e = layout_->elements[(group.first_level + k) * width + static_cast<std::size_t>(lane)];
+          const int e = layout_->elements[(group.first_rank + k) * width + static_cast<std::size_t>(lane)];
           if (e < 0) continue;
           for (std::size_t level = 0; level < top; ++level) {
             defects[static_cast<std::size_t>(e)][level] =
@@ -181,7 +181,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     }
   }
 
-  /// Squares (m^2) of the defects of the elements between a face of the layout and the next.
+  /// The squares (m^2) of the defects of the elements between a face of the layout and the next one.
   [[gnu::flatten]] std::array<Number, top> squared_defects(const Rows<Real>& u, const Rows<Real>& mobility,
                                                            std::size_t face) const {
     const auto modes = [&](const Rows<Real>& rows) {
@@ -219,8 +219,8 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   }
 };
 
-/// The loop of the time step. `LoopLaw` is the law that it is compiled for: the one of the assembly, or an
-/// elastic law that the compiler sees through.
+/// The loop of a time step. `LoopLaw` is the law that the loop is compiled for: that of the assembly, or an
+/// elastic law that the compiler can inline.
 template <class Levels, class Law, class LoopLaw, class Number>
 class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
   using Base = ElementAssembly<Levels, Law, Number>;
@@ -249,7 +249,7 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
     using Kernel = typename Base::template KernelOf<Method>;
     const ElementGroups& groups = *part.groups;
     const auto law =
-        at_step(loop_law_, state.step);  // a copy that no store can alias: moduli are computed once
+        at_step(loop_law_, state.step);  // a copy that no store can alias, so that moduli are computed once
     const bool timeless = !(state.step < std::numeric_limits<double>::infinity());
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     const Real* const volumes = this->volumes_of(state);
@@ -257,14 +257,14 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
       const ElementGroups::Group group = groups.groups[g];
       FaceMotion lower = this->template gather_face<Method>(groups, state, volumes, group.first_face);
       Faces carried{};
-      for (std::size_t k = 0; k < group.levels; ++k) {
-        const std::size_t block = group.first_level + k;
+      for (std::size_t k = 0; k < group.ranks; ++k) {
+        const std::size_t block = group.first_rank + k;
         const auto& element = part.blocks[block - part.first_block];
         const FaceMotion upper =
             this->template gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
-        if (this->streams_) prefetch_block(part, state, block + levels_ahead);
+        if (this->streams_) prefetch_block(part, state, block + ranks_ahead);
         auto remembered = this->template history<Method>(state, block);
-        if (timeless) remembered.law = {};  // nothing of it counts, and a trial that failed may have left it
+        if (timeless) remembered.law = {};  // irrelevant here, and possibly left by a failed trial
         const Modes<Number> f = Kernel::force(
             Kernel::deformation(Base::template between<Method>(lower, upper, inverse_step), element), element,
             remembered, law);
@@ -273,11 +273,11 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
         carried = upper_face(f);
         lower = upper;
       }
-      scatter_face_modes(carried, force, groups, group.first_face + group.levels);
+      scatter_face_modes(carried, force, groups, group.first_face + group.ranks);
     }
   }
 
-  /// Asks for the constants and the history of a block.
+  /// Prefetches the constants and the history of a block.
   template <class Part>
   void prefetch_block(const Part& part, const State<Real>& state, std::size_t block) const {
     if (block - part.first_block >= part.blocks.size()) return;

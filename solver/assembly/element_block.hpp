@@ -15,7 +15,7 @@ namespace sandglass {
 
 namespace detail {
 
-/// Throws InputError when the kernel cannot be made of an element with coordinates X (m).
+/// Throws InputError if the kernel does not accept an element with coordinates X (m).
 template <class Kernel>
 void require_accepted(const NodalVectors<double>& X) {
   if (Kernel::accepts(X)) return;
@@ -25,14 +25,14 @@ void require_accepted(const NodalVectors<double>& X) {
   }
   throw InputError(
       fmt::format("mesh: the element with centre ({:.6g}, {:.6g}, {:.6g}) does not suit the method; {}; "
-                  "mend the mesh or choose another method",
+                  "repair the mesh or choose another method",
                   centre[0], centre[1], centre[2], Kernel::demand));
 }
 
 }  // namespace detail
 
-/// The constants of the elements between a face of the groups and the next, computed in double and rounded,
-/// one element per lane.
+/// The constants of the elements between a face of the groups and the next one, one element per lane,
+/// computed in double precision and rounded.
 template <class Kernel, class Number, class Law>
 typename Kernel::template Element<Number> element_block(const Mesh& mesh, const ElementGroups& groups,
                                                         const std::vector<int>& node_of_row, std::size_t face,

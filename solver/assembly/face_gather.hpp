@@ -36,8 +36,8 @@ void scatter_face_modes(const FaceModes<Number>& modes, Real* rows, const Elemen
   }
 }
 
-/// Reference coordinates (m) as rows, spare rows included. They are seen from the middle of the mesh: where
-/// it stands must not cost single precision its digits.
+/// Reference coordinates (m) as rows, spare rows included, relative to the centre of the bounding box, so
+/// that single precision does not lose digits in a mesh far from the origin.
 template <class Real>
 Rows<Real> centred_coordinates(const NodalField& points, const Layout& layout) {
   const auto [low, high] = bounding_box(points);

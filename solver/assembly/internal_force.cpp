@@ -24,7 +24,7 @@ void require_sensible(const MethodChoice& choice, const MethodEntry& method) {
     throw InputError(fmt::format("threads: {} must be at least 1", choice.threads));
   }
   if (choice.kernel == KernelWidth::scalar && choice.precision == Precision::single_precision) {
-    throw InputError("kernel: the scalar kernel is there for comparison in double precision only");
+    throw InputError("kernel: the scalar kernel exists in double precision only");
   }
 }
 
@@ -39,11 +39,11 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& any_law, co
   const MethodEntry& method = method_named(choice.method);
   require_sensible(choice, method);
   const KernelLaw law = kernel_law(any_law);
-  if (!method.knows_relaxation && std::holds_alternative<Viscoelastic<CalledLaw>>(law)) {
-    throw InputError(
-        fmt::format("law: '{}' relaxes, which method '{}' takes no notice of; allowed: an elastic law, or "
-                    "another method",
-                    name_of(any_law), method.name));
+  if (!method.knows_viscoelasticity && std::holds_alternative<Viscoelastic<CalledLaw>>(law)) {
+    throw InputError(fmt::format(
+        "law: '{}' is viscoelastic, which method '{}' does not support; allowed: an elastic law, or "
+        "another method",
+        name_of(any_law), method.name));
   }
   const HourglassSettings settings{choice.kappa, density, choice.kappa_modulus};
   if (choice.kernel == KernelWidth::scalar) {
@@ -80,7 +80,7 @@ NodalField to_field(const Rows<Real>& rows, const Layout& layout) {
 
 template <class Real>
 State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u) {
-  State<Real> state = elements.rest();
+  State<Real> state = elements.undeformed();
   state.u = to_rows<Real>(u, elements.layout());
   state.increment = state.u;
   return state;

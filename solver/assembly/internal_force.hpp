@@ -21,7 +21,7 @@ struct StrainEnergies {
   double hourglass = 0.0;
 };
 
-/// The levels of a method's elements, and how they stand together. Only the elements know what is in it.
+/// The levels of a method's elements and their grouping; only the elements know its content.
 class ElementLevels {
  public:
   ElementLevels() = default;
@@ -30,26 +30,27 @@ class ElementLevels {
   virtual ~ElementLevels() = default;
 };
 
-/// What changed when elements were given new levels.
+/// The number of elements whose level changed.
 struct Adaptation {
   std::size_t promoted = 0;  ///< elements
   std::size_t demoted = 0;
 };
 
-/// What changes in time: nodal values in rows, in the order of the layout, and what elements remember.
+/// The variables of a simulation: nodal values in rows, in the order of the layout, and the elements'
+/// history.
 template <class Real>
 struct State {
   Rows<Real> u;               ///< displacements, m
-  Rows<Real> increment;       ///< what the last step added to them, m
+  Rows<Real> increment;       ///< their change in the last step, m
   std::vector<Real> history;  ///< of the elements; only they know its meaning
   std::shared_ptr<const ElementLevels> levels;
   double step = std::numeric_limits<double>::infinity();  ///< s, that the increment took; infinite where time
                                                           ///< plays no part
 };
 
-/// The elements of a mesh with one method and one law: displacements in, internal forces out. This interface
-/// is where the choice made at run time ends; behind it loops are monomorphic. Everything is const: it may be
-/// shared by threads.
+/// The elements of a mesh with one method and one law: displacements in, internal forces out. Behind this
+/// interface, which hides the choice made at run time, loops are monomorphic. All functions are const, so
+/// that threads may share an object.
 template <class Real>
 class InternalForce {
  public:
@@ -61,35 +62,36 @@ class InternalForce {
   /// The order of rows and elements.
   virtual const Layout& layout() const = 0;
 
-  /// The body at rest.
-  virtual State<Real> rest() const = 0;
+  /// The state of the undeformed body.
+  virtual State<Real> undeformed() const = 0;
 
-  /// Whether the forces follow from the increment of the state too; else nobody needs to write it.
+  /// Whether the forces also depend on the increment of the state; otherwise it need not be set.
   virtual bool needs_increment() const = 0;
 
-  /// Sets `force` to the internal nodal forces (N); what elements remember goes one step on. Allocates
-  /// nothing. The bits do not depend on the number of threads.
+  /// Sets `force` to the internal nodal forces (N) and advances the history by one step. Allocates nothing.
+  /// The bits do not depend on the number of threads.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
-  /// Gives each element the cheapest level that will do, where a method has several. What its force lacks of
-  /// that at the highest level, times `mobility` (m/N, by row and component), displaces its nodes: up it
-  /// goes to the lowest level at which none by more than `length` (m), down to the lowest at which none by
-  /// more than `demoting_length` <= length; 0: never. Those in lanes that would be empty may stand higher.
+  /// Gives each element the cheapest sufficient level, if the method has several. The difference between an
+  /// element's force and that at the highest level, times `mobility` (m/N, by row and component), displaces
+  /// its nodes. An element is promoted to the lowest level at which no node is displaced by more than
+  /// `length` (m), and demoted to the lowest at which none is by more than `demoting_length` <= length, never
+  /// if that is 0. Elements that fill otherwise empty lanes may be at a higher level.
   virtual Adaptation adapt(State<Real>& /*state*/, const Rows<Real>& /*mobility*/, double /*length*/,
                            double /*demoting_length*/) const {
     return {};
   }
 
-  /// The level of each element, 0 the cheapest; empty where a method has but one.
+  /// The level of each element, 0 the cheapest; empty if the method has only one.
   virtual std::vector<double> levels(const State<Real>& /*state*/) const { return {}; }
 
-  /// Sets them. Throws InputError where one is no level of the method, for they may have come from a file.
+  /// Sets the levels. Throws InputError if one is not a level of the method: they may come from a file.
   virtual void set_levels(State<Real>& /*state*/, const std::vector<double>& /*levels*/) const {}
 
-  /// Strain and hourglass energy.
+  /// Strain and hourglass energy of the whole mesh.
   virtual StrainEnergies energies(const State<Real>& state) const = 0;
 
-  // Per element, in the numbering of the mesh:
+  // The following are per element, in the numbering of the mesh.
 
   /// Hourglass energy per reference volume (J/m^3).
   virtual void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const = 0;
@@ -104,7 +106,7 @@ class InternalForce {
   virtual void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const = 0;
 };
 
-/// The numbers in which a run computes.
+/// The number type of a run.
 enum class Precision { double_precision, single_precision };
 
 /// "double" or "float".
@@ -118,10 +120,10 @@ enum class KernelWidth { pack, scalar };
 /// Whether this program was linked with `sandglass_scalar`.
 bool has_scalar_kernels();
 
-/// What an adaptive method aims at unless told.
+/// The default accuracy of adaptive methods.
 inline constexpr double default_accuracy = 0.003;
 
-/// What a user chooses beside the case.
+/// The user's choices in addition to the case.
 struct MethodChoice {
   std::string method;
   std::optional<double> kappa = {};  ///< none means auto
@@ -136,14 +138,15 @@ struct MethodChoice {
 using AnyInternalForce =
     std::variant<std::unique_ptr<InternalForce<double>>, std::unique_ptr<InternalForce<float>>>;
 
-/// THE place of dispatch: the elements of `mesh` with the chosen method. Hourglass controls that damp need
-/// the density (kg/m^3); with none they do nothing. Throws InputError for an unknown method (naming the known
-/// ones), for a kappa given to a method that takes none, and for scalar kernels in single precision, which
-/// nothing needs.
+/// The elements of `mesh` with the chosen method; the only place where the choice is dispatched. Hourglass
+/// controls that damp need the density (kg/m^3); with zero they give no force. Throws InputError for an
+/// unknown method (listing the known ones), for a kappa given to a method that takes none, for a law that the
+/// method does not support, for values out of range, and for scalar kernels in single precision, which do not
+/// exist.
 AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
                                      double density = 0.0);
 
-/// The state in which a body finds itself when nodes go from rest to `u` (m) in one step.
+/// The state of a body whose nodes have moved from the undeformed state to displacements u (m) in one step.
 template <class Real>
 State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u);
 

@@ -14,9 +14,9 @@ std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// Elements that fit into a processor's second cache with their nodes.
+/// The number of elements that fit into a processor's second-level cache with their nodes.
 constexpr std::size_t elements_per_chunk = 2048;
-/// Meshes below this size stay in one chunk: cutting them up would cost more than threads bring.
+/// Meshes below this size form one chunk: dividing them would cost more than threads gain.
 constexpr std::size_t smallest_cut_mesh = 256;
 
 /// Elements sorted along the longest side of the mesh; those of one layer, equal up to roundoff, keep their
@@ -41,12 +41,12 @@ std::vector<int> sorted_along_the_mesh(const Mesh& mesh) {
   return order;
 }
 
-/// Where chunk c of n begins in a list of `size`.
+/// The index at which chunk c of n begins in a list of `size`.
 std::size_t chunk_begin(std::size_t size, std::size_t n, std::size_t c) {
   return size * c / n;
 }
 
-/// Whether slabs two apart share no node.
+/// Whether slabs other than neighbours share no node.
 bool neighbours_only_touch(const Mesh& mesh, const std::vector<int>& order, std::size_t n) {
   std::vector<std::size_t> lowest(mesh.points.size(), n);
   for (std::size_t c = 0; c < n; ++c) {
@@ -74,31 +74,31 @@ std::size_t longest(const std::vector<Strip>& strips) {
   return most;
 }
 
-/// Puts strips side by side.
-class Grouping {
+/// Packs strips of equal length side by side into groups.
+class StripPacker {
  public:
-  Grouping(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
+  StripPacker(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
 
-  /// The strips in pieces of at most so many elements. row_of(node) is called for the nodes of each group in
-  /// turn; lanes to spare run along the rows from `spare_row` on.
+  /// Adds strips, cut into pieces of at most `most_ranks` elements. row_of(node) is called for the nodes of
+  /// each group in turn; spare lanes run along the rows from `spare_row` on.
   template <class RowOf>
-  void add(std::vector<Strip> open, std::size_t most_levels, std::size_t spare_row, const RowOf& row_of) {
-    while (!open.empty()) add_group(choose(open, most_levels), spare_row, row_of);
+  void add(std::vector<Strip> open, std::size_t most_ranks, std::size_t spare_row, const RowOf& row_of) {
+    while (!open.empty()) add_group(choose(open, most_ranks), spare_row, row_of);
   }
 
   std::size_t groups() const { return groups_.groups.size(); }
 
-  /// Whether a group from number `first` on has a lane without a strip.
+  /// Whether one of the groups from number `first` on has a lane without a strip.
   bool has_spare_lanes(std::size_t first) const {
     if (first >= groups()) return false;
-    const auto level = static_cast<std::ptrdiff_t>(groups_.groups[first].first_level * at(groups_.width));
-    return std::find(groups_.elements.begin() + level, groups_.elements.end(), -1) != groups_.elements.end();
+    const auto rank = static_cast<std::ptrdiff_t>(groups_.groups[first].first_rank * at(groups_.width));
+    return std::find(groups_.elements.begin() + rank, groups_.elements.end(), -1) != groups_.elements.end();
   }
 
   ElementGroups finish() { return std::move(groups_); }
 
  private:
-  /// The greatest length that allows `width` pieces, or 1 when elements are too few.
+  /// The greatest length that allows `width` pieces, or 1 if there are too few elements.
   std::size_t piece_length(const std::vector<Strip>& open, std::size_t most) const {
     for (std::size_t length = std::min(most, longest(open)); length > 1; --length) {
       std::size_t pieces = 0;
@@ -108,10 +108,10 @@ class Grouping {
     return 1;
   }
 
-  /// Takes up to `width` pieces of equal length off the open strips: first such that share no node, for a
-  /// processor waits when lanes add to one row in turn; then any.
-  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_levels) {
-    const std::size_t length = piece_length(open, most_levels);
+  /// Cuts up to `width` pieces of equal length off the open strips: preferably pieces that share no node,
+  /// since lanes that add to the same row in turn stall the processor.
+  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_ranks) {
+    const std::size_t length = piece_length(open, most_ranks);
     std::vector<Strip> chosen;
     ++round_;
     for (const bool apart : {true, false}) {
@@ -140,7 +140,7 @@ class Grouping {
     return true;
   }
 
-  /// Takes the first elements off a strip.
+  /// Cuts the first `length` elements off a strip.
   static Strip cut(Strip& strip, std::size_t length) {
     const auto n = static_cast<std::ptrdiff_t>(length);
     Strip piece{{strip.faces.begin(), strip.faces.begin() + n + 1},
@@ -153,7 +153,7 @@ class Grouping {
   template <class RowOf>
   void add_group(const std::vector<Strip>& strips, std::size_t spare_row, const RowOf& row_of) {
     const std::size_t length = strips.front().length(), width = at(groups_.width);
-    groups_.groups.push_back({groups_.levels(), groups_.face_places.size() / (4 * width), length});
+    groups_.groups.push_back({groups_.ranks(), groups_.face_places.size() / (4 * width), length});
     for (const auto& strip : strips) {
       for (const auto& face : strip.faces) {
         for (const int node : face) row_of(node);
@@ -173,7 +173,7 @@ class Grouping {
   }
 
   ElementGroups groups_;
-  std::vector<int> taken_by_;  // round in which a node was last chosen
+  std::vector<int> taken_by_;  // the round in which each node was last chosen
   int round_ = -1;
 };
 
@@ -182,8 +182,8 @@ class Grouping {
 std::vector<int> Layout::elements_of(const Chunk& chunk) const {
   std::vector<int> found;
   for (std::size_t g = chunk.first; g < chunk.last; ++g) {
-    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_level * at(width));
-    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].levels * at(width)),
+    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_rank * at(width));
+    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].ranks * at(width)),
                  std::back_inserter(found), [](int e) { return e >= 0; });
   }
   return found;
@@ -204,32 +204,33 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
     }
     return at(row);
   };
-  std::vector<int> spare;  // nodes whose coordinates the spare rows take: the longest strip of each chunk
-  Grouping grouping(width, layout.nodes);
+  std::vector<int>
+      spare;  // nodes whose coordinates spare rows have: those of the longest strip of each chunk
+  StripPacker packer(width, layout.nodes);
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t begin = chunk_begin(order.size(), n, c), end = chunk_begin(order.size(), n, c + 1);
     const auto strips = cut_into_strips(mesh, neighbours, std::span(order).subspan(begin, end - begin));
-    const std::size_t first = grouping.groups(), first_row = layout.rows(),
-                      spare_row = layout.nodes + spare.size(), spare_levels = longest(strips);
-    grouping.add(strips, spare_levels, spare_row, number);
-    layout.chunks.push_back({first, grouping.groups(), first_row, layout.rows(), spare_row, spare_levels});
-    if (spare_rows == SpareRows::where_needed && !grouping.has_spare_lanes(first)) continue;
+    const std::size_t first = packer.groups(), first_row = layout.rows(),
+                      spare_row = layout.nodes + spare.size(), spare_ranks = longest(strips);
+    packer.add(strips, spare_ranks, spare_row, number);
+    layout.chunks.push_back({first, packer.groups(), first_row, layout.rows(), spare_row, spare_ranks});
+    if (spare_rows == SpareRows::where_needed && !packer.has_spare_lanes(first)) continue;
     const auto longest_strip = std::find_if(
-        strips.begin(), strips.end(), [&](const Strip& strip) { return strip.length() == spare_levels; });
+        strips.begin(), strips.end(), [&](const Strip& strip) { return strip.length() == spare_ranks; });
     for (const auto& face : longest_strip->faces) spare.insert(spare.end(), face.begin(), face.end());
   }
   for (std::size_t node = 0; node < layout.nodes; ++node) number(static_cast<int>(node));  // in no element
   layout.node_of_row.insert(layout.node_of_row.end(), spare.begin(), spare.end());
-  static_cast<ElementGroups&>(layout) = grouping.finish();
+  static_cast<ElementGroups&>(layout) = packer.finish();
   return layout;
 }
 
 ElementGroups groups_within(const Layout& layout, const Layout::Chunk& chunk, const Mesh& mesh,
                             const NodeElements& neighbours, std::span<const int> elements) {
-  Grouping grouping(layout.width, layout.nodes);
-  grouping.add(cut_into_strips(mesh, neighbours, elements), chunk.spare_levels, chunk.spare_row,
-               [&](int node) { return at(layout.row_of_node[at(node)]); });
-  return grouping.finish();
+  StripPacker packer(layout.width, layout.nodes);
+  packer.add(cut_into_strips(mesh, neighbours, elements), chunk.spare_ranks, chunk.spare_row,
+             [&](int node) { return at(layout.row_of_node[at(node)]); });
+  return packer.finish();
 }
 
 }  // namespace sandglass

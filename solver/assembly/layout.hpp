@@ -7,48 +7,48 @@
 
 namespace sandglass {
 
-/// Elements as a time loop goes through them: strips of equal length side by side, `width` of them to a
-/// group, level by level, so that the elements of one level are computed together. Lanes without a strip of
-/// their own run along spare rows, which have the coordinates of nodes of the mesh and stay at rest, so that
-/// kernels need no branch.
+/// Elements in the order of a time loop. A group consists of up to `width` strips of equal length side by
+/// side, one per lane. Its k-th rank consists of the k-th elements of its strips, which are computed
+/// together. Lanes without a strip run along spare rows, which have the coordinates of nodes of the mesh and
+/// zero displacements, so that kernels need no branch.
 struct ElementGroups {
   struct Group {
-    std::size_t first_level;  ///< into `elements`, counted in levels
-    std::size_t first_face;   ///< into `face_places`, counted in faces; a group has one more than levels
-    std::size_t levels;
+    std::size_t first_rank;  ///< into `elements`, counted in ranks
+    std::size_t first_face;  ///< into `face_places`, counted in faces; a group has one more than ranks
+    std::size_t ranks;
   };
 
   int width = 1;
   std::vector<Place> face_places;  ///< [face][corner][lane], places of rows
-  std::vector<int> elements;       ///< [level][lane]; -1 in spare lanes
+  std::vector<int> elements;       ///< [rank][lane]; -1 in spare lanes
   std::vector<Group> groups;
 
-  std::size_t levels() const { return elements.size() / static_cast<std::size_t>(width); }
+  std::size_t ranks() const { return elements.size() / static_cast<std::size_t>(width); }
 
-  /// Where the rows of one corner of a face stand, one per lane.
+  /// The places of the rows of one corner of a face, one per lane.
   const Place* places(std::size_t face, std::size_t corner) const {
     return face_places.data() + (4 * face + corner) * static_cast<std::size_t>(width);
   }
 };
 
-/// The order in which the time loop goes through a mesh, made once. Groups stand in chunks that are slabs of
-/// the mesh. Chunks of even number touch no node of each other, nor do those of odd number, so that any
-/// number of threads adds the forces at a node in the same order. Nodes are rows in the order in which groups
-/// first meet them.
+/// The order in which the time loop goes through a mesh, computed once. Groups are divided into chunks, which
+/// are slabs of the mesh. Even chunks share no nodes with each other, nor do odd ones, so that any number of
+/// threads adds the forces at a node in the same order. Rows are nodes in the order of their first occurrence
+/// in the groups.
 struct Layout : ElementGroups {
-  /// Groups first to last - 1, which are the first to meet rows first_row to last_row - 1. Spare rows for
-  /// strips of up to `spare_levels` elements begin at `spare_row`, where the chunk has any.
+  /// Groups first to last - 1, in which rows first_row to last_row - 1 occur first. Spare rows for strips of
+  /// up to `spare_ranks` elements begin at `spare_row`, if the chunk has any.
   struct Chunk {
     std::size_t first;
     std::size_t last;
     std::size_t first_row;
     std::size_t last_row;
     std::size_t spare_row;
-    std::size_t spare_levels;
+    std::size_t spare_ranks;
   };
 
   std::size_t nodes = 0;         ///< of the mesh; rows from here on are spare
-  std::vector<int> node_of_row;  ///< the node that a row stands for, or whose coordinates a spare one has
+  std::vector<int> node_of_row;  ///< the node of a row, or the one whose coordinates a spare row has
   std::vector<int> row_of_node;
   std::vector<Chunk> chunks;
 
@@ -58,7 +58,7 @@ struct Layout : ElementGroups {
   std::vector<int> elements_of(const Chunk& chunk) const;
 };
 
-/// Which chunks have spare rows: those with lanes to spare, or all, for groups to come.
+/// Which chunks have spare rows: those with spare lanes, or all, for groups made later.
 enum class SpareRows { where_needed, everywhere };
 
 /// The layout of a mesh for kernels that compute `width` elements at a time.
@@ -66,7 +66,7 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows = SpareRows
 
 class NodeElements;
 
-/// Groups of some elements of a chunk by themselves, on the same rows; the layout must have spare rows
+/// Groups of a subset of the elements of a chunk, on the same rows; the layout must have spare rows
 /// everywhere.
 ElementGroups groups_within(const Layout& layout, const Layout::Chunk& chunk, const Mesh& mesh,
                             const NodeElements& neighbours, std::span<const int> elements);

@@ -23,12 +23,12 @@ namespace sandglass {
 template <class Levels, class Number>
 class LevelledElements;
 
-/// The elements of a mesh, each at one of the levels of its method; a method that does not adapt has one. The
-/// elements of a chunk that share a level stand in groups of their own, in blocks of as many as `Number`
-/// computes at a time, so that loops are those of one kernel and packs are full. What is here knows no law.
+/// The elements of a mesh, each at one of the levels of its method; a method that is not adaptive has one
+/// level. The elements of a chunk at the same level form groups, in blocks of as many elements as `Number`
+/// has lanes, so that each loop runs one kernel with full packs. Everything here is independent of the law.
 ///
-/// Loops run along the strips of a group: a face's nodes are gathered once, their modes serve the elements on
-/// both sides, and the forces of both leave together.
+/// Loops run along the strips of a group: the nodes of a face are gathered once, their modes serve the
+/// elements on both sides, and the forces of both are scattered together.
 template <class... Methods, class Number>
 class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<typename Lanes<Number>::Scalar> {
  protected:
@@ -37,7 +37,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   using Real = typename Lanes<Number>::Scalar;
   using Faces = FaceModes<Number>;
 
-  /// A method's elements with the law of their set-up; what is law-free of them does not depend on it.
+  /// A method's elements with the law of their set-up; what is used here does not depend on the law.
   template <class Method>
   using KernelOf = FormulationOf<Method, CalledLaw>;
 
@@ -54,16 +54,16 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     std::shared_ptr<const ElementGroups> groups;
     std::size_t first = 0;
     std::size_t last = 0;
-    std::size_t first_block = 0;  // where the blocks of the first group stand among those of `groups`
+    std::size_t first_block = 0;  // index of the first group's first block among those of `groups`
     std::vector<Element> blocks;
   };
 
   /// One part for each level.
   using Parts = std::tuple<Part<Methods>...>;
 
-  /// Chunks are values that never change: plans share those whose elements have the same levels.
+  /// Chunks are immutable: plans share those whose elements have the same levels.
   struct Plan final : ElementLevels {
-    std::vector<std::size_t> levels;  // of each element; empty where there is but one
+    std::vector<std::size_t> levels;  // of each element; empty if there is only one
     std::vector<std::shared_ptr<const Parts>> chunks;
   };
 
@@ -84,19 +84,19 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     } else {
       for (const auto& chunk : layout_->chunks) plan->chunks.push_back(only_part(mesh, chunk));
     }
-    plan_at_rest_ = std::move(plan);
+    undeformed_plan_ = std::move(plan);
     using Cheapest = typename std::tuple_element_t<0, Parts>::Element;
-    streams_ = layout_->levels() * sizeof(Cheapest) > cached_bytes;
+    streams_ = layout_->ranks() * sizeof(Cheapest) > cached_bytes;
   }
 
   const Layout& layout() const override { return *layout_; }
   bool needs_increment() const override { return uses_increment; }
 
-  State<Real> rest() const override {
+  State<Real> undeformed() const override {
     State<Real> state;
     state.u.resize(layout_->rows());
     state.increment.resize(layout_->rows());
-    state.levels = plan_at_rest_;
+    state.levels = undeformed_plan_;
     return state;
   }
 
@@ -110,7 +110,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       std::vector<std::size_t> wanted;
       for (const double level : levels) {
         if (!(level >= 0.0 && level <= static_cast<double>(top)) || level != std::floor(level)) {
-          throw InputError("checkpoint: 'element level' must hold levels of the method");
+          throw InputError("checkpoint: 'element level' must contain levels of the method");
         }
         wanted.push_back(static_cast<std::size_t>(level));
       }
@@ -161,8 +161,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
     if constexpr (KernelOf<Method>::averages_over_nodes) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
-        const auto [change, rest, unused] = gather<Number>(volumes, groups.places(face, corner));
-        motion.dilatation[corner] = change / rest;
+        const auto [change, reference, unused] = gather<Number>(volumes, groups.places(face, corner));
+        motion.dilatation[corner] = change / reference;
       }
     }
     return motion;
@@ -185,8 +185,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     return motion;
   }
 
-  /// Sets each row of `volumes`, four numbers, to the change of volume around the node and to that volume at
-  /// rest (m^3).
+  /// Sets each row of `volumes`, four numbers, to the change of volume around the node and to the reference
+  /// volume (m^3).
   void sum_volumes(const State<Real>& state, Real* volumes) const {
     const Plan& plan = plan_of(state);
     sum_over_chunks(*layout_, threads_, volumes, [&](std::size_t c) {
@@ -194,9 +194,9 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  /// Calls visit.operator()<Method>(motion, element, block, for_each_lane) for every block of elements, with
-  /// its number among the groups that it stands in; for_each_lane calls back with the number of the element
-  /// in each lane that has one.
+  /// Calls visit.operator()<Method>(motion, element, block, for_each_lane) for every block of elements, where
+  /// `block` is its index among those of its groups, and for_each_lane(use) calls use(e, lane) for each lane
+  /// with the number of its element.
   template <class Visit>
   void for_each_block(const State<Real>& state, const Visit& visit) const {
     std::vector<Real> volumes;
@@ -209,8 +209,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       for (std::size_t g = part.first; g < part.last; ++g) {
         const auto group = part.groups->groups[g];
         FaceMotion lower = gather_face<Method>(*part.groups, state, volumes.data(), group.first_face);
-        for (std::size_t k = 0; k < group.levels; ++k) {
-          const std::size_t block = group.first_level + k;
+        for (std::size_t k = 0; k < group.ranks; ++k) {
+          const std::size_t block = group.first_rank + k;
           const FaceMotion upper =
               gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
           visit.template operator()<Method>(
@@ -245,11 +245,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   CalledLaw setup_law_;
   HourglassSettings settings_;
   int threads_;
-  Rows<Real> coordinates_;  // only where kernels need them, or constants of other levels
-  bool streams_ = false;    // constants do not stay in the cache from step to step
+  Rows<Real> coordinates_;  // only if kernels need them, or adaptive methods
+  bool streams_ = false;    // whether constants do not remain in the cache from step to step
 
  private:
-  /// What it takes to give elements other levels.
+  /// The data needed for changing the levels of elements.
   struct Regrouping {
     Regrouping(const Mesh& body, const Layout& layout) : mesh(body), neighbours(body) {
       for (const auto& chunk : layout.chunks) elements.push_back(layout.elements_of(chunk));
@@ -267,7 +267,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     part.groups = layout_;
     part.first = chunk.first;
     part.last = chunk.last;
-    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_level;
+    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_rank;
     fill_blocks(part, mesh);
     return parts;
   }
@@ -308,14 +308,14 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   void fill_blocks(Part<Method>& part, const Mesh& mesh) const {
     for (std::size_t g = part.first; g < part.last; ++g) {
       const auto& group = part.groups->groups[g];
-      for (std::size_t k = 0; k < group.levels; ++k) {
+      for (std::size_t k = 0; k < group.ranks; ++k) {
         part.blocks.push_back(element_block<KernelOf<Method>, Number>(
             mesh, *part.groups, layout_->node_of_row, group.first_face + k, setup_law_, settings_));
       }
     }
   }
 
-  /// Adds the volumes of a part, as forces are added.
+  /// Adds the nodal volumes of a part, in the order of the forces.
   template <class Method>
   [[gnu::flatten, gnu::aligned(64)]] void add_volumes(const Part<Method>& part, const State<Real>& state,
                                                       Real* volumes) const {
@@ -325,33 +325,33 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
         const ElementGroups::Group group = groups.groups[g];
         Faces lower = gather_face_modes<Number>(state.u, groups, group.first_face);
         NodalVolumes<Number> carried{};
-        for (std::size_t k = 0; k < group.levels; ++k) {
+        for (std::size_t k = 0; k < group.ranks; ++k) {
           const Faces upper = gather_face_modes<Number>(state.u, groups, group.first_face + k + 1);
           ElementMotion<Number> motion;
           motion.u = modes_between(lower, upper);
           const auto own =
-              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_level + k - part.first_block]);
+              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_rank + k - part.first_block]);
           scatter_volumes(carried, own, groups, group.first_face + k, volumes);
           carried = own;
           lower = upper;
         }
-        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.levels, volumes);
+        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.ranks, volumes);
       }
     }
   }
 
-  /// Adds to the rows of a face what the element below and the one above have there.
+  /// Adds the volumes of the elements below and above a face to its rows.
   static void scatter_volumes(const NodalVolumes<Number>& below, const NodalVolumes<Number>& above,
                               const ElementGroups& groups, std::size_t face, Real* volumes) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
       scatter_add<Number>({below.change[4 + corner] + above.change[corner],
-                           below.rest[4 + corner] + above.rest[corner], Number(Real(0))},
+                           below.reference[4 + corner] + above.reference[corner], Number(Real(0))},
                           volumes, groups.places(face, corner));
     }
   }
 
   std::unique_ptr<const Regrouping> regrouping_;  // of methods that adapt
-  std::shared_ptr<const Plan> plan_at_rest_;
+  std::shared_ptr<const Plan> undeformed_plan_;
 };
 
 }  // namespace sandglass

@@ -10,28 +10,28 @@
 
 namespace sandglass {
 
-/// Elements that compute as many at a time as `Number` holds.
+/// The elements of a mesh, computed as many at a time as `Number` has lanes.
 template <class Number>
 using ForceOf = std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>>;
 
-/// Makes the elements of a mesh with a law that the method knows.
+/// Makes the elements of a mesh with a law that the method supports.
 template <class Number>
 using Assemble = ForceOf<Number>(const Mesh&, const KernelLaw&, const HourglassSettings&, int threads);
 
-/// A method as the program knows it while it runs. `element/methods/` says what it is to the compiler; its
-/// kernels stand behind the functions here, each method's in source files of their own, so that a change of
-/// one compiles nothing else.
+/// A method at run time. Its definition at compile time is in `element/methods/`; its kernels are called
+/// through the functions here and compiled in source files of their own, so that a change of one method
+/// recompiles nothing else.
 struct MethodEntry {
   std::string_view name;
   std::string_view summary;
   int integration_points = 0;
-  bool controls_hourglass = false;     ///< something resists hourglass modes, or tries to
-  bool damps_only = false;             ///< what resists them resists velocities alone
-  bool takes_kappa = false;            ///< a user may choose the strength of its hourglass control
-  bool kappa_matters_at_rest = false;  ///< and that changes its answers at rest
-  bool is_linear = false;              ///< forces are linear in the displacements, f = K u
-  bool is_condensed = false;           ///< answers by condensation instead of steps
-  bool knows_relaxation = true;        ///< takes notice of laws that relax
+  bool controls_hourglass = false;         ///< hourglass modes are resisted, by a control or by more points
+  bool damps_only = false;                 ///< only their velocities are resisted
+  bool takes_kappa = false;                ///< a user may choose the strength of its hourglass control
+  bool kappa_affects_equilibrium = false;  ///< and kappa changes its static answers
+  bool is_linear = false;                  ///< forces are linear in the displacements, f = K u
+  bool is_condensed = false;               ///< answers by condensation instead of steps
+  bool knows_viscoelasticity = true;       ///< supports viscoelastic laws
   std::vector<std::string_view> levels =
       {};  ///< of an adaptive method, methods from the cheapest on; else none
 
@@ -39,14 +39,14 @@ struct MethodEntry {
   Assemble<Pack<float>>* assemble_packed_float = nullptr;
   Assemble<double>* assemble_scalar_double = nullptr;  ///< none unless a program links `sandglass_scalar`
 
-  /// The number that `auto` stands for; none when the method takes no kappa.
+  /// The value of `auto` for kappa; none if the method takes no kappa.
   std::optional<double> (*auto_kappa)(const CalledLaw&, KappaModulus) = nullptr;
 
-  /// Operations of one element and step, counted by running the kernel. They do not depend on the law's
+  /// Operations per element and step, counted by running the kernel. They do not depend on the law's
   /// parameters.
   OperationCount (*operations)(const KernelLaw&) = nullptr;
 
-  /// What an element reads and writes in a step.
+  /// The memory traffic of an element in a step.
   Traffic (*traffic)(const KernelLaw&) = nullptr;
 
   /// Whether the method chooses the level of each element.
@@ -68,16 +68,17 @@ template <class Method>
 template <class Method>
 MethodEntry method_entry();
 
-/// All methods, in the order of THE list; see `element/methods.hpp`.
+/// All methods, in the order of the list in `element/methods.hpp`.
 const std::vector<MethodEntry>& methods();
 
 /// Their names.
 std::vector<std::string> method_names();
 
-/// The method of that name. Throws InputError when there is none, naming the key, and the nearest known.
+/// The method called `name`. Throws InputError if there is none; the error names `key` and suggests known
+/// names.
 const MethodEntry& method_named(std::string_view name, std::string_view key = "method");
 
-/// The golden's own element: eight points and one pressure, what every other method is held against.
+/// The golden's own element, with eight points and one pressure: the reference for all other methods.
 inline constexpr std::string_view golden_method = "tl-mean-dilatation";
 
 }  // namespace sandglass

@@ -17,11 +17,11 @@ std::optional<double> auto_kappa_of(const CalledLaw& law, KappaModulus modulus) 
   }
 }
 
-/// Calls use(law) with the law as `operations` and `traffic` take it: behind calls, as it relaxes.
+/// Calls use(law) with the law behind calls, elastic or viscoelastic, as `operations` and `traffic` take it.
 template <class Use>
 auto with_called_law(const KernelLaw& kernel_law, const Use& use) {
-  const auto* relaxing = std::get_if<Viscoelastic<CalledLaw>>(&kernel_law);
-  return relaxing != nullptr ? use(*relaxing) : use(elastic_law(kernel_law));
+  const auto* viscoelastic = std::get_if<Viscoelastic<CalledLaw>>(&kernel_law);
+  return viscoelastic != nullptr ? use(*viscoelastic) : use(elastic_law(kernel_law));
 }
 
 template <class Method>

@@ -8,7 +8,7 @@
 
 namespace sandglass {
 
-/// What an entry says of a method without its kernels.
+/// The entry of a method without its kernels.
 template <class Method>
 MethodEntry method_facts() {
   using Hourglass = typename Method::Hourglass;
@@ -19,10 +19,10 @@ MethodEntry method_facts() {
       .controls_hourglass = Method::integration_points > 1 || !std::is_same_v<Hourglass, NoHourglassControl>,
       .damps_only = DampsOnly<Hourglass>,
       .takes_kappa = Hourglass::takes_kappa,
-      .kappa_matters_at_rest = kappa_matters_at_rest<Method>,
+      .kappa_affects_equilibrium = kappa_affects_equilibrium<Method>,
       .is_linear = is_linear<Method>,
       .is_condensed = is_condensed<Method>,
-      .knows_relaxation = knows_law<Method, Viscoelastic<CalledLaw>>,
+      .knows_viscoelasticity = knows_law<Method, Viscoelastic<CalledLaw>>,
       .levels = level_names<Method>()};
 }
 

@@ -13,7 +13,7 @@ std::size_t at(int n) {
 }
 
 /// The lower and the upper face of an element across each parent axis, as local nodes; every pair is the
-/// element in VTK order again, turned.
+/// element in VTK order, rotated.
 using LocalFaces = std::array<std::array<std::size_t, 4>, 2>;
 constexpr std::array<LocalFaces, 3> faces_across{
     {{{{0, 1, 2, 3}, {4, 5, 6, 7}}}, {{{0, 3, 7, 4}, {1, 2, 6, 5}}}, {{{0, 4, 5, 1}, {3, 7, 6, 2}}}}};
@@ -44,7 +44,7 @@ class StripCutter {
 
   bool open(int element) const { return open_[at(element)]; }
 
-  /// The longest strip through an open element; its elements are closed.
+  /// The longest strip through an open element; closes its elements.
   Strip take(int element) {
     Strip longest;
     for (const auto& across : faces_across) {
@@ -63,7 +63,7 @@ class StripCutter {
       for (std::size_t k = 0; k < 4; ++k) ends[side][k] = cell[across[side][k]];
     }
     Strip strip{{ends[0], ends[1]}, {element}};
-    open_[at(element)] = false;  // a strip may close on itself
+    open_[at(element)] = false;  // a strip may be a ring
     extend(strip);
     std::ranges::reverse(strip.faces);
     std::ranges::reverse(strip.elements);

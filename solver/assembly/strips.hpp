@@ -6,8 +6,8 @@
 
 namespace sandglass {
 
-/// Hexahedra in a row, each sharing a face with the next: element k lies between faces k and k + 1. Going
-/// along a strip, the four nodes of every face are met once instead of twice.
+/// Hexahedra in a row, each sharing a face with the next: element k is between faces k and k + 1. Along a
+/// strip the four nodes of every face are loaded once instead of twice.
 struct Strip {
   std::vector<Quadrilateral> faces;  ///< one more than elements; corners in the same order on each
   std::vector<int> elements;
@@ -18,8 +18,8 @@ struct Strip {
 /// The nodes of element k of a strip in VTK order: the two faces that bound it.
 Hexahedron cell_between(const Quadrilateral& lower, const Quadrilateral& upper);
 
-/// All of `elements`, each in one strip. Every strip is the longest of the three through its first element
-/// that elements not yet taken allow; a conforming mesh of hexahedra always has such rows, structured or not.
+/// Divides `elements` into strips. Each strip is the longest of the three through its first element that the
+/// remaining elements allow; every conforming mesh of hexahedra has such rows, structured or not.
 std::vector<Strip> cut_into_strips(const Mesh& mesh, const NodeElements& neighbours,
                                    std::span<const int> elements);
 

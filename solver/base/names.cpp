@@ -30,7 +30,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   std::string best;
-  // More than about a third of the letters wrong, or all of a short name, is another word, not a slip.
+  // With more than about a third of the letters wrong, or all of a short name, it is another word, not a
+  // typo.
   std::size_t best_distance = std::min(std::max<std::size_t>(3, name.size() / 3 + 1), name.size());
   for (const auto& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);

@@ -6,8 +6,8 @@
 
 namespace sandglass {
 
-/// Calls body(0) to body(n - 1), shared out to so many threads in equal runs. The calls must not touch each
-/// other's data. Subnormal numbers are zero in them.
+/// Calls body(0) to body(n - 1), divided among `threads` threads in equal contiguous ranges. The calls must
+/// not touch each other's data. Subnormal numbers are flushed to zero during the calls.
 template <class Body>
 void in_parallel(std::size_t n, int threads, const Body& body) {
   if (threads > 1 && n > 1) {

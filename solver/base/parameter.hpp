@@ -32,9 +32,9 @@ struct Range {
   static constexpr Range any() { return {}; }
 };
 
-/// The declaration of one parameter: where it lives, its name, unit, range and meaning. The reader of case
-/// files, the writer of help and the tests all iterate these declarations; there is no second place. An
-/// `Owner` lists its own in a static function `parameters()` that returns a tuple of them.
+/// The declaration of one parameter: its member, name, unit, range and meaning. The reader of case files, the
+/// help texts and the tests all iterate these declarations; nothing is declared twice. An `Owner` returns a
+/// tuple of its declarations from a static function `parameters()`.
 template <class Owner, class Value>
 struct Parameter {
   Value Owner::*member;
@@ -45,13 +45,14 @@ struct Parameter {
   bool required = true;  ///< when false, the member's initial value is the default
 };
 
-// Clang up to 16 does not deduce the arguments of an aggregate by itself.
+// Clang up to 16 does not deduce the template arguments of an aggregate.
 template <class Owner, class Value>
 Parameter(Value Owner::*, std::string_view, std::string_view, Range, std::string_view, bool = true)
     -> Parameter<Owner, Value>;
 
-/// A rule that no range of a single parameter can say, and that does not hold. An `Owner` with such rules has
-/// a function `std::optional<BrokenRule> broken_rule() const`; the reader of case files asks it.
+/// A broken rule that involves several parameters, so that no range can express it. An `Owner` with such
+/// rules has a function `std::optional<BrokenRule> broken_rule() const`, which the reader of case files
+/// calls.
 struct BrokenRule {
   std::string parameter;  ///< the one that the message is about
   std::string message;    ///< what follows its name: value, rule, what is allowed

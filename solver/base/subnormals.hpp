@@ -6,8 +6,8 @@
 
 namespace sandglass {
 
-/// While it lives, the thread that made it takes numbers too small for full precision as zero. Ahead of every
-/// wave the displacements fade into such numbers, and processors compute with them a hundred times slower.
+/// During its lifetime, subnormal numbers are zero in the thread that created it. Ahead of every wave the
+/// displacements fade into such numbers, and processors are a hundred times slower with them.
 class FlushSubnormals {
  public:
   FlushSubnormals() {

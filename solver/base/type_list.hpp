@@ -9,8 +9,8 @@
 
 namespace sandglass {
 
-/// A list of types, each with a static `name` and `summary`. Laws, methods and mesh generators are such
-/// lists: everything that must know all of them iterates the list, so that a new entry is one line.
+/// A list of types, each with a static `name` and `summary`. Laws, methods and mesh generators are in such
+/// lists: everything that handles all of them iterates the list, so that a new entry is one line.
 template <class... Types>
 struct TypeList {};
 
@@ -33,7 +33,7 @@ std::vector<std::string> names_of(TypeList<Types...> /*list*/) {
   return {std::string(Types::name)...};
 }
 
-/// Where a type stands in a list, from 0.
+/// The index of a type in a list, from 0.
 template <class Type, class... Types>
 constexpr std::size_t index_in(TypeList<Types...> /*list*/) {
   std::size_t index = 0;

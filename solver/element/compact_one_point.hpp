@@ -4,8 +4,8 @@
 
 namespace sandglass {
 
-/// OnePoint that loads nothing but coordinates: it computes its geometry anew in every step. Where memory is
-/// slower than arithmetic, numbers not loaded are time saved; the answer is the same to roundoff.
+/// OnePoint that loads only coordinates and recomputes its geometry in every step, which saves time where
+/// memory is slower than arithmetic. Forces are the same up to roundoff.
 struct CompactOnePoint {
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = true;

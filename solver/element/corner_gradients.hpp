@@ -5,7 +5,8 @@
 #include "element/modes.hpp"
 #include "mesh/hexahedron.hpp"
 
-/// Gradients of a trilinear field at the corners of its parent cube, from its modes and back by additions.
+/// Gradients of a trilinear field at the corners of its parent cube from its modes, and the transpose, by
+/// additions only.
 namespace sandglass {
 
 namespace detail {
@@ -39,8 +40,8 @@ inline constexpr std::array<CornerLines, 3> lines_along{
 
 }  // namespace detail
 
-/// The corners of the parent cube, for the functions below. Other points that stand like them, at +-g along
-/// each axis, scale the bilinear modes with g and the trilinear one with g^2.
+/// The corners of the parent cube, for the functions below. For points at +-g along each axis the bilinear
+/// modes are scaled by g and the trilinear one by g^2.
 struct AtCorners {
   template <class T>
   static T bilinear(const T& mode) {
@@ -52,8 +53,8 @@ struct AtCorners {
   }
 };
 
-/// Parent gradients du_i/dxi_k at the eight points, times 8. Along each axis the gradient is bilinear in the
-/// two others, so that it has four values.
+/// Parent gradients du_i/dxi_k at the eight points, times 8. The gradient along an axis is bilinear in the
+/// two other coordinates and therefore has four different values.
 template <class Points, class T>
 std::array<Tensor<T>, 8> corner_gradients(const Modes<T>& modes) {
   std::array<Tensor<T>, 8> gradients;
@@ -76,7 +77,7 @@ std::array<Tensor<T>, 8> corner_gradients(const Modes<T>& modes) {
   return gradients;
 }
 
-/// The transpose of `corner_gradients`: what fluxes at the points do to the modes.
+/// The transpose of `corner_gradients`: modal forces of fluxes at the points.
 template <class Points, class T>
 Modes<T> corner_divergence(const std::array<Tensor<T>, 8>& flux) {
   Modes<T> f;

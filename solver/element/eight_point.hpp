@@ -10,7 +10,7 @@
 
 namespace sandglass {
 
-/// Average over the element's reference volume of values at its Gauss points.
+/// The average of values at the Gauss points over the element's reference volume.
 template <class T, class Element>
 T volume_average(const std::array<T, 8>& values, const Element& element) {
   T sum = element.weight[0] * values[0];
@@ -27,8 +27,8 @@ struct PointPressure {
   }
 };
 
-/// One pressure from the element's volume change: Jbar - 1 = (1/V) sum_q w_q (J_q - 1). It is the Q1-P0 mixed
-/// element with its pressure eliminated.
+/// One pressure from the element's volume change: Jbar - 1 = (1/V) sum_q w_q (J_q - 1). This is the Q1-P0
+/// mixed element with its pressure eliminated.
 struct MeanPressure {
   static constexpr bool shared = true;
   template <class T, class Element>
@@ -39,9 +39,9 @@ struct MeanPressure {
   }
 };
 
-/// The hexahedron with 2x2x2 Gauss points. Pressure is a policy: `PointPressure` gives the displacement
-/// element, which locks as nu -> 1/2; `MeanPressure` the mean-dilatation element, the explicit twin of the
-/// mixed Q1-P0 element. It has no hourglass modes, hence takes no control.
+/// The hexahedron with 2x2x2 Gauss points. `Pressure` is a policy: `PointPressure` gives the displacement
+/// element, which locks as nu -> 1/2, and `MeanPressure` the mean-dilatation element. It has no hourglass
+/// modes and takes no control.
 template <class Pressure>
 struct EightPoint {
   /// What is constant in time.
@@ -75,7 +75,7 @@ struct EightPoint {
     return element;
   }
 
-  /// What the force needs of the displacements, at each Gauss point.
+  /// The deformation at each Gauss point.
   template <class T>
   struct Deformation {
     std::array<Tensor<T>, 8> H;
@@ -164,7 +164,7 @@ struct EightPoint {
  private:
   static constexpr double g = gauss_coordinate;
 
-  /// The Gauss points, which stand like corners at +-g.
+  /// The Gauss points, at +-g along each axis.
   struct AtGaussPoints {
     template <class T>
     static T bilinear(const T& mode) {
@@ -182,7 +182,7 @@ struct EightPoint {
     return corner_gradients<AtGaussPoints>(modes);
   }
 
-  /// The transpose of `parent_gradients`: what fluxes at the points do to the modes.
+  /// The transpose of `parent_gradients`: modal forces of fluxes at the points.
   template <class T>
   static Modes<T> parent_divergence(const std::array<Tensor<T>, 8>& flux) {
     return corner_divergence<AtGaussPoints>(flux);

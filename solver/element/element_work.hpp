@@ -4,7 +4,7 @@
 
 #include "math/counted.hpp"
 
-/// What one element costs in one step.
+/// The cost of one element in one step.
 namespace sandglass {
 
 /// Operations, by part.
@@ -12,21 +12,21 @@ struct OperationCount {
   Operations gradient;   ///< from nodal displacements to displacement gradients and volume changes
   Operations law;        ///< from displacement gradients to stresses
   Operations force;      ///< from stresses to nodal forces
-  Operations hourglass;  ///< what the hourglass control adds to an element without it
+  Operations hourglass;  ///< of the hourglass control: the difference from the same element without it
   Operations total;
   long bytes = 0;  ///< in double: constants and four places of nodes read, history read and written
 };
 
-/// What a step reads and writes, counted once in each pass through the elements: a row that two strips meet
-/// is taken to come from a cache the second time. In numbers of the precision unless said otherwise.
+/// The memory traffic of a step, counted once per pass over the elements: a row that two strips share is
+/// assumed to come from a cache the second time. In numbers of the run's precision unless noted.
 struct Traffic {
   std::size_t constants;       ///< per element
   std::size_t history;         ///< per element, read and written
   std::size_t rows_of_motion;  ///< rows gathered: displacements, and increments or coordinates where needed
-  std::size_t passes = 1;      ///< through the elements, each of which reads their constants and places
+  std::size_t passes = 1;      ///< over the elements; each reads their constants and places
 };
 
-/// Counts what an element of a formulation reads and writes.
+/// The memory traffic of an element of a formulation.
 template <class Kernel>
 constexpr Traffic traffic_of() {
   Traffic traffic{sizeof(typename Kernel::template Element<double>) / sizeof(double), 0, 1, Kernel::passes};
@@ -35,7 +35,7 @@ constexpr Traffic traffic_of() {
   }
   if constexpr (Kernel::needs_increment) ++traffic.rows_of_motion;
   if constexpr (Kernel::needs_coordinates) ++traffic.rows_of_motion;
-  // Displacements a second time, and the volumes that the first pass writes and the second reads.
+  // Displacements again, and the volumes that the first pass writes and the second reads.
   if constexpr (Kernel::averages_over_nodes) traffic.rows_of_motion += 3;
   return traffic;
 }

@@ -7,15 +7,15 @@
 
 namespace sandglass {
 
-/// A control that follows the mean deformation says so with `follows_deformation = true`. Its energy E0 at
-/// small displacements, which must be quadratic, becomes
+/// A control that follows the mean deformation declares `follows_deformation = true`. Its energy E0 at small
+/// displacements, which must be quadratic, becomes
 ///   E(q, F) = phi E0(r),  r_a = F^-1 q_a,  phi = J^(-2/3) tr(F^T F) / 3.
-/// r is q in base vectors that move with the body: the fluctuation's share of a volume change is
-/// tr(F^-1 grad w) = sum_a r_a . grad w_a, so that a nearly incompressible element stays what it was at rest,
-/// however far it is deformed and turned. phi is how the isochoric neo-Hookean energy of fluctuations grows:
-/// the mean of its exact second variation over all fluctuations F^-1 grad w of one size is phi times the mean
-/// at rest. A control that stands for another energy than the isochoric one leaves phi = 1; one that grows
-/// says so with `grows_with_deformation = true`. Forces are the derivatives of E, so that momentum and
+/// r is q in base vectors that move with the body: the volume change due to the fluctuation is
+/// tr(F^-1 grad w) = sum_a r_a . grad w_a, so that a nearly incompressible element behaves as when
+/// undeformed, however far it is deformed and rotated. phi is the growth of the isochoric neo-Hookean energy
+/// of fluctuations: the mean of its exact second variation over all fluctuations F^-1 grad w of one size is
+/// phi times the mean in the undeformed state. A control whose energy grows so declares
+/// `grows_with_deformation = true`; for others phi = 1. Forces are the derivatives of E, so that momentum and
 /// angular momentum are balanced.
 template <class Hourglass>
 concept FollowsDeformation = requires {
@@ -26,14 +26,15 @@ concept GrowsWithDeformation = FollowsDeformation<Hourglass> && requires {
   requires Hourglass::grows_with_deformation;
 };
 
-/// The mean deformation as a control that follows it needs it.
+/// The mean deformation as a control that follows it uses it.
 template <class T>
 struct FollowedDeformation {
   Tensor<T> inverse_F;
   T J_to_minus_two_thirds;
-  T phi;  ///< unset where the control does not grow
+  T phi;  ///< unset if the control does not grow
 };
 
+/// The mean deformation of a displacement gradient H.
 template <class Hourglass, class T>
 FollowedDeformation<T> followed_deformation(const Tensor<T>& H, const VolumeChange<T>& change) {
   const T r = change.inverse_root;
@@ -83,7 +84,7 @@ Tensor<T> stress_of_phi(const HourglassModes<T>& r, const HourglassModes<T>& s, 
 /// With s = dE0/dr, Q = s F^-1 and K = E0'',
 ///   E'' = phi (dr K dr - 2 tr(L (v^T gamma Q))) + 2 dphi (gamma Q : v) + E0 d2phi,
 /// where dphi = 2/3 J^(-2/3) dev(F F^T) : L, and phi - 1 is the energy of a law whose tangent is bounded. The
-/// control's own bound takes gamma; F^-1 stretches what it sees.
+/// control's own bound depends on gamma; F^-1 scales it.
 template <class Hourglass, class T>
 T following_bound(const Matrix<T, 8, 4>& gamma, const NodalVectors<T>& g, const HourglassModes<T>& r,
                   const Tensor<T>& H, const FollowedDeformation<T>& followed,

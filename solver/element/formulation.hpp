@@ -9,7 +9,7 @@
 
 namespace sandglass {
 
-/// The integration points of a kinematics: one, where it does not say `points`.
+/// The number of integration points of a kinematics: `points`, or one if it is not declared.
 template <class Kinematics>
 constexpr int integration_points_of() {
   if constexpr (requires { Kinematics::points; }) {
@@ -19,21 +19,22 @@ constexpr int integration_points_of() {
   }
 }
 
-/// What is constant in time of an element, whatever its law.
+/// The constants of an element, which do not depend on the law's type.
 template <class Kinematics, class Hourglass, class T>
 struct ElementConstants {
   [[no_unique_address]] typename Kinematics::template Element<T> body;
   [[no_unique_address]] typename Hourglass::template Element<T> hourglass;
 };
 
-/// An element: kinematics (how stress becomes force), an hourglass control and a material law, bundled.
-/// All functions are templated on the number type T: double, a pack, a counting or a dual number.
+/// An element: kinematics (from displacements to strains and from stresses to forces), an hourglass control
+/// and a material law. All functions are templated on the number type T: double, a pack, a counting or a dual
+/// number. Kinematics and controls implement functions of the same names, which are documented here.
 template <class Kinematics, class Hourglass, class Law>
 struct Formulation {
   template <class T>
   using Element = ElementConstants<Kinematics, Hourglass, T>;
 
-  /// What changes in time beside the displacements; empty for elements whose force follows from them.
+  /// The state of an element in addition to displacements; empty if its force follows from them.
   template <class T>
   struct History {
     [[no_unique_address]] typename Hourglass::template History<T> hourglass;
@@ -44,24 +45,24 @@ struct Formulation {
   static constexpr bool needs_increment = Kinematics::needs_increment;
   static constexpr bool needs_coordinates = Kinematics::needs_coordinates;
 
-  /// Whether the force needs the dilatation around each node: the assembly then goes twice through the
-  /// elements, first for their `nodal_volumes`. Kinematics that do not say so look at their element alone.
+  /// Whether the force needs the dilatation around each node: the assembly then makes two passes over the
+  /// elements, the first for their `nodal_volumes`. False unless the kinematics declare it.
   static constexpr bool averages_over_nodes = [] {
     if constexpr (requires { Kinematics::averages_over_nodes; }) return Kinematics::averages_over_nodes;
     return false;
   }();
 
-  /// How often the assembly goes through the elements in a step.
+  /// The number of passes over the elements in a step.
   static constexpr int passes = averages_over_nodes ? 2 : 1;
 
-  /// Whether the element can be made of these reference coordinates (m), of a hexahedron whose Gauss points
-  /// all have a positive measure. Kinematics that do not say so can.
+  /// Whether the element can have the reference coordinates X (m), those of a hexahedron with a positive
+  /// measure at all Gauss points. True unless the kinematics declare a condition.
   static bool accepts(const NodalVectors<double>& X) {
     if constexpr (requires { Kinematics::accepts(X); }) return Kinematics::accepts(X);
     return true;
   }
 
-  /// What `accepts` asks of it, in words.
+  /// The condition of `accepts` in words.
   static constexpr std::string_view demand = [] {
     if constexpr (requires { Kinematics::demand; }) return Kinematics::demand;
     return std::string_view{};
@@ -73,22 +74,22 @@ struct Formulation {
     return {Kinematics::precompute(X), Hourglass::precompute(X, law, settings)};
   }
 
-  /// The same for any number type from the modes of the reference coordinates (m), for kinematics and
-  /// controls that have it in closed form.
+  /// The same for any number type from the modes x of the reference coordinates (m), for kinematics and
+  /// controls with a closed form.
   template <class T>
   static Element<T> constants(const Modes<T>& x, const Law& law, const HourglassSettings& settings) {
     const auto body = Kinematics::geometry(x);
     return {body, Hourglass::template constants<T>(body, law, settings)};
   }
 
-  /// What the element adds to its nodes in the first of two passes; of the motion, u alone is known.
+  /// The element's contribution to its nodes in the first of two passes; only u of the motion is set.
   template <class T>
   static NodalVolumes<T> nodal_volumes(const ElementMotion<T>& motion, const Element<T>& element) {
     return Kinematics::nodal_volumes(motion, element.body);
   }
 
-  /// What the force needs of the motion: the first half of a step. Two halves let a loop begin the next
-  /// element before it ends this one.
+  /// The first half of a step: the deformation that the force depends on. With two halves a loop can start
+  /// the next element before it has finished the current one.
   template <class T>
   using Deformation = typename Kinematics::template Deformation<T>;
 
@@ -97,7 +98,8 @@ struct Formulation {
     return Kinematics::template deformation<Hourglass>(motion, element.body);
   }
 
-  /// Internal forces (N) in modes, with the law at its step. What the element remembers goes one step on.
+  /// The second half: internal forces (N) in modes, with the law at its step. Advances the history by one
+  /// step.
   template <class T, class LawAtStep>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element, History<T>& history,
                         const LawAtStep& law) {
@@ -105,7 +107,7 @@ struct Formulation {
                                                  recalling(law, history.law));
   }
 
-  /// Strain and hourglass energy (J) stored in an element that remembers this motion.
+  /// Strain and hourglass energy (J) of a motion with the history after it.
   template <class T, class LawAtStep>
   static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
                                  const History<T>& history, const LawAtStep& law) {
@@ -141,8 +143,8 @@ struct Formulation {
   }
 };
 
-/// One element that remembers nothing and stands alone, from nodal displacements u (m) to nodal forces (N):
-/// the plain form of the functions above, for who looks at a single element.
+/// A single element without history, from nodal displacements u (m) to nodal forces (N): the functions above
+/// without modes, for set-up and tests.
 template <class Kernel>
 struct NodalForm : Kernel {
   static_assert(!Kernel::remembers && !Kernel::needs_increment && !Kernel::needs_coordinates &&

@@ -8,18 +8,18 @@
 
 namespace sandglass {
 
-/// The hexahedron with four points, between one and eight: half the law's cost of eight, and no more memory
-/// than one. The fluctuation of the displacement gradient is that of the parallelepiped whose inverse
-/// Jacobian is the mean one, sum_a q_a/8 (x) dw_a/dX with w_1..3 = eta zeta, xi zeta, xi eta, evaluated
-/// at every other corner of the Gauss rule: (- - -), (+ + -), (+ - +), (- + +) over sqrt 3. There the means
-/// of xi, of xi eta and of xi^2 - 1/3 are zero, so that the mean gradient stays the exact one and the energy
-/// of the fluctuation is right to second order on parallelepipeds, at every deformation and for every law.
-/// The pressure is one for the element, as in the mean-dilatation element.
+/// The hexahedron with four points: half the cost of eight in the law, and the memory of one. The fluctuation
+/// of the displacement gradient is that of the parallelepiped whose inverse Jacobian is the mean one,
+/// sum_a q_a/8 (x) dw_a/dX with w_1..3 = eta zeta, xi zeta, xi eta, evaluated at every other corner of the
+/// Gauss rule: (- - -), (+ + -), (+ - +), (- + +) over sqrt 3. There the means of xi, of xi eta and of
+/// xi^2 - 1/3 are zero, so that the mean gradient remains exact, and the energy of the fluctuation is correct
+/// to second order on parallelepipeds, at every deformation and for every law. The element has one pressure,
+/// as the mean-dilatation element.
 ///
-/// The fourth mode would meet the others in the mean of xi eta zeta, which alternate corners do not
-/// cancel. It is left to an hourglass control.
+/// The fourth mode would couple with the others through the mean of xi eta zeta, which is not zero over
+/// alternate corners. It is left to an hourglass control.
 struct FourPoint {
-  /// What is constant in time: the one-point element's own geometry.
+  /// The constants: the geometry of the one-point element.
   template <class T>
   using Element = OnePoint::Element<T>;
 
@@ -28,7 +28,7 @@ struct FourPoint {
   static constexpr bool needs_coordinates = false;
   static constexpr bool averages_pressure = true;
 
-  /// Whether it matters, to third order, which four corners of the eight the numbering of nodes puts first.
+  /// Whether forces depend, to third order, on which corners the numbering of the nodes puts first.
   static constexpr bool alternates_corners = true;
 
   static Element<double> precompute(const NodalVectors<double>& X) { return OnePoint::precompute(X); }
@@ -38,7 +38,7 @@ struct FourPoint {
     return OnePoint::geometry(x);
   }
 
-  /// What the force needs of the displacements, at each point.
+  /// The deformation at each point.
   template <class T>
   struct Deformation {
     HourglassModes<T> q;  ///< hourglass displacements, m
@@ -49,7 +49,7 @@ struct FourPoint {
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
     const Tensor<T> H = OnePoint::mean_gradient(motion.u, element);
-    // In place: what is assigned is computed elsewhere and copied.
+    // Initialised in place: assignments would copy from temporaries.
     Deformation<T> now{.q = OnePoint::hourglass_displacements(motion.u, H, element),
                        .H = point_gradients(H, now.q, element),
                        .change = volume_changes(now.H)};
@@ -134,7 +134,7 @@ struct FourPoint {
     return body;
   }
 
-  /// What a unit of each hourglass displacement adds to the gradient at a point, 1/m.
+  /// The gradient (1/m) at a point of a unit of each hourglass displacement.
   template <class T>
   static Matrix<T, 4, 3> fluctuation(std::size_t point, const Element<T>& element) {
     constexpr std::array<std::array<double, 3>, 4> signs{{{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}}};
@@ -151,7 +151,7 @@ struct FourPoint {
   }
 
  private:
-  /// A point's coordinate. Modes are sums over the nodes, eight times amplitudes; h has an eighth for it.
+  /// A point's coordinate. Modes are sums over the nodes, eight times amplitudes, and h contains the eighth.
   template <class T>
   static T scale() {
     return T(gauss_coordinate);
@@ -183,8 +183,8 @@ struct FourPoint {
             jacobian_minus_one(at[3])};
   }
 
-  /// Displacement gradients at the four points: H + xi A_xi + eta A_eta + zeta A_zeta, where the gradient
-  /// along an axis is that of the two modes which vary along it.
+  /// Displacement gradients at the four points: H + xi A_xi + eta A_eta + zeta A_zeta, where the term of an
+  /// axis is due to the two modes that vary along it.
   template <class T>
   static std::array<Tensor<T>, 4> point_gradients(const Tensor<T>& H, const HourglassModes<T>& q,
                                                   const Element<T>& element) {

@@ -6,13 +6,13 @@
 #include "math/symmetric_matrix.hpp"
 
 /// Upper bounds of the largest eigenvalue of sums of stiffnesses that act on different nodes of an element.
-/// Adding up the largest eigenvalue of each would cost a factor of three: seldom do they meet in one mode.
+/// The sum of their largest eigenvalues would be three times too large, since their modes differ.
 namespace sandglass {
 
-/// A bound for sum_n c_n g_n g_n^T, c_n >= 0, g_n in R^24. With A the matrix of rows sqrt(c_n) g_n, A^T A and
-/// A A^T have the same largest eigenvalue; the latter is similar to the matrix of entries c_m (g_n . g_m),
-/// whose largest absolute row sum no eigenvalue exceeds (Gershgorin). It is sharp where a uniform dilation
-/// strains all n alike.
+/// An upper bound of the largest eigenvalue of sum_n c_n g_n g_n^T, c_n >= 0, g_n in R^24. With A the matrix
+/// of rows sqrt(c_n) g_n, A^T A and A A^T have the same largest eigenvalue; the latter is similar to the
+/// matrix of entries c_m (g_n . g_m), whose eigenvalues are at most its largest absolute row sum
+/// (Gershgorin). The bound is sharp if a uniform dilation strains all n equally.
 template <class T, std::size_t N>
 T gram_bound(const std::array<T, N>& c, const std::array<NodalVectors<T>, N>& g) {
   std::array<T, N> rows;
@@ -29,8 +29,8 @@ T gram_bound(const std::array<T, N>& c, const std::array<NodalVectors<T>, N>& g)
   return bound;
 }
 
-/// A bound for the quadratic form sum_n c_n |v^T g_n|^2, c_n >= 0, of nodal vectors v: each component of v
-/// meets the 8 x 8 matrix sum_n c_n g_n g_n^T, whose largest absolute row sum it is.
+/// An upper bound of sum_n c_n |v^T g_n|^2 / |v|^2, c_n >= 0, for nodal vectors v: the largest absolute row
+/// sum of the 8 x 8 matrix sum_n c_n g_n g_n^T, which acts on each component of v.
 template <class T, std::size_t N>
 T gradients_bound(const std::array<T, N>& c, const std::array<NodalVectors<T>, N>& g) {
   Matrix<T, 8, 8> sum = (c[0] * g[0]) * transpose(g[0]);

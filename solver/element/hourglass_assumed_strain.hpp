@@ -11,10 +11,10 @@ namespace sandglass {
 ///   Q_ij = 2 mu (H_ii q_ij / (1-nu) + nu/(1-nu) H_ij q_ji),   j = 1..3, not i,
 ///   Q_i4 = 2 mu (1+nu) / 3 H_ii q_i4,
 ///   H_ij = integral of h_j,i h_i,j: V / (3 l_i l_j) for a box with half edges l, and H_ii = V / (3 l_i^2).
-/// A box bends exactly, at any Poisson's ratio; an element that is no box is taken for one. The paper's
+/// A box bends exactly, at any Poisson's ratio; any other element is replaced by the nearest box. Their
 /// corotational axes follow the first edge; these are the orthogonal ones nearest to all three, so that the
-/// numbering of nodes does not matter. The gradients are mean ones: with centre gradients
-/// one point fails the patch test on distorted meshes, whatever the control.
+/// numbering of the nodes does not matter. Gradients are mean ones: with gradients at the centre one point
+/// fails the patch test on distorted meshes with every control.
 struct AssumedStrain {
   static constexpr bool takes_kappa = false;
 
@@ -31,8 +31,8 @@ struct AssumedStrain {
     return {law.shear_modulus(), plane_ratio(law), young_modulus(law)};
   }
 
-  /// In d_ka = q_ka / l_k, normal strains are d and shears are ratios of lengths times d, so that no root is
-  /// needed: H_jj q_ii becomes (l_i / l_j)^2 d_ii.
+  /// The stiffness in terms of d_ka = q_ka / l_k: normal strains are d and shears are ratios of lengths times
+  /// d, so that no root is needed; H_jj q_ii becomes (l_i / l_j)^2 d_ii.
   template <class T>
   struct Stiffness {
     Tensor<T> b;             ///< unit axes over the box's half edges, 1/m, in columns
@@ -55,7 +55,7 @@ struct AssumedStrain {
       return transpose(b * r);
     }
 
-    /// From the inverses of the blocks.
+    /// The energy (J) stored by resistances Q (N), from the inverses of the blocks.
     T energy(const HourglassModes<T>& Q) const {
       const Matrix<T, 3, 4> r = inverse(b) * transpose(Q);
       Tensor<T> twisting;
@@ -78,6 +78,7 @@ struct AssumedStrain {
     T bound() const { return block_row_sum_bound(matrix_of<T>(*this)); }
   };
 
+  /// The stiffness in a configuration with nodal coordinates x (m, in modes) and the geometry `current`.
   template <class T>
   static Stiffness<T> stiffness(const Modes<T>& x, const OnePoint::Element<T>& current,
                                 const Element<T>& element) {
@@ -99,10 +100,10 @@ struct AssumedStrain {
     return result;
   }
 
-  /// The edges of the box that stands for an element: as long as its own edges g, and at right angles. It is
-  /// Loewdin's orthogonalisation E (E^T E)^(-1/2) of the unit edges E, in its expansion
-  /// I - C/2 + 3/8 C^2 with the cosines C = E^T E - I, which treats all three edges alike: at right angles to
-  /// the third order of the cosines. Written for edges of any length it needs no root.
+  /// The edges (m) of the box that replaces an element: as long as its edges g, and at right angles. This is
+  /// Loewdin's orthogonalisation E (E^T E)^(-1/2) of the unit edges E, which treats all three edges equally,
+  /// in the expansion I - C/2 + 3/8 C^2 with the cosines C = E^T E - I: at right angles up to third order in
+  /// the cosines. In this form for edges of any length it needs no root.
   template <class T>
   static Tensor<T> box_edges(const Tensor<T>& g, const std::array<T, 3>& inverse_square) {
     Tensor<T> p;  // g_j . g_k / |g_j|^2, without the diagonal

@@ -6,11 +6,11 @@
 
 namespace sandglass {
 
-/// Hourglass control without a number to choose, after the energy sampling of Krysl 2015: one point misses
-/// the fluctuating part of the energy (mu/2) F : F, whose integral is (1/2) q S q with a constant matrix S of
-/// 4 by 4. lambda does not enter, so that nothing locks. A fluctuation of the displacement gradient costs the
-/// isochoric energy mu/2 (g : g + tr(g g) - 2/3 (tr g)^2); its mean over all directions of g is 10/9 of
-/// (mu/2) g : g, which is the factor. The control follows the mean deformation.
+/// Hourglass control without a parameter, after the energy sampling of Krysl 2015: one point misses the
+/// fluctuating part of the energy (mu/2) F : F, whose integral is (1/2) q S q with a constant 4 x 4 matrix S.
+/// It does not depend on lambda, so that nothing locks. The isochoric energy of a fluctuation g of the
+/// displacement gradient is mu/2 (g : g + tr(g g) - 2/3 (tr g)^2); its mean over all directions of g is 10/9
+/// of (mu/2) g : g, hence the factor. The control follows the mean deformation.
 struct EnergySamplingControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
@@ -24,7 +24,7 @@ struct EnergySamplingControl {
   template <class T>
   using History = NoHistory<T>;
 
-  /// S_ab = 10/9 mu integral of grad w_a . grad w_b, w_a the fluctuation that a unit of q_a makes.
+  /// S_ab = 10/9 mu integral of grad w_a . grad w_b, with w_a the fluctuation due to a unit of q_a.
   template <class Law>
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& /*settings*/) {

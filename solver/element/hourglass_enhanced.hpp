@@ -7,20 +7,21 @@ namespace sandglass {
 
 /// Enhanced assumed strain, physically stabilised, after Puso 2000 (IJNME 49:1029): the element's strain
 /// energy in its hourglass modes, with strains enhanced where trilinear displacements are too stiff, and the
-/// enhanced modes condensed by hand.
+/// enhanced modes condensed analytically.
 ///
 /// With edges g_k at the centre and hourglass displacements q_a = gamma_a^T u, the covariant strains vary as
 /// xi, eta, zeta (from D_ka = g_k . q_a, a = 1..3) and as their products (a = 4). These functions are
-/// orthogonal, so that the energy falls apart:
-/// - What varies as one parent coordinate, say zeta, is the bending of a plate with the edges g_1 and g_2 and
-///   the thickness g_3: E_11 = D_12, E_22 = D_21, 2 E_12 = D_11 + D_22. The strains E_33, E_13 and E_23 are
-///   enhanced, which leaves plane stress: sigma = 2 mu (E + nu/(1-nu) tr E) in the plane's own metric. No
-///   shear locking, no volumetric locking, and a parallelepiped bends exactly out of the plane of two edges.
-/// - What varies as a product is a normal strain along one edge, D_k4; a volumetric strain is added that
-///   takes its pressure away, 4/3 mu (g^kk)^2 remains. The parasitic shears of this mode are left out.
-/// Puso maps strains with the lengths of the edges alone; here the whole metric is used, so that skew
-/// elements bend as exactly as boxes. The gradients are mean ones: with centre gradients one point fails the
-/// patch test on distorted meshes, whatever the control.
+/// orthogonal, so that the energy is a sum:
+/// - The part that varies with one parent coordinate, say zeta, is the bending of a plate with the edges g_1
+///   and g_2 and the thickness g_3: E_11 = D_12, E_22 = D_21, 2 E_12 = D_11 + D_22. The strains E_33, E_13
+///   and E_23 are enhanced, which leaves plane stress: sigma = 2 mu (E + nu/(1-nu) tr E) in the metric of the
+///   plane. There is neither shear locking nor volumetric locking, and a parallelepiped bends exactly out of
+///   the plane of two edges.
+/// - The part that varies with a product is a normal strain along one edge, D_k4; an added volumetric strain
+///   removes its pressure, and 4/3 mu (g^kk)^2 remains. The parasitic shears of this mode are omitted.
+/// Puso maps strains with the lengths of the edges only; here the whole metric is used, so that skew elements
+/// bend as exactly as boxes. Gradients are mean ones: with gradients at the centre one point fails the patch
+/// test on distorted meshes with every control.
 struct EnhancedStrain {
   static constexpr bool takes_kappa = false;
 
@@ -36,7 +37,7 @@ struct EnhancedStrain {
     return {law.shear_modulus(), plane_ratio(law)};
   }
 
-  /// Stresses s from strains e, (aa, bb, ab) of the plate between the edges a and b, twice the strain for ab.
+  /// The stiffness of the plate between the edges a and b: stresses (aa, bb, ab) from strains, twice for ab.
   template <class T>
   using Plate = SymmetricMatrix<T, 3>;
 
@@ -66,8 +67,8 @@ struct EnhancedStrain {
       return transpose(g * R);
     }
 
-    /// From the inverses of the plates' stiffnesses; each edge is in two planes, so that three twists make
-    /// three R_kk.
+    /// The energy (J) stored by resistances Q (N), from the inverses of the plates' stiffnesses; each edge is
+    /// in two planes, so that the three twists follow from the three R_kk.
     T energy(const HourglassModes<T>& Q) const {
       const Matrix<T, 3, 4> R = inverse(g) * transpose(Q);
       T energy = T(0);
@@ -84,6 +85,7 @@ struct EnhancedStrain {
     T bound() const { return block_row_sum_bound(matrix_of<T>(*this)); }
   };
 
+  /// The stiffness in a configuration with nodal coordinates x (m, in modes) and the geometry `current`.
   template <class T>
   static Stiffness<T> stiffness(const Modes<T>& x, const OnePoint::Element<T>& current,
                                 const Element<T>& element) {
@@ -110,7 +112,7 @@ struct EnhancedStrain {
   }
 
  private:
-  /// The two edges beside edge n.
+  /// The two edges other than edge n.
   static constexpr std::array<int, 2> plane(int n) { return {(n + 1) % 3, (n + 2) % 3}; }
 
   /// sigma = 2 mu (E + nu/(1-nu) tr E) with both indices raised by the inverse metric, which is (bb, aa, -ab)

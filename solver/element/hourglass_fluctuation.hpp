@@ -7,14 +7,14 @@
 #include "math/symmetric_matrix.hpp"
 #include "mesh/hexahedron.hpp"
 
-/// What one point does not see of a deformation: the part of the displacement gradient whose mean vanishes.
-/// Set-up only, in double.
+/// The part of the displacement gradient whose mean vanishes, which one point misses. For set-up, in double
+/// precision.
 namespace sandglass {
 
-/// The fluctuation of the displacement gradient at the 2x2x2 Gauss points. The hourglass displacements
-/// q = gamma^T u say all of it: du_i/dX_j = H_ij + sum_a q_ai gradient(a, j), exactly and on any shape.
+/// The fluctuation of the displacement gradient at the 2x2x2 Gauss points. It is determined by the hourglass
+/// displacements q = gamma^T u: du_i/dX_j = H_ij + sum_a q_ai gradient(a, j), exactly and for any shape.
 struct HourglassFluctuation {
-  std::array<Matrix<double, 4, 3>, 8> gradient;  ///< 1/m^2 x m = 1/m per m of hourglass displacement
+  std::array<Matrix<double, 4, 3>, 8> gradient;  ///< per m of hourglass displacement, 1/m
   std::array<double, 8> weight;                  ///< det(dX/dxi), m^3
 };
 
@@ -41,9 +41,10 @@ inline HourglassFluctuation hourglass_fluctuation(const NodalVectors<double>& X)
   return fluctuation;
 }
 
-/// The tangent dP_ij/dH_kl at rest (Pa) of the isochoric part of a law, in row 3 i + j and column 3 k + l.
+/// The tangent dP_ij/dH_kl (Pa) of the isochoric part of an undeformed law, in row 3 i + j and column 3 k +
+/// l.
 template <class Law>
-Matrix<double, 9, 9> isochoric_tangent_at_rest(const Law& law) {
+Matrix<double, 9, 9> undeformed_isochoric_tangent(const Law& law) {
   Matrix<double, 9, 9> tangent;
   for (int kl = 0; kl < 9; ++kl) {
     Tensor<Dual<double>> H = from_double<Dual<double>>(Tensor<double>{});

@@ -4,12 +4,12 @@
 #include "element/one_point.hpp"
 #include "material/laws.hpp"
 
-/// Hourglass stiffnesses with a physical meaning: from an element's shape and its law's moduli at rest,
-/// without a parameter. Updated Lagrangian controls evaluate them for the current shape in every step; Total
-/// Lagrangian ones once, as a matrix.
+/// Physical hourglass stiffnesses, without a parameter: they follow from an element's shape and its law's
+/// initial moduli. Updated Lagrangian controls evaluate them for the current shape in every step, Total
+/// Lagrangian ones once.
 namespace sandglass {
 
-/// nu/(1-nu) at rest: how much plane stress differs from plane strain.
+/// nu/(1-nu) of the undeformed state, as in plane stress.
 template <class Law>
 double plane_ratio(const Law& law) {
   const double lambda = lame_lambda(law);
@@ -54,11 +54,11 @@ Matrix<T, 12, 12> matrix_of(const Stiffness& stiffness) {
   return K;
 }
 
-/// A form as the control of a Total Lagrangian element: its stiffness at rest is computed once and kept in
-/// the form's own shape, which is less to load and to multiply than twelve rows of twelve. It follows the
-/// mean deformation.
+/// A form as the control of a Total Lagrangian element: its stiffness in the reference configuration is
+/// computed once and stored in the form's own structure, which is smaller than a 12 x 12 matrix. The control
+/// follows the mean deformation.
 template <class Form>
-struct RestHourglassControl {
+struct ReferenceHourglassControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
   static constexpr bool follows_deformation = true;
@@ -87,7 +87,7 @@ struct RestHourglassControl {
     return T(0.5) * double_dot(r, element.resistance(r));
   }
 
-  /// As for any matrix, N/m.
+  /// The bound (N/m) of HourglassMatrixControl for the matrix of the form.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
     return HourglassMatrixControl<Form>::stiffness_bound(gamma, {symmetric_part(matrix_of<T>(element))});

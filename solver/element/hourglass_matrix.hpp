@@ -10,9 +10,9 @@ namespace sandglass {
 template <class T>
 using HourglassMatrix = SymmetricMatrix<T, 12>;
 
-/// A bound of the eigenvalues of a matrix between hourglass displacements, from the largest singular values
-/// of its 3 x 3 blocks added along a row of blocks. Unlike sums of entries it stays when the axes are turned,
-/// so that a body's stable step does not depend on its direction.
+/// A bound of the eigenvalues of a matrix between hourglass displacements: the largest sum over a row of
+/// blocks of the largest singular values of its 3 x 3 blocks. Unlike sums of entries it does not change when
+/// the axes are rotated, so that the stable step of a body does not depend on its orientation.
 template <class T>
 T block_row_sum_bound(const Matrix<T, 12, 12>& A) {
   Matrix<T, 4, 4> norms;
@@ -67,9 +67,7 @@ struct HourglassMatrixControl {
     return T(0.5) * double_dot(r, resistance(r, element));
   }
 
-  /// With G = gamma (x) I, G K G^T has the eigenvalues of K G^T G, N/m; they are bounded by the largest sum
-  /// of the norms of its blocks of 3 by 3 in a row. Norms of blocks do not depend on the axes, sums of
-  /// entries would.
+  /// With G = gamma (x) I, G K G^T has the eigenvalues of K G^T G (N/m), bounded by `block_row_sum_bound`.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
     const Matrix<T, 4, 4> product = transpose(gamma) * gamma;

@@ -6,7 +6,7 @@
 
 namespace sandglass {
 
-/// No hourglass control: the twelve hourglass modes of a one-point element stay without energy.
+/// No hourglass control: the twelve hourglass modes of a one-point element have no energy.
 struct NoHourglassControl {
   static constexpr bool active = false;
   static constexpr bool takes_kappa = false;

@@ -10,7 +10,7 @@
 
 namespace sandglass {
 
-/// The stiffness parameter that both forms of the perturbation control take.
+/// The stiffness parameter of both forms of the perturbation control, Total and Updated Lagrangian.
 struct PerturbationStiffness {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = true;
@@ -22,14 +22,15 @@ struct PerturbationStiffness {
     return modulus == KappaModulus::shear ? mu : lame_lambda(law) + 2.0 * mu;
   }
 
-  /// kappa times its modulus = E/9: with it a cube bends with its exact energy at every Poisson's ratio. A
-  /// fixed kappa on lambda + 2 mu locks as nu -> 1/2; on mu it may stay between .278 (nu = .25) and .333.
+  /// The kappa whose product with its modulus is E/9: with it a cube bends with its exact energy at every
+  /// Poisson's ratio. A fixed kappa on lambda + 2 mu locks as nu -> 1/2; on mu the same value varies only
+  /// from .278 (nu = .25) to .333.
   template <class Law>
   static double auto_kappa(const Law& law, KappaModulus modulus = KappaModulus::p_wave) {
     return young_modulus(law) / (9.0 * kappa_modulus(law, modulus));
   }
 
-  /// kappa rho c_D^2 in Pa (eqs 9 and 12), with either modulus.
+  /// kappa rho c_D^2 (Pa), the material's factor of eq. 12, with either modulus.
   template <class Law>
   static double modulus(const Law& law, const HourglassSettings& settings) {
     const double kappa = settings.kappa.value_or(auto_kappa(law, settings.kappa_modulus));
@@ -37,15 +38,15 @@ struct PerturbationStiffness {
   }
 };
 
-/// lambda_max(gamma^T gamma), bounded by the largest sum of absolute values in a row.
+/// An upper bound of lambda_max(gamma^T gamma): the largest sum of absolute values in a row.
 template <class T>
 T shape_vector_bound(const Matrix<T, 8, 4>& gamma) {
   return row_sum_bound(transpose(gamma) * gamma);
 }
 
-/// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (paper, eqs
-/// 2-14). gamma is orthogonal to linear fields, so rigid motions and uniform strains feel no force, however
-/// large.
+/// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (eq. 2 to
+/// eq. 14 of the paper). gamma is orthogonal to linear fields, so rigid motions and uniform strains, however
+/// large, cause no force.
 struct PerturbationHourglassControl : PerturbationStiffness {
   template <class T>
   struct Element {
@@ -54,14 +55,17 @@ struct PerturbationHourglassControl : PerturbationStiffness {
   template <class T>
   using History = NoHistory<T>;
 
+  /// k = kappa K_max / 8 (eq. 12) of an element with corners X (m), where K_max = rho V omega^2 / 8 (eq. 6),
+  /// omega^2 = c_D^2 g (eq. 7) and g = 8 h_Ii h_Ii (eq. 8); the density cancels.
   template <class Law>
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& settings) {
     const MeanGradient mean = mean_gradient(X);
-    return {modulus(law, settings) * mean.volume * double_dot(mean.h, mean.h) / 8.0};  // eqs 6-8
+    return {modulus(law, settings) * mean.volume * double_dot(mean.h, mean.h) / 8.0};
   }
 
-  /// Hourglass resistances Q = k q (N) to the hourglass displacements q = gamma^T u (m); eqs 4, 11 and 12.
+  /// Hourglass resistances Q = k q (N) to the hourglass displacements q = gamma^T u (m): eq. 4 with both
+  /// factors 1/sqrt 8, of eq. 5 and eq. 11, in k.
   template <class T>
   static Matrix<T, 4, 3> resistance(const Matrix<T, 4, 3>& q, const Element<T>& element) {
     return element.k * q;
@@ -80,8 +84,8 @@ struct PerturbationHourglassControl : PerturbationStiffness {
   }
 };
 
-/// f = k gamma gamma^T u (eq. 14) as the paper writes it, two dense products: 360 operations. The kernel
-/// computes the same with fewer; this form stays for tests and for the count of operations.
+/// f = k gamma gamma^T u (eq. 14) as the paper writes it, two dense products: 360 operations. The kernel,
+/// `OnePoint::force`, computes the same with fewer; this form serves tests and the operation count.
 template <class T>
 NodalVectors<T> paper_hourglass_force(const NodalVectors<T>& u, const Matrix<T, 8, 4>& gamma, const T& k) {
   const Matrix<T, 4, 3> q = transpose(gamma) * u;

@@ -13,13 +13,13 @@ Triple<T> rotated(const Triple<T>& v, const Triple<T>& b, const T& scale) {
   return v + scale * (turn + cross(b, turn));
 }
 
-/// Hourglass control as Updated Lagrangian codes run it: hourglass resistances are integrated from hourglass
-/// velocities, turn with the element's spin, and their stiffness follows the current geometry. A `Form` says
-/// what stiffness: Element<T> and precompute(X, law, settings) for its moduli, and stiffness(x, current,
-/// moduli), an object of the current configuration with
-///   resistance(q)  what resists hourglass displacements q (m), in N: linear, symmetric, positive,
-///   energy(Q)      what resistances Q (N) store, in J: the complementary energy,
-///   bound()        of the largest eigenvalue of q -> Q, in N/m.
+/// Hourglass control as in Updated Lagrangian codes: hourglass resistances are integrated from hourglass
+/// velocities, rotate with the element's spin, and their stiffness follows the current geometry. A `Form`
+/// defines the stiffness: Element<T> and precompute(X, law, settings) for its moduli, and stiffness(x,
+/// current, moduli), an object of the current configuration with
+///   resistance(q)  the resistances (N) to hourglass displacements q (m): linear, symmetric, positive,
+///   energy(Q)      the complementary energy (J) of resistances Q (N),
+///   bound()        an upper bound (N/m) of the largest eigenvalue of q -> Q.
 template <class Form>
 struct RateHourglassControl : Form {
   static constexpr bool active = true;
@@ -33,7 +33,9 @@ struct RateHourglassControl : Form {
     HourglassModes<T> Q;
   };
 
-  /// Q <- R Q + K gamma^T v dt: what was there turns with the spin of L, the rate is added.
+  /// Q <- R Q + K gamma^T v dt (N): the resistances rotate with the spin of L, and those to the hourglass
+  /// velocities of the step are added (eq. 3 and eq. 4 in the current configuration, without the factors
+  /// 1/sqrt 8).
   template <class T>
   static HourglassModes<T> resistance(const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
                                       History<T>& history) {
@@ -51,17 +53,17 @@ struct RateHourglassControl : Form {
     return history.Q;
   }
 
-  /// What the resistances would give back at the current stiffness, J.
+  /// The energy (J) that the resistances would release at the current stiffness.
   template <class T>
   static T energy(const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,
                   const History<T>& history) {
     return Form::stiffness(now.x, now.current, element).energy(history.Q);
   }
 
-  /// The body's bound, lambda_max(K) lambda_max(gamma^T gamma), and what the resistances that are there do
-  /// when velocities v change the geometry they act on: forces gamma Q change by -h (v^T gamma Q) and, as Q
-  /// turns with the spin, by gamma W Q, |W Q_a| <= |L| / sqrt(2) |Q_a|, |L|^2 <= lambda_max(h^T h) |v|^2. The
-  /// sum is safe whatever the angles between their modes.
+  /// The body's bound, plus lambda_max(K) lambda_max(gamma^T gamma), plus the geometric stiffness of the
+  /// present resistances: with velocities v, forces gamma Q change by -h (v^T gamma Q), and by gamma W Q as Q
+  /// rotates with the spin, where |W Q_a| <= |L| / sqrt(2) |Q_a| and |L|^2 <= lambda_max(h^T h) |v|^2. The
+  /// sum is safe whatever the angles between their modes. In N/m.
   template <class T>
   static T stiffness_bound(const T& body, const Matrix<T, 8, 4>& gamma,
                            const UpdatedOnePoint::Deformation<T>& now, const Element<T>& element,

@@ -5,8 +5,8 @@
 #include "element/one_point.hpp"
 #include "math/symmetric_matrix.hpp"
 
-/// Energy sampling in its cheapest form: the shear energy that one point misses, mode by mode, on the
-/// parallelepiped of the mean gradient, with a constant stiffness. |q| does not change as an element turns.
+/// Energy sampling in its cheapest form: the shear energy that one point misses, for each mode, on the
+/// parallelepiped of the mean gradient, with constant stiffnesses. |q| does not change as an element rotates.
 namespace sandglass {
 
 /// Stiffnesses (N/m) of the four hourglass modes to q = gamma^T u, of an element with the one-point geometry
@@ -25,7 +25,7 @@ std::array<T, 4> sampled_stiffness(const Geometry& body, const Law& law) {
           T(1.0 / 3.0) * third * (square[0] + square[1] + square[2])};
 }
 
-/// Constants of a control from coordinates, where it takes them from the geometry of one point.
+/// `precompute` for controls whose constants follow from the geometry of one point.
 template <class Control>
 struct FromGeometry {
   template <class Law>
@@ -34,7 +34,7 @@ struct FromGeometry {
   }
 };
 
-/// Hourglass control without a number to choose and at the cost of the perturbation control's one.
+/// Hourglass control without a parameter, at the cost of the perturbation control.
 struct ModalSamplingControl : FromGeometry<ModalSamplingControl> {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
@@ -79,7 +79,7 @@ struct ModalSamplingControl : FromGeometry<ModalSamplingControl> {
   }
 };
 
-/// The same for the mode xi eta zeta alone, for an element that sees the other three.
+/// The same for the mode xi eta zeta only, for an element whose points resolve the other three.
 struct LastModeControl : FromGeometry<LastModeControl> {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;

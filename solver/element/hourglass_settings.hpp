@@ -4,14 +4,14 @@
 
 namespace sandglass {
 
-/// The modulus that kappa multiplies: lambda + 2 mu, as the paper has it (eq. 9), or mu, with which one
-/// number serves nearly incompressible materials too, because mu stays finite as nu -> 1/2.
+/// The modulus that kappa multiplies: lambda + 2 mu as in the paper (eq. 9), or mu, for which one value of
+/// kappa also serves nearly incompressible materials, because mu stays finite as nu -> 1/2.
 enum class KappaModulus { p_wave, shear };
 
-/// What an hourglass control is told beside shape and law.
+/// The settings of an hourglass control.
 struct HourglassSettings {
   std::optional<double> kappa;  ///< strength, -; none means `auto`, the control's own choice
-  double density = 0.0;         ///< kg/m^3 at rest, for controls that damp; without inertia they do nothing
+  double density = 0.0;  ///< reference density, kg/m^3, for controls that damp; with zero they give no force
   KappaModulus kappa_modulus = KappaModulus::p_wave;  ///< what kappa multiplies
 };
 

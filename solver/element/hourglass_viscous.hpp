@@ -7,16 +7,16 @@ namespace sandglass {
 
 /// Viscous hourglass control, the default of LS-DYNA and OpenRadioss in the form that is exact on distorted
 /// elements (LS-DYNA's type 3): Q = c gamma^T v with the shape vectors of Flanagan and Belytschko 1981 and
-///   c = kappa / 4 rho c_d v^(2/3),   rho and v of the current configuration, c_d at rest.
-/// It damps hourglass velocities and takes no part in anything affine, rotations included. It stores nothing:
-/// its energy is zero, work done on it is lost. Where time plays no part it gives no force at all, so that a
-/// quasi-static answer hourglasses as it does without control.
+///   c = kappa / 4 rho c_d v^(2/3),   rho and v of the current configuration, c_d of the undeformed one.
+/// It damps hourglass velocities and does not affect affine motions, rotations included. It stores no energy;
+/// the work done on it is dissipated. In quasi-static runs it gives no force, and bodies hourglass as without
+/// control.
 ///
-/// There is no Total Lagrangian twin. With reference shape vectors c would be constant and every affine
-/// motion free of force, but not a bent element that turns as a whole: its velocity Omega x is linear in x,
-/// not in X, gamma^T v = Omega q is not zero, and spinning bodies would be braked. The rate that turning
-/// leaves alone, d(F^-1 q)/dt, needs the gradients of the increment, F^-1, and the reaction on the mean
-/// stress.
+/// It has no Total Lagrangian counterpart. With reference shape vectors c would be constant and affine
+/// motions free of force, but not the rotation of a bent element: its velocity Omega x is linear in x, not in
+/// X, so that gamma^T v = Omega q is not zero, and spinning bodies would be braked. The rate that is
+/// invariant under rotation, d(F^-1 q)/dt, requires the gradients of the increment, F^-1, and the reaction on
+/// the mean stress.
 ///
 /// kappa is the dimensionless coefficient, QM in LS-DYNA and h in OpenRadioss; `auto` is the default of both,
 /// 0.1.
@@ -27,7 +27,7 @@ struct ViscousHourglassControl {
 
   template <class T>
   struct Element {
-    T impedance;  ///< kappa / 4 rho c_d at rest, Pa s/m
+    T impedance;  ///< kappa / 4 rho c_d of the undeformed state, Pa s/m
     T modulus;    ///< kappa^2 (lambda + 2 mu) = (4 impedance)^2 / rho, Pa: for the stable step
   };
   template <class T>
@@ -54,14 +54,14 @@ struct ViscousHourglassControl {
     return (c * now.inverse_step) * now.rate;
   }
 
-  /// Nothing is stored.
+  /// Zero: nothing is stored.
   template <class T>
   static T energy(const UpdatedOnePoint::Deformation<T>& /*now*/, const Element<T>& /*element*/,
                   const NoHistory<T>& /*history*/) {
     return T(0);
   }
 
-  /// Damping shortens the stable step. Velocities stand half a step behind, so that an eigenvector of the
+  /// Damping shortens the stable step. Velocities are half a step behind, so that an eigenvector of the
   /// scheme with Rayleigh quotients m, d and k of mass, damping and stiffness obeys
   ///   m z^2 - (2 m - dt d - dt^2 k) z + (m - dt d) = 0,
   /// which leaves the unit circle through z = -1 when dt^2 k + 2 dt d = 4 m: the familiar

@@ -20,14 +20,14 @@ Tensor<T> weighted_strain(const T& factor, const Tensor<T>& H) {
   return e;
 }
 
-/// A law as small-strain theory sees it, in the place of a law: what it answers is linear in H and takes no
-/// notice of rotation.
+/// The small-strain limit of a law, with the interface of a law: stresses are linear in H and ignore
+/// rotation.
 template <class Law>
 class SmallStrainLaw {
  public:
   explicit SmallStrainLaw(const Law& law) : law_(law) {}
 
-  /// No part of its own: the stress below is the whole one.
+  /// Zero: the stress below is the total one.
   template <class T>
   T pressure(const T& /*J_minus_one*/) const {
     return T(0);
@@ -52,11 +52,11 @@ class SmallStrainLaw {
 };
 
 /// The uniform strain hexahedron of small-strain elasticity: f = K u with a constant, symmetric K. It is
-/// OnePoint with the law's tangent at rest in the place of the law. True to first order in displacement
-/// gradients; a finite rotation strains it by 1 - cos(angle), whatever the body feels. That is the model of
-/// surgery simulators that superpose or condense responses (Bro-Nielsen and Cotin 1996).
+/// OnePoint with the law replaced by its undeformed tangent, and correct to first order in displacement
+/// gradients; a finite rotation causes a spurious strain of 1 - cos(angle). This is the model of surgery
+/// simulators that superpose or condense responses (Bro-Nielsen and Cotin 1996).
 struct LinearOnePoint {
-  static constexpr bool small_strain = true;  ///< stresses from sym(H): no rotation, no large strain
+  static constexpr bool small_strain = true;  ///< stresses follow from sym(H)
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = false;
 
@@ -67,7 +67,7 @@ struct LinearOnePoint {
 
   static Element<double> precompute(const NodalVectors<double>& X) { return OnePoint::precompute(X); }
 
-  /// As OnePoint, without the change of volume, which small strains do not need.
+  /// As for OnePoint, without the change of volume, which small strains do not need.
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
     Deformation<T> now;
@@ -98,8 +98,8 @@ struct LinearOnePoint {
     return OnePoint::volume(motion, element);
   }
 
-  /// det(I + H) of the displacements that it finds. Small-strain theory itself never fails, and would return
-  /// elements turned inside out in silence; as displacements of a body they are as impossible as anybody's.
+  /// det(I + H) of the displacements. Small-strain theory itself never fails and would silently return
+  /// inverted elements, which are as impossible for a body as with any other method.
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
     return OnePoint::smallest_jacobian(motion, element);
@@ -110,14 +110,14 @@ struct LinearOnePoint {
     return OnePoint::mean_jacobian(motion, element);
   }
 
-  /// That of OnePoint at rest, whatever the displacements: the stiffness is constant.
+  /// The bound (N/m) of the undeformed OnePoint for all displacements: the stiffness is constant.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const typename Hourglass::template Element<T>& control,
                            const NoHistory<T>& history, const Law& law) {
-    ElementMotion<T> rest = motion;
-    rest.u = {};
-    return OnePoint::stiffness_bound<Hourglass>(rest, element, control, history, law);
+    ElementMotion<T> undeformed = motion;
+    undeformed.u = {};
+    return OnePoint::stiffness_bound<Hourglass>(undeformed, element, control, history, law);
   }
 };
 

@@ -6,23 +6,23 @@
 #include "base/type_list.hpp"
 #include "element/formulation.hpp"
 
-/// What is asked of a method when it is compiled. Each says in a header of `element/methods/`: name, summary,
-/// integration_points, Kinematics and Hourglass; where it has them also `zero_energy_modes`, the modes that
-/// are left without energy by nature; `condensed`; `Levels`, methods from the cheapest to the one that an
-/// adaptive method stands for; `AtSmallStrain`, what an Updated Lagrangian method tends to as strains vanish
-/// and time plays no part; `SharesKernelsOf`, a method with the same element.
+/// Properties of methods at compile time. A method's header in `element/methods/` declares name, summary,
+/// integration_points, Kinematics and Hourglass, and where they apply `zero_energy_modes`, the number of
+/// modes without energy by design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to
+/// the one that it approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for
+/// small strains; `SharesKernelsOf`, a method with the same element.
 namespace sandglass {
 
-/// An hourglass control that resists velocities alone says so with `damps_only`: it loses energy, and does
-/// nothing where time plays no part.
+/// An hourglass control that resists only velocities declares `damps_only`: it dissipates energy and gives no
+/// force in quasi-static runs.
 template <class Hourglass>
 concept DampsOnly = requires {
   requires Hourglass::damps_only;
 };
 
-/// Whether the strength of a method's hourglass control matters to a body at rest.
+/// Whether the strength of a method's hourglass control affects a body in equilibrium.
 template <class Method>
-inline constexpr bool kappa_matters_at_rest =
+inline constexpr bool kappa_affects_equilibrium =
     Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
 
 /// Whether a method's forces are linear in the displacements, f = K u.
@@ -31,13 +31,13 @@ inline constexpr bool is_linear = requires {
   requires Method::Kinematics::small_strain;
 };
 
-/// Whether a method takes no steps: its answers are superposed from responses that are computed once.
+/// Whether a method superposes its answers from responses that are computed once, instead of taking steps.
 template <class Method>
 inline constexpr bool is_condensed = requires {
   requires Method::condensed;
 };
 
-/// Whether a method's elements change the way they integrate.
+/// Whether a method chooses a level for each of its elements.
 template <class Method>
 inline constexpr bool is_adaptive = requires {
   typename Method::Levels;
@@ -69,11 +69,11 @@ struct LevelsOf<Method> {
 
 }  // namespace detail
 
-/// The method whose kernels a method runs: itself, unless it `SharesKernelsOf` another.
+/// The method whose kernels a method uses: itself, unless it declares `SharesKernelsOf`.
 template <class Method>
 using KernelOwner = typename detail::KernelOwner<Method>::type;
 
-/// The levels of a method's elements; of one that does not adapt, itself.
+/// The levels of a method's elements; for a method that is not adaptive, the method itself.
 template <class Method>
 using LevelsOf = typename detail::LevelsOf<Method>::type;
 
@@ -87,12 +87,13 @@ std::vector<std::string_view> level_names() {
   return names;
 }
 
-/// Whether a method knows what to do with a law: small-strain theory takes a law's moduli at rest, and would
-/// forget that it relaxes; what an element remembers at one point says nothing of eight.
+/// Whether a method supports a law. Laws with memory are not supported by small-strain theory, which takes
+/// only a law's initial moduli, nor by adaptive methods, where a memory at one point does not determine
+/// eight.
 template <class Method, class Law>
 inline constexpr bool knows_law = !((is_linear<Method> || is_adaptive<Method>)&&law_remembers<Law>);
 
-/// A method with a law: the element that the assembly runs.
+/// The element of a method with a law.
 template <class Method, class Law>
 using FormulationOf = Formulation<typename Method::Kinematics, typename Method::Hourglass, Law>;
 

@@ -24,8 +24,8 @@
 
 namespace sandglass {
 
-/// THE list of methods. A new method is a header (kinematics or hourglass control) and one entry here; tests,
-/// tables, benchmarks and charts iterate the list.
+/// The list of methods. A new method is a header in element/methods/ and one entry here; tests, tables,
+/// benchmarks and charts iterate the list.
 using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
                          TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
                          UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation, T4, T4Anp, LinearPerturbation,

@@ -4,9 +4,9 @@
 
 #include "math/matrix.hpp"
 
-/// The modal form of nodal values. Trilinear shape functions are spanned by one translation, three linear and
-/// four hourglass modes whose nodal values are all +1 or -1, so that going there and back takes additions
-/// only. Every mode is a mode of two opposite faces, added or subtracted.
+/// The modal form of nodal values. Trilinear fields are spanned by one translation, three linear and four
+/// hourglass modes whose nodal values are +1 or -1, so that the transformation and its transpose consist of
+/// additions. Every mode is the sum or difference of a mode of two opposite faces.
 namespace sandglass {
 
 /// Amplitudes of the seven modes that deform an element, each with three components: rows 0 to 2 belong to
@@ -15,12 +15,12 @@ namespace sandglass {
 template <class T>
 using Modes = Matrix<T, 7, 3>;
 
-/// Amplitudes q_ai of the four hourglass modes and of what resists them, three components each.
+/// Three components for each of the four hourglass modes: hourglass displacements q_ai, or resistances Q_ai.
 template <class T>
 using HourglassModes = Matrix<T, 4, 3>;
 
-/// Sums over the four nodes of a face with the signs of 1, xi, eta and xi eta: what two elements that share
-/// the face need of it. Corners in the order of the lower face of a VTK hexahedron.
+/// Sums over the four nodes of a face with the signs of 1, xi, eta and xi eta, which both elements that share
+/// the face use. Corners are in the order of the lower face of a VTK hexahedron.
 template <class T>
 using FaceModes = Matrix<T, 4, 3>;
 
@@ -92,7 +92,8 @@ constexpr Modes<T> modes_between(const FaceModes<T>& lower, const FaceModes<T>& 
   return modes;
 }
 
-/// What an element's modal forces do to the face above it: a part of the transpose of `modes_between`.
+/// The part of an element's modal forces f that acts on its upper face, from the transpose of
+/// `modes_between`.
 template <class T>
 constexpr FaceModes<T> upper_face(const Modes<T>& f) {
   FaceModes<T> face;
@@ -105,7 +106,7 @@ constexpr FaceModes<T> upper_face(const Modes<T>& f) {
   return face;
 }
 
-/// What they do to the face below.
+/// The part that acts on its lower face.
 template <class T>
 constexpr FaceModes<T> lower_face(const Modes<T>& f) {
   FaceModes<T> face;

@@ -18,8 +18,9 @@ struct ElementEnergy {
 };
 
 /// The uniform strain hexahedron in the Total Lagrangian formulation: one stress from the mean displacement
-/// gradient, and an hourglass control on what that gradient does not see. Written in modes: additions take
-/// the place of the dense products with h and gamma, and gamma need not be stored.
+/// gradient, and an hourglass control for the motions that this gradient does not contain. It is written in
+/// modes (modes.hpp): additions replace the dense products with h and gamma, and gamma is not stored.
+/// Numbers of equations are the paper's; README.md of this folder lists them.
 struct OnePoint {
   /// What is constant in time.
   template <class T>
@@ -36,8 +37,8 @@ struct OnePoint {
 
   /// The same from the modes of the nodal coordinates x (m), in closed form: with a_m = x_m / 8 the volume is
   ///   V = 8 ([a1 a2 a3] + ([a1 a6 a5] + [a6 a2 a4] + [a5 a4 a3]) / 3),  [a b c] = a . (b x c),
-  /// and h_m = dV/dx_m / V. It is Flanagan and Belytschko's closed form of B and V, in modes; a7 is not in
-  /// it.
+  /// and h_m = dV/dx_m / V (eq. 1). This is the closed form of B and V of Flanagan and Belytschko 1981,
+  /// written in modes; it does not depend on a7.
   template <class T>
   static Element<T> geometry(const Modes<T>& x) {
     std::array<Triple<T>, 6> a;
@@ -79,7 +80,8 @@ struct OnePoint {
     return H;
   }
 
-  /// Hourglass displacements gamma^T u = Gamma^T u - c H^T (eq. 11 without its 1/sqrt 8).
+  /// Hourglass displacements q = gamma^T u = Gamma^T u - c H^T (m), eq. 11 without its factor 1/sqrt 8: eq. 3
+  /// integrated in time from the undeformed state, where u and q are zero (eq. 10).
   template <class T>
   static HourglassModes<T> hourglass_displacements(const Modes<T>& modes, const Tensor<T>& H,
                                                    const Element<T>& element) {
@@ -94,12 +96,13 @@ struct OnePoint {
     return q;
   }
 
-  /// What the force needs of the displacements.
+  /// The deformation that the force depends on.
   template <class T>
   struct Deformation {
-    Tensor<T> H;
+    Tensor<T> H;  ///< mean displacement gradient
     VolumeChange<T> change;
-    HourglassModes<T> q;  ///< hourglass displacements as the control sees them, m; unset without a control
+    HourglassModes<T>
+        q;  ///< hourglass displacements, m (r where the control follows); unset without a control
     FollowedDeformation<T> followed;  ///< for a control that follows the mean deformation; else unset
   };
 
@@ -116,9 +119,17 @@ struct OnePoint {
     return now;
   }
 
-  /// Internal forces (N) in modes: f = h V P^T + gamma Q = h (V P^T - c^T Q) + Gamma Q (eq. 14). The energy
-  /// phi E0(F^-1 q) of a control that follows also changes with F, by -sum_a Q_a (x) r_a and by phi: the
-  /// first is the same force with c + r in place of c, the second a stress.
+  /// Internal forces (N) in modes. The paper adds to the force of the stress that of its hourglass control,
+  ///   f = V h P^T + k gamma gamma^T u,   the second term being eq. 14 (eq. 13 by components).
+  /// With q = gamma^T u (eq. 11) and Q = k q (eq. 4 and eq. 12; each control has its own Q) that term is
+  /// gamma Q (eq. 5), and since gamma = Gamma - h c^T (eq. 2), both terms share one product with h:
+  ///   f = h (V P^T) + (Gamma - h c^T) Q = h (V P^T - c^T Q) + Gamma Q.
+  /// In modes Gamma Q is an addition to four rows, and H, already known, gives q: 168 operations for the
+  /// control in place of the 360 of the two dense products (`paper_hourglass_force`).
+  ///
+  /// The energy phi E0(F^-1 q) of a control that follows the deformation also changes with F, by
+  /// -sum_a Q_a (x) r_a and by phi: the former is the same force with c + r in place of c, the latter a
+  /// stress.
   template <class Hourglass, class T, class Law>
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
                         const typename Hourglass::template Element<T>& control, NoHistory<T>& /*history*/,
@@ -171,16 +182,16 @@ struct OnePoint {
     return mean_jacobian(motion, element);
   }
 
-  /// The element's volume over its reference volume, as this element sees it.
+  /// The element's volume over its reference volume: det F of the mean deformation.
   template <class T>
   static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
     return T(1) + jacobian_minus_one(mean_gradient(motion.u, element));
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness. The body's part is that of
-  /// the spatial gradients h F^-1; on a cube at rest it is the exact eigenvalue, where the paper's eqs 7 and
-  /// 8 give (lambda + 2 mu) |h|^2. The control's part is added, which is safe whatever the angle between
-  /// their modes.
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness. The body's part follows from
+  /// the spatial gradients h F^-1; on an undeformed cube it is the exact eigenvalue, whereas eq. 7 and eq. 8
+  /// give (lambda + 2 mu) |h|^2. The control's part is added, which is safe whatever the angle between their
+  /// modes.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const typename Hourglass::template Element<T>& control,
@@ -201,7 +212,8 @@ struct OnePoint {
     return body;
   }
 
-  /// h S + gamma Q in modes, for a stress S = V P^T, hourglass resistances Q (N) and gamma = Gamma - h c^T.
+  /// h S + gamma Q (N) in modes, for a stress S = V P^T (J), hourglass resistances Q (N) and
+  /// gamma = Gamma - h c^T; gamma Q is eq. 5 without its factor 1/sqrt 8.
   template <class T>
   static Modes<T> modal_forces(const Tensor<T>& S, const HourglassModes<T>& Q, const Matrix<T, 4, 3>& c,
                                const Element<T>& element) {
@@ -212,7 +224,7 @@ struct OnePoint {
     return f;
   }
 
-  /// h S for each mode; none in the mode xi eta zeta.
+  /// h S (N) for each mode, zero in the mode xi eta zeta.
   template <class T>
   static Modes<T> body_forces(const Tensor<T>& S, const Element<T>& element) {
     const Matrix<T, 6, 3> hS = element.h * S;
@@ -224,7 +236,7 @@ struct OnePoint {
     return f;
   }
 
-  /// h_Ii, back from its modes.
+  /// The mean gradients h_Ii (1/m) at the nodes, from their modes.
   template <class T>
   static NodalVectors<T> nodal_gradients(const Element<T>& element) {
     return from_modes(body_forces(identity<T>(), element));

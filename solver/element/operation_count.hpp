@@ -16,7 +16,7 @@ namespace sandglass {
 
 namespace detail {
 
-/// How the tally stood when a law was first called, and what was counted inside of calls.
+/// The tally at the first call of a law, and the operations counted inside its calls.
 struct CallRecord {
   const Operations& tally;
   bool called = false;
@@ -24,7 +24,7 @@ struct CallRecord {
   Operations inside = {};
 };
 
-/// A law that notes what its calls count.
+/// A law that records the operations of its calls.
 template <class Law>
 class ObservedLaw {
  public:
@@ -63,7 +63,7 @@ class ObservedLaw {
 
 namespace detail {
 
-/// `count` numbers that are known to a tally, as an aggregate of them.
+/// An aggregate of numbers with a tally.
 template <class Aggregate>
 Aggregate counted(Operations& tally, double value) {
   constexpr std::size_t numbers = sizeof(Aggregate) / sizeof(Counted);
@@ -74,7 +74,7 @@ Aggregate counted(Operations& tally, double value) {
   return std::bit_cast<Aggregate>(entries);
 }
 
-/// The constants of a cube, if the kernel has any, known to a tally.
+/// The constants of a cube, if the kernel has any, with a tally.
 template <class Kernel, class Law>
 auto counted_constants(const Law& law, Operations& tally) {
   using Element = typename Kernel::template Element<double>;
@@ -91,14 +91,14 @@ auto counted_constants(const Law& law, Operations& tally) {
   }
 }
 
-/// The modes of an element in a strip: those of its lower face are known from the element before.
+/// The modes of an element in a strip: those of its lower face are known from the previous element.
 inline Modes<Counted> modes_in_strip(const FaceModes<Counted>& lower, Operations& tally, double value) {
   const auto upper = counted<FaceVectors<Counted>>(tally, value);
   return modes_between(lower, to_face_modes(upper));
 }
 
-/// The first pass of kernels that average over nodes, and what the second gathers of it: the lower face is
-/// known from the element before.
+/// The first pass of kernels that average over nodes, and the second pass's gather of its result: the lower
+/// face is known from the previous element.
 template <class Kernel>
 std::array<Counted, 8> averages(const typename Kernel::template Element<Counted>& element,
                                 Operations& tally) {
@@ -109,15 +109,15 @@ std::array<Counted, 8> averages(const typename Kernel::template Element<Counted>
   auto dilatation = counted<std::array<Counted, 8>>(tally, 1e-3);
   for (std::size_t corner = 0; corner < 4; ++corner) {
     const Counted change = carried.change[4 + corner] + volumes.change[corner];
-    dilatation[4 + corner] = change / (carried.rest[4 + corner] + volumes.rest[corner]);
+    dilatation[4 + corner] = change / (carried.reference[4 + corner] + volumes.reference[corner]);
   }
   return dilatation;
 }
 
 }  // namespace detail
 
-/// Counts what one element costs in one step, as the assembly runs it: in a strip, where a face's modes serve
-/// both its elements. The count does not depend on the values: kernels have no branches.
+/// The operations of one element in one step, as in the assembly: in a strip, where the modes of a face serve
+/// both its elements. They do not depend on the values, since kernels have no branches.
 template <class Kinematics, class Hourglass, class Law>
 OperationCount count_operations(const Law& law) {
   using Kernel = Formulation<Kinematics, Hourglass, Law>;
@@ -163,7 +163,7 @@ OperationCount count_operations(const Law& law) {
   return count;
 }
 
-/// Eq. 14 as the paper writes it: Table I counts 360.
+/// The operations of eq. 14 in the paper's form: 360 by its Table I.
 inline Operations count_paper_hourglass_force() {
   Operations tally;
   NodalVectors<Counted> u;

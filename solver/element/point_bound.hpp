@@ -8,10 +8,10 @@
 
 namespace sandglass {
 
-/// A bound (N/m) of the tangent of an element that integrates at N points, each of a reference volume
-/// `weight` (m^3) and a displacement gradient H: the points' bounds add up. gradient_at(q) are the spatial
-/// gradients (1/m) of the nodes there, `dilatation` the volume change that makes the pressure. A pressure
-/// that is `shared`, one for the element of volume V, is stiff on one mean spatial gradient.
+/// An upper bound (N/m) of the tangent of an element with N integration points of reference volume `weight`
+/// (m^3) and displacement gradient H: the sum of the bounds of its points. gradient_at(q) gives the spatial
+/// gradients (1/m) at point q; the pressure follows from `dilatation`. With `shared`, one pressure for the
+/// element of volume V (m^3), the bulk stiffness acts on the mean spatial gradient only.
 template <bool shared, class T, std::size_t N, class GradientAt, class Law>
 T point_bound(const std::array<Tensor<T>, N>& H, const std::array<T, N>& dilatation,
               const std::array<T, N>& weight, const T& V, const GradientAt& gradient_at, const Law& law) {

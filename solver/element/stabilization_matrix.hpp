@@ -5,17 +5,17 @@
 
 namespace sandglass {
 
-/// The stabilization matrix of Liu, Ong and Uras 1985: what the mean-dilatation element has more than one
-/// point, both at rest. The difference vanishes for linear fields, hence is a matrix between the hourglass
-/// displacements; the pressure, one for the element, is in both and leaves it, so that the matrix knows the
-/// law's shear stiffness alone. At small displacements one point with it IS the mean-dilatation element, on
-/// any shape.
+/// The stabilization matrix of Liu, Ong and Uras 1985: the stiffness of the mean-dilatation element minus
+/// that of one point, both undeformed. The difference vanishes for linear fields, hence is a matrix between
+/// hourglass displacements; the pressure, one for the element, is the same in both, so that the matrix
+/// depends only on the law's isochoric stiffness. At small displacements one point with this matrix is
+/// identical to the mean-dilatation element, for any shape.
 struct StabilizationMatrix {
-  /// K_aibj = integral of (grad w_a)_k C_ikjl (grad w_b)_l, C the law's isochoric tangent at rest.
+  /// K_aibj = integral of (grad w_a)_k C_ikjl (grad w_b)_l (N/m), with C the undeformed isochoric tangent.
   template <class Law>
   static HourglassMatrix<double> matrix(const NodalVectors<double>& X, const Law& law) {
     const HourglassFluctuation fluctuation = hourglass_fluctuation(X);
-    const Matrix<double, 9, 9> C = isochoric_tangent_at_rest(law);
+    const Matrix<double, 9, 9> C = undeformed_isochoric_tangent(law);
     Matrix<double, 12, 12> K{};
     for (std::size_t p = 0; p < 8; ++p) {
       Matrix<double, 9, 12> gradient{};  // of the displacement that each q_ai makes

@@ -10,13 +10,13 @@
 
 namespace sandglass {
 
-/// A hexahedron as linear tetrahedra: both ways to cut it into five, each at half its weight. Every face
-/// carries both diagonals from both sides, so that no colouring of the mesh is needed for neighbours to
-/// agree, no direction is preferred, the volume is that of the trilinear hexahedron, and so are the nodal
-/// forces of a uniform stress, for under a bilinear face lies the mean of what lies under its two
-/// triangulations: the patch test holds. A single cut costs half, prefers its diagonals, and fits its
-/// neighbours only in meshes whose elements can be coloured like a chess-board. Written in modes: eight of
-/// the displacement gradients are the corner gradients of the trilinear field, times 8
+/// A hexahedron as linear tetrahedra: both cuts into five, each with half the weight. Every face has both
+/// diagonals from both sides, so that neighbours agree without a colouring of the mesh, no direction is
+/// preferred, and volume and nodal forces of a uniform stress are those of the trilinear hexahedron, because
+/// the volume under a bilinear face is the mean of those under its two triangulations: the patch test holds.
+/// A single cut costs half, prefers its diagonals, and fits its neighbours only if the elements can be
+/// coloured like a chess-board. In modes, eight of the displacement gradients are the corner gradients of the
+/// trilinear field, times 8
 ///   a_k + s_j a_kj + s_l a_kl + s_j s_l a_123,
 /// the two inner ones a_k -+ a_jl, where k, j, l are the three axes. `Pressure` is a policy: `OwnPressure` or
 /// `NodalPressure`.
@@ -43,8 +43,8 @@ struct Tetrahedra {
     return element;
   }
 
-  /// What `accepts` asks of an element.
-  static constexpr std::string_view demand = "all tetrahedra it is cut into must have a positive volume";
+  /// The condition of `accepts` in words.
+  static constexpr std::string_view demand = "all its tetrahedra must have a positive volume";
 
   static bool accepts(const NodalVectors<double>& X) {
     const auto jacobians = parent_gradients(to_modes(X));
@@ -54,7 +54,7 @@ struct Tetrahedra {
     return true;
   }
 
-  /// What the force needs of the motion, in each tetrahedron.
+  /// The deformation of each tetrahedron.
   template <class T>
   struct Deformation {
     TetrahedronTensors<T> H;
@@ -91,7 +91,7 @@ struct Tetrahedra {
     return parent_divergence(flux);
   }
 
-  /// A quarter of each tetrahedron's volume goes to each of its nodes.
+  /// The element's contribution to nodal volumes: a quarter of each tetrahedron for each of its nodes.
   template <class T>
   static NodalVolumes<T> nodal_volumes(const ElementMotion<T>& motion, const Element<T>& element) {
     TetrahedronValues<T> change = dilatations(gradients(motion, element));
@@ -99,7 +99,7 @@ struct Tetrahedra {
     return {nodal_shares(change), nodal_shares(element.weight)};
   }
 
-  /// Strain energy (J); of the energy at a node the share that the element has in its volume.
+  /// Strain energy (J); of the energy at a node, the element's share of the node's volume.
   template <class Hourglass, class T, class Law>
   static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
                                  const NoControl::Element<T>& /*control*/, const NoHistory<T>& /*history*/,
@@ -135,8 +135,8 @@ struct Tetrahedra {
     return T(1) + sum / volume(motion, element);
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, see gram_bound.hpp; with nodal
-  /// pressures of a stiffness that, summed over the mesh, is not below the true one.
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, see gram_bound.hpp. With nodal
+  /// pressures it bounds an element stiffness whose sum over the mesh is not below the true one.
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const NoControl::Element<T>& /*control*/, const NoHistory<T>& /*history*/,

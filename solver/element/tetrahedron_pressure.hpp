@@ -4,14 +4,19 @@
 #include "element/gram_bound.hpp"
 #include "element/tetrahedron_split.hpp"
 
-/// Where the pressure of a tetrahedron comes from: policies of `Tetrahedra`.
+/// The pressure of a tetrahedron: policies of `Tetrahedra`. Each has
+///   around(motion)                       what the pressure depends on of the surrounding elements,
+///   pressures(dilatation, around, law)   the pressure (Pa) of each tetrahedron from J - 1,
+///   volumetric_energy(...)               the element's share of the volumetric energy, J,
+///   own_bulk_tangent(dilatation, law)    the bulk tangent (Pa) of a tetrahedron's own volume change,
+///   shared_bulk_bound(...)               a bound (N/m) of the stiffness due to shared pressures.
 namespace sandglass {
 
-/// Each tetrahedron its own pressure: the linear tetrahedron, which locks as nu -> 1/2.
+/// One pressure per tetrahedron: the linear tetrahedron, which locks as nu -> 1/2.
 struct OwnPressure {
   static constexpr bool averages_over_nodes = false;
 
-  /// What the pressure needs of the elements around.
+  /// What the pressure depends on of the surrounding elements.
   template <class T>
   struct Around {};
   template <class T>
@@ -52,13 +57,13 @@ struct OwnPressure {
 };
 
 /// Averaged nodal pressures (Bonet & Burton 1998; Joldes, Wittek & Miller 2009): a quarter of each
-/// tetrahedron belongs to each of its nodes; with J_I the volume ratio of what belongs to node I and V_I its
-/// volume at rest the energy is
+/// tetrahedron belongs to each of its nodes. With V_I the undeformed volume that belongs to node I and J_I
+/// its volume ratio, the energy is
 ///   sum_e V_e W_iso(F_e) + sum_I V_I U(J_I),
-/// whence the pressure of a tetrahedron is the mean of its nodes' p_I = U'(J_I), and its stress
-/// P_iso(F) + p cof F: Bonet and Burton's. Joldes et al. give the law (Jbar/J)^(1/3) F instead, with Jbar the
-/// mean of the nodes' J_I: the same pressure, but other powers of Jbar/J in both parts of the stress, which
-/// is then no derivative of an energy. The two agree where Jbar = J.
+/// so that the pressure of a tetrahedron is the mean of p_I = U'(J_I) over its nodes, and its stress
+/// P_iso(F) + p cof F, as in Bonet and Burton. Joldes et al. evaluate the law for (Jbar/J)^(1/3) F instead,
+/// with Jbar the mean of the nodes' J_I: the same pressure, but other powers of Jbar/J in both parts of the
+/// stress, which then is not the derivative of an energy. The two agree for Jbar = J.
 struct NodalPressure {
   static constexpr bool averages_over_nodes = true;
 
@@ -91,9 +96,9 @@ struct NodalPressure {
     return T(0);
   }
 
-  /// A bound of the element's share in V_I U''(J_I) (dJ_I)^2, which couples all neighbours of a node: dJ_I is
-  /// the mean, weighted by volume, of what each hexahedron around has of it, and the square of a mean is not
-  /// above the mean of the squares. So each hexahedron h answers for v_hI U''(J_I) (G_hI . v)^2 alone, with
+  /// A bound (N/m) of the element's share of V_I U''(J_I) (dJ_I)^2, which couples all neighbours of a node:
+  /// dJ_I is the mean, weighted by volume, of the dJ of the surrounding hexahedra, and the square of a mean
+  /// is at most the mean of the squares. So each hexahedron h contributes v_hI U''(J_I) (G_hI . v)^2, with
   /// v_hI its share of V_I and G_hI = sum_e (V_e / 4) J_e g_e / v_hI over its own tetrahedra.
   template <class T, class Law>
   static T shared_bulk_bound(const TetrahedronValues<T>& dilatation, const Around<T>& around,

@@ -4,12 +4,12 @@
 
 #include "mesh/hexahedron.hpp"
 
-/// A hexahedron cut into tetrahedra, both ways at once.
+/// Both cuts of a hexahedron into five tetrahedra.
 namespace sandglass {
 
 /// The tetrahedra of a hexahedron: number I < 8 joins corner I to its three neighbours, numbers 8 and 9 join
-/// the corners with xi eta zeta = -1 and +1. Number 8 and the corners that are not its own are one cut into
-/// five, number 9 and the others the other.
+/// the corners with xi eta zeta = -1 and +1. Number 8 and those at the corners that are not its own form one
+/// cut, number 9 and the others the second.
 inline constexpr std::size_t tetrahedron_count = 10;
 
 /// One number, one tensor for each.
@@ -18,7 +18,7 @@ using TetrahedronValues = std::array<T, tetrahedron_count>;
 template <class T>
 using TetrahedronTensors = std::array<Tensor<T>, tetrahedron_count>;
 
-/// What is constant in time of them.
+/// Their constants.
 template <class T>
 struct TetrahedronConstants {
   TetrahedronTensors<T> inverse_jacobian;  ///< dxi_k/dX_j, 1/m, times 1/8 for modes are sums
@@ -90,7 +90,7 @@ std::array<T, 8> sums_over_tetrahedra(const TetrahedronValues<T>& values) {
   return sums;
 }
 
-/// A quarter of what the tetrahedra around each node have.
+/// For each node a quarter of the sum over the tetrahedra around it.
 template <class T>
 std::array<T, 8> nodal_shares(const TetrahedronValues<T>& values) {
   std::array<T, 8> shares = sums_over_tetrahedra(values);

@@ -4,27 +4,27 @@
 
 namespace sandglass {
 
-/// An hourglass control of the Updated Lagrangian element sees all of UpdatedOnePoint::Deformation and gives
-///   resistance(now, control, history)          hourglass resistances Q, N; what it remembers goes on,
-///   energy(now, control, history)              what is stored and could be given back, J,
-///   stiffness_bound(body, gamma, now, control, history) a bound of the element's tangent, N/m, from that of
-///                                              its body.
-
 /// The uniform strain hexahedron in the Updated Lagrangian formulation: nothing is precomputed. Each step
-/// rebuilds mean gradients, volume and hourglass shape vectors from the current coordinates, takes F from
-/// F^-1 = I - du/dx, and turns the Cauchy stress into forces. What it rebuilds is the geometry of OnePoint,
-/// by the same function, so that the two formulations differ by what they do, not by how well it is written.
+/// rebuilds mean gradients, volume and hourglass shape vectors from the current coordinates, computes F from
+/// F^-1 = I - du/dx, and forces from the Cauchy stress. Its geometry is that of OnePoint, by the same
+/// function, so that comparisons measure the formulations, not their implementations.
+///
+/// An hourglass control of this element is given its whole Deformation and has
+///   resistance(now, control, history)  the hourglass resistances Q (N); advances the history,
+///   energy(now, control, history)      the stored energy (J) that can be released,
+///   stiffness_bound(body, gamma, now, control, history)  a bound (N/m) of the element's tangent from that of
+///   its body.
 struct UpdatedOnePoint {
   static constexpr bool needs_increment = true;
   static constexpr bool needs_coordinates = true;
 
-  /// What is constant in time: nothing.
+  /// The constants: none.
   template <class T>
   struct Element {};
 
   static Element<double> precompute(const NodalVectors<double>& /*X*/) { return {}; }
 
-  /// What the force needs of the motion.
+  /// The deformation that the force depends on.
   template <class T>
   struct Deformation {
     Modes<T> x;                    ///< current coordinates, m
@@ -33,12 +33,12 @@ struct UpdatedOnePoint {
     VolumeChange<T> change;
     Tensor<T> L;             ///< velocity gradient times the step
     HourglassModes<T> rate;  ///< hourglass velocities times the step, m
-    T inverse_step;          ///< 1/s; 0 where time plays no part
+    T inverse_step;          ///< 1/s; 0 in quasi-static runs
   };
 
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
-    // In place: what is assigned is computed elsewhere and copied. Who controls nothing needs no rates.
+    // Initialised in place: assignments would copy from temporaries. Without a control no rates are needed.
     constexpr bool rates = Hourglass::active;
     Deformation<T> now{.x = motion.X + motion.u,
                        .current = OnePoint::geometry(now.x),
@@ -95,10 +95,11 @@ struct UpdatedOnePoint {
            jacobian_minus_one(displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));
   }
 
-  /// An upper bound of the largest absolute eigenvalue (N/m) of the tangent stiffness, as for OnePoint: h is
-  /// spatial already. But current geometry bends with the element. Pressure acts on h and changes with G, so
-  /// that the tangent is not symmetric and its volumetric part bounded by |h| |G|; and the volume, on whose
-  /// gradient h V it acts, curves with hourglass displacements, too.
+  /// An upper bound of the largest absolute eigenvalue (N/m) of the tangent stiffness, as for OnePoint, with
+  /// h already spatial. In addition, the current geometry bends with the element. Pressure acts on h but
+  /// changes with G (`dilatation_gradient`), so that the tangent is not symmetric and its volumetric part is
+  /// bounded by |h| |G|; and the gradient h V of the volume, on which pressure acts, also changes with
+  /// hourglass displacements (`bending_bound`).
   template <class Hourglass, class T, class Law>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const typename Hourglass::template Element<T>& control,
@@ -117,7 +118,7 @@ struct UpdatedOnePoint {
     return body;
   }
 
-  /// The reference volume (m^3) from the current one: v / J, with J^-1 from the root that is known.
+  /// The reference volume (m^3) from the current one: v / J, with J^-1 the cube of the known root.
   template <class T>
   static T reference_volume(const Deformation<T>& now) {
     const T r = now.change.inverse_root;
@@ -126,9 +127,9 @@ struct UpdatedOnePoint {
 
  private:
   /// G_Ii = d ln J / dx_Ii, 1/m, with J = det F and F^-1 = X^T h the mean of dX/dx: tr(F dF^-1) = F X : dh.
-  /// Of x = F X + w the first part is linear in x and gives h; the rest, an hourglass displacement of bent
-  /// elements, the derivative of V h along w over V, for w : h = 0. V h is quadratic in x, so that a central
-  /// difference is exact.
+  /// Of x = F X + w the first part is linear in x and gives h; the second, an hourglass displacement of bent
+  /// elements, gives the derivative of V h along w over V, since w : h = 0. V h is quadratic in x, so that a
+  /// central difference is exact.
   template <class T>
   static NodalVectors<T> dilatation_gradient(const Modes<T>& X, const Deformation<T>& now) {
     const Modes<T> w = now.x - X * transpose(identity<T>() + now.H);
@@ -139,11 +140,11 @@ struct UpdatedOnePoint {
                (ahead.V * OnePoint::nodal_gradients(ahead) - behind.V * OnePoint::nodal_gradients(behind));
   }
 
-  /// What pressure does through the change of V h with hourglass displacements v, N/m: |V''| |p| V0 J / V. In
-  /// modes a_m = x_m / 8, V is a sum of triple products (see OnePoint::geometry); those that hold hourglass
-  /// modes couple two of v by a third of x, and the largest sum of such couplings of one mode, 8/3 |a| each,
-  /// over |v|^2 = 8 sum |a|^2, bounds their norm. The other stresses are of the size of mu; what they do so
-  /// is less than what is left between the bound and the truth (eigenvalue_test.cpp).
+  /// The stiffness (N/m) due to pressure and the change of V h with hourglass displacements v: |V''| |p| V0 J
+  /// / V. In modes a_m = x_m / 8, V is a sum of triple products (see OnePoint::geometry); those with
+  /// hourglass modes couple two modes of v through one of x, and the largest sum of such couplings of one
+  /// mode, 8/3 |a| each, over |v|^2 = 8 sum |a|^2, bounds their norm. The other stresses are of the order of
+  /// mu; their effect is smaller than the margin of the bound (eigenvalue_test.cpp).
   template <class T, class Law>
   static T bending_bound(const Deformation<T>& now, const Law& law) {
     const T pressure = abs(law.pressure(now.change.J_minus_one));
@@ -159,7 +160,7 @@ struct UpdatedOnePoint {
     return T(1.0 / 3.0) * max(linear, hourglass) * pressure * reference_volume(now) * J / now.current.V;
   }
 
-  /// H = D (I - D)^-1 with D = du/dx: F - I from F^-1 without the cancellation of F - I.
+  /// H = D (I - D)^-1 with D = du/dx, which avoids the cancellation of F - I.
   template <class T>
   static Tensor<T> displacement_gradient(const Modes<T>& u, const OnePoint::Element<T>& current) {
     const Tensor<T> D = OnePoint::mean_gradient(u, current);

@@ -12,11 +12,11 @@
 namespace sandglass {
 
 /// An elastic law behind function calls. Kernels are compiled once for all laws that they call, and laws once
-/// for all kernels: the cost of a build is methods + laws, not methods x laws. A call is for as many elements
-/// as a register holds, and for all their integration points.
+/// for all kernels: the cost of a build is methods + laws, not methods x laws. A call handles as many
+/// elements as a register holds, and all their integration points.
 ///
-/// The functions declared here are those of the law. `called_law_functions.hpp` defines them, and the library
-/// has them for the number types of its kernels; see CMakeLists.txt.
+/// The functions declared here are those of the law. `called_law_functions.hpp` defines them; the library
+/// instantiates them for the number types of its kernels, see CMakeLists.txt.
 class CalledLaw : public QuadraticVolume<CalledLaw> {
  public:
   template <class Law>
@@ -26,6 +26,7 @@ class CalledLaw : public QuadraticVolume<CalledLaw> {
   double shear_modulus() const { return shear_modulus_; }
   double bulk_modulus() const { return bulk_modulus_; }
 
+  /// The isochoric strain energy density, J/m^3.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const;
 
@@ -58,11 +59,12 @@ class CalledLaw : public QuadraticVolume<CalledLaw> {
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk) const;
 
-  /// The same of the law as it relaxes; see `relaxing_tangent_bound`.
+  /// The same for the elastic law of a viscoelastic one; see `viscoelastic_tangent_bound`.
   template <class T>
-  TangentBound<T> relaxing_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                         const T& bulk) const;
+  TangentBound<T> viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
+                                             const T& bulk) const;
 
+  /// The stress (Pa) of a small strain.
   template <class T>
   Tensor<T> small_strain_stress(const Tensor<T>& strain) const;
 

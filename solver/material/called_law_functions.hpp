@@ -8,13 +8,13 @@ namespace sandglass {
 
 namespace detail {
 
-// Each law in a function of its own: in one for all the compiler keeps tensors in memory.
+// Each law has its own function: in a common one the compiler would keep tensors in memory.
 
 template <class Law, class T>
 [[gnu::flatten, gnu::noinline]] void weighted_piola(const Law& shared, std::size_t count,
                                                     const PointLoad<T>* at, const Tensor<T>* H,
                                                     Tensor<T>* VP) {
-  const Law law = shared;  // a copy that no store can alias: moduli are computed once
+  const Law law = shared;  // a copy that no store can alias, so that moduli are computed once
   for (std::size_t q = 0; q < count; ++q) {
     VP[q] = law.weighted_piola(at[q].V, H[q], at[q].change, at[q].p);
   }
@@ -28,7 +28,7 @@ template <class Law, class T>
 
 }  // namespace detail
 
-/// Calls visit(law): a chain of comparisons, which ends in a jump where std::visit makes a second call.
+/// Calls visit(law) after a chain of comparisons; unlike std::visit it needs no second call.
 template <std::size_t alternative, class Visit>
 decltype(auto) CalledLaw::visit(const Visit& visit) const {
   if constexpr (alternative + 1 < std::variant_size_v<VariantOf<ElasticLaws>>) {
@@ -60,10 +60,10 @@ TangentBound<T> CalledLaw::tangent_bound(const Tensor<T>& H, const T& J_minus_on
 }
 
 template <class T>
-TangentBound<T> CalledLaw::relaxing_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                                  const T& bulk) const {
+TangentBound<T> CalledLaw::viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
+                                                      const T& bulk) const {
   return visit<0>(
-      [&](const auto& law) { return sandglass::relaxing_tangent_bound(law, H, J_minus_one, p, bulk); });
+      [&](const auto& law) { return sandglass::viscoelastic_tangent_bound(law, H, J_minus_one, p, bulk); });
 }
 
 template <class T>

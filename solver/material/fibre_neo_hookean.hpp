@@ -15,12 +15,12 @@ namespace sandglass {
 
 /// A neo-Hookean solid with one family of straight fibres along a, |a| = 1: the standard reinforcing model
 /// (Qiu and Pence, J. Elasticity 49, 1997, 1-30: mu gamma/2 (I4 - 1)^2 with mu gamma = k/4), with the
-/// isochoric invariant that Weiss, Maker and Govindjee (CMAME 135, 1996, 107-128) take for nearly
+/// isochoric invariant that Weiss, Maker and Govindjee (CMAME 135, 1996, 107-128) use for nearly
 /// incompressible tissue,
 ///   W = mu/2 (I1bar - 3) + k/2 Ef^2 + K/2 (J - 1)^2,  Ef = (I4bar - 1)/2,  I4bar = J^(-2/3) a.C a.
-/// Ef is the Green strain of a fibre without the body's change of size. It is smooth: fibres resist being
-/// shortened as they resist being stretched, but shortened below a stretch of 1/sqrt(3) they give way, and
-/// with k >> mu the solid kinks.
+/// Ef is the Green strain of a fibre without the change of volume. The energy is smooth: fibres resist
+/// shortening as they resist stretching, but soften below a stretch of 1/sqrt(3), where the solid kinks if
+/// k >> mu.
 struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
   static constexpr std::string_view name = "fibre-neo-hookean";
   static constexpr std::string_view summary =
@@ -29,32 +29,32 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
   double young_modulus = 0.0;
   double poisson_ratio = 0.0;
   double fibre_modulus = 0.0;
-  std::array<double, 3> fibre_direction{};  ///< of any length but zero
+  std::array<double, 3> fibre_direction{};  ///< of any length except zero
 
   static constexpr auto parameters() {
     return std::tuple{
         Parameter{&FibreNeoHookean::young_modulus, "young_modulus", "Pa", Range::positive(),
-                  "Young's modulus at rest of the solid without fibres"},
+                  "initial Young's modulus of the solid without fibres"},
         Parameter{&FibreNeoHookean::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
-                  "Poisson's ratio at rest of the solid without fibres"},
+                  "initial Poisson's ratio of the solid without fibres"},
         Parameter{&FibreNeoHookean::fibre_modulus, "fibre_modulus", "Pa", Range::at_least(0.0),
-                  "what fibres add to Young's modulus along them, the solid being incompressible"},
+                  "increase of Young's modulus along the fibres, for an incompressible solid"},
         Parameter{&FibreNeoHookean::fibre_direction, "fibre_direction", "-", Range::any(),
-                  "direction [x, y, z] of the fibres at rest, of any length but zero"}};
+                  "direction [x, y, z] of the fibres in the undeformed body; its length does not matter"}};
   }
 
   std::optional<BrokenRule> broken_rule() const {
     if (square_length() > 0.0 && std::isfinite(1.0 / square_length())) return std::nullopt;
     const auto& [x, y, z] = fibre_direction;
     return BrokenRule{"fibre_direction",
-                      fmt::format("= [{}, {}, {}] has no length; a direction is needed", x, y, z)};
+                      fmt::format("= [{}, {}, {}] must have a length other than zero", x, y, z)};
   }
 
-  /// Of the solid without fibres, Pa.
+  /// The initial moduli of the solid without fibres, Pa.
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
   constexpr double bulk_modulus() const { return young_modulus / 3.0 / (1.0 - 2.0 * poisson_ratio); }
 
-  /// The stress (Pa) at rest for a small strain: K tr(e) I + 2 mu dev(e) + k (a.dev(e) a) dev(a a^T).
+  /// The stress (Pa) of a small strain e: K tr(e) I + 2 mu dev(e) + k (a.dev(e) a) dev(a a^T).
   template <class T>
   Tensor<T> small_strain_stress(const Tensor<T>& strain) const {
     const Tensor<T> isochoric = deviator(strain);
@@ -75,8 +75,8 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
     return T(1.5 * shear_modulus()) * third_of_first_invariant_growth(H) + T(0.5 * fibre_modulus) * E * E;
   }
 
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
-  /// p (Pa, tension positive) that need not be the law's own. Fibres add
+  /// V P (J), the first Piola-Kirchhoff stress times its reference volume V (m^3), for a pressure p (Pa,
+  /// tension positive) that may differ from the law's. Fibres add
   ///   k Ef dEf/dF = q (F a a^T - I4 / (3 J) cof F),  q = k Ef J^(-2/3).
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
@@ -95,8 +95,7 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
     return P;
   }
 
-  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on; fibres add
-  /// q dev(F a (F a)^T).
+  /// V tau (J), the Kirchhoff stress J sigma times its reference volume; fibres add q dev(F a (F a)^T).
   template <class T>
   Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                                const T& p) const {
@@ -110,11 +109,9 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
 
   /// Bound of the isochoric tangent; see TangentBound. Fibres add k c [c (n.dev L n)^2 + Ef Q(L)] with c =
   /// I4bar, n = F a/|F a| and Q = |L n|^2 - 4/3 tr L n.L n + 2/9 (tr L)^2 + tr(L L)/3. The square is at most
-  /// 2/3 |dev L|^2 = 2/3 (|L|^2 - (tr L)^2 / 3). Q falls into parts that do not meet: n.L n with the trace of
-  /// L across n, eigenvalues 1/2 +- sqrt(17)/6; shears along n, 1/2 +- sqrt(13)/6; shears and the spin
-  /// across,
-  /// +-1/3. Only the first meets the square, so that shortened fibres (Ef < 0) take the larger of two
-  /// numbers.
+  /// 2/3 |dev L|^2 = 2/3 (|L|^2 - (tr L)^2 / 3). Q has uncoupled parts: n.L n with the trace of L across n,
+  /// eigenvalues 1/2 +- sqrt(17)/6; shears along n, 1/2 +- sqrt(13)/6; shears and the spin across n, +-1/3.
+  /// The square involves only the first, so that shortened fibres (Ef < 0) take the larger of two numbers.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
     const VolumeChange<T> change = volume_change(H);
@@ -130,17 +127,17 @@ struct FibreNeoHookean : QuadraticVolume<FibreNeoHookean> {
   }
 
  private:
-  /// What the fibres at a point feel.
+  /// The deformation of the fibres at a point.
   template <class T>
   struct FibreState {
-    Triple<T> v;       ///< F a times the length of the direction as given
+    Triple<T> v;       ///< F a times the length of `fibre_direction`
     T square_stretch;  ///< I4 = a.C a
     T strain;          ///< Ef
   };
 
-  /// Ef with all its digits near rest: 2 Ef = J^(-2/3) (I4 - 1) + (J^(-2/3) - 1), and with r = J^(-1/3)
-  /// r^2 - 1 = -(J - 1) r^3 (1 + r) / (1 + r + r^2). H is symmetrised before it meets a, so that a small
-  /// rotation leaves no strain.
+  /// Ef with all its digits near the undeformed state: 2 Ef = J^(-2/3) (I4 - 1) + (J^(-2/3) - 1), and with
+  /// r = J^(-1/3), r^2 - 1 = -(J - 1) r^3 (1 + r) / (1 + r + r^2). H is symmetrised before it is multiplied
+  /// with a, so that a small rotation leaves no strain.
   template <class T>
   FibreState<T> fibre_state(const Tensor<T>& H, const VolumeChange<T>& change) const {
     const Triple<T> a = direction<T>();

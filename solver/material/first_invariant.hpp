@@ -7,13 +7,13 @@
 #include "math/strain.hpp"
 
 /// Isochoric energies w(I1bar) of the first invariant I1bar = J^(-2/3) tr(F^T F): their stress is the
-/// neo-Hookean one with a shear modulus of its own, mu = 2 w'(I1bar). Written in the displacement gradient
-/// H = F - I so that nothing cancels near rest.
+/// neo-Hookean one with a shear modulus that depends on the strain, mu = 2 w'(I1bar). They are written in the
+/// displacement gradient H = F - I, so that nothing cancels near the undeformed state.
 namespace sandglass {
 
-/// I1bar - 3 with all its digits. With (tr(F F^T)/3)^3 = J^2 (1 + r) the difference of two numbers near 3
-/// becomes 3 ((1 + r)^(1/3) - 1), and r = (d:d (1 + tr(e)/3) / 2 - det d) / J^2 is of second order term by
-/// term. This returns (1 + r)^(1/3) - 1, a third of it.
+/// A third of I1bar - 3, with all its digits. With (tr(F F^T)/3)^3 = J^2 (1 + r) the difference of two
+/// numbers near 3 becomes 3 ((1 + r)^(1/3) - 1), and r = (d:d (1 + tr(e)/3) / 2 - det d) / J^2 is of second
+/// order term by term.
 template <class T>
 T third_of_first_invariant_growth(const Tensor<T>& H) {
   const Tensor<T> e = left_cauchy_green_minus_identity(H);
@@ -23,7 +23,8 @@ T third_of_first_invariant_growth(const Tensor<T>& H) {
   return expm1(T(1.0 / 3.0) * log1p(r));
 }
 
-/// I1bar - 3 for a modulus that depends on it: exact to roundoff of 3, without a transcendental function.
+/// I1bar - 3 for a modulus that depends on it, without transcendental functions: its absolute error is the
+/// roundoff of 3.
 template <class T>
 T first_invariant_growth(const Tensor<T>& H, const VolumeChange<T>& change) {
   const T r2 = change.inverse_root * change.inverse_root;
@@ -31,11 +32,10 @@ T first_invariant_growth(const Tensor<T>& H, const VolumeChange<T>& change) {
 }
 
 /// V P (Pa m^3) for V mu and V p (Pa m^3): P = a F + (p - a tr(F^T F) / (3 J)) cof F with a = mu J^(-2/3).
-/// With cof F = (1 + tr H) I - H^T + cof H the unit tensors cancel by hand, and what is left is linear in H
-/// at rest:
+/// With cof F = (1 + tr H) I - H^T + cof H the unit tensors cancel analytically, and the rest is linear in H
+/// near the undeformed state:
 ///   P = c (I - W) + a (H + W),  W = H^T - tr H I - cof H,  c = p + a (3 (J - 1) - 2 tr H - H:H) / (3 J).
-/// H + W is formed first, so that a small rotation, where H^T = -H, leaves no more than its square's
-/// roundoff.
+/// H + W is formed first, so that a small rotation, where H^T = -H, leaves only the roundoff of its square.
 template <class T>
 Tensor<T> first_invariant_piola(const T& V_mu, const T& V_p, const Tensor<T>& H,
                                 const VolumeChange<T>& change) {
@@ -84,9 +84,9 @@ TangentBound<T> first_invariant_tangent_bound(const T& mu, const Tensor<T>& H) {
           .gradient = m * (T(2.0 / 3.0) * trace_b + T(std::sqrt(2.0 / 3.0) + 2.0 / 3.0) * deviation)};
 }
 
-/// The same of w(I1bar) with a modulus mu = 2 w' that grows or falls at w'' (Pa): d^2 w = w' d^2 x + w''
-/// (dx)^2, and dx = 2 J^(-2/3) dev b : L sees no more than the deviator of L, |dev L|^2 = |L|^2 - (tr L)^2
-/// / 3.
+/// The same for w(I1bar) with a modulus mu = 2 w' and a second derivative w'' (Pa):
+/// d^2 w = w' d^2 x + w'' (dx)^2, and dx = 2 J^(-2/3) dev b : L involves only the deviator of L, with
+/// |dev L|^2 = |L|^2 - (tr L)^2 / 3.
 template <class T>
 TangentBound<T> first_invariant_tangent_bound(const T& mu, const T& second_derivative, const Tensor<T>& H) {
   const Tensor<T> d = deviator(left_cauchy_green_minus_identity(H));
@@ -97,19 +97,19 @@ TangentBound<T> first_invariant_tangent_bound(const T& mu, const T& second_deriv
          TangentBound<T>{.volumetric = T(-1.0 / 3.0) * steepening, .gradient = steepening};
 }
 
-/// What the laws of such an energy have in common. A law derives from FirstInvariant of itself, adds
-/// bulk_modulus(), isochoric_energy(H), isochoric_tangent_bound(H) by one of the two above, and
-/// current_modulus(H, change), the shear modulus 2 w'(I1bar) in Pa, and has the functions below.
+/// The common base of laws with such an energy. A law derives from FirstInvariant of itself and defines
+/// bulk_modulus(), isochoric_energy(H), isochoric_tangent_bound(H) by one of the two functions above, and
+/// current_modulus(H, change), the shear modulus 2 w'(I1bar) in Pa; it inherits the functions below.
 template <class Law>
 struct FirstInvariant : QuadraticVolume<Law> {
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
-  /// p (Pa, tension positive) that need not be the law's own.
+  /// V P (J), the first Piola-Kirchhoff stress times its reference volume V (m^3), for a pressure p (Pa,
+  /// tension positive) that may differ from the law's.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
     return first_invariant_piola(V * law().current_modulus(H, change), V * p, H, change);
   }
 
-  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on.
+  /// V tau (J), the Kirchhoff stress J sigma times its reference volume, for the same arguments.
   template <class T>
   Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                                const T& p) const {

@@ -15,9 +15,11 @@ using AnyLaw = VariantOf<Laws>;
 
 /// The laws that kernels are compiled for: the neo-Hookean one, and the others behind calls.
 using KernelLaw = std::variant<NeoHookean, CalledLaw, Viscoelastic<CalledLaw>>;
+
+/// The law as kernels take it.
 KernelLaw kernel_law(const AnyLaw& law);
 
-/// The elastic law, or the instantaneous response of one that relaxes, behind calls.
+/// The elastic law, or the instantaneous response of a viscoelastic one, behind calls.
 CalledLaw elastic_law(const KernelLaw& law);
 
 /// The name of a law chosen at run time.
@@ -25,13 +27,13 @@ inline std::string_view name_of(const AnyLaw& any_law) {
   return std::visit([]<class Law>(const Law&) { return Law::name; }, any_law);
 }
 
-/// Lame's first parameter at rest, lambda = K - 2/3 mu, in Pa.
+/// Lame's first parameter of the undeformed state, lambda = K - 2/3 mu, in Pa.
 template <class Law>
 constexpr double lame_lambda(const Law& law) {
   return law.bulk_modulus() - 2.0 / 3.0 * law.shear_modulus();
 }
 
-/// Young's modulus at rest, in Pa.
+/// Young's modulus of the undeformed state, in Pa.
 template <class Law>
 constexpr double young_modulus(const Law& law) {
   const double mu = law.shear_modulus(), lambda = lame_lambda(law);

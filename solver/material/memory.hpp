@@ -7,10 +7,10 @@
 #include "material/point_load.hpp"
 #include "material/quadratic_volume.hpp"
 
-/// Laws that remember. Such a law has a `Memory<T>`, what it keeps at each integration point beside the
-/// deformation, and two steps towards a law that elements run like an elastic one: `at_step(dt)`, the law for
-/// a step of time, and that one's `recalling(memory)`, the law at a point. The functions here take any law
-/// there; one without memory stays what it is.
+/// Laws with memory. Such a law has a `Memory<T>`, its state at each integration point, and becomes a law
+/// that elements use like an elastic one in two steps: `at_step(dt)` gives the law for a step of time, and
+/// `recalling(memory)` of the result gives the law at a point. The functions here do this for any law; a law
+/// without memory is returned unchanged.
 namespace sandglass {
 
 /// The memory of a law that has none.
@@ -33,7 +33,7 @@ struct MemoryOf<Law, T> {
 
 }  // namespace detail
 
-/// What a law keeps at an integration point.
+/// The memory of a law at an integration point.
 template <class Law, class T>
 using MemoryOf = typename detail::MemoryOf<Law, T>::type;
 
@@ -41,7 +41,7 @@ using MemoryOf = typename detail::MemoryOf<Law, T>::type;
 template <class Law>
 inline constexpr bool law_remembers = !std::is_empty_v<MemoryOf<Law, double>>;
 
-/// The memories of all points of an element; empty where there is nothing to remember.
+/// The memories of all points of an element; empty for a law without memory.
 template <class Memory, int points>
 struct PointMemories {
   std::array<Memory, static_cast<std::size_t>(points)> point;
@@ -51,7 +51,7 @@ requires std::is_empty_v<Memory>
 struct PointMemories<Memory, points> {
 };
 
-/// The law for a step of so many seconds; infinite where time plays no part. What it takes to know the step
+/// The law for a step of `seconds`, infinite in quasi-static runs. Everything that depends on the step alone
 /// is computed here, once for all elements.
 template <class Law>
 constexpr auto at_step(const Law& law, double seconds) {
@@ -76,7 +76,7 @@ class RecallingLaw : public QuadraticVolume<RecallingLaw<LawAtStep, Memories>> {
   /// The law at integration point q.
   auto at_point(std::size_t q) const { return law_.recalling(memories_.point[q]); }
 
-  /// V P (Pa m^3) at all points, where the elastic law takes them in one call.
+  /// V P (Pa m^3) at all points, for elastic laws that take them in one call.
   template <class T>
   requires TakesAllPoints<typename LawAtStep::Elastic, T>
   void weighted_piola(std::size_t count, const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP) const {
@@ -84,7 +84,7 @@ class RecallingLaw : public QuadraticVolume<RecallingLaw<LawAtStep, Memories>> {
     for (std::size_t q = 0; q < points; ++q) alone[q] = {T(1), at[q].change, T(0)};
     law_.elastic().weighted_piola(count, alone.data(), H, VP);
     for (std::size_t q = 0; q < points; ++q) {
-      VP[q] = at_point(q).relaxed_piola(VP[q], at[q].V, H[q], at[q].change, at[q].p);
+      VP[q] = at_point(q).decayed_piola(VP[q], at[q].V, H[q], at[q].change, at[q].p);
     }
   }
 
@@ -93,8 +93,8 @@ class RecallingLaw : public QuadraticVolume<RecallingLaw<LawAtStep, Memories>> {
   Memories& memories_;
 };
 
-/// The law that an element with these memories runs. A single point is the law's only one; where there are
-/// several, `at_point` tells them apart.
+/// The law for an element with these memories: bound to the memory of its only point, or, if there are
+/// several, to be bound by `at_point`.
 template <class LawAtStep, class Memories>
 constexpr decltype(auto) recalling(const LawAtStep& law, Memories& memories) {
   if constexpr (std::is_empty_v<Memories>) {

@@ -25,7 +25,7 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
     return std::tuple{
         Parameter{&MooneyRivlin::c10, "c10", "Pa", Range::positive(), "factor of the first invariant"},
         Parameter{&MooneyRivlin::c01, "c01", "Pa", Range::at_least(0.0), "factor of the second invariant"},
-        Parameter{&MooneyRivlin::bulk, "bulk_modulus", "Pa", Range::positive(), "bulk modulus at rest"}};
+        Parameter{&MooneyRivlin::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
   constexpr double shear_modulus() const { return 2.0 * (c10 + c01); }
@@ -39,8 +39,8 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
            T(3.0 * c01) * third_of_first_invariant_growth(cofactor_minus_identity(H));
   }
 
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
-  /// p (Pa, tension positive) that need not be the law's own: P = (s / J + p I) cof F, with s from below.
+  /// V P (J), the first Piola-Kirchhoff stress times its reference volume V (m^3), for a pressure p (Pa,
+  /// tension positive) that may differ from the law's: P = (s / J + p I) cof F with s of `weighted_stress`.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
     const T r = change.inverse_root;
@@ -49,7 +49,7 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
     return s + s * cofactor_minus_identity(H);
   }
 
-  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on.
+  /// V tau (J), the Kirchhoff stress J sigma times its reference volume, for the same arguments.
   template <class T>
   Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                                const T& p) const {
@@ -63,8 +63,8 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
   /// m = 2 c01 J^(-4/3) the second invariant's part is
   ///   m [tr(L^T beta L) + 2 tr(beta L L) - 4/3 tr L tr(beta L) + tr beta (2/9 (tr L)^2 - 1/3 tr(L L))];
   /// beta is split into its mean and a deviator of norm n, whose largest eigenvalue is at most sqrt(2/3) n;
-  /// the mixed term sees the deviator of L only, and is shared out as in 2 |tr L| |dev L| <= (tr L)^2/sqrt(3)
-  /// + sqrt(3) |dev L|^2 = sqrt(3) |L|^2.
+  /// the mixed term involves only the deviator of L, and is split by 2 |tr L| |dev L| <= (tr L)^2/sqrt(3) +
+  /// sqrt(3) |dev L|^2 = sqrt(3) |L|^2.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
     const Tensor<T> g = left_cauchy_green_minus_identity(cofactor_minus_identity(H));  // beta - I
@@ -80,9 +80,9 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
   }
 
  private:
-  /// V (2 c10 J^(-2/3) dev b - 2 c01 J^(-4/3) dev(J^2 b^-1)), the Kirchhoff stress without pressure. With e =
-  /// b - I Cayley and Hamilton give dev(J^2 b^-1) = dev(e e - (1 + tr e) e): no constant that cancels near
-  /// rest.
+  /// V (2 c10 J^(-2/3) dev b - 2 c01 J^(-4/3) dev(J^2 b^-1)), the Kirchhoff stress without pressure. With
+  /// e = b - I the theorem of Cayley and Hamilton gives dev(J^2 b^-1) = dev(e e - (1 + tr e) e), without
+  /// constants that would cancel near the undeformed state.
   template <class T>
   Tensor<T> weighted_stress(const T& V, const Tensor<T>& H, const VolumeChange<T>& change) const {
     const Tensor<T> e = left_cauchy_green_minus_identity(H);

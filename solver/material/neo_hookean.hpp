@@ -10,8 +10,8 @@ namespace sandglass {
 
 /// The nearly incompressible neo-Hookean law of ABAQUS and of the TLED paper,
 ///   W = mu/2 (J^(-2/3) tr(F^T F) - 3) + K/2 (J - 1)^2,
-/// written in the displacement gradient H = F - I so that nothing cancels near rest. Energies in J/m^3,
-/// stresses in Pa, per reference volume.
+/// written in the displacement gradient H = F - I, so that nothing cancels near the undeformed state.
+/// Energies in J/m^3, stresses in Pa, per reference volume.
 struct NeoHookean : FirstInvariant<NeoHookean> {
   static constexpr std::string_view name = "neo-hookean";
   static constexpr std::string_view summary = "isochoric neo-Hookean with a quadratic volumetric energy";
@@ -21,9 +21,9 @@ struct NeoHookean : FirstInvariant<NeoHookean> {
 
   static constexpr auto parameters() {
     return std::tuple{Parameter{&NeoHookean::young_modulus, "young_modulus", "Pa", Range::positive(),
-                                "Young's modulus at rest"},
+                                "initial Young's modulus"},
                       Parameter{&NeoHookean::poisson_ratio, "poisson_ratio", "-", Range::between(-1.0, 0.5),
-                                "Poisson's ratio at rest"}};
+                                "initial Poisson's ratio"}};
   }
 
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }

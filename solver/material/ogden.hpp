@@ -14,14 +14,14 @@ namespace sandglass {
 
 /// Ogden's law in isochoric principal stretches lbar_a = J^(-1/3) l_a, with two terms,
 ///   W = sum_p 2 mu_p / alpha_p^2 (lbar_1^alpha_p + lbar_2^alpha_p + lbar_3^alpha_p - 3) + K/2 (J - 1)^2.
-/// The sum of the mu_p is the shear modulus at rest: the convention of ABAQUS, and of Miller and Chinzei for
-/// the brain (J. Biomech. 35 (2002) 483: mu = 842 Pa, alpha = -4.7 at once). alpha = 2 is the neo-Hookean
-/// law, 2 and -2 together Mooney and Rivlin's, 0 Hencky's. Energies in J/m^3, stresses in Pa, per reference
-/// volume.
+/// The sum of the mu_p is the initial shear modulus: the convention of ABAQUS, and of Miller and Chinzei for
+/// the brain (J. Biomech. 35 (2002) 483: instantaneous mu = 842 Pa, alpha = -4.7). alpha = 2 gives the
+/// neo-Hookean law, 2 and -2 together that of Mooney and Rivlin, 0 Hencky's. Energies in J/m^3, stresses in
+/// Pa, per reference volume.
 ///
-/// Written in logarithmic stretches x_a = ln lbar_a, which sum to zero, so that nothing cancels near rest.
-/// With b = F F^T = m (I + S), m its mean and S its relative deviator, x_a is half the deviator of
-/// log1p(S_a): the change of volume never enters.
+/// It is written in logarithmic stretches x_a = ln lbar_a, which sum to zero, so that nothing cancels near
+/// the undeformed state. With b = F F^T = m (I + S), where m is its mean and S its relative deviator, x_a is
+/// half the deviator of log1p(S_a), independent of the change of volume.
 struct Ogden : QuadraticVolume<Ogden> {
   static constexpr std::string_view name = "ogden";
   static constexpr std::string_view summary = "two powers of the isochoric principal stretches";
@@ -38,14 +38,14 @@ struct Ogden : QuadraticVolume<Ogden> {
         Parameter{&Ogden::alpha1, "alpha1", "-", Range::any(), "exponent of the first term"},
         Parameter{&Ogden::mu2, "mu2", "Pa", Range::at_least(0.0), "shear modulus of the second term", false},
         Parameter{&Ogden::alpha2, "alpha2", "-", Range::any(), "exponent of the second term", false},
-        Parameter{&Ogden::K, "bulk_modulus", "Pa", Range::positive(), "bulk modulus at rest"}};
+        Parameter{&Ogden::K, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
   constexpr double shear_modulus() const { return mu1 + mu2; }
   constexpr double bulk_modulus() const { return K; }
 
-  /// sum_p 2 mu_p / alpha_p^2 sum_a (e^(alpha x_a) - 1): because the x_a sum to zero, alpha x_a may be
-  /// subtracted, and what is left is positive term by term.
+  /// sum_p 2 mu_p / alpha_p^2 sum_a (e^(alpha x_a) - 1), in J/m^3: because the x_a sum to zero, alpha x_a may
+  /// be subtracted, which leaves only positive terms.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
     const auto x = logarithmic_stretches(spectrum(relative_deviator(H)).values);
@@ -56,9 +56,9 @@ struct Ogden : QuadraticVolume<Ogden> {
     return W;
   }
 
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
-  /// p (Pa, tension positive) that need not be the law's own: P = (tau / J + p I) cof F with the isochoric
-  /// Kirchhoff stress tau, which is of the first order in strain by itself.
+  /// V P (J), the first Piola-Kirchhoff stress times its reference volume V (m^3), for a pressure p (Pa,
+  /// tension positive) that may differ from the law's: P = (tau / J + p I) cof F with the isochoric Kirchhoff
+  /// stress tau, which is of first order in the strain.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
     const T r = change.inverse_root;
@@ -67,7 +67,7 @@ struct Ogden : QuadraticVolume<Ogden> {
     return sigma * deformation_cofactor(H);
   }
 
-  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on, with p J I in it.
+  /// V tau (J), the Kirchhoff stress J sigma times its reference volume, p J I included.
   template <class T>
   Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                                const T& p) const {
@@ -78,17 +78,17 @@ struct Ogden : QuadraticVolume<Ogden> {
   }
 
   /// Bound of the isochoric tangent in the current configuration; see TangentBound. In the principal frame
-  /// (Ogden, Non-linear Elastic Deformations, section 6.1.4) d^2 W falls apart.
+  /// (Ogden, Non-linear Elastic Deformations, section 6.1.4) d^2 W has uncoupled parts.
   ///
-  /// Shear in a plane of two axes, with the secant g = (t_a - t_b)/(S_a - S_b) of the principal stresses t:
-  /// a form of (L_ab, L_ba) with g (1 + S_b) and g (1 + S_a) on its diagonal and c = g (1 + S_a) - t_a beside
-  /// it. Its larger eigenvalue is a bound of `gradient`.
+  /// Shear in the plane of two axes, with the secant g = (t_a - t_b)/(S_a - S_b) of the principal stresses t,
+  /// is a form of (L_ab, L_ba) with g (1 + S_b) and g (1 + S_a) on its diagonal and c = g (1 + S_a) - t_a off
+  /// it. Its larger eigenvalue bounds `gradient`.
   ///
   /// Stretch along the axes, l_a = L_aa: sum_a (k_a (dev l)_a^2 - t_a l_a^2) with k_a = sum_p 2 mu_p
   /// lbar_a^alpha_p. With l = s u + w, u = (1, 1, 1)/sqrt 3, w normal to it, that is at most
   /// top |w|^2 + 2 |t|/sqrt 3 |s| |w|, since the t_a sum to zero; top = mean(k - t) + |dev(k - t)|/sqrt 6 is
-  /// the larger eigenvalue of diag(k - t) between such w. The mixed term is halved between s^2 = (tr L)^2 / 3
-  /// and |w|^2.
+  /// the larger eigenvalue of diag(k - t) on the plane of w. The mixed term is split equally between
+  /// s^2 = (tr L)^2 / 3 and |w|^2.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
     const std::array<T, 3> S = spectrum(relative_deviator(H)).values;
@@ -144,7 +144,7 @@ struct Ogden : QuadraticVolume<Ogden> {
     return T(mu1) * f(T(alpha1) * x) + T(mu2) * f(T(alpha2) * x);
   }
 
-  /// t_a = dW/dx_a: the deviator of 2 mu / alpha (e^(alpha x_a) - 1), whose quotient knows alpha = 0.
+  /// t_a = dW/dx_a (Pa): the deviator of 2 mu / alpha (e^(alpha x_a) - 1), also for alpha = 0.
   template <class T>
   std::array<T, 3> principal_stresses(const std::array<T, 3>& x) const {
     std::array<T, 3> t;
@@ -154,9 +154,9 @@ struct Ogden : QuadraticVolume<Ogden> {
     return without_mean(t);
   }
 
-  /// (t_a - t_b)/(S_a - S_b) for the pairs of axes, each at its third one. With l = ln((1 + S_a)/(1 + S_b)),
-  /// a the larger of both, it is sum_p mu_p e^(alpha x_b) (e^(alpha l/2) - 1)/(alpha l/2) times l/(S_a -
-  /// S_b).
+  /// (t_a - t_b)/(S_a - S_b) for the pairs of axes, each stored at the third axis. With
+  /// l = ln((1 + S_a)/(1 + S_b)) and S_a the larger of both, it is sum_p mu_p e^(alpha x_b) (e^(alpha l/2) -
+  /// 1)/(alpha l/2) times l/(S_a - S_b).
   template <class T>
   std::array<T, 3> stress_secants(const std::array<T, 3>& S) const {
     const std::array<T, 3> x = logarithmic_stretches(S);
@@ -175,7 +175,7 @@ struct Ogden : QuadraticVolume<Ogden> {
     return secants;
   }
 
-  /// The isochoric part of the Kirchhoff stress.
+  /// The isochoric part of the Kirchhoff stress, Pa.
   template <class T>
   Tensor<T> isochoric_kirchhoff(const Tensor<T>& H) const {
     const Spectrum<T> S = spectrum(relative_deviator(H));

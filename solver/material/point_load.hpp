@@ -6,7 +6,7 @@
 
 namespace sandglass {
 
-/// What a law is told at an integration point beside the displacement gradient.
+/// The arguments of a law at an integration point in addition to the displacement gradient.
 template <class T>
 struct PointLoad {
   T V;                     ///< reference volume that the stress acts on, m^3
@@ -14,7 +14,7 @@ struct PointLoad {
   T p;                     ///< pressure, Pa, tension positive
 };
 
-/// Whether a law wants all points of an element in one call.
+/// Whether a law takes all points of an element in one call.
 template <class Law, class T>
 concept TakesAllPoints = requires(const Law& law, const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP) {
   law.weighted_piola(std::size_t(1), at, H, VP);

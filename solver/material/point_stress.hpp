@@ -8,8 +8,8 @@
 
 namespace sandglass {
 
-/// Calls use(q, V P) for the integration points of an element, in order, with the first Piola-Kirchhoff
-/// stress times reference volume (Pa m^3) at displacement gradients H under at(q), a PointLoad.
+/// Calls use(q, V P) for the integration points q of an element, in order, with the first Piola-Kirchhoff
+/// stress times reference volume (Pa m^3) for the displacement gradient H[q] and the PointLoad at(q).
 template <class T, std::size_t N, class Law, class LoadAt, class Use>
 void for_each_stress(const Law& law, const std::array<Tensor<T>, N>& H, const LoadAt& at, const Use& use) {
   if constexpr (TakesAllPoints<Law, T>) {

@@ -4,14 +4,14 @@
 
 namespace sandglass {
 
-/// What the laws of the list have in common: the volumetric energy K/2 (J - 1)^2, and a whole that is the sum
-/// of an isochoric and a volumetric part. A law derives from QuadraticVolume of itself, adds bulk_modulus(),
-/// isochoric_energy(H) and weighted_piola(V, H, change, p), and has the functions below. There is no data
-/// here: the law stays an aggregate of its parameters.
+/// The common base of all laws of the list: the volumetric energy K/2 (J - 1)^2, and a total that is the sum
+/// of an isochoric and a volumetric part. A law derives from QuadraticVolume of itself and defines
+/// bulk_modulus(), isochoric_energy(H) and weighted_piola(V, H, change, p); it inherits the functions below.
+/// The base has no data: the law remains an aggregate of its parameters.
 template <class Law>
 struct QuadraticVolume {
-  /// Whether the energy is a function of J^(-1/3) F plus a function of J. A law of which this is not true
-  /// says `false`; what it calls isochoric is then its energy without K/2 (J - 1)^2.
+  /// Whether the energy is a function of J^(-1/3) F plus a function of J. A law without this property sets it
+  /// to false; its isochoric energy is then its energy without K/2 (J - 1)^2.
   static constexpr bool splits_volume = true;
 
   /// K/2 (J - 1)^2 of J - 1, in J/m^3.

@@ -4,14 +4,14 @@
 
 namespace sandglass {
 
-/// Whether a law answers alike in all directions. One that does not gives small_strain_stress(strain) itself.
+/// Whether a law is isotropic. One that is not defines small_strain_stress(strain).
 template <class Law>
 constexpr bool is_isotropic = !requires(const Law& law) {
   law.small_strain_stress(Tensor<double>{});
 };
 
-/// The stress (Pa) of a law at rest for a small strain, the symmetric part of the displacement gradient:
-/// linear elasticity K tr(e) I + 2 mu dev(e), or what an anisotropic law says.
+/// The stress (Pa) of a law for a small strain e, the symmetric part of the displacement gradient:
+/// K tr(e) I + 2 mu dev(e), or the small-strain stress of an anisotropic law.
 template <class Law, class T>
 Tensor<T> small_strain_stress(const Law& law, const Tensor<T>& strain) {
   if constexpr (is_isotropic<Law>) {

@@ -13,21 +13,21 @@ namespace sandglass {
 
 /// The law of St. Venant and Kirchhoff, Hooke's law of the Green strain E = (F^T F - I)/2,
 ///   W = K/2 tr^2 E + mu |dev E|^2.
-/// It is for small strains and large rotations. In compression it softens and gives way; see
+/// It is meant for small strains and large rotations. In compression it softens and becomes unstable; see
 /// softening_stretch.
 ///
-/// It is no sum of an isochoric and a volumetric part. What is called isochoric here is W - K/2 (J - 1)^2,
-/// whose tangent at rest is isochoric; elements that average K/2 (J - 1)^2 therefore average the pressure.
-/// Away from rest that part is not positive: within such an element K (tr E)^2 stands against K (J - 1)^2,
-/// and the element gives way when K |dev b|^2 grows beyond a few mu. A block drawn and sheared with
-/// tl-mean-dilatation stood 30 % at nu = .25, 20 % at .3, 10 % at .4 and not that at .45. Other methods use
-/// the whole energy and are not concerned.
+/// It is not the sum of an isochoric and a volumetric part. Its isochoric energy here is W - K/2 (J - 1)^2,
+/// whose undeformed tangent is isochoric; elements that average K/2 (J - 1)^2 therefore average the pressure.
+/// At large strains that part is not positive: within such an element K (tr E)^2 acts against K (J - 1)^2,
+/// and the element becomes unstable when K |dev b|^2 exceeds a few mu. A block stretched and sheared with
+/// tl-mean-dilatation endured 30 % at nu = .25, 20 % at .3, 10 % at .4 and less at .45. Other methods use the
+/// whole energy and are not affected.
 struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
   static constexpr std::string_view name = "st-venant-kirchhoff";
   static constexpr std::string_view summary = "Hooke's law of the Green strain; soft in strong compression";
   static constexpr bool splits_volume = false;
 
-  /// The stretch below which the law gives way, 1/sqrt(3): stress falls when it is pressed on, and its
+  /// The stretch below which the law is unstable, 1/sqrt(3): further compression reduces the stress, and its
   /// largest stiffness need not be positive.
   static constexpr double softening_stretch = 0.57735026918962576;
 
@@ -36,9 +36,9 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
 
   static constexpr auto parameters() {
     return std::tuple{Parameter{&StVenantKirchhoff::young_modulus, "young_modulus", "Pa", Range::positive(),
-                                "Young's modulus at rest"},
+                                "initial Young's modulus"},
                       Parameter{&StVenantKirchhoff::poisson_ratio, "poisson_ratio", "-",
-                                Range::between(-1.0, 0.5), "Poisson's ratio at rest"}};
+                                Range::between(-1.0, 0.5), "initial Poisson's ratio"}};
   }
 
   constexpr double shear_modulus() const { return young_modulus / 2.0 / (1.0 + poisson_ratio); }
@@ -54,10 +54,11 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
            T(shear_modulus()) * double_dot(d, d);
   }
 
-  /// V P, the first Piola-Kirchhoff stress times the reference volume (m^3) that it acts on, with a pressure
-  /// p (Pa, tension positive) in the place of K (J - 1):
+  /// V P (J), the first Piola-Kirchhoff stress times its reference volume V (m^3), for a pressure p (Pa,
+  /// tension positive) in place of K (J - 1):
   ///   P = (p + K g) cof F + K tr E (F - cof F) + 2 mu F dev E,  g = tr E - (J - 1).
-  /// Near rest all is linear in H or smaller; with p = K (J - 1) it is F S, S = K tr E I + 2 mu dev E.
+  /// Near the undeformed state all terms are linear in H or smaller; with p = K (J - 1) it is F S,
+  /// S = K tr E I + 2 mu dev E.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& /*change*/,
                            const T& p) const {
@@ -79,7 +80,7 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
     return P;
   }
 
-  /// V tau, the Kirchhoff stress J sigma times the reference volume that it acts on: with e = F F^T - I
+  /// V tau (J), the Kirchhoff stress J sigma times its reference volume: with e = F F^T - I
   ///   tau = (p + K g) J I + K tr E (e - (J - 1) I) + mu (I + e) (e - 2/3 tr E I).
   template <class T>
   Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
@@ -105,7 +106,7 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
 
   /// Bound of the whole tangent; see TangentBound. With b = F F^T, tau = F S F^T and D the symmetric part of
   /// L it is d^2 W = tr(L tau L^T) + lambda (b : D)^2 + 2 mu tr(b D b D). The largest eigenvalues bound the
-  /// first and the last term. In the second b = m I + d, and the mixed term is shared out as
+  /// first and the last term. In the second b = m I + d, and the mixed term is split by
   /// 2 (tr L) d : D <= sqrt(3) |d| |dev L|^2 + |d| (tr L)^2 / sqrt(3), |dev L|^2 = |L|^2 - (tr L)^2 / 3.
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H) const {
@@ -121,8 +122,8 @@ struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
     const T last = T(2) * mu * (stretch * stretch);
     const T gradient = largest_eigenvalue_bound(tau) + last + stiff * d * (T(std::sqrt(3.0)) * m + d);
     const T volumetric = stiff * (m * m - T(1.0 / 3.0) * (d * d));
-    // Pressure makes tau negative, but a negative factor of |L|^2 bounds nothing: |L|^2 >= (tr L)^2 / 3 hands
-    // it to the trace. The last term stays, so that what gives way still has a finite step.
+    // Pressure makes tau negative, but a negative factor of |L|^2 is no bound; by |L|^2 >= (tr L)^2 / 3 it
+    // goes to the trace. The last term remains, so that an unstable law still has a finite step.
     return {.volumetric = volumetric + T(1.0 / 3.0) * min(gradient - last, T(0)),
             .gradient = max(gradient, last)};
   }

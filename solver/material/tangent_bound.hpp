@@ -8,7 +8,8 @@ namespace sandglass {
 /// A bound of a law's tangent in the current configuration: for a further displacement with spatial gradient
 /// L the second variation of the energy density (per reference volume, Pa) is at most
 ///   d^2 W <= volumetric (tr L)^2 + gradient |L|^2.
-/// At rest, isotropic: volumetric = lambda, gradient = 2 mu. It gives the wave speed and the stable step.
+/// An undeformed isotropic law has volumetric = lambda, gradient = 2 mu. The wave speed and the stable step
+/// follow from it.
 template <class T>
 struct TangentBound {
   T volumetric;
@@ -25,9 +26,9 @@ TangentBound<T> volumetric_tangent_bound(const T& J, const T& p, const T& bulk) 
   return {.volumetric = bulk * J * J + p * J, .gradient = abs(p * J)};
 }
 
-/// The bound of a law whose volumetric part is replaced by one of slope p and curvature `bulk` (Pa), as
-/// elements do that average it. A law that is no sum of an isochoric and a volumetric part knows a bound of
-/// the whole, and the difference is what is added.
+/// The bound of a law whose volumetric part is replaced by one of slope p and curvature `bulk` (Pa), as in
+/// elements that average it. A law that is not the sum of an isochoric and a volumetric part has a bound of
+/// the total, to which the difference is added.
 template <class Law, class T>
 TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one, const T& p,
                               const T& bulk) {
@@ -49,14 +50,14 @@ TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H) {
   return tangent_bound(law, H, J_minus_one, law.pressure(J_minus_one), law.bulk_tangent(J_minus_one));
 }
 
-/// The bound of a law whose isochoric part has relaxed to an unknown share of it. Where a law knows a bound
-/// of the whole alone, what answers is something between the whole and its volumetric part, and where the
-/// isochoric part softens, the volumetric part is the stiffer.
+/// The bound of a law whose isochoric stress has relaxed to an unknown share of it. If a law has only a bound
+/// of the total, the response is between the total and its volumetric part, which is the stiffer one where
+/// the isochoric part softens.
 template <class Law, class T>
-TangentBound<T> relaxing_tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                       const T& bulk) {
-  if constexpr (requires { law.relaxing_tangent_bound(H, J_minus_one, p, bulk); }) {
-    return law.relaxing_tangent_bound(H, J_minus_one, p, bulk);
+TangentBound<T> viscoelastic_tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one,
+                                           const T& p, const T& bulk) {
+  if constexpr (requires { law.viscoelastic_tangent_bound(H, J_minus_one, p, bulk); }) {
+    return law.viscoelastic_tangent_bound(H, J_minus_one, p, bulk);
   } else if constexpr (requires { law.tangent_bound(H); }) {
     const T J = T(1) + J_minus_one;
     const T own_p = law.pressure(J_minus_one), own_bulk = law.bulk_tangent(J_minus_one);
@@ -69,9 +70,8 @@ TangentBound<T> relaxing_tangent_bound(const Law& law, const Tensor<T>& H, const
   }
 }
 
-/// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): the largest eigenvalue per
-/// volume that a tangent bound allows, from (tr L)^2 <= |g|^2 |v|^2 and |L|^2 <= lambda_max |v|^2 for L = v^T
-/// g.
+/// volumetric |g|^2 + gradient lambda_max(g^T g) for shape gradients g (1/m): an upper bound of the largest
+/// eigenvalue per volume (Pa/m^2), since (tr L)^2 <= |g|^2 |v|^2 and |L|^2 <= lambda_max |v|^2 for L = v^T g.
 template <class T>
 T gradient_bound(const TangentBound<T>& bound, const NodalVectors<T>& g) {
   const Tensor<T> G = transpose(g) * g;

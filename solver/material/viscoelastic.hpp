@@ -19,16 +19,16 @@ namespace sandglass {
 inline constexpr std::string_view viscoelastic_prefix = "viscoelastic-";
 inline constexpr std::string_view viscoelastic_suffix = "; shear stress relaxes with two times";
 
-/// How one relaxing part goes on in a step: Q <- Q + decay (share S_old - Q) + follow (S_new - S_old).
-struct RelaxationStep {
-  double share;          ///< g, of the isochoric stress that this part takes away in the end
+/// The factors of one Prony term in a step: Q <- Q + decay (share S_old - Q) + follow (S_new - S_old).
+struct ViscousStep {
+  double share;          ///< g, the share of the isochoric stress that has decayed in the end
   double inverse_share;  ///< 1/g; 0 where g is
   double decay;          ///< 1 - exp(-dt/tau)
   double follow;         ///< g (1 - (1 - exp(-dt/tau)) / (dt/tau))
 
   /// The factors of a step of `seconds`, 0 to infinite, for the relaxation time `time` (s). Both go to 0 with
   /// the step without cancellation, and to 1 and g when it is infinite.
-  static RelaxationStep of(double share, double time, double seconds) {
+  static ViscousStep of(double share, double time, double seconds) {
     if (!(share > 0.0)) return {0.0, 0.0, 0.0, 0.0};
     const double x = seconds / time;
     const double decay = -std::expm1(-x);
@@ -49,38 +49,38 @@ struct RelaxationStep {
   }
 };
 
-/// What a viscoelastic law keeps at a point, in the frame of the reference configuration, Pa.
+/// The memory of a viscoelastic law at a point, in the reference configuration, Pa.
 template <class T>
-struct RelaxationMemory {
+struct ViscousMemory {
   Symmetric<T> S;                       ///< isochoric second Piola-Kirchhoff stress of the elastic law
-  std::array<Symmetric<T>, 2> relaxed;  ///< Q_i, what has relaxed of it by now
+  std::array<Symmetric<T>, 2> decayed;  ///< Q_i, the part of it that has decayed
 };
 
-/// A viscoelastic law at one point: it answers like an elastic law, and what it is told goes into the memory.
-/// `Memory` is const where energies and bounds are asked for.
+/// A viscoelastic law at one point, with the interface of an elastic law. Stresses advance the memory by one
+/// step; energies and bounds do not, and take a const `Memory`.
 template <class Law, class Memory>
 class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>> {
  public:
   static constexpr bool splits_volume = Law::splits_volume;
 
-  ViscoelasticPoint(const Law& elastic, const std::array<RelaxationStep, 2>& terms, Memory& memory)
+  ViscoelasticPoint(const Law& elastic, const std::array<ViscousStep, 2>& terms, Memory& memory)
       : elastic_(elastic), terms_(terms), memory_(memory) {}
 
   double shear_modulus() const { return elastic_.shear_modulus(); }
   double bulk_modulus() const { return elastic_.bulk_modulus(); }
 
-  /// V P as of an elastic law, and one step in time: P = F (S_iso - sum_i Q_i) + p cof F.
+  /// V P (J) as for an elastic law, after one step in time: P = F (S_iso - sum_i Q_i) + p cof F.
   template <class T>
   Tensor<T> weighted_piola(const T& V, const Tensor<T>& H, const VolumeChange<T>& change, const T& p) const {
-    return relaxed_piola(elastic_.weighted_piola(T(1), H, change, T(0)), V, H, change, p);
+    return decayed_piola(elastic_.weighted_piola(T(1), H, change, T(0)), V, H, change, p);
   }
 
   /// The same from the elastic law's isochoric stress P (Pa).
   template <class T>
-  Tensor<T> relaxed_piola(const Tensor<T>& P, const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
+  Tensor<T> decayed_piola(const Tensor<T>& P, const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                           const T& p) const {
     const Tensor<T> cof_F = deformation_cofactor(H);
-    const Tensor<T> Q = relax(P, cof_F, change);
+    const Tensor<T> Q = advance_memory(P, cof_F, change);
     const Tensor<T> HQ = H * Q;
     const T Vp = V * p;
     Tensor<T> VP;
@@ -90,7 +90,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
     return VP;
   }
 
-  /// V tau = V P F^T as of an elastic law, and one step in time.
+  /// V tau = V P F^T (J) as for an elastic law, after one step in time.
   template <class T>
   Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                                const T& p) const {
@@ -98,16 +98,17 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
     return VP + VP * transpose(H);
   }
 
-  /// Stored isochoric energy (J/m^3) at the strain that the memory is of: that of the spring that stays, and
-  /// of the springs of the relaxing parts, whose stresses are h_i = g_i S - Q_i:
+  /// Stored isochoric energy (J/m^3) at the strain of the memory: that of the permanent spring, and of the
+  /// springs of the Prony terms, whose stresses are h_i = g_i S - Q_i:
   ///   W = g_inf W_iso + sum_i h_i : h_i / (4 g_i mu) * W_iso / (S : S / (4 mu)).
-  /// The last factor, 1 near rest, is the elastic law's own compliance at this strain. So the energy is the
-  /// elastic one as long as nothing has relaxed, g_inf times it when all has, never negative, and exact for
-  /// small strains; in between, at large strains, the model has no potential in closed form.
+  /// The last factor, 1 near the undeformed state, is the compliance of the elastic law at this strain. The
+  /// energy is the elastic one as long as nothing has decayed, g_inf times it when everything has, never
+  /// negative, and exact for small strains; in between, at large strains, the model has no potential in
+  /// closed form.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
     const T W = elastic_.isochoric_energy(H);
-    const T tiny(1e-30 * elastic_.shear_modulus());  // so that rest is 1, not 0/0
+    const T tiny(1e-30 * elastic_.shear_modulus());  // 1, not 0/0, when undeformed
     const T quarter(0.25 / elastic_.shear_modulus());
     const T compliance = quarter * (W + tiny) / (quarter * norm_square(memory_.S) + tiny);
     T energy = T(remaining_share()) * W;
@@ -117,13 +118,13 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
     return energy;
   }
 
-  /// The elastic law's bound and that of the stress that stays behind when the strain changes. A further step
-  /// answers with (1 - sum_i follow_i) S + R, R = -sum_i (b Q_i + (b - a) h_i), a = exp(-x), b = (1 - a) / x,
+  /// The elastic law's bound plus that of the stress in the memory. The stress after another step is
+  /// (1 - sum_i follow_i) S + R, R = -sum_i (b Q_i + (b - a) h_i), a = exp(-x), b = (1 - a) / x,
   /// x = dt/tau_i. The first part is softer than the elastic law; the second adds (F R F^T) : (L^T L) to the
   /// second variation, where max(|Q_i|, |h_i|) bounds each part for any step because b + (b - a) <= 1.
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk) const {
-    return relaxing_tangent_bound(elastic_, H, J_minus_one, p, bulk) + memory_bound(H);
+    return viscoelastic_tangent_bound(elastic_, H, J_minus_one, p, bulk) + memory_bound(H);
   }
 
  private:
@@ -131,7 +132,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   TangentBound<T> memory_bound(const Tensor<T>& H) const {
     TangentBound<T> bound{T(0), T(0)};
     for (std::size_t i = 0; i < 2; ++i) {
-      const Tensor<T> a = to_space(full(memory_.relaxed[i]), H), b = to_space(full(spring_stress<T>(i)), H);
+      const Tensor<T> a = to_space(full(memory_.decayed[i]), H), b = to_space(full(spring_stress<T>(i)), H);
       bound.gradient = bound.gradient + sqrt(max(double_dot(a, a), double_dot(b, b)));
     }
     return bound;
@@ -139,10 +140,10 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
 
   double remaining_share() const { return 1.0 - (terms_[0].share + terms_[1].share); }
 
-  /// h_i, the stress of relaxing part i that is still there.
+  /// h_i, the remaining stress (Pa) of Prony term i.
   template <class T>
   Symmetric<T> spring_stress(std::size_t i) const {
-    return T(terms_[i].share) * memory_.S - memory_.relaxed[i];
+    return T(terms_[i].share) * memory_.S - memory_.decayed[i];
   }
 
   /// F Q F^T for symmetric Q.
@@ -152,9 +153,9 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
     return FQ + FQ * transpose(H);
   }
 
-  /// Takes the memory one step on to the isochoric stress P = F S of the elastic law; returns sum_i Q_i.
+  /// Advances the memory by one step to the isochoric stress P = F S of the elastic law; returns sum_i Q_i.
   template <class T>
-  Tensor<T> relax(const Tensor<T>& P, const Tensor<T>& cof_F, const VolumeChange<T>& change) const {
+  Tensor<T> advance_memory(const Tensor<T>& P, const Tensor<T>& cof_F, const VolumeChange<T>& change) const {
     const T r = change.inverse_root;
     const Symmetric<T> S = (r * r * r) * symmetric_product(transpose(cof_F), P);  // F^-1 P
     const Symmetric<T> advance = S - memory_.S;
@@ -162,7 +163,7 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
     for (std::size_t i = 0; i < 2; ++i) {
       const auto g = T(terms_[i].share), decay = T(terms_[i].decay), follow = T(terms_[i].follow);
       for (int n = 0; n < 6; ++n) {
-        T& Q = memory_.relaxed[i](n, 0);
+        T& Q = memory_.decayed[i](n, 0);
         Q = Q + (decay * (g * memory_.S(n, 0) - Q) + follow * advance(n, 0));
         sum(n, 0) = i == 0 ? Q : sum(n, 0) + Q;
       }
@@ -172,17 +173,17 @@ class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>>
   }
 
   const Law& elastic_;
-  const std::array<RelaxationStep, 2>& terms_;
+  const std::array<ViscousStep, 2>& terms_;
   Memory& memory_;
 };
 
-/// A viscoelastic law for one step of time, the same for all elements.
+/// A viscoelastic law for one step in time, shared by all elements.
 template <class Law>
 class ViscoelasticStep {
  public:
   using Elastic = Law;
 
-  ViscoelasticStep(const Law& elastic, const std::array<RelaxationStep, 2>& terms)
+  ViscoelasticStep(const Law& elastic, const std::array<ViscousStep, 2>& terms)
       : elastic_(elastic), terms_(terms) {}
 
   /// The instantaneous response.
@@ -196,29 +197,29 @@ class ViscoelasticStep {
 
  private:
   Law elastic_;
-  std::array<RelaxationStep, 2> terms_;
+  std::array<ViscousStep, 2> terms_;
 };
 
 /// Viscoelasticity of any law by a Prony series of two terms: the isochoric second Piola-Kirchhoff stress
 /// relaxes, the volumetric one does not,
 ///   S(t) = S_vol + g_inf S_iso + sum_i h_i,  h_i(t) = g_i int_0^t exp(-(t - s)/tau_i) dS_iso/ds ds,
-/// with g_inf = 1 - sum_i g_i. In the reference frame nothing has to be turned: it is objective. The integral
-/// is exact for a stress that is linear in time over each step (Taylor, Pister and Goudreau 1970, IJNME 2:45;
-/// Simo 1987, CMAME 60:153; for TLED: Taylor, Comas, Cheng, Passenger, Hawkes, Atkinson and Ourselin 2009,
-/// Med. Image Anal. 13:234, who take a step of first order).
+/// with g_inf = 1 - sum_i g_i. In the reference frame no stress has to be rotated: the law is objective. The
+/// integral is exact for a stress that is linear in time over each step (Taylor, Pister and Goudreau 1970,
+/// IJNME 2:45; Simo 1987, CMAME 60:153; for TLED: Taylor, Comas, Cheng, Passenger, Hawkes, Atkinson and
+/// Ourselin 2009, Med. Image Anal. 13:234, who use a first-order step).
 ///
-/// The memory holds what has relaxed, Q_i = g_i S_iso - h_i, instead of h_i: S = S_elastic - sum_i Q_i. It is
-/// the same in exact arithmetic, and in floating point it begins with zero: a body that has had no time to
-/// relax is the elastic one, and the small changes of a slow term are added to a small number. Each step
-/// rounds Q by u |Q|, u half a unit in the last place, and forgets earlier errors with exp(-dt/tau): the
-/// error stays below a few u |Q| min(n, tau/dt) after n steps, in single precision as in double.
+/// The memory stores the decayed part Q_i = g_i S_iso - h_i instead of h_i: S = S_elastic - sum_i Q_i. This
+/// is the same in exact arithmetic, but in floating point it starts from zero: a body that has had no time to
+/// relax is exactly elastic, and the small changes of a slow term are added to a small number. Each step
+/// rounds Q by u |Q|, where u is half a unit in the last place, and damps earlier errors by exp(-dt/tau): the
+/// error remains below a few u |Q| min(n, tau/dt) after n steps, in single precision as in double.
 ///
-/// The parameters of the law, its moduli and its bounds of the tangent are those of the INSTANTANEOUS
-/// response. So is the stiffness that hourglass controls take from the moduli, which does not relax. Either
-/// choice is wrong some of the time; a block bent by a third of its length in half of tau_1, 81 % of whose
-/// stress relaxes, is off by .7 to 1.1 % of the mean dilatation hexahedron's answer when just bent and by 2.0
-/// to 3.1 % when all has relaxed, with the relaxed moduli by 2.5 to 6.0 % and .2 to .4 %. Too stiff is the
-/// smaller evil. Who looks at slow answers only may multiply kappa by g_inf.
+/// The parameters of the law, its moduli and its tangent bounds are those of the instantaneous response. So
+/// is the stiffness of hourglass controls, which does not relax. Either choice has an error: a block bent by
+/// a third of its length in half of tau_1, with 81 % of its stress relaxing, differs from the answer of
+/// tl-mean-dilatation by .7 to 1.1 % when just bent and by 2.0 to 3.1 % when fully relaxed, and with
+/// long-term moduli in the control by 2.5 to 6.0 % and .2 to .4 %. For slow loading only, multiply kappa by
+/// g_inf.
 template <class Law>
 struct Viscoelastic : Law {
   static constexpr std::string_view name = joined_text<viscoelastic_prefix, Law::name>;
@@ -230,7 +231,7 @@ struct Viscoelastic : Law {
   double time_2 = 0.0;
 
   template <class T>
-  using Memory = RelaxationMemory<T>;
+  using Memory = ViscousMemory<T>;
 
   static constexpr auto parameters() {
     using Self = Viscoelastic;
@@ -246,7 +247,7 @@ struct Viscoelastic : Law {
                       "second relaxation time, positive if relaxation_2 is", false}});
   }
 
-  /// Something has to stay, and what relaxes takes time.
+  /// Some stress must remain, and relaxation times must be positive.
   std::optional<BrokenRule> broken_rule() const {
     if constexpr (requires(const Law& law) { law.broken_rule(); }) {
       if (auto broken = Law::broken_rule()) return broken;
@@ -256,20 +257,19 @@ struct Viscoelastic : Law {
                                                     1.0 - relaxation_1)};
     }
     if (relaxation_2 > 0.0 && !(time_2 > 0.0)) {
-      return BrokenRule{"time_2",
-                        fmt::format("= {} must be positive, for relaxation_2 = {} is", time_2, relaxation_2)};
+      return BrokenRule{
+          "time_2", fmt::format("= {} must be positive because relaxation_2 = {} is", time_2, relaxation_2)};
     }
     return std::nullopt;
   }
 
-  /// The share of the isochoric stress that stays.
+  /// g_inf, the share of the isochoric stress that remains.
   constexpr double remaining_share() const { return 1.0 - (relaxation_1 + relaxation_2); }
 
-  /// The law for a step of so many seconds.
+  /// The law for a step of `seconds`.
   ViscoelasticStep<Law> at_step(double seconds) const {
     return {*this,
-            {RelaxationStep::of(relaxation_1, time_1, seconds),
-             RelaxationStep::of(relaxation_2, time_2, seconds)}};
+            {ViscousStep::of(relaxation_1, time_1, seconds), ViscousStep::of(relaxation_2, time_2, seconds)}};
   }
 };
 

@@ -25,10 +25,10 @@ struct Yeoh : FirstInvariant<Yeoh> {
 
   static constexpr auto parameters() {
     return std::tuple{
-        Parameter{&Yeoh::c1, "c1", "Pa", Range::positive(), "half of the shear modulus at rest"},
+        Parameter{&Yeoh::c1, "c1", "Pa", Range::positive(), "half of the initial shear modulus"},
         Parameter{&Yeoh::c2, "c2", "Pa", Range::any(), "factor of the first invariant squared"},
         Parameter{&Yeoh::c3, "c3", "Pa", Range::at_least(0.0), "factor of the first invariant cubed"},
-        Parameter{&Yeoh::bulk, "bulk_modulus", "Pa", Range::positive(), "bulk modulus at rest"}};
+        Parameter{&Yeoh::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
   /// c1 + 2 c2 x + 3 c3 x^2, a quarter of the shear modulus at x, stays positive for all x > 0.

@@ -20,8 +20,8 @@ struct Operations {
   }
 };
 
-/// A number that counts what is done with it: run a kernel on it and read the tally. Constants know no tally,
-/// so that work among constants, which a compiler does beforehand, costs nothing; changes of sign are free.
+/// A number that counts its operations: run a kernel on it and read the tally. Constants have no tally, so
+/// that operations between constants, which a compiler folds, cost nothing; changes of sign are free.
 class Counted {
  public:
   Counted() = default;

@@ -8,14 +8,14 @@
 
 #include "math/scalar.hpp"
 
-/// expm1 and log1p for kernels: the same operations on plain numbers and on packs, without a branch or a
-/// table, so that they may stand in the time loop. Within two units in the last place wherever argument and
-/// result are normal numbers.
+/// expm1 and log1p for kernels: the same operations on plain numbers and on packs, without branches or
+/// tables, fit for the time loop. Accurate to two units in the last place wherever argument and result are
+/// normal numbers.
 namespace sandglass {
 
 namespace detail {
 
-/// Where the parts of a floating-point number are in its bits.
+/// The layout of a floating-point number in its bits.
 template <class Real>
 struct FloatBits;
 template <>
@@ -23,7 +23,7 @@ struct FloatBits<double> {
   using Integer = std::int64_t;
   static constexpr int mantissa = 52;
   static constexpr int bias = 1023;
-  static constexpr double integers = 0x1p52;           ///< from here on neighbours differ by one
+  static constexpr double integers = 0x1p52;           ///< from here on neighbouring numbers differ by one
   static constexpr double ln2_high = 0x1.62e42feep-1;  ///< few digits: its products with exponents are exact
   static constexpr double ln2_low = 0x1.a39ef35793c76p-33;
   static constexpr double largest_logarithm = 710.0;  ///< exp of it overflows
@@ -45,7 +45,7 @@ struct FloatBits<float> {
 
 }  // namespace detail
 
-/// 2^n for a whole number n within the range of exponents: n is moved to where exponents are.
+/// 2^n for a whole number n within the range of exponents: n is shifted into the exponent's bits.
 template <std::floating_point Real>
 Real power_of_two(Real n) {
   using Bits = detail::FloatBits<Real>;
@@ -94,7 +94,8 @@ constexpr std::array<double, N> odd_fractions() {
 }
 
 /// e^x - 1 = 2^n (e^r - 1) + (2^n - 1) with x = n ln 2 + r, |r| <= ln(2)/2, and Taylor's series in r. With
-/// n = 0 nothing is added, and small x keep their digits. Half of it is computed, because 2^1024 is none.
+/// n = 0 nothing is added, and small x keep their digits. Half the result is computed first, because 2^1024
+/// overflows.
 template <class Real, class T>
 T exponential_minus_one(T x) {
   using Bits = FloatBits<Real>;
@@ -110,8 +111,8 @@ T exponential_minus_one(T x) {
 
 /// log(1 + x) = k ln 2 + log f with 1 + x = 2^k f, f in [1/sqrt 2, sqrt 2], and log f = 2 s + 2/3 s^3 + ...,
 /// s = (f - 1)/(f + 1), where 2 s = (f - 1) - s (f - 1) needs no rounding of its leading term. f - 1 = 2^-k x
-/// + (2^-k - 1) rounds but once, and with k = 0 not at all: small x keep their digits. A power of two is kept
-/// apart, because 2^-1024 is none.
+/// + (2^-k - 1) is rounded only once, and with k = 0 not at all: small x keep their digits. A factor of four
+/// is applied separately, because 2^-1024 underflows.
 template <class Real, class T>
 T logarithm_of_one_plus(const T& x) {
   using Bits = FloatBits<Real>;
@@ -123,7 +124,7 @@ T logarithm_of_one_plus(const T& x) {
   const T s2 = s * s;
   const T rest = s * (f_minus_one - s2 * polynomial(s2, odd_fractions<Bits::logarithm_terms - 1>()));
   const T inside = k * T(Bits::ln2_high) + (f_minus_one - (rest - k * T(Bits::ln2_low)));
-  // Outside of (0, infinity) as the library: -infinity at zero, not a number below, infinity at infinity.
+  // Outside (0, infinity) as std::log1p: -infinity at zero, NaN below, infinity at infinity.
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
   const T outside = select(one_plus < T(0), T(std::numeric_limits<Real>::quiet_NaN()),
                            select(one_plus > T(0), one_plus, T(-infinity) + one_plus));
@@ -144,7 +145,7 @@ Real log1p(Real x) {
   return detail::logarithm_of_one_plus<Real>(x);
 }
 
-/// (e^x - 1)/x, 1 at zero. Its dual slope has an error of eps/x: who multiplies it by x has none.
+/// (e^x - 1)/x, 1 at zero. Its dual slope has an error of eps/x, which a product with x removes.
 template <class T>
 T relative_expm1(const T& x) {
   const auto tiny = abs(x) < T(1e-30);

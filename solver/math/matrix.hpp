@@ -39,6 +39,7 @@ using NodalVectors = Matrix<T, 8, 3>;
 template <class T>
 using Triple = Matrix<T, 3, 1>;
 
+/// The unit tensor.
 template <class T>
 constexpr Tensor<T> identity() {
   return {{T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1)}};
@@ -80,6 +81,7 @@ constexpr Matrix<T, R, C> operator*(const Matrix<T, R, N>& a, const Matrix<T, N,
   return c;
 }
 
+/// a^T.
 template <class T, int R, int C>
 constexpr Matrix<T, C, R> transpose(const Matrix<T, R, C>& a) {
   Matrix<T, C, R> t;
@@ -105,6 +107,7 @@ constexpr Matrix<T, R, C> from_double(const Matrix<double, R, C>& a) {
   return b;
 }
 
+/// tr a.
 template <class T>
 constexpr T trace(const Tensor<T>& a) {
   return a(0, 0) + a(1, 1) + a(2, 2);
@@ -131,12 +134,14 @@ constexpr Tensor<T> cofactor(const Tensor<T>& a) {
            a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0)}};
 }
 
+/// a x b.
 template <class T>
 constexpr Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
   return {{a(1, 0) * b(2, 0) - a(2, 0) * b(1, 0), a(2, 0) * b(0, 0) - a(0, 0) * b(2, 0),
            a(0, 0) * b(1, 0) - a(1, 0) * b(0, 0)}};
 }
 
+/// det a.
 template <class T>
 constexpr T determinant(const Tensor<T>& a) {
   return a(0, 0) * (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)) +
@@ -144,6 +149,7 @@ constexpr T determinant(const Tensor<T>& a) {
          a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
 }
 
+/// a^-1, for a not singular.
 template <class T>
 constexpr Tensor<T> inverse(const Tensor<T>& a) {
   return (T(1) / determinant(a)) * transpose(cofactor(a));

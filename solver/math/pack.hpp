@@ -11,7 +11,8 @@ namespace sandglass {
 
 namespace detail {
 
-/// Vectors of W lanes in the compiler's own types; integers of the same width for masks and bit tricks.
+/// Vectors of W lanes in the compiler's vector types; integers of the same width for masks and bit
+/// operations.
 template <class T, int W>
 struct VectorOf {
   using Integer = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
@@ -23,7 +24,7 @@ struct VectorOf {
 
 }  // namespace detail
 
-/// Lanes that one register of the target holds.
+/// The number of lanes in a register of the target.
 template <class T>
 inline constexpr int native_width =
 #if defined(__AVX512F__)
@@ -34,8 +35,8 @@ inline constexpr int native_width =
     16 / sizeof(T);
 #endif
 
-/// W numbers of type T, one per element of a block, computed together. It is a number type of the vocabulary
-/// in scalar.hpp, so that a kernel written for one element runs on W of them.
+/// W numbers of type T, one per element of a block, computed together. It has the functions of scalar.hpp, so
+/// that a kernel written for one element runs on W of them.
 template <class T, int W = native_width<T>>
 struct Pack {
   using Scalar = T;
@@ -70,7 +71,7 @@ struct Pack {
   friend Pack min(Pack a, Pack b) { return select(b < a, b, a); }
   friend Pack abs(Pack a) { return select(a < Pack(T(0)), -a, a); }
 
-  /// Lane by lane for the reader; one instruction for the compiler, which knows that nobody asks for errno.
+  /// A loop over the lanes in the source; one instruction in the program, since math functions set no errno.
   friend Pack sqrt(Pack a) {
     for (int l = 0; l < W; ++l) a.lanes[l] = std::sqrt(a.lanes[l]);
     return a;

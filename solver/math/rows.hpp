@@ -8,10 +8,10 @@
 
 #include "math/lanes.hpp"
 
-/// Nodal values as the time loop keeps them, and their way into packs and back.
+/// Nodal values as the time loop stores them, and how they get into packs and back.
 namespace sandglass {
 
-/// The three components of one node, filled up with a zero so that one instruction loads or stores them.
+/// The three components of one node, padded with a zero so that one instruction loads or stores them.
 template <class T>
 struct alignas(4 * sizeof(T)) Row {
   std::array<T, 4> x{};
@@ -34,7 +34,7 @@ T* numbers_of(Rows<T>& rows) {
   return rows.data()->x.data();
 }
 
-/// Where a row begins among them: an address that needs no further arithmetic.
+/// The index of a row's first number among them: an address that needs no further arithmetic.
 using Place = std::uint32_t;
 constexpr Place place_of_row(std::size_t row) {
   return static_cast<Place>(4 * row);
@@ -45,7 +45,8 @@ namespace detail {
 template <class T, int W>
 using VectorOfWidth = typename VectorOf<T, W>::Vector;
 
-/// Lanes of two vectors, picked by a pattern: pick(lane, W) counts the lanes of the second one from W.
+/// A vector of lanes of two vectors: lane l of the result is lane pick(l, W), where lanes of the second
+/// vector are numbered from W on.
 template <int (*pick)(int, int), int Width, class Vector>
 auto permute(Vector a, Vector b) {
   constexpr int W = sizeof(Vector) / sizeof(a[0]);
@@ -55,8 +56,8 @@ auto permute(Vector a, Vector b) {
   (std::make_integer_sequence<int, Width>{});
 }
 
-// Patterns; vectors hold rows of four, and each pattern repeats in every four lanes. Written so that lanes of
-// 64 bits stay within 128 bits where they can.
+// Patterns. Vectors hold rows of four, and each pattern repeats in every four lanes; lanes of 64 bits stay
+// within 128 bits where possible.
 constexpr int in_order(int lane, int /*W*/) {
   return lane;
 }
@@ -146,8 +147,8 @@ std::array<Number, 3> gather(const T* rows, const Place* place) {
   }
 }
 
-/// Adds the three components of lane l to the row at place[l]; lanes one after another, so that two lanes may
-/// name the same row.
+/// Adds the three components of lane l to the row at place[l], one lane after another, so that several lanes
+/// may add to the same row.
 template <class Number, class T>
 void scatter_add(const std::array<Number, 3>& x, T* rows, const Place* place) {
   constexpr int W = Lanes<Number>::width;

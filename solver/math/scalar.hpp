@@ -6,10 +6,10 @@
 #include <concepts>
 #include <cstdint>
 
-/// The vocabulary of scalar functions that kernels may use. A number type (double, float, a pack, a counter,
-/// a dual number) joins by giving these overloads in this namespace; kernels then need no change. There is no
-/// `if` on a value in a kernel: `select` and `any` take its place, because a pack cannot branch. expm1 and
-/// log1p belong to it too; they are in exponential.hpp.
+/// The scalar functions that kernels may use. A number type (double, float, a pack, a counter, a dual number)
+/// provides overloads of them in this namespace; kernels then need no change. Kernels contain no `if` on a
+/// value but `select`, because a pack cannot branch. expm1 and log1p belong to the set, too; they are in
+/// exponential.hpp.
 namespace sandglass {
 
 // clang-format off
@@ -30,13 +30,13 @@ T refined_inverse_cube_root(const T& x, T y) {
   return y;
 }
 
-/// The bits of a float, read as an integer, are a scaled and shifted logarithm: times this and plus that they
-/// are the bits of x^(-1/3), within 3.4 %.
+/// The bits of a float x, read as an integer, are a scaled and shifted logarithm: this slope and shift turn
+/// them into the bits of x^(-1/3), within 3.4 %.
 inline constexpr float cube_root_slope = -1.0F / 3.0F;
 inline constexpr float cube_root_shift = 1.4199153e9F;
 
-/// x^(-1/3) for x > 0: the one root that isochoric laws need, J^(-2/3) being its square. Without a general
-/// power or a division, and operation by operation the same as for packs.
+/// x^(-1/3) for x > 0: the only root that isochoric laws need, J^(-2/3) being its square. It takes neither a
+/// general power nor a division, and the same operations as for packs.
 template <std::floating_point T>
 T inverse_cube_root(T x) {
   const auto bits = static_cast<float>(std::bit_cast<std::int32_t>(static_cast<float>(x)));

@@ -4,7 +4,7 @@
 
 namespace sandglass {
 
-/// det(I + H) - 1, expanded so that nothing cancels near rest.
+/// det(I + H) - 1, expanded so that nothing cancels near the undeformed state.
 template <class T>
 constexpr T jacobian_minus_one(const Tensor<T>& H) {
   const T second_invariant = (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0)) +
@@ -13,14 +13,15 @@ constexpr T jacobian_minus_one(const Tensor<T>& H) {
   return trace(H) + (second_invariant + determinant(H));
 }
 
-/// How a point's volume changes: J - 1 and J^(-1/3), which isochoric laws scale F with. The root is a long
-/// chain of operations; who computes it early has it when the stress needs it.
+/// The volume change at a point: J - 1, and J^(-1/3), with which isochoric laws scale F. The root is a long
+/// chain of dependent operations; computed early, it is ready when the stress needs it.
 template <class T>
 struct VolumeChange {
   T J_minus_one;
   T inverse_root;
 };
 
+/// The volume change of a displacement gradient H.
 template <class T>
 constexpr VolumeChange<T> volume_change(const Tensor<T>& H) {
   const T J_minus_one = jacobian_minus_one(H);

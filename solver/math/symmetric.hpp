@@ -8,12 +8,12 @@ namespace sandglass {
 template <class T>
 using Symmetric = Matrix<T, 6, 1>;
 
-/// Where entry (i, j) stands among the six.
+/// The index of entry (i, j) among the six.
 constexpr int symmetric_entry(int i, int j) {
   return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
 }
 
-/// The product a b, of which it is known that it is symmetric.
+/// The product a b where it is known to be symmetric.
 template <class T>
 constexpr Symmetric<T> symmetric_product(const Tensor<T>& a, const Tensor<T>& b) {
   Symmetric<T> c;

@@ -6,8 +6,7 @@
 
 namespace sandglass {
 
-/// A symmetric matrix of N rows that keeps each of its N (N + 1) / 2 different numbers once: the upper
-/// triangle by rows.
+/// A symmetric matrix of N rows, stored as its N (N + 1) / 2 independent entries: the upper triangle by rows.
 template <class T, int N>
 struct SymmetricMatrix {
   std::array<T, static_cast<std::size_t>(N) * static_cast<std::size_t>(N + 1) / 2> entries;
@@ -42,7 +41,7 @@ constexpr Matrix<T, N, N> dense(const SymmetricMatrix<T, N>& s) {
   return a;
 }
 
-/// Row i of a times a column, which is read where it lies: column(n) is its entry n.
+/// Row i of a times a column, of which column(n) is entry n.
 template <class T, int N, class Column>
 constexpr T row_product(const SymmetricMatrix<T, N>& a, int i, const Column& column) {
   T sum = a(i, 0) * column(0);

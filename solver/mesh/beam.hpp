@@ -9,7 +9,8 @@
 namespace sandglass {
 
 /// A straight or twisted beam from the origin along x; its rectangular section is centred on the axis. Its
-/// elements are boxes, or lean: trapezoids and parallelograms of MacNeal and Harder 1985 have 45 degrees.
+/// elements are boxes, or slanted: the trapezoids and parallelograms of MacNeal and Harder 1985 have 45
+/// degrees.
 struct BeamMesh {
   static constexpr std::string_view name = "beam";
   static constexpr std::string_view summary = "a beam along x, straight or twisted, with leaning elements";

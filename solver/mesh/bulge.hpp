@@ -7,9 +7,9 @@
 
 namespace sandglass {
 
-/// The map that rounds a cube (D = 3) or a square (D = 2) for the cores of balls and discs. With x in
-/// [-1,1]^D, m = max |x_i| and t = tan(pi x / 4): the ball's surface point is t/|t| and the ball's image of x
-/// is m t/|t|.
+/// The map that rounds a cube (D = 3) or a square (D = 2) for the cores of balls and discs: with x in
+/// [-1,1]^D, m = max |x_i| and t = tan(pi x / 4), the surface point of the ball is t/|t|, and the image of x
+/// in the ball is m t/|t|.
 template <std::size_t D>
 struct Bulge {
   std::array<double, D> x;

@@ -34,7 +34,7 @@ struct CylinderMesh {
         Parameter{&M::core_size, "core_size", "-", Range::between(0.0, 1.0),
                   "size of the core in the unit disc", false},
         Parameter{&M::core_bulge, "core_bulge", "-", Range::at_least(0.0),
-                  "share of the disc in the core's shape, beside half of the square", false}};
+                  "share of the disc in the core's shape, in addition to half of the square", false}};
   }
 
   Mesh build() const;

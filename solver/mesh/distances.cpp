@@ -12,7 +12,7 @@ std::size_t at(int n) {
 
 }  // namespace
 
-/// Nodes that share an element with a node, itself among them, some more than once.
+/// Calls visit(n) for the nodes that share an element with a node, including itself, some more than once.
 template <class Visit>
 void Distances::for_neighbours(int node, const Visit& visit) const {
   for (const int e : elements_.around(node)) {
@@ -41,7 +41,7 @@ void Distances::mark(std::vector<int> margin, std::vector<bool>& marked) const {
   for (std::size_t n = 0; n < margin.size(); ++n) nodes_of[at(margin[n])].push_back(static_cast<int>(n));
   for (int left = most; left > 0; --left) {
     for (const int node : nodes_of[at(left)]) {
-      if (margin[at(node)] != left) continue;  // it has got a larger one
+      if (margin[at(node)] != left) continue;  // it has a larger one by now
       for (const int e : elements_.around(node)) marked[at(e)] = true;
       for_neighbours(node, [&](int other) {
         if (margin[at(other)] >= left - 1) return;

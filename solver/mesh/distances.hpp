@@ -6,12 +6,12 @@
 
 namespace sandglass {
 
-/// Distances between the nodes of a mesh: how many elements one has to cross, corner to corner.
+/// Distances between the nodes of a mesh: the number of elements to cross, from corner to corner.
 class Distances {
  public:
   explicit Distances(const Mesh& mesh) : mesh_(mesh), elements_(mesh) {}
 
-  /// For each node how far it is from the nearest of some; -1 where elements do not lead there.
+  /// The distance of each node from the nearest of `nodes`; -1 where elements do not connect them.
   std::vector<int> from(const std::vector<int>& nodes) const;
 
   /// Marks the elements that lie within margin[node] of a node; a margin of 0 marks none.

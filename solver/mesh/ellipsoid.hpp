@@ -31,7 +31,7 @@ struct EllipsoidMesh {
         Parameter{&M::core_size, "core_size", "-", Range::between(0.0, 1.0),
                   "size of the core in the unit ball", false},
         Parameter{&M::core_bulge, "core_bulge", "-", Range::at_least(0.0),
-                  "share of the ball in the core's shape, beside half of the cube", false}};
+                  "share of the ball in the core's shape, in addition to half of the cube", false}};
   }
 
   Mesh build() const;

@@ -7,7 +7,7 @@ namespace sandglass {
 
 namespace {
 
-/// A Gauss point of a face: the functions of its four nodes there, where it is (m), and its share of the area
+/// A Gauss point of a face: the shape functions of its four nodes, its place (m), and its share of the area
 /// (m^2).
 struct FacePoint {
   std::array<double, 4> N;

@@ -10,7 +10,8 @@
 
 namespace sandglass {
 
-/// THE list of mesh generators. A new one is a header, its source and one entry here.
+/// The list of mesh generators. A new one is a header, its source and one entry here. Each has name, summary,
+/// parameters() and build(), which makes the mesh of its parameters.
 using Generators = TypeList<BoxMesh, EllipsoidMesh, CylinderMesh, BeamMesh, CurvedBeamMesh, TaperedPanelMesh>;
 
 using AnyGenerator = VariantOf<Generators>;

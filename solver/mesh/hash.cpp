@@ -21,8 +21,8 @@ std::string hash_of(std::string_view text) {
 }
 
 std::string mesh_hash(const Mesh& mesh, const NodeSets& sets) {
-  // The offset keeps lattice points, which are often multiples of the unit or of its half, away from where
-  // rounding would flip.
+  // The offset keeps lattice points, which are often multiples of the unit or of its half, away from the
+  // limits of rounding.
   const double unit = 1e-7 * diagonal(mesh.points);
   constexpr double offset = 0.318;
   std::vector<std::int64_t> words{static_cast<std::int64_t>(mesh.points.size()),

@@ -5,7 +5,7 @@
 #include "math/matrix.hpp"
 
 /// Geometry of the trilinear hexahedron: nodes in VTK order, shape functions, hourglass base vectors, mean
-/// gradients. Set-up only, in double; kernels meet the results.
+/// gradients. For set-up, in double precision.
 namespace sandglass {
 
 /// Parent coordinates (xi, eta, zeta) of the eight nodes, VTK order.
@@ -42,10 +42,10 @@ constexpr NodalVectors<double> parent_gradient(const std::array<double, 3>& xi) 
   return gradient;
 }
 
-/// Where the points of the 2x2x2 Gauss rule stand on the parent axes: 1/sqrt(3).
+/// The coordinate of the points of the 2x2x2 Gauss rule on the parent axes: 1/sqrt(3).
 inline constexpr double gauss_coordinate = 0.57735026918962576451;
 
-/// The eight points of the 2x2x2 Gauss rule, one beside each corner; every weight is 1.
+/// The eight points of the 2x2x2 Gauss rule, in the order of the nearest corners; every weight is 1.
 constexpr std::array<std::array<double, 3>, 8> gauss_points() {
   std::array<std::array<double, 3>, 8> points{};
   for (int q = 0; q < 8; ++q) {
@@ -67,21 +67,22 @@ struct PointGradient {
   double measure;
 };
 
+/// Gradients and measure at the parent point xi of a hexahedron with corners X (m).
 constexpr PointGradient point_gradient(const NodalVectors<double>& X, const std::array<double, 3>& xi) {
   const Tensor<double> jacobian = parent_jacobian(X, xi);
   return {parent_gradient(xi) * inverse(jacobian), determinant(jacobian)};
 }
 
-/// The uniform strain hexahedron: mean gradients h_Ii = B_Ii / V (1/m) and exact volume V (m^3); paper,
-/// eq. 1.
+/// The uniform strain hexahedron: mean gradients h_Ii = B_Ii / V (1/m) and exact volume V (m^3), eq. 1 of the
+/// paper.
 struct MeanGradient {
   NodalVectors<double> h;
   double volume;
 };
 
-/// B_Ii = integral of dN_I/dX_i over the element. 2x2x2 Gauss integrates it and V exactly, for the integrands
-/// dN/dX det(dX/dxi) are quadratic in each parent coordinate; gradients at the centre would fail the patch
-/// test.
+/// Mean gradients and volume of a hexahedron with corners X (m), by 2x2x2 Gauss points. The rule is exact for
+/// B_Ii = integral of dN_I/dX_i and for V, because the integrands are quadratic in each parent coordinate.
+/// Gradients at the centre would fail the patch test on distorted meshes.
 constexpr MeanGradient mean_gradient(const NodalVectors<double>& X) {
   NodalVectors<double> B{};
   double V = 0.0;
@@ -93,8 +94,8 @@ constexpr MeanGradient mean_gradient(const NodalVectors<double>& X) {
   return {(1.0 / V) * B, V};
 }
 
-/// Hourglass shape vectors gamma_Ia = Gamma_Ia - h_Ii X_Ji Gamma_Ja, orthogonal to every linear field; paper,
-/// eq. 2.
+/// Hourglass shape vectors gamma_Ia = Gamma_Ia - h_Ii X_Ji Gamma_Ja (eq. 2 of the paper) of a hexahedron with
+/// corners X (m) and mean gradients h (1/m). They are orthogonal to every linear field.
 constexpr Matrix<double, 8, 4> hourglass_shape_vectors(const NodalVectors<double>& X,
                                                        const NodalVectors<double>& h) {
   constexpr auto Gamma = hourglass_base_vectors();

@@ -36,12 +36,12 @@ Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
   return value;
 }
 
-/// How far a parent point is from the centre; inside the element it is at most 1.
+/// The distance of a parent point from the centre in the maximum norm; at most 1 inside the element.
 double parent_distance(const Vector& xi) {
   return std::max({std::abs(xi[0]), std::abs(xi[1]), std::abs(xi[2])});
 }
 
-/// The parent point of X in an element, by Newton's method; none where that does not converge, as far
+/// The parent point of X in an element, by Newton's method; none if that does not converge, as for points far
 /// outside.
 std::optional<Vector> parent_point(const NodalVectors<double>& nodes, const Vector& X) {
   constexpr int most_steps = 25;
@@ -66,7 +66,7 @@ std::optional<Vector> parent_point(const NodalVectors<double>& nodes, const Vect
   return std::nullopt;
 }
 
-/// Elements by the cells of a grid over the mesh that their boxes touch.
+/// Elements sorted into the boxes of a grid over the mesh that their bounding boxes touch.
 class ElementGrid {
  public:
   explicit ElementGrid(const Mesh& mesh) : mesh_(mesh), low_(bounding_box(mesh.points)[0]) {
@@ -81,7 +81,7 @@ class ElementGrid {
     for (std::size_t e = 0; e < mesh.cells.size(); ++e) enter(e);
   }
 
-  /// Elements that may hold a point, or lie beside it.
+  /// Elements that may contain a point, or are close to it.
   const std::vector<std::size_t>& near(const Vector& X) const {
     return bins_[number({place(X, 0), place(X, 1), place(X, 2)})];
   }
@@ -154,7 +154,7 @@ NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalFie
     if (!std::isfinite(least)) look_in(everywhere);
     if (!std::isfinite(least)) {
       throw InputError(
-          fmt::format("interpolation: the point ({}, {}, {}) m is nowhere near the mesh", X[0], X[1], X[2]));
+          fmt::format("interpolation: the point ({}, {}, {}) m is far outside the mesh", X[0], X[1], X[2]));
     }
     values.push_back(value);
   }

@@ -41,7 +41,7 @@ struct Mesh {
 /// Named sets of nodes, each sorted.
 using NodeSets = std::map<std::string, std::vector<int>>;
 
-/// The rows of a nodal field at the nodes of one element: the gather at the edge of every kernel.
+/// The rows of a nodal field at the nodes of one element.
 inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& cell) {
   NodalVectors<double> rows;
   for (int I = 0; I < 8; ++I) {
@@ -51,13 +51,13 @@ inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& ce
   return rows;
 }
 
-/// The largest distance between two nodal fields; not a number where one of them holds none.
+/// The largest distance between the vectors of two nodal fields; NaN if one of them contains NaN.
 double largest_distance(const NodalField& a, const NodalField& b);
 
 /// The faces that belong to one hexahedron only, in the order of the cells.
 std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells);
 
-/// Which nodes lie on the boundary.
+/// Whether each node lies on the boundary.
 std::vector<bool> boundary_nodes(const Mesh& mesh);
 
 /// The corners of the smallest box around the points; {low, high}, m.

@@ -6,16 +6,16 @@
 
 namespace sandglass {
 
-/// Some elements of a mesh as a mesh of their own. Nodes and elements keep their order.
+/// A subset of the elements of a mesh as a separate mesh. Nodes and elements keep their order.
 struct MeshPart {
   Mesh mesh;
-  std::vector<int> node_of;      ///< the whole mesh's number of each node of the part
-  std::vector<int> element_of;   ///< and of each element
-  std::vector<int> part_of;      ///< the part's number of each node of the whole; -1: not in it
-  std::vector<bool> on_the_rim;  ///< which nodes of the part belong to elements outside of it, too
+  std::vector<int> node_of;      ///< number in the whole mesh of each node of the part
+  std::vector<int> element_of;   ///< number in the whole mesh of each element of the part
+  std::vector<int> part_of;      ///< number in the part of each node of the whole; -1 if not in the part
+  std::vector<bool> on_the_rim;  ///< whether each node of the part also belongs to an element outside it
 };
 
-/// The elements that are marked.
+/// The part that consists of the marked elements.
 MeshPart part_of_mesh(const Mesh& mesh, const std::vector<bool>& marked);
 
 }  // namespace sandglass

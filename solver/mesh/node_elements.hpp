@@ -7,10 +7,12 @@
 
 namespace sandglass {
 
-/// For each node the elements around it.
+/// The elements around each node of a mesh.
 class NodeElements {
  public:
   explicit NodeElements(const Mesh& mesh);
+
+  /// The elements around a node, in ascending order.
   std::span<const int> around(int node) const;
 
  private:

@@ -8,13 +8,13 @@
 
 namespace sandglass {
 
-/// A closed interval of a coordinate, m; unbounded unless said otherwise.
+/// A closed interval of a coordinate, m; either end may be infinite.
 struct Interval {
   double low;
   double high;
 };
 
-/// An elliptic cylinder along a coordinate axis; a point belongs to it when it lies inside.
+/// The inside of an infinite elliptic cylinder along a coordinate axis.
 struct CylinderRegion {
   int axis = 2;                       ///< 0, 1, 2 for x, y, z
   std::array<double, 2> center{};     ///< the two other coordinates in the order of the axes, m
@@ -30,7 +30,7 @@ struct NodeSetRule {
   std::optional<CylinderRegion> cylinder;
 };
 
-/// The nodes that a rule selects, sorted. An empty result is left to the caller to judge.
+/// The nodes that a rule selects, sorted; the caller decides whether the result may be empty.
 std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary,
                               const NodeSetRule& rule);
 

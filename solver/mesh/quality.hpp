@@ -10,7 +10,7 @@ double scaled_jacobian(const NodalVectors<double>& X);
 /// The smallest det(dX/dxi) at the eight Gauss points, m^3.
 double smallest_measure(const NodalVectors<double>& X);
 
-/// How good the elements of a mesh are, by their scaled Jacobians.
+/// The quality of the elements of a mesh: the distribution of their scaled Jacobians.
 struct QualityTable {
   struct Element {
     std::size_t number;      ///< in the mesh, from 0 on
@@ -22,10 +22,12 @@ struct QualityTable {
   std::array<int, 11> counts{};  ///< of elements at or below zero, and in each tenth of (0, 1]
   std::vector<Element> worst;    ///< at most ten, the worst first
 };
+
+/// The quality of all elements of a mesh.
 QualityTable quality_table(const Mesh& mesh);
 
-/// Throws InputError when an element has det(dX/dxi) <= 0 at a Gauss point; names the first ten with id,
-/// centre, det J.
+/// Throws InputError when an element has det(dX/dxi) <= 0 at a Gauss point; the error lists the first ten
+/// with number, centre and determinant.
 void require_positive_jacobians(const Mesh& mesh);
 
 }  // namespace sandglass

@@ -29,7 +29,7 @@ struct TaperedPanelMesh {
         Parameter{&M::elements, "elements", "-", Range::at_least(1), "hexahedra along x, y, z"}};
   }
 
-  /// Its elements are inverted where an upper end is not above the lower one.
+  /// The mesh; its elements are inverted if an upper end is not above the lower one.
   Mesh build() const;
 };
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::array<std::size_t, 2>, 12> edges{
     {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
-/// Calls visit(count) for every parameter of a generator that is a whole number, each a count of elements.
+/// Calls visit(count) for every integer parameter of a generator; all of them are counts of elements.
 template <class Generator, class Visit>
 void for_each_count(Generator& generator, const Visit& visit) {
   const auto look = [&]<class Owner, class Value>(const Parameter<Owner, Value>& parameter) {
@@ -38,7 +38,7 @@ int fewest_of(Generator generator) {
   return fewest;
 }
 
-/// The generator with other counts, at least 1: `change` makes a new count of an old one and the smallest.
+/// The generator with other counts, at least 1: `change(count, smallest)` gives the new count.
 template <class Change>
 AnyGenerator with_counts(AnyGenerator generator, const Change& change) {
   std::visit(
@@ -121,7 +121,7 @@ std::vector<int> zigzag(const Mesh& mesh) {
       reached.pop_back();
       for (const std::size_t next : neighbours[node]) {
         if (signs[next] == signs[node]) {
-          throw InputError("this mesh has no zigzag: an odd number of its edges closes a ring");
+          throw InputError("this mesh has no zigzag: it has a closed ring of an odd number of edges");
         }
         if (signs[next] != 0) continue;
         signs[next] = -signs[node];

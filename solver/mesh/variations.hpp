@@ -12,22 +12,23 @@ struct ElementCount {
   bool operator==(const ElementCount&) const = default;
 };
 
-/// All of them, in the order of the declarations.
+/// The element counts of a generator, in the order of their declarations.
 std::vector<ElementCount> element_counts(const AnyGenerator& generator);
 
-/// The same for people, as a case file says it: "core_elements = 10, shell_layers = 2".
+/// The element counts as in a case file: "core_elements = 10, shell_layers = 2".
 std::string counts_text(const AnyGenerator& generator);
 
 /// Coarser meshes of the same body: with one element less across the thinnest part, and with three quarters
-/// and half of all counts; each once, none like `generator` itself.
+/// and half of all counts, without duplicates and without `generator` itself.
 std::vector<AnyGenerator> coarser_meshes(const AnyGenerator& generator);
 
-/// The generator with so many elements across the thinnest part of its mesh, which is where it counts fewest,
-/// and its other counts of elements in proportion, at least 1.
+/// The generator with `elements` elements across the thinnest part of its mesh, which is the direction with
+/// the smallest count, and with its other counts in proportion, at least 1.
 AnyGenerator with_elements_across(AnyGenerator generator, int elements);
 
-/// +1 and -1 for the nodes, so that every edge of every hexahedron joins two that differ: the zigzag of all
-/// hourglass modes. Throws InputError where a mesh has none, because an odd number of edges closes a ring.
+/// +1 or -1 for each node, such that every edge of every hexahedron joins two different signs: the zigzag of
+/// all hourglass modes. Throws InputError if a mesh has none, because it has a closed ring of an odd number
+/// of edges.
 std::vector<int> zigzag(const Mesh& mesh);
 
 }  // namespace sandglass

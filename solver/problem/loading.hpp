@@ -4,7 +4,7 @@
 
 namespace sandglass {
 
-/// The paper's loading curve (eq. 15) over relative time: from 0 to 1 with no velocity and acceleration at
+/// The paper's loading curve (eq. 15) over relative time: from 0 to 1, with zero velocity and acceleration at
 /// both ends.
 constexpr double loading_curve(double relative_time) {
   const double t = std::clamp(relative_time, 0.0, 1.0);

@@ -163,10 +163,10 @@ class Simulation<Real>::Parts {
 
   void check() {
     leapfrog_.body().require_healthy(leapfrog_.step());
-    if (adaption_.active() && judgements_.due()) {
+    if (adaption_.active() && adaption_schedule_.due()) {
       const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
       if (rose) leapfrog_.body().evaluate_forces();
-      judgements_.done(rose);
+      adaption_schedule_.done(rose);
     }
     choose_step();
   }
@@ -180,7 +180,7 @@ class Simulation<Real>::Parts {
   Adaption<Real> adaption_;
   double step_fraction_;
   double step_size_ = 0.0;
-  Judgements judgements_;
+  AdaptionSchedule adaption_schedule_;
   std::vector<double> from_, to_, imposed_;  // m, in the order of the scene's constraints
   std::vector<PathTerms> terms_;             // of paths of each angle
   double factor_from_ = 0.0, factor_to_ = 0.0;

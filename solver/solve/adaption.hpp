@@ -6,20 +6,23 @@
 
 namespace sandglass {
 
-/// Elements go up at once. They may go down never, or where they need no more (at rest, at the end of the
-/// way), or, so that a motion does not send them up and down, where half as much would do.
+/// When elements are demoted; they are always promoted immediately. Demotion is possible never, or where a
+/// lower level suffices (at the full load), or, to avoid alternating during a motion, where a lower level
+/// would suffice for half the tolerance.
 enum class Demotion { never, where_enough, reluctant };
 
-/// When levels are chosen anew in a motion, counted in checks. To judge them costs about ten steps: often
-/// while elements rise, ever more seldom while none does. Elements only go up: in every vibration one that
-/// goes down where its hourglass modes pass through zero, and up again where they are wide, would take energy
-/// from nowhere.
-class Judgements {
+/// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it is
+/// frequent while elements are promoted, and becomes rarer while none is. Elements are only promoted: one
+/// that is demoted when its hourglass modes pass through zero, and promoted again when they are large, would
+/// pump energy into every vibration.
+class AdaptionSchedule {
  public:
+  /// Counts a check; whether levels are to be chosen at it.
   bool due() { return ++checks_ >= next_; }
 
-  void done(bool rose) {
-    wait_ = rose ? std::max(wait_ / 2, shortest) : std::min(2 * wait_, longest);
+  /// Sets the next check at which they are, from whether elements were promoted at this one.
+  void done(bool promoted) {
+    wait_ = promoted ? std::max(wait_ / 2, shortest) : std::min(2 * wait_, longest);
     next_ = checks_ + wait_;
   }
 
@@ -38,25 +41,25 @@ class Judgements {
   long next_ = shortest;
 };
 
-/// How an adaptive method chooses the levels of its elements while a body moves: an element may displace its
-/// nodes by no more than a share of the accuracy asked for. A node yields to a force as if its neighbours
-/// stood still, by the force over mu times the integral of |grad N|^2; neighbours that err, too, and the rest
-/// of the body make of it about twice as much, whatever the case, hence the half; how near that comes is
-/// held in adaptive_test.cpp.
+/// Chooses the levels of the elements of an adaptive method: the error of an element's force may displace its
+/// nodes by at most half the requested accuracy. The displacement of a node is estimated with its neighbours
+/// fixed, as the force over mu times the integral of |grad N|^2; errors of neighbouring elements and the
+/// motion of the rest of the body about double it, in all cases tried (adaptive_test.cpp), hence the half.
 /// Does nothing for other methods.
 template <class Real>
 class Adaption {
  public:
+  /// For a body of the model, with the accuracy of the model's method choice.
   Adaption(const Model& model, const Body<Real>& body);
 
   /// Whether there are levels to choose.
   bool active() const { return active_; }
 
-  /// New levels for the elements of the body as it stands; its forces are those of the old ones until they
-  /// are evaluated again.
+  /// Chooses the levels of the elements for the present displacements of a body. Its forces remain those of
+  /// the previous levels until they are evaluated again.
   Adaptation apply(Body<Real>& body, Demotion demotion);
 
-  /// What that has taken so far.
+  /// The time spent on it so far, s.
   double seconds() const { return seconds_; }
 
  private:

@@ -23,7 +23,7 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
       threads_(model.choice().threads),
       angles_(model.scene().angles),
       terms_(angles_.size()),
-      state_(elements.rest()),
+      state_(elements.undeformed()),
       force_(state_.u.size()),
       reactions_(model.scene().constraints.size(), 0.0),
       per_element_(model.scene().mesh.cells.size()) {

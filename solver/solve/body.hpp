@@ -7,39 +7,40 @@
 
 namespace sandglass {
 
-/// A model as the time loop sees it: its state in rows, the forces on it, and what the constraints impose and
-/// carry.
+/// A model in the form of the time loop: its state in rows, the forces on it, and its constraints with their
+/// reactions.
 template <class Real>
 class Body {
  public:
+  /// The undeformed body, without loads.
   Body(const Model& model, const InternalForce<Real>& elements);
 
+  /// The present state; see State.
   const State<Real>& state() const { return state_; }
   State<Real>& state() { return state_; }
 
-  /// Internal forces less the loads (N) of the last evaluation; zero on constrained components.
+  /// Internal forces minus loads (N) of the last evaluation; zero on constrained components.
   const Rows<Real>& free_forces() const { return force_; }
 
-  /// Internal forces less the loads (N) on constrained components, in the order of the scene's constraints:
-  /// the reactions of a body at rest.
+  /// Internal forces minus loads (N) on constrained components, in the order of the scene's constraints: the
+  /// reactions of a body in equilibrium.
   const std::vector<double>& reactions() const { return reactions_; }
 
-  /// Evaluates the internal forces of the state. The imposed increments have done their work then and are
-  /// cleared, so that an update of increments need not know of constraints.
+  /// Evaluates the forces of the state. Afterwards the increments of constrained components are cleared, so
+  /// that the update of increments can ignore constraints.
   void evaluate_forces();
 
-  /// |free forces| over the norm of reactions and loads together; the plain norm of the free forces (N) where
-  /// these are zero.
+  /// |free forces| over the norm of reactions and loads together; |free forces| (N) if these are zero.
   double residual() const;
 
-  /// The same where the square of the free forces' norm (N^2) is known already.
+  /// The same from the square of the norm of the free forces (N^2).
   double residual(double free_square) const;
 
-  /// Goes to displacements `target` (m); `impose` sets the constrained components afterwards.
+  /// Moves to displacements `target` (m); `impose` sets the constrained components afterwards.
   void move_to(const Rows<Real>& target);
 
-  /// Sets constrained components to where their paths are at a load factor, and their increments to the
-  /// change; from now on loads are `factor` times their final value.
+  /// Sets constrained components to their paths at a load factor, and their increments to the change; from
+  /// now on loads are `factor` times their final value.
   void impose(double factor);
 
   /// Sets constrained components, in the order of the scene's constraints, to `displacements` (m) and their
@@ -49,12 +50,12 @@ class Body {
   /// The present factor of the loads.
   double load_factor() const { return load_factor_; }
 
-  /// Sum over the nodes of final load times displacement, J: for each change of it the loads do the work of
-  /// their factor times that.
+  /// The sum over the nodes of final load times displacement, J. The work of the loads is their factor times
+  /// the change of this sum.
   double load_path() const;
 
-  /// One value for each node as rows, zero on constrained components and in spare rows: with inverse masses
-  /// a component moves where it may, without a branch.
+  /// Nodal values as rows, zero on constrained components and in spare rows: with inverse masses only free
+  /// components move, without a branch.
   Rows<Real> on_free_components(const std::vector<double>& nodal) const;
 
   /// The order of its rows.
@@ -63,7 +64,10 @@ class Body {
   /// Rows in the numbering of the mesh.
   NodalField field(const Rows<Real>& rows) const { return to_field(rows, layout()); }
 
+  /// Strain and hourglass energy, J.
   StrainEnergies energies() const { return elements_.energies(state_); }
+
+  /// A frame of the present state at `time` (s) with velocities v (m/s).
   Frame frame(double time, NodalField v) const;
 
   /// Throws ComputationError when a displacement is not finite or an element is inverted.
@@ -82,7 +86,7 @@ class Body {
 
   int threads() const { return threads_; }
 
-  /// What the next step or level reads; see checkpoint.hpp.
+  /// The data that the next step or load level depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
     archive("displacement", state_.u);
@@ -130,7 +134,7 @@ class Body {
   std::vector<double> per_element_;
 };
 
-/// A frame of a model at rest at displacements u (m), reached in one step.
+/// A frame of a model with displacements u (m), reached in one step, and zero velocities.
 Frame static_frame(const Model& model, double time, const NodalField& u);
 
 extern template class Body<double>;

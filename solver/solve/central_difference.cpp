@@ -17,7 +17,7 @@ namespace sandglass {
 
 namespace {
 
-/// The recipe's quantities, one function each; the order of calls is in `integrate_body`.
+/// The quantities of the scheme, one function each; the order of calls is in `integrate_body`.
 template <class Real>
 class CentralDifference {
  public:
@@ -37,7 +37,7 @@ class CentralDifference {
   double external_work() const { return work_; }
   double adaption_energy() const { return adaption_energy_; }
 
-  /// What the next step reads; see checkpoint.hpp.
+  /// The data that the next step depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
     leapfrog_.keep(archive);
@@ -51,7 +51,7 @@ class CentralDifference {
   /// Starts from the initial velocities.
   void set_initial_velocities() { leapfrog_.set_initial_velocities(model_.scene().initial_velocities); }
 
-  /// The next step: the user's, refused when unsafe, or a share of the stable one.
+  /// Sets the next step: the user's, rejected if unstable, or a share of the stable one.
   void choose_step() {
     const StableStep stable = stable_step(model_, body_.stiffness_bounds());
     if (settings_.time_step > 0.0) {
@@ -62,10 +62,10 @@ class CentralDifference {
     }
   }
 
-  /// Whether the end is reached, up to the rounding of a sum of steps.
+  /// Whether the end is reached, up to the roundoff of a sum of steps.
   bool finished() const { return time() >= settings_.duration * (1.0 - 1e-12); }
 
-  /// The next step. The last one is cut so that the run ends at its duration.
+  /// Takes the next step. The last one is shortened so that the run ends at its duration.
   void advance() {
     next_step_ = std::min(next_step_, settings_.duration - time());
     leapfrog_.advance(next_step_, [this](Body<Real>& body) { body.impose(loading(time())); });
@@ -89,9 +89,9 @@ class CentralDifference {
     load_path_ = path;
   }
 
-  /// New levels for the elements, which from now on pull with the forces of these: the energy that they store
-  /// more where they stand is none that anything did work for. `before` are the energies as they stand.
-  /// Returns whether there were any.
+  /// Promotes elements and evaluates their new forces. The increase of stored energy at the same
+  /// displacements, which no work balances, is added to the adaption energy; `before` are the energies before
+  /// it. Returns whether any element was promoted.
   bool adapt(Adaption<Real>& adaption, const StrainEnergies& before) {
     if (adaption.apply(body_, Demotion::never).promoted == 0) return false;
     body_.evaluate_forces();
@@ -101,7 +101,7 @@ class CentralDifference {
     return true;
   }
 
-  /// Velocities (m/s) at the time of the displacements; those of driven nodes by their paths.
+  /// Velocities (m/s) at the time of the displacements; those of driven nodes follow from their paths.
   NodalField velocities() const {
     NodalField v = leapfrog_.free_velocities();
     for (const auto& [node, component, path] : model_.scene().constraints) {
@@ -117,8 +117,8 @@ class CentralDifference {
   double loading(double time) const { return loading_curve(time / ramp_time()); }
   double loading_rate(double time) const { return loading_curve_rate(time / ramp_time()) / ramp_time(); }
 
-  /// How the terms of paths changed over the last step, from one load factor to another, and their second
-  /// derivatives by relative time.
+  /// Updates the changes of the terms of paths over the last step, from one load factor to the next, and
+  /// their second derivatives with respect to relative time.
   void follow_paths(double before, double now) {
     const double rate = loading_curve_rate(time() / ramp_time());
     const double acceleration = loading_curve_acceleration(time() / ramp_time());
@@ -133,12 +133,12 @@ class CentralDifference {
     }
   }
 
-  /// Force (N) that a constraint exerts: it holds against the body and accelerates the lumped mass.
+  /// The force (N) of a constraint: the reaction plus the inertia of the lumped mass.
   double constraint_force(std::size_t k) const {
     return body_.reactions()[k] + inertia(model_.scene().constraints[k]);
   }
 
-  /// Force (N) that accelerates the lumped mass of a driven component.
+  /// The force (N) that accelerates the lumped mass of a driven component.
   double inertia(const Constraint& constraint) const {
     const double mass = model_.masses()[static_cast<std::size_t>(constraint.node)], T = ramp_time();
     double force = 0.0;
@@ -177,7 +177,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   CentralDifference<Real> scheme(model, elements);
   Body<Real>& body = scheme.body();
   Adaption<Real> adaption(model, body);
-  Judgements judgements;
+  AdaptionSchedule adaption_schedule;
   Motion motion;
   int frames = 0;
   StrainEnergies energies;  // of the last report
@@ -201,7 +201,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   const auto keep = [&](auto archive) {
     scheme.keep(archive);
     archive("frames", frames);
-    judgements.keep(archive);
+    adaption_schedule.keep(archive);
     archive("smallest step", motion.smallest_step);
   };
   const auto checkpoint = [&] {
@@ -228,7 +228,8 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {
       body.require_healthy(scheme.step());
       report();
-      if (adaption.active() && judgements.due()) judgements.done(scheme.adapt(adaption, energies));
+      if (adaption.active() && adaption_schedule.due())
+        adaption_schedule.done(scheme.adapt(adaption, energies));
       scheme.choose_step();
       observer.resumable(checkpoint);
     }

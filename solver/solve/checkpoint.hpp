@@ -12,15 +12,15 @@
 
 namespace sandglass {
 
-/// Where a stepper stands at a point from which it can go on with the same bits: named arrays, whose meaning
-/// only it knows. A double holds every float, and every integer up to 2^53, exactly.
+/// The state of a stepper at a point from which it can be resumed with the same bits: named arrays, whose
+/// meaning only the stepper knows. A double represents every float, and every integer up to 2^53, exactly.
 struct Checkpoint {
   std::map<std::string, std::vector<double>> arrays;
 };
 
-/// Hands out what a stepper keeps. A stepper lists it once, in a template `keep(archive)` that calls
-/// archive(name, value) for a writer as for a reader, so that the two cannot differ. Values are numbers,
-/// vectors of numbers, and rows.
+/// Writes the state of a stepper into a checkpoint. A stepper lists its state once, in a template
+/// `keep(archive)` that calls archive(name, value), with a writer or a reader, so that the two cannot differ.
+/// Values are numbers, vectors of numbers, and rows.
 class CheckpointWriter {
  public:
   explicit CheckpointWriter(Checkpoint& checkpoint) : arrays_(checkpoint.arrays) {}
@@ -44,8 +44,8 @@ class CheckpointWriter {
   std::map<std::string, std::vector<double>>& arrays_;
 };
 
-/// Takes it back into values that have their sizes already. Throws InputError where an array is missing, has
-/// another size, or where an integer is none.
+/// Reads the state from a checkpoint into values that already have their sizes. Throws InputError if an array
+/// is missing or has another size, or if the value of an integer is not one.
 class CheckpointReader {
  public:
   explicit CheckpointReader(const Checkpoint& checkpoint) : arrays_(checkpoint.arrays) {}

@@ -25,14 +25,14 @@ CoarseGrid::Location CoarseGrid::locate(const Vector& point) const {
   for (std::size_t i = 3; i-- > 0;) {
     const double x = (point[i] - low_[i]) / size_[i];
     const int whole = std::clamp(static_cast<int>(x), 0, counts_[i] - 1);
-    location.cell = location.cell * count(i) + static_cast<std::size_t>(whole);
+    location.box = location.box * count(i) + static_cast<std::size_t>(whole);
     location.local[i] = x - whole;
   }
   return location;
 }
 
-std::array<std::size_t, 8> CoarseGrid::nodes_of(std::size_t cell) const {
-  const std::size_t x = cell % count(0), y = cell / count(0) % count(1), z = cell / count(0) / count(1);
+std::array<std::size_t, 8> CoarseGrid::nodes_of(std::size_t box) const {
+  const std::size_t x = box % count(0), y = box / count(0) % count(1), z = box / count(0) / count(1);
   std::array<std::size_t, 8> nodes;
   for (std::size_t k = 0; k < 8; ++k) {
     nodes[k] = x + (k & 1) + (count(0) + 1) * (y + (k >> 1 & 1) + (count(1) + 1) * (z + (k >> 2)));

@@ -14,7 +14,7 @@ std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// 1 for components that may move, 0 for others.
+/// 1 for free components, 0 for constrained ones.
 NodalField free_components(const Scene& scene) {
   NodalField free(scene.mesh.points.size(), Vector{1.0, 1.0, 1.0});
   for (const auto& constraint : scene.constraints) free[at(constraint.node)][at(constraint.component)] = 0.0;
@@ -33,12 +33,13 @@ Vector centre(const Mesh& mesh, const Hexahedron& cell) {
   return sum;
 }
 
-/// Whether the functions of a grid hardly bend within a hexahedron: it is not much wider than half a cell.
+/// Whether the functions of a grid are nearly linear within a hexahedron: it is not much wider than half a
+/// box.
 bool is_small(const Mesh& mesh, const Hexahedron& cell, const Vector& middle, const CoarseGrid& grid) {
   return std::all_of(cell.begin(), cell.end(), [&](int n) {
     bool near = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      near = near && std::abs(mesh.points[at(n)][i] - middle[i]) < 0.3 * grid.cell_size()[i];
+      near = near && std::abs(mesh.points[at(n)][i] - middle[i]) < 0.3 * grid.box_size()[i];
     }
     return near;
   });
@@ -51,18 +52,18 @@ CoarseStiffness::CoarseStiffness(const Scene& scene, const CoarseGrid& grid)
       size_(3 * grid.nodes()),
       lambda_(std::visit([](const auto& law) { return lame_lambda(law); }, scene.description.law)),
       mu_(std::visit([](const auto& law) { return law.shear_modulus(); }, scene.description.law)),
-      cells_(grid.cells()),
+      boxes_(grid.boxes()),
       fixed_(size_ * size_),
       matrix_(fixed_.size()),
       solver_(size_) {
-  for (std::size_t c = 0; c < cells_.size(); ++c) cells_[c].nodes = grid.nodes_of(c);
+  for (std::size_t c = 0; c < boxes_.size(); ++c) boxes_[c].nodes = grid.nodes_of(c);
   const NodalField free = free_components(scene);
   const auto& hexahedra = scene.mesh.cells;
   for (std::size_t e = 0; e < hexahedra.size(); ++e) {
     const Vector middle = centre(scene.mesh, hexahedra[e]);
     if (!touches_constraint(hexahedra[e], free) && is_small(scene.mesh, hexahedra[e], middle, grid)) {
-      const auto [cell, local] = grid.locate(middle);
-      cells_[cell].elements.push_back({e, local});
+      const auto [box, local] = grid.locate(middle);
+      boxes_[box].elements.push_back({e, local});
     } else {
       add_fixed_element(scene, hexahedra[e], free);
     }
@@ -77,7 +78,7 @@ void CoarseStiffness::add_fixed_element(const Scene& scene, const Hexahedron& ce
   for (int I = 0; I < 8; ++I) {
     const std::size_t n = at(cell[at(I)]);
     const auto location = grid_.locate(scene.mesh.points[n]);
-    const auto nodes = grid_.nodes_of(location.cell);
+    const auto nodes = grid_.nodes_of(location.box);
     const auto w = CoarseGrid::weights(location.local);
     for (std::size_t k = 0; k < 8; ++k) {
       if (w[k] == 0.0) continue;
@@ -119,7 +120,7 @@ void CoarseStiffness::add_element(Products& T, const std::array<Vector, 8>& refe
 
 void CoarseStiffness::assemble() {
   matrix_ = fixed_;
-  for (const auto& [nodes, elements, T] : cells_) {
+  for (const auto& [nodes, elements, T] : boxes_) {
     for (std::size_t a = 0; a < 8; ++a) {
       for (std::size_t b = 0; b < 8; ++b) {
         const double* const corner = T.data() + 72 * a + 3 * b;

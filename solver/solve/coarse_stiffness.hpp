@@ -7,50 +7,51 @@
 
 namespace sandglass {
 
-/// The deformation of one element as the coarse stiffness sees it.
+/// The deformation of one element as the coarse stiffness uses it.
 struct ElementTangent {
   Tensor<double> inverse;  ///< F^-1
   double volume;           ///< reference volume, m^3
 };
 
-/// The tangent stiffness on a coarse grid, factorised, by the law's moduli at rest (N/m). Elements that
-/// are free and small see the gradients of the grid's functions at their centre, pushed forward with their
-/// own deformation. Elements that touch a constraint, or are no smaller than the grid's cells, see the
-/// functions as their nodes take them, exactly, but stay as they are at rest.
+/// The factorised tangent stiffness (N/m) on a coarse grid, with the law's initial moduli. Free and small
+/// elements use the gradients of the grid's functions at their centre, pushed forward with their own
+/// deformation. Elements that touch a constraint, or are not smaller than boxes of the grid, use the exact
+/// nodal values of the functions, but in the undeformed state.
 class CoarseStiffness {
  public:
+  /// Sorts the elements of a scene into the boxes of the grid; `update` must follow.
   CoarseStiffness(const Scene& scene, const CoarseGrid& grid);
 
   std::size_t size() const { return size_; }
 
-  /// Takes the tangent at a deformation and factorises it. `tangent_of(e)` gives the ElementTangent of
+  /// Assembles and factorises the tangent at a deformation, where `tangent_of(e)` is the ElementTangent of
   /// element e.
   template <class TangentOf>
   void update(const TangentOf& tangent_of, int threads) {
-    in_parallel(cells_.size(), threads, [&](std::size_t c) {
-      Products& T = cells_[c].products;
+    in_parallel(boxes_.size(), threads, [&](std::size_t c) {
+      Products& T = boxes_[c].products;
       T.fill(0.0);
-      for (const auto& [element, local] : cells_[c].elements)
+      for (const auto& [element, local] : boxes_[c].elements)
         add_element(T, grid_.gradients(local), tangent_of(element));
     });
     assemble();
     solver_.factorise(matrix_);
   }
 
-  /// c = A^-1 q. What a function adds that only moves constrained nodes is zero.
+  /// c = A^-1 q; zero for functions that move only constrained nodes.
   void solve(const CoarseVector& q, CoarseVector& c) { solver_.solve(q, c); }
 
  private:
-  /// Sums of V G_ai G_bj over the elements of a cell, G_a the gradients of its eight functions.
+  /// Sums of V G_ai G_bj over the elements of a box, G_a the gradients of its eight functions.
   using Products = std::array<double, std::size_t{24} * 24>;
 
   struct Element {
     std::size_t index;
-    std::array<double, 3> local;  ///< where its centre lies
+    std::array<double, 3> local;  ///< place of its centre in the box
   };
-  struct Cell {
+  struct Box {
     std::array<std::size_t, 8> nodes;
-    std::vector<Element> elements;  ///< free and small, by their centres
+    std::vector<Element> elements;  ///< free and small ones with their centre in the box
     Products products;
   };
 
@@ -64,8 +65,8 @@ class CoarseStiffness {
   std::size_t size_;
   double lambda_;
   double mu_;
-  std::vector<Cell> cells_;
-  std::vector<double> fixed_;   // what does not follow the deformation
+  std::vector<Box> boxes_;
+  std::vector<double> fixed_;   // part of A that does not follow the deformation
   std::vector<double> matrix_;  // A, by rows
   SemidefiniteSolver solver_;
 };

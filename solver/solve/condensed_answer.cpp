@@ -31,8 +31,8 @@ NodalField forces_of_rotations(const Model& model, const Handles& handles) {
   return forces;
 }
 
-/// Displacements (m) of all nodes at the full load, and how long it takes to superpose them (s), the best of
-/// a few times.
+/// Displacements (m) of all nodes at the full load, and the shortest of several times (s) for superposing
+/// them.
 template <class Real>
 std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
@@ -64,7 +64,7 @@ std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layou
   return {std::move(rows), seconds};
 }
 
-/// Work (J) of the imposed displacements on the way from rest; a linear body stores the same on every way.
+/// Work (J) of the imposed displacements from the undeformed state; it does not depend on the path.
 double work_of(const Scene& scene, const std::vector<double>& reactions) {
   double work = 0.0;
   for (std::size_t k = 0; k < reactions.size(); ++k) {
@@ -97,7 +97,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   if (settings.max_steps > 0) {
     result.steps = 1;
     result.converged = result.residual < settings.tolerance;
-    result.stagnated = !result.converged && result.residual < 1e4 * epsilon;  // as Stagnation has it
+    result.stagnated = !result.converged && result.residual < 1e4 * epsilon;  // as in Stagnation
     result.interrupted = !observer.proceed(1, 1.0, result.residual);
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,

@@ -4,8 +4,8 @@
 
 namespace sandglass {
 
-/// The static answer of a condensed method: the response of the driven sets times their displacements. One
-/// evaluation of the forces tells its residual. Throws as CondensedResponse does, and ComputationError when
+/// The static answer of a condensed method: the response of the driven sets times their displacements. Its
+/// residual is computed by one evaluation of the forces. Throws as CondensedResponse, and ComputationError if
 /// an element is inverted.
 Relaxation condensed_answer(const Model& model, Observer& observer);
 

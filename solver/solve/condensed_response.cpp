@@ -22,7 +22,7 @@ std::size_t index(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// The nodes that are connected by an element with each node, if both have components that can move.
+/// For each node the nodes that share an element with it, if both have free components.
 std::vector<std::vector<int>> neighbours_of(const Mesh& mesh, const std::vector<int>& components) {
   std::vector<std::set<int>> sets(mesh.points.size());
   for (const auto& cell : mesh.cells) {
@@ -38,7 +38,7 @@ std::vector<std::vector<int>> neighbours_of(const Mesh& mesh, const std::vector<
   return neighbours;
 }
 
-/// K_ff of a model, factorised, and the numbers of its rows.
+/// The factorised K_ff of a model, and the numbers of its rows.
 class FreeStiffness {
  public:
   explicit FreeStiffness(const Model& model)
@@ -55,8 +55,8 @@ class FreeStiffness {
     factor_.factorise();
   }
 
-  /// Sets the free components of u (m) so that the forces f (N), which are those at zero free displacements,
-  /// vanish there.
+  /// Sets the free components of u (m) such that forces vanish there, given the forces f (N) at zero free
+  /// displacements.
   void balance(const NodalField& f, NodalField& u) {
     for (std::size_t n = 0; n < row_.size(); ++n) {
       if (row_[n] >= 0) right_side_[index(row_[n])] = -f[n / 3][n % 3];
@@ -72,10 +72,10 @@ class FreeStiffness {
     return 3 * index(cell[index(m / 3)]) + index(m % 3);
   }
 
-  /// Numbers the free components, -1 for the others, layer by layer of their nodes; the layers start beside
-  /// one of the driven sets, whichever gives the least work. Returns the sizes of the layers.
+  /// Numbers the free components, -1 for the others, by layers of their nodes, which start next to the driven
+  /// set that minimises the work. Returns the sizes of the layers.
   std::vector<int> number_rows(const Scene& scene) {
-    std::vector<int> components(scene.mesh.points.size(), 3);  // that are free, of each node
+    std::vector<int> components(scene.mesh.points.size(), 3);  // number of free ones of each node
     for (const auto& c : scene.constraints) {
       row_[3 * index(c.node) + index(c.component)] = -1;
       --components[index(c.node)];
@@ -121,10 +121,11 @@ class FreeStiffness {
       before = size;
     }
     if (bytes <= most) return;
-    throw ComputationError(fmt::format(
-        "to factorise the stiffness takes {:.3g} GB, more than the {:.3g} GB that are allowed; remedy: a "
-        "coarser mesh, or a method that takes steps",
-        1e-9 * bytes, 1e-9 * most));
+    throw ComputationError(
+        fmt::format("factorising the stiffness takes {:.3g} GB, more than the allowed {:.3g} GB; remedy: a "
+                    "coarser mesh, or "
+                    "a method that takes steps",
+                    1e-9 * bytes, 1e-9 * most));
   }
 
   static std::vector<std::string> imposed_sets(const Case& description) {
@@ -134,7 +135,7 @@ class FreeStiffness {
     return sets;
   }
 
-  /// The nodes that can move and share an element with a set.
+  /// The free nodes that share an element with a set.
   static std::vector<int> nodes_beside(const Scene& scene, const std::string& set,
                                        const std::vector<int>& components) {
     std::vector<bool> member(scene.mesh.points.size(), false);
@@ -216,14 +217,13 @@ CondensedResponse<Real>::CondensedResponse(const Model& model, const Handles& ha
       load_share_(columns() * loads_) {
   const Scene& scene = model.scene();
   if (scene.constraints.empty()) {
-    throw InputError(fmt::format(
-        "{}: method '{}' answers imposed displacements, and nothing is imposed; add a [[displacement]]",
-        scene.description.file.string(), model.choice().method));
+    throw InputError(fmt::format("{}: method '{}' needs an imposed displacement; add a [[displacement]]",
+                                 scene.description.file.string(), model.choice().method));
   }
   const Model exact(scene, {.method = model.choice().method, .kappa = model.choice().kappa});
   FreeStiffness K_ff(exact);
   response_.reserve(3 * (columns() + loads_) * outputs_.size());
-  // Balances u against a load, keeps it as a column, and calls take(row, force) for what handles carry.
+  // Balances u against a load, stores it as a column, and calls take(row, force) for the forces of handles.
   const auto add_column = [&](NodalField u, const NodalField& load, const auto& take) {
     K_ff.balance(difference(internal_forces(exact, u), load), u);
     const NodalField f = difference(internal_forces(exact, u), load);

@@ -8,21 +8,20 @@ namespace sandglass {
 /// The scalars of nonlinear conjugate gradients with one force evaluation per step. Storage, number type and
 /// preconditioner P are the caller's: sums over nodes come in, coefficients of the nodal updates go out.
 ///
-/// The force f is evaluated at the trial u + length() p. With d = f - g its secant along p tells where the
-/// slope vanishes; force and displacement move there without another evaluation, and the next direction
-/// follows:
+/// The force f is evaluated at the trial u + length() p. From d = f - g, its secant along p, follows where
+/// the slope vanishes; force and displacement are moved there without another evaluation, and the next
+/// direction follows:
 ///   g <- g + move() d,   u <- u + move() length p,   p <- turn() p - P g.
-/// A force that is linear along p is followed exactly. What is not linear is forgotten: each step multiplies
-/// the error of g by 1 - move(), and a trial whose secant says that move() is below 1/3 or above 3 is
-/// repeated at a better length. turn() is Polak and Ribiere's, never negative (Nocedal and Wright 2006,
-/// section 5.2).
+/// This is exact for a force that is linear along p. The error due to nonlinearity decays: each step
+/// multiplies the error of g by 1 - move(), and a trial with move() below 1/3 or above 3 is repeated with a
+/// better length. turn() is that of Polak and Ribiere, at least zero (Nocedal and Wright 2006, section 5.2).
 class ConjugateGradient {
  public:
   /// What to do after a trial.
-  enum class Verdict {
+  enum class Action {
     move,   ///< update u, g and p
     retry,  ///< keep u, g and p, and evaluate at the new length()
-    fail    ///< no length along p gives a number
+    fail    ///< no length along p gives finite forces
   };
 
   /// Sums over nodes after an evaluation.
@@ -54,14 +53,15 @@ class ConjugateGradient {
   double move() const { return move_; }
   double turn() const { return turn_; }
 
-  /// Takes the sums of the updated direction.
+  /// Sets the sums of the updated direction.
   void take(const DirectionSums& sums) { direction_ = sums; }
 
-  Verdict judge(const TrialSums& sums) {
+  /// The next action after a trial; sets length(), move() and turn().
+  Action assess(const TrialSums& sums) {
     if (!std::isfinite(sums.p_d) || !std::isfinite(sums.d_P_d)) return retry(1.0 / farthest);
     if (direction_.g_p >= 0.0 || sums.p_d <= 0.0) {
       restart();
-      return Verdict::move;
+      return Action::move;
     }
     move_ = -direction_.g_p / sums.p_d;
     if ((move_ < 1.0 / 3.0 || move_ > 3.0) && retries_ < most_retries) {
@@ -71,14 +71,14 @@ class ConjugateGradient {
     turn_ = std::max(0.0, move_ * (sums.g_P_d + move_ * sums.d_P_d) / direction_.g_P_g);
     length_ *= move_;
     retries_ = 0;
-    return Verdict::move;
+    return Action::move;
   }
 
  private:
   static constexpr double farthest = 8.0;  ///< largest change of length between two trials
   static constexpr int most_retries = 6;
 
-  /// Steepest descent from the trial: where there is no minimum along p.
+  /// Steepest descent from the trial, if there is no minimum along p.
   void restart() {
     move_ = 1.0;
     turn_ = 0.0;
@@ -86,9 +86,9 @@ class ConjugateGradient {
     retries_ = 0;
   }
 
-  Verdict retry(double factor) {
+  Action retry(double factor) {
     length_ *= factor;
-    return ++retries_ > most_retries ? Verdict::fail : Verdict::retry;
+    return ++retries_ > most_retries ? Action::fail : Action::retry;
   }
 
   DirectionSums direction_;
@@ -98,14 +98,14 @@ class ConjugateGradient {
   int retries_ = 0;
 };
 
-/// Tells when a residual has reached the rounding of the number type: it is below ten thousand units of
-/// rounding, and has not halved in 50 evaluations.
+/// Detects that a residual has reached the roundoff of the number type: it is below ten thousand epsilon, and
+/// has not halved in 50 evaluations.
 class Stagnation {
  public:
   /// `epsilon` is the number type's.
   explicit Stagnation(double epsilon) : reachable_(1e4 * epsilon) {}
 
-  /// Takes the residual of one more evaluation.
+  /// Records the residual of another evaluation.
   void take(double residual) {
     ++waited_;
     if (residual < 0.5 * halved_) {
@@ -118,7 +118,7 @@ class Stagnation {
 
  private:
   double reachable_;
-  double halved_ = INFINITY;  ///< smallest residual, but for less than a half
+  double halved_ = INFINITY;  ///< the residual when it last halved
   long waited_ = 0;
 };
 

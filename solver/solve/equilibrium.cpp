@@ -12,7 +12,7 @@ double dot(const CoarseVector& a, const CoarseVector& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Sums of products over the rows of a block, a vector of lanes for each of N sums.
+/// N sums of products over the rows of a block, each as a vector of lanes.
 template <class Real, std::size_t N>
 class LaneSums {
  public:
@@ -58,7 +58,7 @@ Equilibrium<Real>::Equilibrium(const Model& model, const InternalForce<Real>& el
       solved_g_(coarse_g_.size()),
       solved_d_(coarse_g_.size()) {}
 
-/// Without force and direction so far, the first step takes the whole force and descends steepest.
+/// With g and p zero, the first step takes the whole force, in the direction of steepest descent.
 template <class Real>
 void Equilibrium<Real>::begin() {
   preconditioner_.update(body_);
@@ -83,14 +83,14 @@ void Equilibrium<Real>::restart() {
 
 template <class Real>
 bool Equilibrium<Real>::step() {
-  switch (method_.judge(sums_)) {
-    case ConjugateGradient::Verdict::move:
+  switch (method_.assess(sums_)) {
+    case ConjugateGradient::Action::move:
       advance();
       break;
-    case ConjugateGradient::Verdict::retry:
+    case ConjugateGradient::Action::retry:
       retry();
       break;
-    case ConjugateGradient::Verdict::fail:
+    case ConjugateGradient::Action::fail:
       return false;
   }
   evaluate();
@@ -104,7 +104,7 @@ void Equilibrium<Real>::evaluate() {
   compare();
 }
 
-/// The sums with d = f - g, d on the coarse grid, and the residual.
+/// Computes the sums with d = f - g, d on the coarse grid, and the residual.
 template <class Real>
 void Equilibrium<Real>::compare() {
   const Real *f = numbers_of(body_.free_forces()), *g = numbers_of(g_), *p = numbers_of(p_);
@@ -170,7 +170,7 @@ void Equilibrium<Real>::advance() {
   length_ = method_.length();
 }
 
-/// Another trial along the same direction.
+/// Moves to another trial along the same direction.
 template <class Real>
 void Equilibrium<Real>::retry() {
   const auto change = static_cast<Real>(method_.length() - length_);

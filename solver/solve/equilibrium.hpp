@@ -6,36 +6,38 @@
 
 namespace sandglass {
 
-/// The search for balanced forces of a body at fixed imposed displacements, by preconditioned conjugate
-/// gradients. One evaluation of the forces and two passes over the rows per step: the first reads the forces
-/// f, g and p, the second f, g, p and u, and writes g, p and u; both read the preconditioner's blocks.
+/// The search for the equilibrium of a body at fixed imposed displacements, by preconditioned conjugate
+/// gradients. A step takes one evaluation of the forces and two passes over the rows: the first reads the
+/// forces f, g and p, the second reads f, g, p and u and writes g, p and u; both read the preconditioner's
+/// blocks.
 template <class Real>
 class Equilibrium {
  public:
+  /// For the undeformed body of the model; `start` must follow.
   Equilibrium(const Model& model, const InternalForce<Real>& elements);
 
-  /// The body; its forces and displacements are those of the last evaluation. Who moves it says so in its
-  /// increment.
+  /// The body; its forces and displacements are those of the last evaluation. Callers that move it must set
+  /// its increment.
   Body<Real>& body() { return body_; }
   const Body<Real>& body() const { return body_; }
 
-  /// Takes the tangent of the body, no element of which may be inverted, for preconditioner; begins where the
-  /// body is. One evaluation.
+  /// Starts from the present displacements, at which no element may be inverted, with their tangent as
+  /// preconditioner. Takes one evaluation.
   void start();
 
-  /// The same where the forces are known already.
+  /// The same with forces that are already evaluated.
   void restart();
 
-  /// One evaluation; false when the forces are no numbers however short the step.
+  /// Takes one step with one evaluation; false if the forces are not finite for any length of the step.
   bool step();
 
-  /// That of the last evaluation.
+  /// The residual of the last evaluation; see Body::residual.
   double residual() const { return residual_; }
 
   /// Evaluations of the forces since construction.
   long evaluations() const { return evaluations_; }
 
-  /// What `start` reads; see checkpoint.hpp.
+  /// The data that `start` depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
     archive("evaluations", evaluations_);

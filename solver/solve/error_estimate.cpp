@@ -24,7 +24,8 @@ ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   const double enough = std::max(share_left * search.residual(), scene.description.relaxation.tolerance);
   while (search.residual() > enough) {
     if (!search.step()) {
-      throw ComputationError("the mean-dilatation element found no way on from this answer: no estimate");
+      throw ComputationError(
+          "the mean-dilatation element's forces are not finite near this answer: no estimate");
     }
   }
   const NodalField better = search.body().field(search.body().state().u);

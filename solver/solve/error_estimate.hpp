@@ -4,18 +4,17 @@
 
 namespace sandglass {
 
-/// How far an answer is from that of the mean-dilatation element on the same mesh, the explicit twin of the
-/// mixed element.
+/// The distance of an answer from that of the mean-dilatation element on the same mesh.
 struct ErrorEstimate {
   double largest = 0.0;  ///< over all nodes, m
   double rms = 0.0;      ///< m
-  long evaluations = 0;  ///< of the mean-dilatation element's forces, that it took
+  long evaluations = 0;  ///< number of evaluations of the mean-dilatation element's forces
 };
 
-/// The estimate for a quasi-static answer u (m) of any method: the mean-dilatation element is brought towards
-/// rest from there, until the forces out of balance, which are those that the methods differ by, have fallen
-/// to a hundredth; what is left of them moves nodes by about as small a share of the estimate. Throws
-/// ComputationError when the element finds no way on.
+/// The estimate for a quasi-static answer u (m) of any method. The mean-dilatation element is relaxed from
+/// there until its residual, at first the difference between the two methods' forces, has fallen to a
+/// hundredth; the remaining residual displaces nodes by about the same share of the estimate. Throws
+/// ComputationError if an element is inverted at u or the search fails.
 ErrorEstimate estimate_error(const Model& model, const NodalField& u);
 
 }  // namespace sandglass

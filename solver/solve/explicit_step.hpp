@@ -4,22 +4,23 @@
 
 namespace sandglass {
 
-/// The step that a dynamic run repeats: one pass over the nodes, the imposed displacements, the forces. What
-/// chooses its coefficients stands in central_difference.cpp; what times it, in benchmark/.
+/// One step of a dynamic run: a pass over the nodes, the imposed displacements, the forces. Leapfrog chooses
+/// its coefficients; suite/benchmark/ measures its time.
 template <class Real>
 class ExplicitStep {
  public:
+  /// For the undeformed body of the model.
   ExplicitStep(const Model& model, const InternalForce<Real>& elements);
 
   Body<Real>& body() { return body_; }
   const Body<Real>& body() const { return body_; }
 
-  /// 1/kg of the lumped masses, zero where a component may not move.
+  /// Inverse lumped masses, 1/kg; zero on constrained components.
   const Rows<Real>& inverse_masses() const { return inverse_masses_; }
 
-  /// One step of `step` s: increment := keep * increment - gain * force / mass, with gain in s^2, and u := u
-  /// + increment; then `impose(body)` sets constrained components and loads, and the forces are evaluated
-  /// there. Allocates nothing.
+  /// Takes a step of `step` s: increment := keep * increment - gain * force / mass, with gain in s^2, and
+  /// u := u + increment; then `impose(body)` sets constrained components and loads, and the forces are
+  /// evaluated. Allocates nothing.
   template <class Impose>
   void take(double step, double keep, double gain, const Impose& impose) {
     move(step, keep, gain);

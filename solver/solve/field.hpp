@@ -6,7 +6,7 @@
 
 namespace sandglass {
 
-/// Sum over nodes of weight times the scalar product of two fields.
+/// The sum over nodes of weight times the scalar product of two fields.
 inline double weighted_dot(const std::vector<double>& weight, const NodalField& a, const NodalField& b) {
   double sum = 0.0;
   for (std::size_t n = 0; n < a.size(); ++n) {

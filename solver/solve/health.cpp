@@ -25,8 +25,8 @@ void require_healthy(std::span<const double> jacobians, long step) {
   const std::string text = fmt::format(
       "step {}: {} of {} elements {}; det F must be positive; the first {}:{}\n"
       "remedy: {}",
-      step, ill, jacobians.size(), finite ? "are inverted" : "hold no finite number any more",
-      std::min(ill, 10), listed,
+      step, ill, jacobians.size(), finite ? "are inverted" : "are no longer finite", std::min(ill, 10),
+      listed,
       finite ? "impose less displacement or more slowly (levels, ramp_time), refine the mesh, or use an "
                "hourglass "
                "control (method tl-perturbation or tl-mean-dilatation)"

@@ -81,10 +81,10 @@ void LayeredCholesky::factorise() {
     }
     Eigen::Ref<Eigen::MatrixXd> in_place(D);
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(in_place);
-    // A pivot that roundoff alone keeps from zero is none.
+    // A pivot of the size of roundoff counts as zero.
     if (factor.info() != Eigen::Success || D.diagonal().array().square().minCoeff() < 1e-13 * largest) {
       throw ComputationError(fmt::format(
-          "the stiffness is not positive definite (layer {} of {}): a part of the body may move freely; "
+          "the stiffness is not positive definite (layer {} of {}): a part of the body is free to move; "
           "remedy: impose displacements that hold every part, and a kappa above 0",
           k, layers_.size()));
     }

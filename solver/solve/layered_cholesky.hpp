@@ -6,25 +6,26 @@
 
 namespace sandglass {
 
-/// A graph's vertices in layers such that neighbours are in the same layer or in adjacent ones: all that are
-/// n edges away from the vertices `first` are layer n. What they do not reach starts layers of its own.
+/// The vertices of a graph in layers such that neighbours are in the same layer or in adjacent ones: layer n
+/// consists of those at a distance of n edges from the vertices `first`. Components of the graph without such
+/// vertices get layers of their own.
 std::vector<std::vector<int>> layers_from(const std::vector<int>& first,
                                           const std::vector<std::vector<int>>& neighbours);
 
-/// The Cholesky factorisation A = L L^T of a symmetric, positive definite matrix whose rows stand in layers
-/// that meet only their neighbours: a block tridiagonal matrix with dense blocks, eliminated layer by layer.
-/// It takes about 7/3 sum w^3 operations and 2 sum w^2 numbers for layers of w rows, nearly all in products
-/// of dense blocks, which a processor does fastest.
+/// The Cholesky factorisation A = L L^T of a symmetric, positive definite matrix whose rows are in layers
+/// coupled only with adjacent layers: a block tridiagonal matrix with dense blocks, eliminated layer by
+/// layer. It takes about 7/3 sum w^3 operations and 2 sum w^2 numbers for layers of w rows, nearly all in
+/// products of dense blocks.
 class LayeredCholesky {
  public:
-  /// `sizes`: rows of each layer. Rows are numbered through.
+  /// `sizes` are the numbers of rows of the layers. Rows are numbered consecutively.
   explicit LayeredCholesky(const std::vector<int>& sizes);
 
-  /// Adds to an entry of A; entries above the diagonal are those below it and are left out. Row and column
-  /// must be in the same or in adjacent layers.
+  /// Adds to an entry of A; entries above the diagonal are ignored. Row and column must be in the same or in
+  /// adjacent layers.
   void add(int row, int column, double value);
 
-  /// Factorises; from then on A is gone. Throws ComputationError when A is not positive definite.
+  /// Replaces A by its factor. Throws ComputationError if A is not positive definite.
   void factorise();
 
   /// b := A^-1 b.

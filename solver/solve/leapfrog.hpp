@@ -4,16 +4,16 @@
 
 namespace sandglass {
 
-/// Throws InputError when the model's method takes no steps but superposes static answers.
+/// Throws InputError if the model's method superposes static answers instead of taking steps.
 void require_steps(const Model& model);
 
-/// Central differences with lumped masses and steps that may change. Displacements stand at `time`,
-/// velocities half a step before, as increments over the time in which they came about. A copy goes its own
-/// way on the same model.
+/// Central differences with lumped masses and variable steps. Displacements are those at `time`, velocities
+/// those half a step before, stored as increments over `increment_time_`. A copy is an independent simulation
+/// of the same model.
 template <class Real>
 class Leapfrog {
  public:
-  /// At rest. `damping` is mass-proportional, 1/s.
+  /// Undeformed and at rest. `damping` is mass-proportional, 1/s.
   Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping)
       : explicit_step_(model, elements), damping_(damping) {}
 
@@ -24,12 +24,13 @@ class Leapfrog {
   long step() const { return step_; }
   double step_size() const { return step_size_; }  ///< s, the step that led here
 
-  /// Starts from velocities (m/s), or from rest where there are none: before the first step they are
-  /// increments over 1 s. Imposed components do not obey them.
+  /// Sets velocities (m/s) before the first step, stored as increments over 1 s; an empty field means at
+  /// rest. They do not apply to constrained components.
   void set_initial_velocities(const NodalField& v);
 
-  /// v(t + dt/2) from v(t - dt_old/2), u(t + dt) with it, and the forces there: the two half steps share the
-  /// acceleration and the damping at t. `impose(body)` sets constrained components and loads at the new time.
+  /// Advances by `next_step` (s): v(t + dt/2) from v(t - dt_old/2), then u(t + dt) and its forces. Both half
+  /// steps use the acceleration and the damping at t. `impose(body)` sets constrained components and loads at
+  /// the new time.
   template <class Impose>
   void advance(double next_step, const Impose& impose) {
     const double dt = 0.5 * (step_size_ + next_step);
@@ -43,11 +44,11 @@ class Leapfrog {
     explicit_step_.take(step_size_, keep, gain, impose);
   }
 
-  /// Velocities (m/s) at the time of the displacements: the mean of the half steps before and after, damping
-  /// included. Those of constrained components are zero.
+  /// Velocities (m/s) at the time of the displacements: the mean of those half a step before and after,
+  /// damping included; zero on constrained components.
   NodalField free_velocities() const;
 
-  /// What the next step reads; see checkpoint.hpp.
+  /// The data that the next step depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
     body().keep(archive);

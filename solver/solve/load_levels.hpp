@@ -10,10 +10,10 @@
 
 namespace sandglass {
 
-/// A load so small that elements hold it wherever it acts. Imposed nodes move by a hundredth of
-/// the smallest element at most; and a cantilever as long as the mesh and as thick as that element, its
-/// modulus the shear modulus, would turn by about a hundredth under the sum of the imposed forces: F l^2 / (2
-/// E I) with I = h^4 / 12, moments counting as forces at the end of l.
+/// A load factor so small that no element inverts wherever the load acts. Driven nodes move by at most a
+/// hundredth of the smallest element's size h; and a cantilever as long as the mesh and as thick as that
+/// element, with the shear modulus for E, would rotate by about a hundredth under the sum F of the imposed
+/// forces, by F l^2 / (2 E I) with I = h^4 / 12, where moments count as forces at the end of l.
 inline double first_load(const Model& model) {
   const Scene& scene = model.scene();
   const auto& masses = model.element_masses();
@@ -28,7 +28,7 @@ inline double first_load(const Model& model) {
   return std::min({1.0, 0.01 * h / fastest_imposed(scene), 0.01 / turn});
 }
 
-/// Largest norm of an element's mean displacement gradient, -.
+/// The largest norm of an element's mean displacement gradient.
 inline double largest_gradient(const Mesh& mesh, const NodalField& u) {
   double square = 0.0;
   for (const auto& cell : mesh.cells) {
@@ -39,42 +39,43 @@ inline double largest_gradient(const Mesh& mesh, const NodalField& u) {
   return std::sqrt(square);
 }
 
-/// The loads between which levels lie: 0, the whole, and for each cycle a tenth and the whole again. A tenth,
-/// not nothing, because residuals are told over the reactions.
+/// The turning points of the load: 0, the full load, and for each cycle a tenth and the full load again; a
+/// tenth instead of zero, because residuals are relative to reactions.
 inline std::vector<double> turning_loads(int cycles) {
   std::vector<double> loads{0.0, 1.0};
   for (int n = 0; n < cycles; ++n) loads.insert(loads.end(), {0.1, 1.0});
   return loads;
 }
 
-/// The levels of what is imposed: how far to go, and where to start. Loads are relative to the case's.
+/// The load levels of a search: their loads, relative to the case's, and the displacements to start from.
 template <class Real>
 class LoadLevels {
  public:
-  LoadLevels(const Model& model, const Body<Real>& at_rest)
+  /// Starts from an undeformed body.
+  LoadLevels(const Model& model, const Body<Real>& undeformed)
       : model_(model),
         turns_(turning_loads(model.scene().description.relaxation.cycles)),
         load_(first_load(model)),
-        before_(at_rest.state().u),
-        last_(at_rest.state()) {}
+        before_(undeformed.state().u),
+        last_(undeformed.state()) {}
 
   double load() const { return load_; }
   double increment() const { return load_ - last_load_; }
 
-  /// Whether this level is the last.
+  /// Whether this load level is the last.
   bool full() const { return leg_ + 1 == turns_.size() && load_ == turns_.back(); }
 
-  /// What was gone of the way through all loads, there and back.
+  /// The length of the path through all loads up to here.
   double travelled() const { return before_leg_ + std::abs(load_ - turns_[leg_ - 1]); }
 
-  /// The whole way.
+  /// The length of the whole path.
   double way() const {
     double sum = 0.0;
     for (std::size_t n = 1; n < turns_.size(); ++n) sum += std::abs(turns_[n] - turns_[n - 1]);
     return sum;
   }
 
-  /// How the terms of paths of each angle change over this level.
+  /// The changes of the terms of paths of each angle over this load level.
   std::vector<PathTerms> moved() const {
     std::vector<PathTerms> changes;
     for (const double angle : model_.scene().angles) {
@@ -84,7 +85,7 @@ class LoadLevels {
     return changes;
   }
 
-  /// Moves a body that is at the last level along the line through the last two, and imposes this load.
+  /// Extrapolates a body from the last two load levels linearly, and imposes this load.
   void predict(Body<Real>& body) const {
     if (last_load_ != before_load_) {
       const auto t = static_cast<Real>((load_ - last_load_) / (last_load_ - before_load_));
@@ -99,7 +100,7 @@ class LoadLevels {
     body.impose(load_);
   }
 
-  /// Goes on from a solved level.
+  /// Proceeds to the next load level from a solved one.
   void solved(const Body<Real>& body) {
     if (last_load_ == 0.0) increment_ = choose_increment(body.field(body.state().u));
     before_ = std::move(last_.u);
@@ -113,7 +114,7 @@ class LoadLevels {
     aim();
   }
 
-  /// Brings the body back to the last level and aims half as far; false when that was tried often enough.
+  /// Resets the body to the last load level and halves the increment; false after too many attempts.
   bool failed(Body<Real>& body) {
     body.state() = last_;
     increment_ = 0.5 * std::abs(increment());
@@ -121,7 +122,7 @@ class LoadLevels {
     return ++failures_ <= most_failures;
   }
 
-  /// What the next levels read, of a body that is at the last one; see checkpoint.hpp.
+  /// The data that the next load levels depend on, for a body at the last one; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive, const Body<Real>& body) {
     archive("leg", leg_);
@@ -141,7 +142,8 @@ class LoadLevels {
  private:
   static constexpr int most_failures = 10;
 
-  /// Equal levels in which no element's displacement gradient changes by more than 0.3, or the user's number.
+  /// The increment of equal load levels: as many as the user wants, or such that no element's displacement
+  /// gradient changes by more than 0.3.
   double choose_increment(const NodalField& u) const {
     const int chosen = model_.scene().description.relaxation.levels;
     if (chosen > 0) return 1.0 / chosen;
@@ -156,8 +158,8 @@ class LoadLevels {
 
   const Model& model_;
   std::vector<double> turns_;
-  std::size_t leg_ = 1;      // the turn that the levels lead to
-  double before_leg_ = 0.0;  // travelled before it
+  std::size_t leg_ = 1;      // index of the next turning point
+  double before_leg_ = 0.0;  // length of the path up to the previous one
   double load_;
   double increment_ = 1.0;
   double before_load_ = 0.0;

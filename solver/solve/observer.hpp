@@ -16,20 +16,20 @@ struct HistoryRow {
   double external_work;   ///< J, done by imposed displacements and forces
   double residual;        ///< |force on free components| / |reactions and loads|, -
   double step_size;       ///< s; in quasi-static runs the increment of the load
-  double adaption = 0.0;  ///< J, that changes of levels brought in motion; see Adaption
+  double adaption = 0.0;  ///< J, energy due to changes of levels in dynamic runs; see Adaption
 };
 
-/// A state worth keeping, in the numbering of the mesh.
+/// A frame of the results, in the numbering of the mesh.
 struct Frame {
   double time;
   NodalField u;                                    ///< m
   NodalField v;                                    ///< m/s, at the same time as u
   std::vector<double> jacobians;                   ///< volume ratio of each element
   std::vector<double> hourglass_energy_densities;  ///< J/m^3, per reference volume of each element
-  std::vector<double> levels;                      ///< of each element; empty where a method has but one
+  std::vector<double> levels;                      ///< of each element; empty if the method has only one
 };
 
-/// What a stepper tells while it runs. The base class listens to nothing.
+/// The receiver of a stepper's reports. The base class ignores them.
 class Observer {
  public:
   Observer() = default;
@@ -41,11 +41,11 @@ class Observer {
 
   virtual void history(const HistoryRow& /*row*/) {}
 
-  /// Called wherever the run could go on as if it had never stopped, after all that was told so far.
-  /// `checkpoint` copies where it stands; call it within this call or not at all.
+  /// Called at every point from which the run can be resumed, after all reports up to there. `checkpoint`
+  /// copies the state; it may be called only during this call.
   virtual void resumable(const std::function<Checkpoint()>& /*checkpoint*/) {}
 
-  /// Called at every check with the share of the work done; returning false ends the run cleanly.
+  /// Called at every check with the completed share of the work; if it returns false, the run ends regularly.
   virtual bool proceed(long /*step*/, double /*share*/, double /*residual*/) { return true; }
 };
 

@@ -8,10 +8,10 @@ namespace sandglass {
 
 namespace {
 
-/// What a level's elements leave for the coarse stiffness: F^-1 and V.
+/// The numbers per element for the coarse stiffness: F^-1 and V.
 constexpr std::size_t tangent_numbers = 10;
 
-/// Share of an element's stiffness bound in its nodal blocks, which keeps them firm against hourglassing.
+/// The share of an element's stiffness bound in its nodal blocks, which resists hourglassing.
 constexpr double bound_share = 0.25;
 
 }  // namespace
@@ -62,7 +62,7 @@ void Preconditioner<Real>::add_elements(const Body<Real>& body, const std::vecto
   }
 }
 
-/// V ((lambda + mu) g g^T + mu |g|^2 I) at each node, with g the spatial gradient of its function, and a
+/// Adds V ((lambda + mu) g g^T + mu |g|^2 I) at each node, with g the spatial gradient of its function, and a
 /// share of the stiffness bound.
 template <class Real>
 template <class Number>
@@ -70,9 +70,9 @@ template <class Number>
                                                       const std::vector<double>& bounds) {
   constexpr int width = Lanes<Number>::width;
   for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-    const auto [first_level, first_face, levels] = layout_.groups[group];
-    for (std::size_t k = 0; k < levels; ++k) {
-      const std::size_t face = first_face + k, level = first_level + k;
+    const auto [first_rank, first_face, ranks] = layout_.groups[group];
+    for (std::size_t k = 0; k < ranks; ++k) {
+      const std::size_t face = first_face + k, rank = first_rank + k;
       const auto modes = [&](const Rows<Real>& rows) {
         return modes_between(gather_face_modes<Number>(rows, layout_, face),
                              gather_face_modes<Number>(rows, layout_, face + 1));
@@ -83,7 +83,7 @@ template <class Number>
       const NodalVectors<Number> g = from_modes(OnePoint::body_forces(F_inverse, element));
       Number bound(Real(0));
       for (int lane = 0; lane < width; ++lane) {
-        const auto place = level * width + static_cast<std::size_t>(lane);
+        const auto place = rank * width + static_cast<std::size_t>(lane);
         const int e = layout_.elements[place];
         if (e < 0) continue;
         Lanes<Number>::set(bound, lane, static_cast<Real>(bounds[static_cast<std::size_t>(e)]));
@@ -100,14 +100,14 @@ template <class Number>
                             numbers_of(diagonal_), places);
         scatter_add<Number>({outer * y * z, outer * z * x, outer * x * y}, numbers_of(mixed_), places);
       }
-      Real* tangent = tangents_.data() + level * tangent_numbers * width;
+      Real* tangent = tangents_.data() + rank * tangent_numbers * width;
       std::memcpy(tangent, &F_inverse, sizeof F_inverse);
       std::memcpy(tangent + 9 * width, &element.V, sizeof element.V);
     }
   }
 }
 
-/// Inverts the blocks by cofactors, as if constrained components were not there; their entries become zero.
+/// Inverts the blocks by cofactors without constrained components, whose entries become zero.
 template <class Real>
 void Preconditioner<Real>::invert_blocks(int threads) {
   for_each_block(4 * free_.size(), threads, [&](std::size_t first, std::size_t last) {

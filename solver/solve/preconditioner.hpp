@@ -5,21 +5,23 @@
 
 namespace sandglass {
 
-/// An approximate inverse of the tangent stiffness in two parts that are added: the inverse of a 3 x 3 block
-/// at each node, and a coarse grid of trilinear displacements over the bounding box, whose few equations are
-/// solved exactly. The blocks take what differs from node to node, the grid the soft motions of the whole
-/// body that any nodal iteration finds last. Both are built from the mean gradients of the elements at the
-/// displacements of the last update, with the law's moduli at rest; hourglass stiffness enters the blocks
-/// through the elements' stiffness bounds. Symmetric and positive; constrained components stay zero.
+/// An approximate inverse of the tangent stiffness, the sum of two parts: the inverse of a 3 x 3 block at
+/// each node, and a coarse grid of trilinear displacements over the bounding box, whose few equations are
+/// solved exactly. The blocks account for differences between nodes, the grid for soft motions of the whole
+/// body, for which nodal iterations converge slowly. Both are built from the mean gradients of the elements
+/// at the displacements of the last update, with the law's initial moduli; hourglass stiffness enters the
+/// blocks through the elements' stiffness bounds. Symmetric and positive semidefinite; constrained components
+/// are zero.
 template <class Real>
 class Preconditioner {
  public:
+  /// For a body of the model; `update` must follow.
   Preconditioner(const Model& model, const InternalForce<Real>& elements, const Body<Real>& body);
 
-  /// Takes the tangent at a body's displacements; none of its elements may be inverted.
+  /// Recomputes both parts at a body's displacements; none of its elements may be inverted.
   void update(Body<Real>& body);
 
-  /// Numbers of the coarse grid: three per grid node.
+  /// The size of coarse vectors: three numbers per grid node.
   std::size_t coarse_size() const { return stiffness_.size(); }
 
   /// q = Z^T r, r on the rows and q on the coarse grid. Constrained components of r must be zero.
@@ -30,7 +32,7 @@ class Preconditioner {
   /// c = A^-1 q.
   void solve(const CoarseVector& q, CoarseVector& c) { stiffness_.solve(q, c); }
 
-  /// Takes the coarse vector c that `apply` adds.
+  /// Sets the coarse vector c for `from_coarse`.
   void take(const CoarseVector& c) { transfer_.take(c); }
 
   /// B r for the rows from number k on.
@@ -39,7 +41,7 @@ class Preconditioner {
     return symmetric_product<W>(load<W>(numbers_of(diagonal_) + k), load<W>(numbers_of(mixed_) + k), r);
   }
 
-  /// Z c for the rows from number k on; zero on constrained components, which are those without a block.
+  /// Z c for the rows from number k on; zero on constrained components, whose blocks are zero.
   template <int W>
   RowVector<Real, W> from_coarse(std::size_t k) const {
     const auto diagonal = load<W>(numbers_of(diagonal_) + k);
@@ -62,7 +64,7 @@ class Preconditioner {
   Rows<Real> free_;                            // 1, or 0 on constrained components and in spare rows
   Rows<Real> diagonal_;                        // xx, yy, zz of the inverse blocks
   Rows<Real> mixed_;                           // yz, zx, xy
-  std::vector<Real> tangents_;                 // [level][F^-1 by rows, V][lane]
+  std::vector<Real> tangents_;                 // [rank][F^-1 by rows, V][lane]
   std::vector<std::size_t> place_of_element_;  // into tangents_
   CoarseTransfer<Real> transfer_;
   CoarseStiffness stiffness_;

@@ -17,7 +17,7 @@ namespace sandglass {
 
 namespace {
 
-/// The search through all levels, as it is told to the observer.
+/// The search through all load levels, with reports to the observer.
 template <class Real>
 class Search {
  public:
@@ -27,7 +27,7 @@ class Search {
         observer_(observer),
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
-        levels_(model, equilibrium_.body()),
+        load_levels_(model, equilibrium_.body()),
         no_velocity_(model.masses().size()),
         reactions_(model.scene().constraints.size(), 0.0) {}
 
@@ -44,11 +44,11 @@ class Search {
         keep(CheckpointWriter(checkpoint));
         return checkpoint;
       });
-      levels_.predict(body());
+      load_levels_.predict(body());
       if (body().healthy() && solve()) {
-        finish_level();
+        finish_load_level();
       } else if (!ended_) {
-        retry_level();
+        retry_load_level();
       }
     }
     result_.u = body().field(body().state().u);
@@ -61,46 +61,47 @@ class Search {
   }
 
  private:
-  /// On the way to the full load this residual is good enough to predict from.
+  /// A residual that is sufficient for predictions, below the full load.
   static constexpr double tolerance_on_the_way = 0.1;
 
-  /// At this residual elements may choose their levels: what is left moves none of them from one to another
-  /// that does not show it again at the end.
-  static constexpr double tolerance_of_levels = 1e-3;
+  /// The residual at which elements first choose their levels at the full load; levels that would still
+  /// change at smaller residuals are corrected at the end.
+  static constexpr double tolerance_for_adaption = 1e-3;
 
-  /// Evaluations after which a level begins anew from where it is, with a new preconditioner; then twice as
-  /// many. So it does once when the residual stagnates, which frees it from the rounding of the secants.
+  /// Evaluations after which a search restarts from its present displacements, with a new preconditioner;
+  /// then twice as many. It also restarts once when the residual stagnates, which removes the roundoff of the
+  /// secants.
   static constexpr long first_renewal = 500;
 
   static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
 
   Body<Real>& body() { return equilibrium_.body(); }
 
-  /// What the next level reads; see checkpoint.hpp.
+  /// The data that the next load level depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive archive) {
     equilibrium_.keep(archive);
-    levels_.keep(archive, body());
+    load_levels_.keep(archive, body());
     archive("reaction", reactions_);
     archive("load path", load_path_);
     archive("work", work_);
   }
 
   double tolerance() const {
-    if (!levels_.full()) return std::max(settings_.tolerance, tolerance_on_the_way);
-    if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_of_levels);
+    if (!load_levels_.full()) return std::max(settings_.tolerance, tolerance_on_the_way);
+    if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_for_adaption);
     return settings_.tolerance;
   }
 
-  /// Relative time: the load gone through, and at the end the evaluations over those that led there.
+  /// Relative time: the length of the load path, plus, at the full load, evaluations over those up to there.
   double time() const {
-    if (!levels_.full()) return levels_.travelled();
+    if (!load_levels_.full()) return load_levels_.travelled();
     const auto before = static_cast<double>(std::max(1L, first_evaluation_));
-    return levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
+    return load_levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
   }
 
-  /// Whether the forces at this load are in balance, within the tolerance or the rounding, and no element is
-  /// inverted.
+  /// Searches the equilibrium at this load; whether it was found, within the tolerance or roundoff, with no
+  /// element inverted.
   bool solve() {
     first_evaluation_ = equilibrium_.evaluations();
     long renewal = first_renewal;
@@ -128,11 +129,11 @@ class Search {
     return body().healthy();
   }
 
-  /// Lets elements choose their levels for the displacements as they stand; whether the search goes on. At
-  /// the full load they do so until they are settled at a moderate residual, where they may go down the first
-  /// time, and once more at the end; going up only, that ends.
+  /// Lets elements choose their levels at the present displacements; whether the search must continue. At the
+  /// full load this is repeated until levels no longer change, first at a moderate residual, then at the
+  /// tolerance. Elements are demoted only the first time; repeated promotions must end.
   bool settle() {
-    if (!levels_.full()) {
+    if (!load_levels_.full()) {
       adaption_.apply(body(), Demotion::reluctant);
       return false;
     }
@@ -143,45 +144,49 @@ class Search {
     return true;
   }
 
-  void finish_level() {
-    result_.converged = levels_.full() && !result_.stagnated;
-    ended_ = levels_.full();
+  void finish_load_level() {
+    result_.converged = load_levels_.full() && !result_.stagnated;
+    ended_ = load_levels_.full();
     add_work();
     report();
     if (ended_) return;
-    observer_.frame(body().frame(levels_.travelled(), no_velocity_));
-    levels_.solved(body());
+    observer_.frame(body().frame(load_levels_.travelled(), no_velocity_));
+    load_levels_.solved(body());
   }
 
-  void retry_level() {
+  void retry_load_level() {
     const State<Real> failed = body().state();
-    if (levels_.failed(body())) return;
+    if (load_levels_.failed(body())) return;
     body().state() = failed;
     body().require_healthy(equilibrium_.evaluations());
     throw ComputationError(
-        "the forces found no balance, however short the way; remedy: impose less, or refine the mesh",
+        "no equilibrium was found, however small the increment of the load; remedy: impose less, or refine "
+        "the "
+        "mesh",
         Breakdown::no_balance);
   }
 
-  /// Ends the run when the observer wants it or the evaluations are used up.
+  /// Ends the run if the observer requests it or the evaluations are used up.
   void check() {
     const long evaluations = equilibrium_.evaluations();
     ended_ = evaluations >= settings_.max_steps;
     if (evaluations % settings_.check_interval != 0) return;
-    if (levels_.full()) report();
+    if (load_levels_.full()) report();
     const double residual = equilibrium_.residual();
     const double digits =
         std::log(std::clamp(residual, settings_.tolerance, 1.0)) / std::log(settings_.tolerance);
     result_.interrupted = !observer_.proceed(
-        evaluations, levels_.full() ? 0.3 + 0.7 * digits : 0.3 * levels_.travelled() / levels_.way(),
+        evaluations,
+        load_levels_.full() ? 0.3 + 0.7 * digits : 0.3 * load_levels_.travelled() / load_levels_.way(),
         residual);
     ended_ = ended_ || result_.interrupted;
   }
 
-  /// Work of imposed displacements and forces over a level, from the mean of the forces at its ends.
+  /// Adds the work of imposed displacements and forces over a load level, from the mean of the forces at its
+  /// ends.
   void add_work() {
     const auto& constraints = model_.scene().constraints;
-    const auto moved = levels_.moved();
+    const auto moved = load_levels_.moved();
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const ImposedPath& path = constraints[k].path;
       const double force = body().reactions()[k];
@@ -191,14 +196,14 @@ class Search {
       reactions_[k] = force;
     }
     const double path = body().load_path();
-    work_ += (levels_.load() - 0.5 * levels_.increment()) * (path - load_path_);
+    work_ += (load_levels_.load() - 0.5 * load_levels_.increment()) * (path - load_path_);
     load_path_ = path;
   }
 
   void report() {
     const StrainEnergies energies = body().energies();
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
-                       energies.hourglass, work_, equilibrium_.residual(), levels_.increment()});
+                       energies.hourglass, work_, equilibrium_.residual(), load_levels_.increment()});
   }
 
   const Model& model_;
@@ -206,21 +211,21 @@ class Search {
   Observer& observer_;
   Equilibrium<Real> equilibrium_;
   Adaption<Real> adaption_;
-  LoadLevels<Real> levels_;
+  LoadLevels<Real> load_levels_;
   NodalField no_velocity_;
   Relaxation result_;
   std::vector<double> reactions_;
   double load_path_ = 0.0;
   double work_ = 0.0;
-  long first_evaluation_ = 0;  // of this level
-  bool lowered_ = false;       // elements have gone down at the full load
-  bool settled_ = false;       // and then asked for no more at a moderate residual
+  long first_evaluation_ = 0;  // of this load level
+  bool lowered_ = false;       // whether elements had the opportunity to be demoted at the full load
+  bool settled_ = false;       // whether levels no longer changed at a moderate residual
   bool ended_ = false;
 };
 
 }  // namespace
 
-bool at_rest(const Relaxation& relaxation, Precision precision) {
+bool in_equilibrium(const Relaxation& relaxation, Precision precision) {
   return relaxation.converged || (relaxation.stagnated && precision == Precision::single_precision);
 }
 
@@ -228,7 +233,7 @@ std::string outcome(const Relaxation& relaxation, Precision precision) {
   if (relaxation.converged) return "at rest";
   if (relaxation.interrupted) return fmt::format("interrupted at step {}", relaxation.steps);
   if (!relaxation.stagnated) return fmt::format("not at rest after {} steps", relaxation.steps);
-  if (at_rest(relaxation, precision)) return "at rest within the rounding of single precision";
+  if (in_equilibrium(relaxation, precision)) return "at rest within the rounding of single precision";
   return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
 }
 

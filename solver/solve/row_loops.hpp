@@ -6,14 +6,13 @@
 #include "base/parallel.hpp"
 #include "math/rows.hpp"
 
-/// Loops over all rows as one run of numbers, in blocks whose size depends on their number
-/// alone: a block's sum does not depend on who
-/// computes it, so that the same bits come from any number of threads.
+/// Loops over the numbers of all rows, in blocks whose size depends only on how many numbers there are, so
+/// that sums over blocks have the same bits for any number of threads.
 namespace sandglass {
 
 inline constexpr std::size_t most_blocks = 256;
 
-/// Numbers in a block: 512, or as many more as keep the number of blocks small.
+/// The numbers in a block: 512, or the multiple of it that keeps the number of blocks within `most_blocks`.
 inline std::size_t block_size(std::size_t numbers) {
   constexpr std::size_t unit = 512;
   return unit * std::max<std::size_t>(1, (numbers + most_blocks * unit - 1) / (most_blocks * unit));
@@ -27,7 +26,7 @@ void for_each_block(std::size_t n, int threads, const Function& body) {
               [&](std::size_t b) { body(b * size, std::min(n, (b + 1) * size)); });
 }
 
-/// The sum over blocks, in order, of what function(first, last) returns for each.
+/// The sum over all blocks, in order, of function(first, last).
 template <class Sum, class Function>
 Sum sum_over_blocks(std::size_t n, int threads, const Function& function) {
   std::array<Sum, most_blocks> partial;
@@ -39,6 +38,7 @@ Sum sum_over_blocks(std::size_t n, int threads, const Function& function) {
   return sum;
 }
 
+/// Sets all rows to zero.
 template <class Real>
 void clear(Rows<Real>& rows, int threads) {
   Real* x = numbers_of(rows);
@@ -46,6 +46,7 @@ void clear(Rows<Real>& rows, int threads) {
                  [=](std::size_t first, std::size_t last) { std::fill(x + first, x + last, Real(0)); });
 }
 
+/// The sum over all rows of their scalar products.
 template <class Real>
 double dot(const Rows<Real>& a, const Rows<Real>& b, int threads) {
   const Real *x = numbers_of(a), *y = numbers_of(b);

@@ -2,17 +2,18 @@
 
 #include "math/rows.hpp"
 
-/// Several rows in one vector of the compiler's, for passes over rows that mix the components of a node.
+/// Several rows in one of the compiler's vectors, for passes over rows that couple the components of a node.
 namespace sandglass {
 
 /// W numbers: W / 4 rows side by side.
 template <class T, int W>
 using RowVector = typename detail::VectorOf<T, W>::Vector;
 
-/// How many numbers a pass takes at a time: whole rows, as many as a register holds.
+/// The numbers that a pass takes at a time: as many whole rows as a register holds.
 template <class T>
 inline constexpr int row_vector_width = std::max(4, native_width<T>);
 
+/// W numbers from `numbers` on.
 template <int W, class T>
 RowVector<T, W> load(const T* numbers) {
   RowVector<T, W> vector;
@@ -20,6 +21,7 @@ RowVector<T, W> load(const T* numbers) {
   return vector;
 }
 
+/// Writes a vector to `numbers`.
 template <class T, class Vector>
 void store(const Vector& vector, T* numbers) {
   std::memcpy(numbers, &vector, sizeof vector);

@@ -8,10 +8,10 @@
 namespace sandglass {
 
 /// Solves A x = b for a dense, symmetric, positive semidefinite matrix by Eigen's LDL^T factorisation with
-/// pivoting. A row whose diagonal entry is below `smallest_diagonal` of the largest is left out, and x is zero
-/// there. The others are scaled to a diagonal of 1, and those whose pivot is below `smallest_pivot` depend on
-/// the others up to roundoff: they are left out too. The bits depend on the numbers alone: one thread computes
-/// them, in memory that is always aligned alike.
+/// pivoting. Rows with a diagonal entry below `smallest_diagonal` of the largest are left out, and x is zero
+/// there. The others are scaled to a diagonal of 1; those with a pivot below `smallest_pivot` are linear
+/// combinations of the others up to roundoff and are left out, too. The bits depend only on the numbers: one
+/// thread computes them, in memory with a fixed alignment.
 class SemidefiniteSolver {
  public:
   static constexpr double smallest_diagonal = 1e-8;
@@ -22,7 +22,7 @@ class SemidefiniteSolver {
   SemidefiniteSolver& operator=(const SemidefiniteSolver&) = delete;
   ~SemidefiniteSolver();
 
-  /// Takes A, size x size; its entries must be finite.
+  /// Factorises A, size x size; its entries must be finite.
   void factorise(const std::vector<double>& A);
 
   /// x with A x = b in the rows that are not left out. Allocates nothing.

@@ -22,11 +22,11 @@ std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
 
-// Shares of what may be neglected: the error of the first motion, and what holding a part of it may change in
-// the rest of it. A tenth is left for what the whole load changes.
+// Shares of the allowed error: for the first motion, and for the effect of fixing a part on the rest. A tenth
+// is left for the changes under the full load.
 constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
 
-/// The nodes that are pushed: by an imposed displacement or a force.
+/// The nodes with an imposed displacement or a force.
 std::vector<int> pushed_nodes(const Scene& scene) {
   std::vector<int> nodes;
   for (const auto& constraint : scene.constraints) {
@@ -41,7 +41,7 @@ std::vector<int> pushed_nodes(const Scene& scene) {
   return nodes;
 }
 
-/// The scene on a part of its mesh, held at the rim.
+/// The scene on a part of its mesh, fixed at the rim.
 Scene scene_of(const Scene& whole, const MeshPart& part) {
   Scene scene = {.description = whole.description,
                  .mesh = part.mesh,
@@ -79,7 +79,7 @@ NodalField on_the_whole(const NodalField& field, const MeshPart& part) {
   return whole;
 }
 
-/// Tells of the whole what it hears of a part.
+/// Forwards the reports on a part as reports on the whole mesh.
 class PartObserver final : public Observer {
  public:
   PartObserver(Observer& listener, const MeshPart& part, std::size_t elements)
@@ -107,19 +107,20 @@ class PartObserver final : public Observer {
   std::size_t elements_;
 };
 
-/// The displacements of a part of a body under its first load, from a guess of the whole, divided by that
-/// load: it is so small that answers grow with it.
+/// The displacements of a part of a body under its first load, from a guess for the whole, divided by that
+/// load, which is so small that answers are proportional to it.
 class FirstAnswer {
  public:
   FirstAnswer(const Model& model, const MeshPart& part) : model_(model), part_(part) {}
 
-  /// Replaces the nodes of the part in u (m); returns the evaluations of forces that it took.
+  /// Sets u (m) at the nodes of the part; returns the number of evaluations of forces.
   long find(NodalField& u) const {
     return std::visit([&](const auto& elements) { return find(u, *elements); }, model_.internal_force());
   }
 
  private:
-  /// Of the forces out of balance at the guess. They may be small, but they are what wakes the surroundings.
+  /// The share of the residual at the guess that may remain. Even a small residual is what wakes the
+  /// surroundings.
   static constexpr double share_left = 0.05;
   static constexpr long most_evaluations = 1000;
 
@@ -148,7 +149,7 @@ class FirstAnswer {
   const MeshPart& part_;
 };
 
-/// The motion of a body as it begins, found no farther than it reaches.
+/// The first motion of a body, computed only as far as it reaches.
 class FirstMotion {
  public:
   FirstMotion(const Scene& scene, const MethodChoice& choice)
@@ -171,7 +172,7 @@ class FirstMotion {
     return u_;
   }
 
-  /// The elements around nodes that move by more than a length (m), and next to them.
+  /// The elements at nodes that move by more than a length (m).
   std::vector<bool> around_what_moves(double by_more_than) const {
     std::vector<int> margin(u_.size(), 0);
     for (std::size_t n = 0; n < u_.size(); ++n) margin[n] = length(u_[n]) > by_more_than ? 1 : 0;
@@ -181,7 +182,7 @@ class FirstMotion {
     return marked;
   }
 
-  /// How many elements the motion reaches.
+  /// The number of elements that the motion reaches.
   std::size_t elements() const {
     return static_cast<std::size_t>(std::count(awake_.begin(), awake_.end(), true));
   }
@@ -189,14 +190,15 @@ class FirstMotion {
   long evaluations() const { return evaluations_; }
 
  private:
-  /// From one part to the next, a third larger, the error of a motion that falls off as 1/r falls by this
-  /// factor; no motion falls off more slowly.
+  /// The factor by which the error of a motion that decays as 1/r falls from one part to the next, which is a
+  /// third larger; no motion decays more slowly.
   static constexpr double slowest = 0.75;
-  static constexpr int first_margin = 4;  // elements around what is pushed
-  static constexpr int least_margin = 2;  // the next rim is a third farther, not the last node that moves
+  static constexpr int first_margin = 4;  // elements around pushed nodes
+  static constexpr int least_margin =
+      2;  // so that the next rim, not the last moving node, is a third farther
 
-  /// Wakes the elements around nodes that move by more than a length, as far as a third of their own distance
-  /// from what is pushed; whether something slept there.
+  /// Wakes the elements around nodes that move by more than a length (m), within a third of their distance
+  /// from the pushed nodes; whether any of them slept.
   bool wake(double by_more_than) {
     std::vector<int> margin(u_.size(), 0);
     for (std::size_t n = 0; n < u_.size(); ++n) {
@@ -207,9 +209,9 @@ class FirstMotion {
     return elements() > before;
   }
 
-  /// Computes what is awake. What changed by waking some was the error before, and how fast it falls from
-  /// part to part tells what is left; the slower of the last two times, for motions of several kinds fall off
-  /// side by side, the fast ones first.
+  /// Computes the awake part. The change due to newly awake elements was the error before, and its decay from
+  /// part to part gives the present error; the slower decay of the last two is used, because motions of
+  /// several kinds decay simultaneously, the fast ones first.
   void find() {
     const NodalField before = u_;
     const MeshPart part = part_of_mesh(scene_.mesh, awake_);
@@ -240,10 +242,10 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
                             Observer& observer) {
   if (method_named(choice.method).is_condensed) {
     throw InputError(fmt::format(
-        "sleep: '{}' computes no elements that could sleep; allowed: a method that steps", choice.method));
+        "sleep: method '{}' does not compute elements; allowed: a method that takes steps", choice.method));
   }
   if (pushed_nodes(scene).empty()) {
-    throw InputError("sleep: nothing pushes, so that all would sleep; impose a displacement or a force");
+    throw InputError("sleep: everything would sleep; impose a displacement or a force");
   }
   const auto start = std::chrono::steady_clock::now();
   FirstMotion first(scene, choice);
@@ -260,8 +262,8 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
       evaluations += FirstAnswer(model, part).find(neglecting);
       if (largest_distance(neglecting, motion) > share_of_holding * share * unit) continue;
     }
-    PartObserver told(observer, part, scene.mesh.cells.size());
-    LocalRelaxation local{relax(model, told), part.element_of.size()};
+    PartObserver forwarding(observer, part, scene.mesh.cells.size());
+    LocalRelaxation local{relax(model, forwarding), part.element_of.size()};
     local.relaxation.u = on_the_whole(local.relaxation.u, part);
     local.relaxation.steps += evaluations;
     local.relaxation.seconds =

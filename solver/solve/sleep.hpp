@@ -4,26 +4,24 @@
 
 namespace sandglass {
 
-/// A static answer of which only the part that moves was computed.
+/// A static answer of which only the moving part was computed.
 struct LocalRelaxation {
-  Relaxation relaxation;     ///< u of the whole mesh: zero where it sleeps
-  std::size_t elements = 0;  ///< that were awake in the end
+  Relaxation relaxation;     ///< u of the whole mesh, zero in the sleeping part
+  std::size_t elements = 0;  ///< number of awake elements at the end
 };
 
-/// Finds the displacements at which the forces balance where a body moves; what would move by less than about
-/// `share` of the largest imposed displacement sleeps: its nodes are held at rest, its elements are not
-/// computed.
+/// Finds the equilibrium of the part of a body that moves. Parts that would move by less than about `share`
+/// of the largest imposed displacement sleep: their nodes stay undisplaced, their elements are not computed.
 ///
-/// How far a motion reaches is seen under the first, small load, where it costs a few evaluations: around
-/// what is pushed all is awake, and a node that moves keeps awake the elements as far around it as a third of
-/// its own distance from what is pushed, until nobody is woken. The motion that was held at the rim is then
-/// within the share even where motions fall off as slowly as 1/r. Of this motion what stays below half of the
-/// share is held, less if holding it changes the others by more than the share; the rest is brought to rest
-/// under the whole load. Where nodes far away then move farther than under the first load, all that is done
-/// again for a share that is smaller by that factor.
+/// The extent of the motion is determined under the first, small load, where it takes a few evaluations.
+/// Elements around pushed nodes are awake, and a moving node wakes the elements within a third of its
+/// distance from the pushed nodes, until none is woken. The error due to the fixed rim is then within the
+/// share even if motions decay as slowly as 1/r. Nodes that move by less than half of the share are then
+/// fixed, fewer if fixing them changes the motion of the others by more than the share; the rest is relaxed
+/// under the full load.
 ///
-/// Observers hear of the whole mesh; such a run is not kept in checkpoints. Throws ComputationError as
-/// `relax` does, and InputError for a method that answers by condensation and where nothing pushes.
+/// Observers receive reports on the whole mesh; such a run has no checkpoints. Throws ComputationError as
+/// `relax`, and InputError for a condensed method, or if no displacement or force is imposed.
 LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share, Observer& observer);
 
 }  // namespace sandglass

@@ -18,7 +18,7 @@ std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
       [&](const auto& elements) {
         auto state = state_at(*elements, u);
         auto force = state.u;
-        elements->evaluate(state, force);  // elements may remember how they came here
+        elements->evaluate(state, force);  // forces of elements with history depend on it
         elements->stiffness_bounds(state, bounds);
       },
       model.internal_force());

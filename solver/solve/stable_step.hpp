@@ -7,21 +7,21 @@
 
 namespace sandglass {
 
-/// The shortest stable step of the elements of a mesh.
+/// The stable step of a mesh.
 struct StableStep {
   double step;  ///< s
-  int element;  ///< which element sets it
+  int element;  ///< the element that determines it
 };
 
-/// 2 / omega_max of each element (s) at displacements u, with omega_max^2 <= stiffness bound / (rho V / 8).
-/// The mesh's largest frequency is never above the largest of its elements', so the smallest of these steps
-/// is safe.
+/// 2 / omega_max (s) of each element at displacements u (m), with omega_max^2 <= stiffness bound / (rho V /
+/// 8). The largest frequency of a mesh is at most the largest of its elements, so that the smallest of these
+/// steps is stable.
 std::vector<double> stable_steps(const Model& model, const NodalField& u);
 
 /// The smallest of them.
 StableStep stable_step(const Model& model, const NodalField& u);
 
-/// The same from bounds of the elements' stiffness (N/m) that are known already.
+/// The same from bounds of the elements' stiffness (N/m).
 StableStep stable_step(const Model& model, std::span<const double> stiffness_bounds);
 
 }  // namespace sandglass

@@ -92,7 +92,7 @@ class SteppedModelOf final : public SteppedModel {
 
 template <class Real>
 NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field) {
-  State<Real> state = elements.rest();
+  State<Real> state = elements.undeformed();
   Rows<Real> force(state.u.size());
   for (const double share : {0.3, 0.7, 1.0}) {
     NodalField part = field;

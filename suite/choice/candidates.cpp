@@ -24,7 +24,7 @@ std::vector<MethodChoice> choices_of(const MethodEntry& method, const MethodChoi
     return choices;
   }
   choices.push_back(plain);
-  if (method.kappa_matters_at_rest) {
+  if (method.kappa_affects_equilibrium) {
     const double usual = method.auto_kappa(elastic_law(kernel_law(law)), plain.kappa_modulus).value();
     for (const double strength : other_strengths) {
       add([&](MethodChoice& choice) { choice.kappa = strength * usual; });

@@ -44,7 +44,7 @@ double fill_relaxed(const Scene& scene, const MethodChoice& choice, Verdict& ver
   Relaxation relaxation = relax(model, silent);
   u = std::move(relaxation.u);
   const StrainEnergies energies = relaxation.energies;
-  verdict.status = at_rest(relaxation, choice.precision)
+  verdict.status = in_equilibrium(relaxation, choice.precision)
                        ? "ok"
                        : fmt::format("failed: {}, residual {:.1e}", outcome(relaxation, choice.precision),
                                      relaxation.residual);

@@ -21,7 +21,7 @@ Answer resting_answer(const Model& model, Observer& observer) {
   Answer answer{.u = std::move(relaxation.u),
                 .energy = relaxation.energies.strain + relaxation.energies.hourglass,
                 .steps = relaxation.steps};
-  if (at_rest(relaxation, model.choice().precision)) return answer;
+  if (in_equilibrium(relaxation, model.choice().precision)) return answer;
   answer.failure = Finding::not_at_rest;
   answer.status = outcome(relaxation, model.choice().precision);
   return answer;

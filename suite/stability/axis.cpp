@@ -45,7 +45,7 @@ bool can_move(const Trial& trial) {
 /// Where a damping control resists velocities alone, its strength is nothing to a body at rest.
 bool takes_strength(const Trial& trial) {
   const MethodEntry& method = method_named(trial.choice.method);
-  return !method.is_condensed && (trial.is_dynamic() ? method.takes_kappa : method.kappa_matters_at_rest);
+  return !method.is_condensed && (trial.is_dynamic() ? method.takes_kappa : method.kappa_affects_equilibrium);
 }
 
 void set_kappa(Trial& trial, double value) {

@@ -91,7 +91,7 @@ class MeshTangent {
         for (std::size_t I = 0; I < 8; ++I) {
           const std::size_t node = index(mesh_.cells[e][I]);
           change[node] = change[node] + volumes.change[I];
-          rest[node] = rest[node] + volumes.rest[I];
+          rest[node] = rest[node] + volumes.reference[I];
         }
       }
       for (std::size_t n = 0; n < change.size(); ++n) change[n] = change[n] / rest[n];

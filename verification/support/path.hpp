@@ -11,7 +11,8 @@ namespace sandglass::verification {
 class Path {
  public:
   Path(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice, double density = 1000.0)
-      : elements_(std::get<0>(make_internal_force(mesh, law, choice, density))), state_(elements_->rest()) {}
+      : elements_(std::get<0>(make_internal_force(mesh, law, choice, density))),
+        state_(elements_->undeformed()) {}
 
   /// Goes on to displacements u (m) in some time (s), by default one so long that it plays no part, and
   /// returns the forces there (N).

@@ -170,7 +170,7 @@ class PlainAssembly {
       const auto own = Kernel::nodal_volumes(motions[e], elements<T>()[e]);
       for (std::size_t I = 0; I < 8; ++I) {
         change[node(e, I)] = change[node(e, I)] + own.change[I];
-        rest[node(e, I)] = rest[node(e, I)] + own.rest[I];
+        rest[node(e, I)] = rest[node(e, I)] + own.reference[I];
       }
     }
     for (std::size_t e = 0; e < motions.size(); ++e) {

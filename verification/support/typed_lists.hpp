@@ -103,11 +103,11 @@ struct Updated<TypeList<EveryMethod...>> {
                                       TypeList<EveryMethod>, TypeList<>>...>;
 };
 
-/// The methods that run laws which relax.
+/// The methods that support viscoelastic laws.
 template <class List>
-struct Relaxing;
+struct ViscoelasticIn;
 template <class... EveryMethod>
-struct Relaxing<TypeList<EveryMethod...>> {
+struct ViscoelasticIn<TypeList<EveryMethod...>> {
   using type = Concatenated<TypeList<>, std::conditional_t<knows_law<EveryMethod, Viscoelastic<NeoHookean>>,
                                                            TypeList<EveryMethod>, TypeList<>>...>;
 };
@@ -139,12 +139,12 @@ using PairsOf =
                  typename detail::Product<TypeList<TlPerturbation, TlMeanDilatation>,
                                           typename detail::Split<ElasticLaws>::others>::type>;
 
-/// The methods that run laws which relax.
-using RelaxingMethods = detail::Relaxing<Methods>::type;
-using RelaxingMethodTypes = detail::AsTestTypes<RelaxingMethods>::type;
+/// The methods that support viscoelastic laws.
+using ViscoelasticMethods = detail::ViscoelasticIn<Methods>::type;
+using ViscoelasticMethodTypes = detail::AsTestTypes<ViscoelasticMethods>::type;
 
 using MethodWithLawTypes = detail::AsTestTypes<Concatenated<
-    PairsOf<Methods>, detail::Product<RelaxingMethods, TypeList<Viscoelastic<NeoHookean>>>::type>>::type;
+    PairsOf<Methods>, detail::Product<ViscoelasticMethods, TypeList<Viscoelastic<NeoHookean>>>::type>>::type;
 
 /// What integrates its resistances in time comes to rest where the path leads it, what relaxes takes its
 /// time, and what damps loses energy; who expects one answer takes these.

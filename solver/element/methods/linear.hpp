@@ -10,8 +10,7 @@ namespace sandglass {
 struct LinearPerturbation {
   static constexpr std::string_view name = "linear";
   static constexpr std::string_view summary =
-      "one point, small strain, perturbation hourglass control: right only while nothing turns or strains "
-      "much";
+      "one point, small strain, perturbation hourglass control: valid for small strains and rotations only";
   static constexpr int integration_points = 1;
   using Kinematics = LinearOnePoint;
   using Hourglass = PerturbationHourglassControl;

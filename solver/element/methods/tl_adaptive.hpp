@@ -11,12 +11,12 @@
 
 namespace sandglass {
 
-/// An adaptive method names its `Levels`, methods from the cheapest to the one that it stands for. What it
-/// says of itself beside that is what an element at rest is.
+/// An adaptive method declares its `Levels`, from the cheapest method to the one that it approximates. The
+/// other declarations describe its undeformed elements, which are at the lowest level.
 struct TlAdaptive {
   static constexpr std::string_view name = "tl-adaptive";
   static constexpr std::string_view summary =
-      "one, four or eight points, each element as many as the accuracy asked for needs";
+      "one, four or eight points, each element as many as the requested accuracy needs";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = ModalSamplingControl;

@@ -11,10 +11,10 @@ namespace sandglass {
 struct TlAssumedStrain {
   static constexpr std::string_view name = "tl-assumed-strain";
   static constexpr std::string_view summary =
-      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), computed at rest";
+      "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), undeformed shape";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
-  using Hourglass = RestHourglassControl<AssumedStrain>;
+  using Hourglass = ReferenceHourglassControl<AssumedStrain>;
 };
 
 }  // namespace sandglass

@@ -11,10 +11,10 @@ namespace sandglass {
 struct TlEnhanced {
   static constexpr std::string_view name = "tl-enhanced";
   static constexpr std::string_view summary =
-      "one point, Total Lagrangian, enhanced assumed strain after Puso, computed at rest";
+      "one point, Total Lagrangian, enhanced assumed strain after Puso, undeformed shape";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
-  using Hourglass = RestHourglassControl<EnhancedStrain>;
+  using Hourglass = ReferenceHourglassControl<EnhancedStrain>;
 };
 
 }  // namespace sandglass

@@ -10,7 +10,7 @@ namespace sandglass {
 struct TlPerturbationCompact {
   static constexpr std::string_view name = "tl-perturbation-compact";
   static constexpr std::string_view summary =
-      "tl-perturbation with its geometry computed anew each step instead of loaded";
+      "tl-perturbation with its geometry recomputed in each step instead of loaded";
   static constexpr int integration_points = 1;
   using Kinematics = CompactOnePoint;
   using Hourglass = PerturbationHourglassControl;

@@ -10,7 +10,7 @@ namespace sandglass {
 struct TlStabilizationMatrix {
   static constexpr std::string_view name = "tl-stabilization-matrix";
   static constexpr std::string_view summary =
-      "one point, Total Lagrangian, what the mean-dilatation element has more at rest as a constant matrix";
+      "one point, Total Lagrangian, the stiffness that the mean-dilatation element adds when undeformed";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = HourglassMatrixControl<StabilizationMatrix>;

@@ -11,7 +11,8 @@ namespace sandglass {
 struct UlViscous {
   static constexpr std::string_view name = "ul-viscous";
   static constexpr std::string_view summary =
-      "one point, Updated Lagrangian, viscous control: LS-DYNA's and OpenRadioss's default; no use at rest";
+      "one point, Updated Lagrangian, viscous control: LS-DYNA's and OpenRadioss's default; no effect in "
+      "equilibrium";
   static constexpr int integration_points = 1;
   static constexpr int zero_energy_modes = 18;  // it resists velocities only
   using Kinematics = UpdatedOnePoint;
