@@ -9,11 +9,11 @@
 
 #include "base/error.hpp"
 #include "io/case_file.hpp"
-#include "mesh/generators.hpp"
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/node_set.hpp"
 #include "mesh/quality.hpp"
+#include "support/plain_generators.hpp"
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"
 
@@ -202,29 +202,6 @@ TEST(TaperedPanel, has_the_area_of_cooks_membrane) {
   EXPECT_NEAR(volume(mesh), 48.0 * (44.0 + 16.0) / 2, 1e-10);
   const NodeSetRule middle{"middle", false, {{Interval{48.0, 48.0}, Interval{52.0, 52.0}, {}}}, {}};
   EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), middle).size(), 2U);
-}
-
-/// A generator of the list with plain parameters, set through its own declarations: lengths differ so that
-/// axes cannot be swapped unseen, counts are small.
-template <class Generator>
-Generator plain_generator() {
-  Generator generator;
-  const auto set = [](auto& value, bool required) {
-    using Value = std::remove_reference_t<decltype(value)>;
-    if (!required) return;
-    if constexpr (std::is_same_v<Value, double>) {
-      value = 0.7;
-    } else if constexpr (std::is_same_v<Value, int>) {
-      value = 3;
-    } else {
-      for (std::size_t n = 0; n < value.size(); ++n) {
-        value[n] = static_cast<typename Value::value_type>(2 + static_cast<int>(n));
-      }
-    }
-  };
-  std::apply([&](const auto&... p) { (set(generator.*(p.member), p.required), ...); },
-             Generator::parameters());
-  return generator;
 }
 
 template <class Generator>
