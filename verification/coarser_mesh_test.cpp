@@ -38,8 +38,8 @@ NodalField random_field(const Mesh& mesh, RandomGeometry& random) {
 
 /// Roundoff of a value, for values in [-1, 1]. A place X, summed from eight products, is wrong by 12 half
 /// units in the last place of its size, 1.3e-15 |X|; the parent point by that times 2 / h, as is the value
-/// along each of three axes, where a trilinear form of such values changes by at most 1: 8e-15 |X| / h. In the
-/// meshes here |X| / h is at most 12.
+/// along each of three axes, where a trilinear form of such values changes by at most 1: 8e-15 |X| / h. In
+/// the meshes here |X| / h is at most 12.
 constexpr double roundoff = 1e-13;
 
 /// The element that holds a point gives the value, also close to its faces, where the neighbours' forms are
@@ -112,8 +112,8 @@ TEST(Interpolation, finds_points_far_from_the_origin) {
 }
 
 /// Trilinear forms hold linear fields, and continue them outside: the field at the nodes of the finer mesh,
-/// some of them outside a coarser one with a curved boundary, is the linear one up to the same roundoff, times
-/// its gradient.
+/// some of them outside a coarser one with a curved boundary, is the linear one up to the same roundoff,
+/// times its gradient.
 TEST(Interpolation, gives_linear_fields_exactly_between_meshes_of_one_body) {
   const Tensor<double> H{0.3, -0.2, 0.1, 0.5, 0.7, -0.4, 0.2, 0.9, -0.6};
   for (const auto& generator : plain_generators()) {
