@@ -125,6 +125,25 @@ TEST(CaseFile, initial_velocities_add_up) {
   EXPECT_TRUE(read_scene(folder.write("good.toml", good)).initial_velocities.empty());
 }
 
+/// Half waves are counted between the ends of the set, wherever it is: two along x from -2 to 1 and three
+/// along z from 5 to 7, with their product.
+TEST(CaseFile, waves_stand_between_the_ends_of_the_set) {
+  Mesh mesh = box({3.0, 1.0, 2.0}, {4, 1, 5});
+  for (auto& X : mesh.points) X = {X[0] - 2.0, X[1], X[2] + 5.0};
+  Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
+  description.velocities = {{.value = {0.5, 2.0, -1.0}, .half_waves = {2, 0, 3}}};
+  const Scene scene = make_scene(description, mesh);
+  for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+    const auto& [x, y, z] = mesh.points[n];
+    const double wave =
+        std::cos(std::numbers::pi * 2 * (x + 2.0) / 3.0) * std::cos(std::numbers::pi * 3 * (z - 5.0) / 2.0);
+    const Vector& v = scene.initial_velocities[n];
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(v[i], wave * description.velocities[0].value[i], 1e-14);
+    }
+  }
+}
+
 /// The centre of mass is that of the masses, not of the nodes: two elements of lengths 1 and 3 have theirs
 /// at 2, their nodes at (0 + 1 + 4) / 3.
 TEST(CaseFile, spin_is_about_the_centre_of_mass) {

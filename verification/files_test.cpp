@@ -11,6 +11,7 @@
 #include "io/text_file.hpp"
 #include "solve/body.hpp"
 #include "solve/relaxation.hpp"
+#include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -111,6 +112,53 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
   const auto energies = strain_energies(model, answer.u);
   EXPECT_EQ(file.read_doubles("/history/strain_energy").entries.back(), energies.strain);
   EXPECT_EQ(file.read_doubles("/history/hourglass_energy").entries.back(), energies.hourglass);
+}
+
+/// Numbers that all differ come back from the places with their names.
+TEST(ResultFile, every_number_has_its_name) {
+  const TemporaryFolder folder;
+  const Scene scene = pulled_block();
+  const Model model(scene, {"tl-perturbation", {}});
+  RandomGeometry random(7);
+  const auto numbers = [&](std::size_t count) {
+    std::vector<double> all(count);
+    for (double& number : all) number = random.uniform(-1.0, 1.0);
+    return all;
+  };
+  const auto field = [&] {
+    NodalField all(scene.mesh.points.size());
+    for (Vector& value : all) {
+      for (double& component : value) component = random.uniform(-1.0, 1.0);
+    }
+    return all;
+  };
+  const Frame frame{.time = 0.25,
+                    .u = field(),
+                    .v = field(),
+                    .jacobians = numbers(4),
+                    .hourglass_energy_densities = numbers(4),
+                    .levels = numbers(4)};
+  {
+    ResultWriter writer(model, folder / "result.h5", {});
+    writer.frame(frame);
+    writer.history({1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0});
+    writer.commit("complete");
+  }
+  const auto file = Hdf5File::open(folder / "result.h5");
+  const auto read = [&](const std::string& name) {
+    return file.read_doubles("/frames/0000/" + name).entries;
+  };
+  EXPECT_EQ(file.read_number_attribute("/frames/0000", "time"), frame.time);
+  EXPECT_EQ(read_nodal_field(file, "/frames/0000/displacement", 18), frame.u);
+  EXPECT_EQ(read_nodal_field(file, "/frames/0000/velocity", 18), frame.v);
+  EXPECT_EQ(read("jacobian"), frame.jacobians);
+  EXPECT_EQ(read("hourglass_energy_density"), frame.hourglass_energy_densities);
+  EXPECT_EQ(read("level"), frame.levels);
+  double expected = 0.0;
+  for (const auto* name : {"time", "kinetic_energy", "strain_energy", "hourglass_energy", "external_work",
+                           "residual", "step_size", "adaption_energy"}) {
+    EXPECT_EQ(file.read_doubles(std::string("/history/") + name).entries, (std::vector<double>{++expected}));
+  }
 }
 
 TEST(ResultFile, leaves_nothing_without_commit) {

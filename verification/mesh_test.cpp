@@ -9,11 +9,11 @@
 
 #include "base/error.hpp"
 #include "io/case_file.hpp"
-#include "mesh/generators.hpp"
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/node_set.hpp"
 #include "mesh/quality.hpp"
+#include "support/plain_generators.hpp"
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"
 
@@ -204,29 +204,6 @@ TEST(TaperedPanel, has_the_area_of_cooks_membrane) {
   EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), middle).size(), 2U);
 }
 
-/// A generator of the list with plain parameters, set through its own declarations: lengths differ so that
-/// axes cannot be swapped unseen, counts are small.
-template <class Generator>
-Generator plain_generator() {
-  Generator generator;
-  const auto set = [](auto& value, bool required) {
-    using Value = std::remove_reference_t<decltype(value)>;
-    if (!required) return;
-    if constexpr (std::is_same_v<Value, double>) {
-      value = 0.7;
-    } else if constexpr (std::is_same_v<Value, int>) {
-      value = 3;
-    } else {
-      for (std::size_t n = 0; n < value.size(); ++n) {
-        value[n] = static_cast<typename Value::value_type>(2 + static_cast<int>(n));
-      }
-    }
-  };
-  std::apply([&](const auto&... p) { (set(generator.*(p.member), p.required), ...); },
-             Generator::parameters());
-  return generator;
-}
-
 template <class Generator>
 class GeneratorTest : public ::testing::Test {};
 
@@ -351,6 +328,39 @@ TEST(MeshQuality, table_counts_all_and_shows_the_ten_worst) {
   }
   EXPECT_NEAR(table.worst[0].centre[1], 0.5 + 3.0 * 8 * 12, 1e-12);
   EXPECT_NEAR(table.worst[0].centre[2], -0.25, 1e-15);
+}
+
+/// A unit cube with one corner moved towards the opposite one, by `t` along each edge.
+NodalVectors<double> dented_cube(int corner, double t) {
+  NodalVectors<double> X = 0.5 * corner_signs;
+  for (int i = 0; i < 3; ++i) X(corner, i) -= t * corner_signs(corner, i);
+  return X;
+}
+
+/// With n the products of 1 - s over pairs of the distances s from the dented corner along the cube's edges,
+/// det F = 1 - t (n1 + n2 + n3). At the corner all n are 1, and its edges have the length
+/// sqrt((1 - t)^2 + 2 t^2); at the Gauss point beside it n = (1 + 1/sqrt(3))^2 / 4. Every corner and every
+/// point is the worst of one cube.
+TEST(MeshQuality, every_corner_and_gauss_point_counts) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const double edge = std::sqrt(0.75 * 0.75 + 2 * 0.25 * 0.25);
+    EXPECT_NEAR(scaled_jacobian(dented_cube(corner, 0.25)), 0.25 / (edge * edge * edge), 1e-15) << corner;
+    const double n = std::pow(1.0 + 1.0 / std::sqrt(3.0), 2) / 4;
+    const double expected = (1.0 - 3 * 0.6 * n) / 8;
+    EXPECT_LT(expected, 0.0);
+    EXPECT_NEAR(smallest_measure(dented_cube(corner, 0.6)), expected, 1e-15) << corner;
+  }
+}
+
+/// A node has an eighth of the mass of each of its own elements, here of lengths 1 and 3.
+TEST(Masses, belong_to_the_elements_around) {
+  Mesh mesh = box({2.0, 1.0, 1.0}, {2, 1, 1});
+  for (auto& X : mesh.points) X[0] = X[0] < 1.5 ? X[0] : 4.0;
+  const auto masses = lumped_masses(mesh, element_masses(mesh, 80.0));
+  for (std::size_t n = 0; n < masses.size(); ++n) {
+    const double x = mesh.points[n][0];
+    EXPECT_NEAR(masses[n], x < 0.5 ? 10.0 : x < 2.0 ? 40.0 : 30.0, 1e-13) << "x = " << x;
+  }
 }
 
 /// Lumped masses: an eighth of rho V at each node, nothing lost.

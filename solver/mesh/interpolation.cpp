@@ -42,10 +42,13 @@ double parent_distance(const Vector& xi) {
 }
 
 /// The parent point of X in an element, by Newton's method; none if that does not converge, as for points far
-/// outside.
-std::optional<Vector> parent_point(const NodalVectors<double>& nodes, const Vector& X) {
+/// outside. Positions are relative to X, so that a body far from the origin is not lost in roundoff.
+std::optional<Vector> parent_point(NodalVectors<double> nodes, const Vector& X) {
   constexpr int most_steps = 25;
   constexpr double converged = 1e-13, far_away = 3.0;
+  for (int I = 0; I < 8; ++I) {
+    for (int i = 0; i < 3; ++i) nodes(I, i) -= X[static_cast<std::size_t>(i)];
+  }
   Vector xi{};
   for (int step = 0; step < most_steps; ++step) {
     const Vector at = trilinear(nodes, xi);
@@ -53,10 +56,7 @@ std::optional<Vector> parent_point(const NodalVectors<double>& nodes, const Vect
     double moved = 0.0;
     for (int i = 0; i < 3; ++i) {
       double d = 0.0;
-      for (int j = 0; j < 3; ++j) {
-        const auto c = static_cast<std::size_t>(j);
-        d += inverse_jacobian(i, j) * (X[c] - at[c]);
-      }
+      for (int j = 0; j < 3; ++j) d -= inverse_jacobian(i, j) * at[static_cast<std::size_t>(j)];
       xi[static_cast<std::size_t>(i)] += d;
       moved = std::max(moved, std::abs(d));
     }
