@@ -16,6 +16,7 @@
 #include "benchmark/bench_json.hpp"
 #include "benchmark/rest.hpp"
 #include "benchmark/stepped_model.hpp"
+#include "comparison/comparison.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
@@ -119,7 +120,8 @@ int run_rest(const BenchOptions& options) {
   const auto variants = rest_variants(options);
   auto scenes = read_static_scenes(options.names, "rest to come to");
   if (options.names.empty()) {  // small cases with published values are made for accuracy, not for time
-    std::erase_if(scenes, [](const Scene& scene) { return !scene.description.published.empty(); });
+    std::erase_if(scenes,
+                  [](const Scene& scene) { return !read_comparison(scene.description).published.empty(); });
   }
   watch_for_interrupt();
   std::vector<RestRecord> records;
@@ -154,7 +156,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "bench",
       "time of every method per element and step, beside what the machine can do.\n"
       "All variants are timed in turn in one process, after their forces were compared with those in double\n"
-      "precision on one thread; one that is wrong gets no time, and the exit code is 1. sandglass-scalar has\n"
+      "precision on one thread; one that is wrong gets no time, and the exit code is 1. sandglass-scalar "
+      "has\n"
       "kernels that compute one element at a time too, and compares with those. Traffic counts every\n"
       "constant and row of a step once. Above 100 % of memory a mesh stays in a cache; the roofline holds "
       "it\n"

@@ -9,9 +9,9 @@
 #include "app/progress.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
+#include "choice/case_writer.hpp"
 #include "choice/choose_json.hpp"
 #include "io/case_file.hpp"
-#include "io/case_writer.hpp"
 #include "io/text_file.hpp"
 #include "mesh/variations.hpp"
 

@@ -12,6 +12,7 @@
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "comparison/comparison.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
 #include "io/case_keys.hpp"
@@ -125,7 +126,7 @@ References references_to_show(const Scene& scene) {
 void print_accuracy(const Scene& scene, const NodalField& u) {
   const References references = references_to_show(scene);
   const auto print = [&](const char* name, const std::optional<NodalField>& reference) {
-    const auto figures = accuracy_of(scene, u, reference);
+    const auto figures = accuracy_of(scene, references.comparison, u, reference);
     if (!figures) return;
     fmt::print("against the {}: max {:.4g} %, rms {:.4g} % of the imposed displacement\n", name,
                100.0 * figures->max_relative_error, 100.0 * figures->rms_relative_error);
@@ -358,7 +359,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                     "print every key of a case file with unit, range and meaning");
   command->callback([options, &exit_code] {
     if (options->describe) {
-      fmt::print("{}", describe_case_keys());
+      fmt::print("{}{}", describe_case_keys(), describe_comparison_keys());
       return;
     }
     if (options->name.empty()) throw CLI::RequiredError("CASE");

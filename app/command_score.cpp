@@ -10,6 +10,8 @@
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "comparison/answer.hpp"
+#include "comparison/comparison.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
 #include "io/case_file.hpp"
@@ -18,7 +20,6 @@
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "solve/body.hpp"
-#include "stability/answer.hpp"
 
 namespace sandglass {
 
@@ -40,7 +41,7 @@ struct ScoreOptions {
 /// it finds none.
 NodalField twin_of(const Scene& scene) {
   Observer silent;
-  Answer answer = answer_at_rest(scene, {.method = std::string(golden_method)}, silent);
+  Answer answer = equilibrium_answer(scene, {.method = std::string(golden_method)}, silent);
   if (answer.refused || answer.failure) {
     throw ComputationError(fmt::format("{}: {} finds no answer to compare with: {}", scene.description.name,
                                        golden_method, answer.status));
@@ -66,8 +67,8 @@ Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
       .method = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name,
       .precision = "double",
       .status = "ok",
-      .golden = accuracy_of(scene, u, references.golden),
-      .truth = accuracy_of(scene, u, references.truth),
+      .golden = accuracy_of(scene, references.comparison, u, references.golden),
+      .truth = accuracy_of(scene, references.comparison, u, references.truth),
       .steps = options.steps,
       .ns_per_element_step = options.steps > 0 ? 1e9 * options.seconds / work : 0.0,
       .wall_seconds = options.seconds,
@@ -76,7 +77,7 @@ Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
   if (references.golden) {
     verdict.finding = finding_of(scene, references, u);
   } else {
-    verdict.twin = accuracy_of(scene, u, twin_of(scene));
+    verdict.twin = accuracy_of(scene, references.comparison, u, twin_of(scene));
   }
   return verdict;
 }

@@ -65,7 +65,7 @@ std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision prec
       tasks.push_back({&subject, {std::string(method.name), {}, precision}});
       // A condensed method's curve is that of the method it condenses.
       if (!method.kappa_affects_equilibrium || method.is_condensed) continue;
-      for (const double kappa : subject.scene.description.kappas) {
+      for (const double kappa : subject.references.comparison.kappas) {
         tasks.push_back({&subject, {std::string(method.name), kappa, precision}});
       }
     }
@@ -97,8 +97,8 @@ struct Outcome {
 Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
   Outcome outcome{std::vector<Verdict>(tasks.size()), std::vector<NodalField>(tasks.size())};
   const bool complete = run_tasks("verify", tasks.size(), options.threads, [&](std::size_t n) {
-    outcome.verdicts[n] =
-        judge(tasks[n].subject->scene, tasks[n].subject->references, tasks[n].choice, outcome.answers[n]);
+    outcome.verdicts[n] = run_and_compare(tasks[n].subject->scene, tasks[n].subject->references,
+                                          tasks[n].choice, outcome.answers[n]);
   });
   if (!complete) throw ComputationError("verify: interrupted; nothing was written");
   return outcome;
@@ -187,7 +187,8 @@ int verify(const VerifyOptions& options) {
   std::vector<LimitCheck> limits;
   for (const auto& subject : subjects) {
     if (precision != Precision::double_precision) break;
-    const auto checks = check_limits(subject.scene, verdicts);
+    const auto checks =
+        check_limits(subject.scene.description.name, subject.references.comparison.expectations, verdicts);
     limits.insert(limits.end(), checks.begin(), checks.end());
   }
   print_verdicts(verdicts);

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "comparison/comparison.hpp"
 #include "io/case_file.hpp"
 #include "io/project_folder.hpp"
 
@@ -40,6 +41,13 @@ std::string listed(const std::vector<Case>& cases) {
   return text;
 }
 
+/// The cases of a file, of which also the tables that the library does not read are checked.
+std::vector<Case> read_checked(const fs::path& path) {
+  auto cases = read_cases(path);
+  for (const auto& description : cases) read_comparison(description);
+  return cases;
+}
+
 }  // namespace
 
 std::vector<fs::path> canonical_files() {
@@ -48,16 +56,16 @@ std::vector<fs::path> canonical_files() {
 
 std::vector<Case> find_cases(const std::string& name_or_path) {
   std::error_code ignored;
-  if (fs::is_regular_file(name_or_path, ignored)) return read_cases(name_or_path);
+  if (fs::is_regular_file(name_or_path, ignored)) return read_checked(name_or_path);
   const fs::path path(name_or_path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : case_folder();
   const std::string name = path.filename().string();
-  if (fs::is_regular_file(folder / (name + ".toml"), ignored)) return read_cases(folder / (name + ".toml"));
+  if (fs::is_regular_file(folder / (name + ".toml"), ignored)) return read_checked(folder / (name + ".toml"));
   std::vector<std::string> known;
   for (const auto& file : case_files_in(folder)) {
     known.push_back(file.stem().string());
     if (!name.starts_with(known.back())) continue;  // a variant begins with its file's name
-    for (auto& scene : read_cases(file)) {
+    for (auto& scene : read_checked(file)) {
       if (scene.name == name) return {std::move(scene)};
       known.push_back(scene.name);
     }
@@ -82,7 +90,7 @@ std::deque<Scene> read_static_scenes(const std::vector<std::string>& names, cons
   };
   for (const auto& name : names) add(find_cases(name));
   if (names.empty()) {
-    for (const auto& file : canonical_files()) add(read_cases(file));
+    for (const auto& file : canonical_files()) add(read_checked(file));
   }
   std::deque<Scene> scenes;
   for (auto& scene : cases) {

@@ -7,8 +7,19 @@ import re
 import sys
 
 TARGETS = {
-    "solver": ["base", "math", "material", "mesh", "element", "assembly", "problem", "solve", "io", "sandglass"],
-    "suite": ["comparison", "stability", "benchmark", "choice"],
+    "solver": [
+        "base",
+        "math",
+        "material",
+        "mesh",
+        "element",
+        "assembly",
+        "problem",
+        "io",
+        "solve",
+        "sandglass",
+    ],
+    "suite": ["comparison", "benchmark", "choice", "stability"],
     "app": ["app"],
 }
 LAYERS = [layer for layers in TARGETS.values() for layer in layers]

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "comparison/comparison.hpp"
 #include "io/mesh_file.hpp"
 #include "support/case_text.hpp"
 #include "support/scenes.hpp"
@@ -64,10 +65,11 @@ TEST(CaseFile, good_case_is_read_as_written) {
   EXPECT_EQ(std::get<NeoHookean>(c.law).poisson_ratio, 0.49);
   EXPECT_EQ(c.density, 1000.0);
   EXPECT_EQ(c.relaxation.tolerance, 1e-7);
-  EXPECT_EQ(c.kappas, (std::vector<double>{0.01, 0.02}));
-  ASSERT_EQ(c.expectations.size(), 1U);
-  EXPECT_EQ(c.expectations[0].kappa, "0.01");
-  EXPECT_EQ(c.expectations[0].below, 0.01);
+  const Comparison comparison = read_comparison(scene);
+  EXPECT_EQ(comparison.kappas, (std::vector<double>{0.01, 0.02}));
+  ASSERT_EQ(comparison.expectations.size(), 1U);
+  EXPECT_EQ(comparison.expectations[0].kappa, "0.01");
+  EXPECT_EQ(comparison.expectations[0].below, 0.01);
   EXPECT_EQ(scene.sets.at("bottom").size(), 6U);
   EXPECT_EQ(scene.sets.at("top").size(), 6U);
   // Three components below, two above: y of the top is free.
@@ -200,7 +202,7 @@ class BadCaseTest : public ::testing::TestWithParam<BadCase> {};
 TEST_P(BadCaseTest, is_refused_with_file_key_value_and_rule) {
   const TemporaryFolder folder;
   const auto file = folder.write("bad.toml", GetParam().text);
-  const std::string text = input_error([&] { read_scene(file); });
+  const std::string text = input_error([&] { read_comparison(read_scene(file)); });
   EXPECT_TRUE(contains(text, file.string()));
   for (const auto& part : GetParam().said) EXPECT_TRUE(contains(text, part));
 }

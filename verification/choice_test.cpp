@@ -7,8 +7,8 @@
 #include "assembly/method_entry.hpp"
 #include "choice/candidates.hpp"
 #include "choice/choose.hpp"
+#include "comparison/answer.hpp"
 #include "io/case_file.hpp"
-#include "stability/answer.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/typed_lists.hpp"
@@ -112,7 +112,8 @@ TEST(Choose, takes_the_first_that_suffices) {
     EXPECT_EQ(judgement.reason.empty(), outcome != Outcome::refused) << name_of(rung);
     EXPECT_TRUE(outcome != Outcome::not_tried || !judgement.error);
   }
-  for (const auto& mesh : choice.coarser) EXPECT_EQ(mesh.kept, *mesh.judgement.error <= 0.02) << mesh.judgement.reason;
+  for (const auto& mesh : choice.coarser)
+    EXPECT_EQ(mesh.kept, *mesh.judgement.error <= 0.02) << mesh.judgement.reason;
   const Judgement& chosen = choice.attempts[*choice.chosen].judgement;
   EXPECT_LE(*chosen.error, 0.02);
   EXPECT_GT(*chosen.smallest_jacobian, 0.0);
@@ -126,11 +127,11 @@ TEST(Choose, predicts_what_a_run_gives) {
   EXPECT_FALSE(choice.chosen);
   const Scene scene = scene_of_case(description);
   Observer silent;
-  const NodalField golden = answer_at_rest(scene, {"tl-mean-dilatation"}, silent).u;
+  const NodalField golden = equilibrium_answer(scene, {"tl-mean-dilatation"}, silent).u;
   int compared = 0;
   for (const auto& [rung, cost, judgement, outcome] : choice.attempts) {
     if (rung.mesh->coarser) continue;
-    const NodalField u = answer_at_rest(scene, rung.choice, silent).u;
+    const NodalField u = equilibrium_answer(scene, rung.choice, silent).u;
     EXPECT_EQ(*judgement.error, largest_distance(u, golden) / 0.3) << name_of(rung);
     ++compared;
   }
@@ -215,7 +216,7 @@ class JudgeTest : public ::testing::Test {
 
   static bool inverts(const Case& description) {
     Observer silent;
-    return answer_at_rest(scene_of_case(description), {"linear-condensed"}, silent).failure ==
+    return equilibrium_answer(scene_of_case(description), {"linear-condensed"}, silent).failure ==
            Finding::inverted;
   }
 };

@@ -45,8 +45,7 @@ class LimitTest : public ::testing::Test {
  protected:
   /// The outcome of one expectation.
   LimitCheck check(const Expectation& expected, const std::vector<Verdict>& verdicts) {
-    scene.description.expectations = {expected};
-    return check_limits(scene, verdicts).at(0);
+    return check_limits("test", {expected}, verdicts).at(0);
   }
 
   static Expectation below(const std::string& method, const std::string& kappa, double limit) {
@@ -56,7 +55,6 @@ class LimitTest : public ::testing::Test {
     return {method, "auto", "golden", "max_relative_error", {}, limit, "a test"};
   }
 
-  Scene scene{plain_case(sample_law<NeoHookean>(0.49)), {}, {}, {}, {}, {}};
   std::vector<Verdict> curve{
       verdict("tl-perturbation", 0.0065, true, 0.03), verdict("tl-perturbation", 0.005, false, 0.02),
       verdict("tl-perturbation", 0.05, false, 0.2), verdict("tl-none", {}, false, 0.4)};
@@ -128,7 +126,7 @@ TEST(Verdict, failed_computation_becomes_a_status) {
   const Scene scene = make_scene(description, mesh, sets);
   for (const auto& method : names_of(Methods{})) {
     NodalField u;
-    const Verdict v = judge(scene, {}, {method, {}}, u);
+    const Verdict v = run_and_compare(scene, {}, {method, {}}, u);
     EXPECT_FALSE(v.ok());
     EXPECT_TRUE(contains(v.status, "failed: step "));
     EXPECT_FALSE(v.golden.has_value());
@@ -144,10 +142,10 @@ TEST(Golden, column) {
   const References references = read_references(scene);
   ASSERT_TRUE(references.golden.has_value());
   NodalField u;
-  const Verdict same = judge(scene, references, {"tl-mean-dilatation", {}}, u);
+  const Verdict same = run_and_compare(scene, references, {"tl-mean-dilatation", {}}, u);
   ASSERT_TRUE(same.ok()) << same.status;
   EXPECT_LT(same.golden->max_relative_error, 1e-6);
-  const Verdict controlled = judge(scene, references, {"tl-perturbation", {}}, u);
+  const Verdict controlled = run_and_compare(scene, references, {"tl-perturbation", {}}, u);
   ASSERT_TRUE(controlled.ok()) << controlled.status;
   EXPECT_LT(controlled.golden->max_relative_error, 0.002);  // the case's own limit
   const auto automatic = [&](KappaModulus modulus) {
@@ -156,8 +154,8 @@ TEST(Golden, column) {
   };
   EXPECT_EQ(controlled.kappa, automatic(KappaModulus::p_wave));
   const MethodChoice by_shear{.method = "tl-perturbation", .kappa_modulus = KappaModulus::shear};
-  EXPECT_EQ(judge(scene, references, by_shear, u).kappa, automatic(KappaModulus::shear));
-  const Verdict uncontrolled = judge(scene, references, {"tl-none", {}}, u);
+  EXPECT_EQ(run_and_compare(scene, references, by_shear, u).kappa, automatic(KappaModulus::shear));
+  const Verdict uncontrolled = run_and_compare(scene, references, {"tl-none", {}}, u);
   EXPECT_GT(uncontrolled.golden->max_relative_error, 0.05);
 }
 

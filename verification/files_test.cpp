@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "comparison/reference_file.hpp"
 #include "io/case_file.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/mesh_file.hpp"
-#include "io/reference_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "solve/body.hpp"

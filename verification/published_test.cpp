@@ -12,11 +12,10 @@ namespace sandglass::verification {
 namespace {
 
 /// A block whose upper face is a set.
-Scene block_with(const std::vector<PublishedValue>& published) {
+Scene block() {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   const Mesh mesh = box({1.0, 2.0, 3.0}, {2, 3, 1});
   const NodeSets sets{{"top", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 3.0; })}};
-  description.published = published;
   return make_scene(description, mesh, sets);
 }
 
@@ -26,7 +25,7 @@ PublishedValue value_of(const std::string& component, double value = 1.0) {
 
 /// u = a + b x X has the rotation b about any axis, whatever a is, and the mean a + b x (middle of the face).
 TEST(Published, mean_and_rotation_of_a_rigid_motion) {
-  const Scene scene = block_with({});
+  const Scene scene = block();
   const Vector a{0.3, -0.1, 0.2}, b{1e-3, -2e-3, 3e-3};
   NodalField u;
   for (const auto& X : scene.mesh.points) {
@@ -56,9 +55,9 @@ TEST(Published, pure_strain_is_no_rotation) {
 
 /// Results of a scene with two published values whose nodes all move by `move`.
 std::vector<PublishedResult> results(const Vector& move) {
-  const Scene scene = block_with({value_of("x", 0.5), value_of("z", -0.2)});
+  const Scene scene = block();
   const NodalField u(scene.mesh.points.size(), move), truth(u.size(), Vector{0.4, 0.0, -0.125});
-  auto found = published_results(scene, truth);
+  auto found = published_results(scene, {value_of("x", 0.5), value_of("z", -0.2)}, truth);
   EXPECT_FALSE(largest_relative_error(found).has_value());
   fill_computed(scene, u, found);
   return found;
@@ -85,12 +84,9 @@ Verdict verdict(const std::string& method, const std::string& variant, const Vec
 }
 
 TEST(Published, limits_hold_or_break) {
-  Scene scene = block_with({value_of("x")});
-  scene.description.name = "bar-1";
   const auto check = [&](std::optional<double> below, std::optional<double> above, const Verdict& v) {
-    scene.description.expectations = {
-        {"tl-full", "auto", "published", "relative_error", below, above, "a test"}};
-    return check_limits(scene, {v}).at(0).holds;
+    const Expectation expected{"tl-full", "auto", "published", "relative_error", below, above, "a test"};
+    return check_limits("bar-1", {expected}, {v}).at(0).holds;
   };
   const Verdict near = verdict("tl-full", "1", {0.45, 0.0, -0.22});  // off by a tenth in both
   EXPECT_TRUE(check(0.11, {}, near));

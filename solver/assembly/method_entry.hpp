@@ -78,7 +78,4 @@ std::vector<std::string> method_names();
 /// names.
 const MethodEntry& method_named(std::string_view name, std::string_view key = "method");
 
-/// The golden's own element, with eight points and one pressure: the reference for all other methods.
-inline constexpr std::string_view golden_method = "tl-mean-dilatation";
-
 }  // namespace sandglass

@@ -27,10 +27,10 @@ VariantOf<List> read_listed(TableReader& table, const std::string& key) {
   return chosen;
 }
 
-void read_mesh(TableReader& reader, Case& scene) {
+void read_mesh(TableReader& reader, Case& description) {
   TableReader table = reader.required_table("mesh");
   if (const auto file = table.optional<std::string>("file")) {
-    scene.mesh = MeshFile{scene.file.parent_path() / *file};
+    description.mesh = MeshFile{description.file.parent_path() / *file};
   } else {
     const auto keys = table.keys();
     if (std::find(keys.begin(), keys.end(), "generator") == keys.end()) {
@@ -38,14 +38,14 @@ void read_mesh(TableReader& reader, Case& scene) {
                  fmt::format("is missing; this key or mesh.file must be given, but there {}",
                              keys.empty() ? "is no key" : fmt::format("is only {}", fmt::join(keys, ", "))));
     }
-    scene.mesh = read_listed<Generators>(table, "generator");
+    description.mesh = read_listed<Generators>(table, "generator");
   }
   table.finish();
 }
 
-void read_material(TableReader table, Case& scene) {
-  scene.law = read_listed<Laws>(table, "law");
-  scene.density = table.required<double>("density", Range::positive());
+void read_material(TableReader table, Case& description) {
+  description.law = read_listed<Laws>(table, "law");
+  description.density = table.required<double>("density", Range::positive());
   table.finish();
 }
 
@@ -120,11 +120,6 @@ ImposedRotation read_rotation(TableReader table) {
   return turned;
 }
 
-/// Along an axis, or around it.
-std::vector<std::string> directions() {
-  return {"x", "y", "z", "around-x", "around-y", "around-z"};
-}
-
 ImposedForce read_force(TableReader table) {
   ImposedForce force;
   force.set = table.required<std::string>("set");
@@ -149,31 +144,6 @@ InitialVelocity read_velocity(TableReader table) {
       table.optional<std::array<int, 3>>("half_waves", Range::at_least(0.0)).value_or(velocity.half_waves);
   table.finish();
   return velocity;
-}
-
-PublishedValue read_published(TableReader table) {
-  PublishedValue published;
-  published.set = table.required<std::string>("set");
-  published.component = table.required_choice("component", directions());
-  published.value = table.required<double>("value", Range::any());
-  if (published.value == 0.0) table.fail("value", "= 0 must not be zero: results are told as shares of it");
-  published.source = table.required<std::string>("source");
-  table.finish();
-  return published;
-}
-
-Profile read_profile(TableReader table) {
-  Profile profile{.set = table.required<std::string>("set"),
-                  .order = table.required_choice("order", directions())};
-  table.finish();
-  return profile;
-}
-
-/// A kappa as written: a number, "auto" (also when absent) or "best".
-std::string read_kappa(TableReader& table) {
-  if (table.holds_number("kappa"))
-    return fmt::to_string(table.required<double>("kappa", Range::at_least(0.0)));
-  return table.optional<std::string>("kappa") ? table.required_choice("kappa", {"auto", "best"}) : "auto";
 }
 
 /// The hourglass parameter of a method as written: a number, or none for "auto".
@@ -207,51 +177,23 @@ MethodChoice read_method(TableReader table) {
   return choice;
 }
 
-Expectation read_expectation(TableReader table) {
-  Expectation expected;
-  expected.method = table.required_choice("method", method_names());
-  expected.kappa = read_kappa(table);
-  expected.reference = table.required_choice("reference", {"golden", "truth", "published"});
-  expected.figure = table.required_choice(
-      "figure",
-      expected.reference == "published"
-          ? std::vector<std::string>{"relative_error"}
-          : std::vector<std::string>{"max_relative_error", "profile_relative_error", "rms_relative_error"});
-  expected.below = table.optional<double>("below");
-  expected.above = table.optional<double>("above");
-  expected.reason = table.required<std::string>("reason");
-  table.finish();
-  if (expected.below.has_value() == expected.above.has_value()) {
-    table.fail("below", "or above must be given, one of the two");
-  }
-  return expected;
-}
-
-void read_comparison(TableReader table, Case& scene) {
-  scene.kappas = table.optional<std::vector<double>>("kappas", Range::at_least(0.0)).value_or(scene.kappas);
-  const auto folder = scene.file.parent_path();
-  if (const auto golden = table.optional<std::string>("golden")) scene.golden = folder / *golden;
-  if (const auto truth = table.optional<std::string>("truth")) scene.truth = folder / *truth;
+void read_header(TableReader table, Case& description) {
+  description.family = table.required<std::string>("name");
+  description.name = description.family;
+  for (const auto& variant : description.variants) description.name += "-" + variant;
+  description.requirement = table.required<std::string>("requirement");
+  description.quasi_static = table.required_choice("answer", {"quasi-static", "dynamic"}) == "quasi-static";
   table.finish();
 }
 
-void read_header(TableReader table, Case& scene) {
-  scene.family = table.required<std::string>("name");
-  scene.name = scene.family;
-  for (const auto& variant : scene.variants) scene.name += "-" + variant;
-  scene.requirement = table.required<std::string>("requirement");
-  scene.quasi_static = table.required_choice("answer", {"quasi-static", "dynamic"}) == "quasi-static";
-  table.finish();
-}
-
-MeshWithSets read_mesh_of(const Case& scene, const MeshFile& file) {
+MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
   try {
     return is_foreign_mesh(file.path) ? read_foreign_mesh(file.path) : read_mesh_file(file.path);
   } catch (const InputError& error) {
     const std::string ending = file.path.extension().string();
     const bool ours = is_foreign_mesh(file.path) || ending == ".h5" || ending == ".hdf5";
     throw InputError(
-        fmt::format("{}: mesh.file: {}{}", scene.file.string(), error.what(),
+        fmt::format("{}: mesh.file: {}{}", description.file.string(), error.what(),
                     ours ? "" : "; what is no HDF5 file must end in .msh (Gmsh), .inp (Abaqus) or .vtu"));
   }
 }
@@ -259,43 +201,40 @@ MeshWithSets read_mesh_of(const Case& scene, const MeshFile& file) {
 /// `read_mesh(reader, case)` says where its mesh is from.
 template <class ReadMesh>
 Case read_case(const CaseTables& tables, const std::filesystem::path& path, const ReadMesh& read_mesh) {
-  Case scene;
-  scene.file = path;
-  scene.variants = tables.variants;
+  Case description;
+  description.file = path;
+  description.variants = tables.variants;
   TableReader reader(tables.root, path, "");
-  read_header(reader.required_table("case"), scene);
-  scene.golden = path.parent_path() / ".." / "reference" / "golden" / (scene.name + ".h5");
-  scene.truth = path.parent_path() / ".." / "reference" / "truth" / (scene.name + ".h5");
-  read_mesh(reader, scene);
-  read_material(reader.required_table("material"), scene);
+  read_header(reader.required_table("case"), description);
+  read_mesh(reader, description);
+  read_material(reader.required_table("material"), description);
   if (auto sets = reader.table("sets")) {
-    for (const auto& name : sets->keys()) scene.sets.push_back(read_set(sets->required_table(name), name));
+    for (const auto& name : sets->keys())
+      description.sets.push_back(read_set(sets->required_table(name), name));
   }
   for (const auto& table : reader.tables("displacement"))
-    scene.displacements.push_back(read_displacement(table));
-  for (const auto& table : reader.tables("rotation")) scene.rotations.push_back(read_rotation(table));
-  for (const auto& table : reader.tables("force")) scene.forces.push_back(read_force(table));
-  if (auto profile = reader.table("profile")) scene.profile = read_profile(*profile);
+    description.displacements.push_back(read_displacement(table));
+  for (const auto& table : reader.tables("rotation")) description.rotations.push_back(read_rotation(table));
+  for (const auto& table : reader.tables("force")) description.forces.push_back(read_force(table));
   if (auto relaxation = reader.table("relaxation")) {
-    relaxation->parameters(scene.relaxation);
+    relaxation->parameters(description.relaxation);
     relaxation->finish();
   }
-  if (!scene.quasi_static) {
-    for (const auto& table : reader.tables("velocity")) scene.velocities.push_back(read_velocity(table));
+  if (!description.quasi_static) {
+    for (const auto& table : reader.tables("velocity"))
+      description.velocities.push_back(read_velocity(table));
     auto dynamics = reader.required_table("dynamics");
-    dynamics.parameters(scene.dynamics);
+    dynamics.parameters(description.dynamics);
     dynamics.finish();
   }
-  if (auto method = reader.table("method")) scene.method = read_method(*method);
-  if (auto comparison = reader.table("comparison")) read_comparison(*comparison, scene);
-  for (const auto& table : reader.tables("published")) scene.published.push_back(read_published(table));
-  for (const auto& table : reader.tables("expect")) scene.expectations.push_back(read_expectation(table));
+  if (auto method = reader.table("method")) description.method = read_method(*method);
+  for (const auto& name : tables_not_read) reader.leave(name);
   reader.finish();
-  if (scene.quasi_static && scene.displacements.empty() && scene.rotations.empty()) {
+  if (description.quasi_static && description.displacements.empty() && description.rotations.empty()) {
     reader.fail("displacement",
                 "is missing; a quasi-static case needs at least one [[displacement]] or [[rotation]]");
   }
-  return scene;
+  return description;
 }
 
 }  // namespace
@@ -315,13 +254,13 @@ Case read_case_file(const std::filesystem::path& path) {
   return std::move(cases.front());
 }
 
-Scene read_scene(Case scene) {
-  if (const auto* file = std::get_if<MeshFile>(&scene.mesh)) {
-    MeshWithSets read = read_mesh_of(scene, *file);
-    return make_scene(std::move(scene), std::move(read.mesh), std::move(read.sets));
+Scene read_scene(Case description) {
+  if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
+    MeshWithSets read = read_mesh_of(description, *file);
+    return make_scene(std::move(description), std::move(read.mesh), std::move(read.sets));
   }
-  Mesh mesh = generate_mesh(std::get<AnyGenerator>(scene.mesh));
-  return make_scene(std::move(scene), std::move(mesh));
+  Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
+  return make_scene(std::move(description), std::move(mesh));
 }
 
 Scene read_scene(const std::filesystem::path& path) {
@@ -330,7 +269,9 @@ Scene read_scene(const std::filesystem::path& path) {
 
 Scene read_scene(const std::string& text, MeshWithSets mesh) {
   const std::string name = "case text";
-  const auto in_memory = [&](TableReader& /*reader*/, Case& scene) { scene.mesh = MeshFile{"in memory"}; };
+  const auto in_memory = [&](TableReader& /*reader*/, Case& description) {
+    description.mesh = MeshFile{"in memory"};
+  };
   return make_scene(read_case(parse_case_text(text, name), name, in_memory), std::move(mesh.mesh),
                     std::move(mesh.sets));
 }

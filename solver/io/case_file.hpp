@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -7,6 +8,9 @@
 #include "problem/model.hpp"
 
 namespace sandglass {
+
+/// The tables of a case file that say how answers are compared; they are read by programs that compare.
+inline constexpr std::array tables_not_read{"comparison", "expect", "profile", "published"};
 
 /// Reads a case file, strictly: unknown keys, missing keys, wrong types and values out of range are
 /// InputErrors that name file, line, key, value and rule. `law`, `generator` and method names come from their

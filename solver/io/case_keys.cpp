@@ -71,18 +71,12 @@ constexpr std::string_view sets_and_loads = R"(
   (default: the mean of the set's nodes), displacement = [x, y, z] in m, added (default: none)
 [[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the faces:
   a dead load on the boundary faces within the set
-[[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
-  rotation of the set, source: a text
 [[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in rad/s about
   the set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the set,
   value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several add up
-[profile] set = NAME, order = "x" | "y" | "z" | "around-x" | "around-y" | "around-z"
 [method] name, kappa (number or "auto"), kappa_modulus ("p-wave" or "shear"), accuracy
   (of an adaptive method), precision ("double" or "float"): what `sandglass run` takes unless its options
   say otherwise; `sandglass choose` writes it
-[comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
-[[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth" or "published"),
-  figure, below or above, reason
 [[variants.AXIS]] name, and any of these keys: every combination of one variant of each axis is a case
 )";
 

@@ -121,6 +121,13 @@ std::vector<CaseTables> read_case_tables(const std::filesystem::path& path) {
   return cases;
 }
 
+CaseTables read_case_tables(const std::filesystem::path& path, const std::vector<std::string>& variants) {
+  for (auto& tables : read_case_tables(path)) {
+    if (tables.variants == variants) return std::move(tables);
+  }
+  throw InputError(fmt::format("{}: has no variant '{}' any more", path.string(), fmt::join(variants, "-")));
+}
+
 CaseTables parse_case_text(const std::string& text, const std::string& name) {
   CaseTables tables{parsed(name, [&] { return toml::parse(text, name); }), {}};
   for (const char* key : {"mesh", "variants"}) {

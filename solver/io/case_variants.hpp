@@ -21,6 +21,9 @@ struct CaseTables {
 /// twice there or not fit for a file's name.
 std::vector<CaseTables> read_case_tables(const std::filesystem::path& path);
 
+/// The tables of one case of a file, by its variants. Throws InputError when the file no longer has it.
+CaseTables read_case_tables(const std::filesystem::path& path, const std::vector<std::string>& variants);
+
 /// The tables of a case that is a text, which must have no [variants] and no [mesh]. It stands for a file in
 /// the current folder, of that name in messages. Throws InputError.
 CaseTables parse_case_text(const std::string& text, const std::string& name);

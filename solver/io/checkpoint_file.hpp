@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "solve/observer.hpp"
+#include "problem/observer.hpp"
 
 namespace sandglass {
 

@@ -5,7 +5,7 @@
 
 #include "io/hdf5_file.hpp"
 #include "problem/model.hpp"
-#include "solve/observer.hpp"
+#include "problem/observer.hpp"
 
 namespace sandglass {
 

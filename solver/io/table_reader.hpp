@@ -78,6 +78,9 @@ class TableReader {
     }
   }
 
+  /// Accepts a key without reading it.
+  void leave(const std::string& key) { asked_.insert(key); }
+
   /// Throws when the table has a key that was not asked for; suggests the nearest that was.
   void finish() const;
 

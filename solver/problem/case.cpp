@@ -35,27 +35,41 @@ std::string described(const NodeSetRule& rule) {
 
 }  // namespace
 
-std::string case_hash(const Case& scene) {
+std::string case_hash(const Case& description) {
   std::string text;
-  if (const auto* generator = std::get_if<AnyGenerator>(&scene.mesh)) {
+  if (const auto* generator = std::get_if<AnyGenerator>(&description.mesh)) {
     text += std::visit([](const auto& g) { return described(g); }, *generator);
   } else {
     text += "file";  // its content is in the mesh hash
   }
-  text += std::visit([](const auto& law) { return described(law); }, scene.law);
-  for (const auto& rule : scene.sets) text += described(rule);
-  for (const auto& imposed : scene.displacements) {
+  text += std::visit([](const auto& law) { return described(law); }, description.law);
+  for (const auto& rule : description.sets) text += described(rule);
+  for (const auto& imposed : description.displacements) {
     text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);
   }
-  for (const auto& turned : scene.rotations) {
+  for (const auto& turned : description.rotations) {
     text += fmt::format("rotation({}:{}:{}:", turned.set, turned.axis, turned.angle);
     text += turned.center ? fmt::format("{}", *turned.center) : "-";
     text += fmt::format(":{})", turned.displacement);
   }
-  for (const auto& force : scene.forces) {
+  for (const auto& force : description.forces) {
     text += fmt::format("force({}:{}:{})", force.set, force.total, force.moment);
   }
   return hash_of(text);
+}
+
+void scale_load(Case& description, double factor) {
+  for (auto& displacement : description.displacements) {
+    for (double& d : displacement.value) d *= factor;
+  }
+  for (auto& rotation : description.rotations) {
+    rotation.angle *= factor;
+    for (double& d : rotation.displacement) d *= factor;
+  }
+  for (auto& force : description.forces) {
+    for (double& f : force.total) f *= factor;
+    for (double& m : force.moment) m *= factor;
+  }
 }
 
 }  // namespace sandglass

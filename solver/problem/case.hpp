@@ -53,33 +53,6 @@ struct InitialVelocity {
   Vector spin{};                    ///< rad/s, about the centre of mass of the set
 };
 
-/// A motion of a node set that somebody published.
-struct PublishedValue {
-  std::string set;
-  std::string component;  ///< "x", "y", "z": mean displacement; "around-x", ...: mean rotation
-  double value = 0.0;     ///< m or rad; not zero
-  std::string source;     ///< who says so
-};
-
-/// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.
-struct Profile {
-  std::string set;
-  std::string
-      order;  ///< "x", "y", "z" along an axis; "around-x", ... by angle about an axis through the centroid
-};
-
-/// A limit that `sandglass verify` holds a method to.
-struct Expectation {
-  std::string method;
-  std::string kappa = "auto";   ///< a number, "auto", or "best": the smallest figure over the case's kappas
-  std::string reference;        ///< "golden", "truth" or "published"
-  std::string figure;           ///< "max_relative_error", "profile_relative_error" or "rms_relative_error";
-                                ///< "relative_error" of published values
-  std::optional<double> below;  ///< the figure must be at most this, fraction
-  std::optional<double> above;  ///< the figure must be more than this: the method must fail visibly
-  std::string reason;
-};
-
 /// Everything a case file says, checked key by key; what is inside is plain data.
 struct Case {
   std::filesystem::path file;
@@ -96,19 +69,16 @@ struct Case {
   std::vector<ImposedRotation> rotations;
   std::vector<ImposedForce> forces;
   std::vector<InitialVelocity> velocities;
-  std::optional<Profile> profile;
   RelaxationSettings relaxation;
   DynamicsSettings dynamics;
   std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
-  std::vector<double> kappas;          ///< the curve that `sandglass verify` computes beside `auto`
-  std::vector<Expectation> expectations;
-  std::vector<PublishedValue> published;
-  std::filesystem::path golden;
-  std::filesystem::path truth;
 };
 
 /// A hash of what decides the static answer: mesh recipe, law, node sets, imposed displacements,
-/// rotations and forces. Method, settings, limits, published values and words do not enter.
-std::string case_hash(const Case& scene);
+/// rotations and forces. Method, settings and words do not enter.
+std::string case_hash(const Case& description);
+
+/// Multiplies imposed displacements, angles, forces and moments by `factor`.
+void scale_load(Case& description, double factor);
 
 }  // namespace sandglass

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "problem/model.hpp"
-#include "solve/observer.hpp"
+#include "problem/observer.hpp"
 
 namespace sandglass {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "problem/model.hpp"
-#include "solve/observer.hpp"
+#include "problem/observer.hpp"
 
 namespace sandglass {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "solve/equilibrium.hpp"
 
@@ -12,7 +11,7 @@ namespace sandglass {
 ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   constexpr double share_left = 0.01;
   const Scene& scene = model.scene();
-  const Model exact(scene, {.method = std::string(golden_method), .threads = model.choice().threads});
+  const Model exact(scene, {.method = std::string(estimate_method), .threads = model.choice().threads});
   const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(exact.internal_force());
   Equilibrium<double> search(exact, elements);
   search.body().state() = state_at(elements, u);

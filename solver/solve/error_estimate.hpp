@@ -4,6 +4,9 @@
 
 namespace sandglass {
 
+/// The method that errors are estimated with: eight points and one pressure.
+inline constexpr std::string_view estimate_method = "tl-mean-dilatation";
+
 /// The distance of an answer from that of the mean-dilatation element on the same mesh.
 struct ErrorEstimate {
   double largest = 0.0;  ///< over all nodes, m

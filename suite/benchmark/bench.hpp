@@ -25,11 +25,11 @@ struct BenchPlan {
 
 /// Times and what follows from them.
 struct Speed {
-  Spread ns;      ///< per element and step, of batches
-  double p50_us;  ///< of single steps
-  double p99_us;  ///< of single steps
-  double max_us;  ///< of single steps
-  long steps;     ///< timed
+  Spread ns;                        ///< per element and step, of batches
+  double p50_us;                    ///< of single steps
+  double p99_us;                    ///< of single steps
+  double max_us;                    ///< of single steps
+  long steps;                       ///< timed
   std::optional<double> real_time;  ///< simulated seconds per wall second at the stable step
   double gflops;                    ///< counted operations over the median
   double peak_share;                ///< of the peak with so many threads

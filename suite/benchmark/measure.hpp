@@ -39,10 +39,10 @@ struct Entry {
 
 /// What was measured of one entry.
 struct Timing {
-  std::string status;                          ///< "ok", or why there are no times
-  double force_difference;                     ///< relative to the reference
-  std::vector<double> seconds_per_step;        ///< mean of each batch
-  std::vector<double> seconds_of_a_step;       ///< single steps
+  std::string status;                     ///< "ok", or why there are no times
+  double force_difference;                ///< relative to the reference
+  std::vector<double> seconds_per_step;   ///< mean of each batch
+  std::vector<double> seconds_of_a_step;  ///< single steps
 };
 
 struct MeasureSettings {

@@ -9,6 +9,7 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "comparison/comparison.hpp"
 #include "mesh/interpolation.hpp"
 #include "mesh/variations.hpp"
 

@@ -8,9 +8,10 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "comparison/accuracy.hpp"
+#include "comparison/answer.hpp"
+#include "comparison/comparison.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/interpolation.hpp"
-#include "stability/answer.hpp"
 
 namespace sandglass {
 
@@ -36,7 +37,7 @@ class Asking final : public Observer {
 
 Answer find_answer(const Scene& scene, const MethodChoice& choice, const Proceed& proceed) {
   Asking observer(proceed);
-  Answer answer = answer_at_rest(scene, choice, observer);
+  Answer answer = equilibrium_answer(scene, choice, observer);
   if (observer.stopped()) throw ComputationError("choose: interrupted; nothing was written");
   return answer;
 }
@@ -108,10 +109,10 @@ OwnError own_error_of(const std::filesystem::path& path, const Scene& scene) {
 }  // namespace
 
 Reference make_reference(const Scene& scene, const std::string& against, const Proceed& proceed) {
-  const Case& description = scene.description;
+  const Comparison comparison = read_comparison(scene);
   Reference reference{.name = against, .u = {}, .unit = 0.0, .own = {}};
   if (!against.empty()) {
-    const auto& path = against == "truth" ? description.truth : description.golden;
+    const auto& path = against == "truth" ? comparison.truth : comparison.golden;
     reference.u = read_reference(path, scene);
     reference.own = read_own_error(path);
   } else {
@@ -121,10 +122,10 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
       throw ComputationError(
           fmt::format("{}: the reference, {}, finds no answer: {}; remedy: impose less, refine the mesh, or "
                       "name a stored one with --against",
-                      description.name, reference.name, answer.status));
+                      scene.description.name, reference.name, answer.status));
     }
     reference.u = std::move(answer.u);
-    reference.own = own_error_of(description.golden, scene);
+    reference.own = own_error_of(comparison.golden, scene);
   }
   reference.unit = displacement_unit(scene, reference.u);
   return reference;
@@ -189,8 +190,6 @@ Scene scene_on(const AnyGenerator& mesh, Case description) {
            std::any_of(description.forces.begin(), description.forces.end(), is);
   };
   std::erase_if(description.sets, [&](const NodeSetRule& rule) { return !used(rule); });
-  description.profile.reset();
-  description.published.clear();
   description.mesh = mesh;
   return make_scene(std::move(description), generate_mesh(mesh));
 }

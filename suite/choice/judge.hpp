@@ -6,7 +6,7 @@
 #include "benchmark/measure.hpp"
 #include "choice/ladder.hpp"
 #include "comparison/finding.hpp"
-#include "io/reference_file.hpp"
+#include "comparison/reference_file.hpp"
 
 namespace sandglass {
 

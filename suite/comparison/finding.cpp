@@ -5,6 +5,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "comparison/accuracy.hpp"
+#include "comparison/comparison.hpp"
 #include "mesh/hexahedron.hpp"
 
 namespace sandglass {

@@ -34,9 +34,10 @@ double motion_of(const Scene& scene, const NodalField& u, const PublishedValue& 
   return turned / inertia;
 }
 
-std::vector<PublishedResult> published_results(const Scene& scene, const std::optional<NodalField>& truth) {
+std::vector<PublishedResult> published_results(const Scene& scene, const std::vector<PublishedValue>& values,
+                                               const std::optional<NodalField>& truth) {
   std::vector<PublishedResult> results;
-  for (const auto& published : scene.description.published) {
+  for (const auto& published : values) {
     PublishedResult result{published, {}, {}};
     if (truth) result.truth = motion_of(scene, *truth, published);
     results.push_back(std::move(result));

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "comparison/comparison.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
@@ -27,7 +28,8 @@ double motion_of(const Scene& scene, const NodalField& u, const PublishedValue& 
 
 /// The published values of a scene beside those of its truth, where there is one; nothing is computed
 /// yet.
-std::vector<PublishedResult> published_results(const Scene& scene, const std::optional<NodalField>& truth);
+std::vector<PublishedResult> published_results(const Scene& scene, const std::vector<PublishedValue>& values,
+                                               const std::optional<NodalField>& truth);
 
 /// Fills in what displacements u (m) of the scene give.
 void fill_computed(const Scene& scene, const NodalField& u, std::vector<PublishedResult>& results);

@@ -6,7 +6,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
-#include "io/reference_file.hpp"
+#include "comparison/reference_file.hpp"
 #include "solve/stable_step.hpp"
 
 namespace sandglass {
@@ -37,7 +37,7 @@ bool concerns(const Expectation& expected, const Verdict& verdict) {
 
 /// Brings the scene to rest: its displacements (m), what a verdict says of the way there, and the energy (J)
 /// in the body, which is returned. Throws ComputationError.
-double fill_relaxed(const Scene& scene, const MethodChoice& choice, Verdict& verdict, NodalField& u) {
+double fill_static(const Scene& scene, const MethodChoice& choice, Verdict& verdict, NodalField& u) {
   const Model model(scene, choice);
   verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
   Observer silent;
@@ -59,22 +59,27 @@ double fill_relaxed(const Scene& scene, const MethodChoice& choice, Verdict& ver
 }  // namespace
 
 References read_references(const Scene& scene) {
-  return {read_if_present(scene.description.golden, scene), read_if_present(scene.description.truth, scene)};
+  References references{.comparison = read_comparison(scene), .golden = {}, .truth = {}};
+  references.golden = read_if_present(references.comparison.golden, scene);
+  references.truth = read_if_present(references.comparison.truth, scene);
+  return references;
 }
 
-std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
+std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& comparison, const NodalField& u,
                                     const std::optional<NodalField>& reference) {
   if (!reference) return std::nullopt;
-  const auto* profile = scene.description.profile ? &scene.sets.at(scene.description.profile->set) : nullptr;
+  const auto* profile = comparison.profile ? &scene.sets.at(comparison.profile->set) : nullptr;
   return accuracy(u, *reference, profile, displacement_unit(scene, *reference));
 }
 
 std::optional<double> golden_to_truth(const Scene& scene, const References& references) {
-  if (!references.golden || !references.truth) return std::nullopt;
-  return accuracy_of(scene, *references.golden, references.truth)->max_relative_error;
+  const auto& [comparison, golden, truth] = references;
+  if (!golden || !truth) return std::nullopt;
+  return accuracy_of(scene, comparison, *golden, truth)->max_relative_error;
 }
 
-Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u) {
+Verdict run_and_compare(const Scene& scene, const References& references, const MethodChoice& choice,
+                        NodalField& u) {
   const MethodEntry& method = method_named(choice.method);
   const KernelLaw law = kernel_law(scene.description.law);
   Verdict verdict{
@@ -86,18 +91,18 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
       .operations = method.operations(law).total.total(),
       .family = scene.description.family,
       .variants = scene.description.variants,
-      .published = published_results(scene, references.truth)};
+      .published = published_results(scene, references.comparison.published, references.truth)};
   double energy = 0.0;
   try {
-    energy = fill_relaxed(scene, choice, verdict, u);
+    energy = fill_static(scene, choice, verdict, u);
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
     verdict.finding = finding_of(error.breakdown());
     return verdict;
   }
-  verdict.golden = accuracy_of(scene, u, references.golden);
-  verdict.truth = accuracy_of(scene, u, references.truth);
+  verdict.golden = accuracy_of(scene, references.comparison, u, references.golden);
+  verdict.truth = accuracy_of(scene, references.comparison, u, references.truth);
   if (references.golden) {
     const double unit = displacement_unit(scene, *references.golden);
     verdict.symptoms = symptoms(scene, u, energy, *references.golden, unit);
@@ -109,10 +114,12 @@ Verdict judge(const Scene& scene, const References& references, const MethodChoi
   return verdict;
 }
 
-std::vector<LimitCheck> check_limits(const Scene& scene, const std::vector<Verdict>& verdicts) {
+std::vector<LimitCheck> check_limits(const std::string& case_name,
+                                     const std::vector<Expectation>& expectations,
+                                     const std::vector<Verdict>& verdicts) {
   std::vector<LimitCheck> checks;
-  for (const auto& expected : scene.description.expectations) {
-    LimitCheck check{scene.description.name, expected, {}, {}, false};
+  for (const auto& expected : expectations) {
+    LimitCheck check{case_name, expected, {}, {}, false};
     for (const auto& verdict : verdicts) {
       if (verdict.case_name != check.case_name || !concerns(expected, verdict)) continue;
       const auto figure = figure_of(verdict, expected);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "comparison/accuracy.hpp"
+#include "comparison/comparison.hpp"
 #include "comparison/finding.hpp"
 #include "comparison/published.hpp"
 #include "problem/model.hpp"
@@ -12,18 +13,19 @@
 
 namespace sandglass {
 
-/// The stored answers a scene is compared with; absent when the case has none.
+/// What a scene is compared with; stored answers are absent when the case has none.
 struct References {
+  Comparison comparison;
   std::optional<NodalField> golden;
   std::optional<NodalField> truth;
 };
 
-/// Reads the scene's golden and truth where they exist. Throws InputError when one exists but belongs to
-/// another case.
+/// Reads the comparison of a scene, and its golden and truth where they exist. Throws InputError when one
+/// exists but belongs to another case.
 References read_references(const Scene& scene);
 
 /// The accuracy figures of displacements u of a scene against one of its references, if there is one.
-std::optional<Accuracy> accuracy_of(const Scene& scene, const NodalField& u,
+std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& comparison, const NodalField& u,
                                     const std::optional<NodalField>& reference);
 
 /// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
@@ -58,7 +60,8 @@ struct Verdict {
 
 /// Relaxes the scene with a method and compares. A failed computation becomes a status, not an exception.
 /// `u` receives the displacements when there are any.
-Verdict judge(const Scene& scene, const References& references, const MethodChoice& choice, NodalField& u);
+Verdict run_and_compare(const Scene& scene, const References& references, const MethodChoice& choice,
+                        NodalField& u);
 
 /// The outcome of one expectation of a case.
 struct LimitCheck {
@@ -69,8 +72,10 @@ struct LimitCheck {
   bool holds = false;
 };
 
-/// Holds the verdicts of a scene to its expectations, which are for double precision: verdicts in another are
-/// no concern of theirs.
-std::vector<LimitCheck> check_limits(const Scene& scene, const std::vector<Verdict>& verdicts);
+/// Compares the verdicts of a case with its expectations, which are for double precision: verdicts in single
+/// precision are ignored.
+std::vector<LimitCheck> check_limits(const std::string& case_name,
+                                     const std::vector<Expectation>& expectations,
+                                     const std::vector<Verdict>& verdicts);
 
 }  // namespace sandglass

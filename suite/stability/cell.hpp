@@ -1,7 +1,7 @@
 #pragma once
 
-#include "stability/answer.hpp"
 #include "stability/axis.hpp"
+#include "stability/trial_answer.hpp"
 
 namespace sandglass {
 

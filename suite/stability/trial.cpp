@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "assembly/method_entry.hpp"
+#include "comparison/comparison.hpp"
 #include "mesh/variations.hpp"
 
 namespace sandglass {
@@ -30,20 +31,6 @@ double noise_velocity(const Trial& trial) {
 }
 
 }  // namespace
-
-void scale_load(Case& description, double factor) {
-  for (auto& displacement : description.displacements) {
-    for (double& d : displacement.value) d *= factor;
-  }
-  for (auto& rotation : description.rotations) {
-    rotation.angle *= factor;
-    for (double& d : rotation.displacement) d *= factor;
-  }
-  for (auto& force : description.forces) {
-    for (double& f : force.total) f *= factor;
-    for (double& m : force.moment) m *= factor;
-  }
-}
 
 Scene scene_of(const Trial& trial) {
   Case description = trial.description;

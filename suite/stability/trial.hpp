@@ -20,9 +20,6 @@ struct Trial {
   bool is_dynamic() const { return step || noise; }
 };
 
-/// Imposed displacements, angles, forces and moments times `factor`.
-void scale_load(Case& description, double factor);
-
 /// The scene of a trial. Sets are chosen on the mesh before it is stretched and skewed, and what is imposed
 /// is stretched and skewed with it, so that displacement gradients stay. A dynamic trial takes the time that
 /// a shear wave needs to cross the body: four times that under a load that grows for half of it, with

@@ -4,12 +4,13 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "comparison/comparison.hpp"
+#include "comparison/reference_file.hpp"
 #include "fuzz/odd_file.hpp"
 #include "io/case_file.hpp"
 #include "io/checkpoint_file.hpp"
 #include "io/file_hash.hpp"
 #include "io/mesh_file.hpp"
-#include "io/reference_file.hpp"
 #include "support/scenes.hpp"
 
 namespace sandglass::verification {
@@ -68,6 +69,7 @@ void read_sealed(const Scene& scene, const std::filesystem::path& path) {
 void read_as_case_file(std::span<const std::byte> bytes, const std::filesystem::path& scratch) {
   write_bytes(bytes, scratch);
   for (auto& scene : read_cases(scratch)) {
+    read_comparison(scene);
     if (auto* generator = std::get_if<AnyGenerator>(&scene.mesh)) {
       std::visit([](auto& g) { make_small(g); }, *generator);
       read_scene(std::move(scene));

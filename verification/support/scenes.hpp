@@ -10,7 +10,7 @@
 #include "element/methods.hpp"
 #include "mesh/lattice.hpp"
 #include "problem/model.hpp"
-#include "solve/observer.hpp"
+#include "problem/observer.hpp"
 #include "support/sample_law.hpp"
 
 /// Small scenes made in code, without case files.

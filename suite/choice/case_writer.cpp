@@ -1,11 +1,11 @@
-#include "io/case_writer.hpp"
+#include "choice/case_writer.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "assembly/method_entry.hpp"
-#include "base/error.hpp"
+#include "comparison/comparison.hpp"
 #include "io/case_variants.hpp"
 #include "io/toml_text.hpp"
 #include "mesh/variations.hpp"
@@ -15,15 +15,6 @@ namespace sandglass {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The tables that a file has for one case. Throws InputError where it has none of that name any more.
-toml::table tables_of(const Case& description) {
-  for (auto& tables : read_case_tables(description.file)) {
-    if (tables.variants == description.variants) return std::move(tables.root);
-  }
-  throw InputError(
-      fmt::format("{}: has no variant {} any more", description.file.string(), description.name));
-}
 
 /// A path as it is to be written into a file of that folder: relative, so that both may move together.
 std::string path_from(const fs::path& folder, const fs::path& path) {
@@ -65,7 +56,8 @@ void set_text(toml::table& table, std::string_view key, const std::string& text)
 
 /// References stay where they are; from another folder they have another path.
 void set_references(toml::table& root, const Case& description, const fs::path& folder) {
-  for (const auto& [key, path] : {std::pair{"golden", description.golden}, {"truth", description.truth}}) {
+  const Comparison comparison = read_comparison(description);
+  for (const auto& [key, path] : {std::pair{"golden", comparison.golden}, {"truth", comparison.truth}}) {
     std::error_code ignored;
     if (!fs::exists(path, ignored)) continue;
     table_of(root, "comparison").insert_or_assign(key, path_from(folder, path));
@@ -96,7 +88,7 @@ void forget_answers(toml::table& root, const Case& description) {
 
 std::string case_text(const Case& description, const MethodChoice& choice, const Case* coarser,
                       const fs::path& place) {
-  toml::table root = tables_of(description);
+  toml::table root = read_case_tables(description.file, description.variants).root;
   const fs::path folder = fs::absolute(place).parent_path();
   set_text(table_of(root, "case"), "name", description.name);
   if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "mesh/mesh.hpp"
-#include "solve/checkpoint.hpp"
+#include "problem/checkpoint.hpp"
 
 namespace sandglass {
 

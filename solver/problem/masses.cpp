@@ -1,0 +1,24 @@
+#include "problem/masses.hpp"
+
+#include "mesh/hexahedron.hpp"
+
+namespace sandglass {
+
+std::vector<double> element_masses(const Mesh& mesh, double density) {
+  std::vector<double> masses;
+  masses.reserve(mesh.cells.size());
+  for (const auto& cell : mesh.cells) {
+    masses.push_back(density * mean_gradient(gather(mesh.points, cell)).volume);
+  }
+  return masses;
+}
+
+std::vector<double> lumped_masses(const Mesh& mesh, const std::vector<double>& element_masses) {
+  std::vector<double> masses(mesh.points.size(), 0.0);
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    for (const int node : mesh.cells[e]) masses[static_cast<std::size_t>(node)] += element_masses[e] / 8.0;
+  }
+  return masses;
+}
+
+}  // namespace sandglass

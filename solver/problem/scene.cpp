@@ -1,0 +1,278 @@
+#include "problem/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "base/names.hpp"
+#include "mesh/hash.hpp"
+#include "mesh/hexahedron.hpp"
+#include "mesh/quality.hpp"
+#include "problem/initial_motion.hpp"
+#include "problem/masses.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::vector<std::string> names(const NodeSets& sets) {
+  std::vector<std::string> known;
+  for (const auto& [name, nodes] : sets) known.push_back(name);
+  return known;
+}
+
+/// The mean position of some nodes, m.
+Vector mean_position(const NodalField& points, const std::vector<int>& nodes) {
+  Vector mean{};
+  for (const int node : nodes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      mean[i] += points[static_cast<std::size_t>(node)][i] / static_cast<double>(nodes.size());
+    }
+  }
+  return mean;
+}
+
+/// The paths of the three components of a node at X that turns about a center: with its arm r about the axis
+/// a, (R - 1)(X - c) = -(1 - cos) r + sin a x r.
+std::array<ImposedPath, 3> turning_paths(const ImposedRotation& turned, const Vector& X, const Vector& center,
+                                         std::size_t angle) {
+  const Vector& a = turned.axis;
+  Vector r{};
+  double along = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) along += a[i] * (X[i] - center[i]);
+  for (std::size_t i = 0; i < 3; ++i) r[i] = X[i] - center[i] - along * a[i];
+  std::array<ImposedPath, 3> paths;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    paths[i].share = {turned.displacement[i], -r[i], a[j] * r[k] - a[k] * r[j]};
+    const bool turns = angle > 0 && (paths[i].share[1] != 0.0 || paths[i].share[2] != 0.0);
+    paths[i] = turns ? ImposedPath{paths[i].share, angle} : ImposedPath{{turned.displacement[i]}};
+  }
+  return paths;
+}
+
+std::string described(const ImposedPath& path, const std::vector<double>& angles) {
+  if (path.angle == 0) return fmt::to_string(path.share[0]);
+  return fmt::format("{} turning by {:.6g} rad", path.share[0], angles[path.angle]);
+}
+
+/// Node and component -> path; a second path must equal the first.
+class ImposedPaths {
+ public:
+  ImposedPaths(const Case& description, const std::vector<double>& angles)
+      : description_(description), angles_(angles) {}
+
+  void add(int node, std::size_t component, const ImposedPath& path, const std::string& set) {
+    const Origin origin{path, set};
+    const Origin& first = imposed_.try_emplace({node, static_cast<int>(component)}, origin).first->second;
+    if (first.path == path) return;
+    throw InputError(fmt::format(
+        "{}: node {} is given two displacements in {}: {} by set '{}' and {} by set '{}'; a node may be in "
+        "two sets only if both impose the same value",
+        description_.file.string(), node, "xyz"[component], described(first.path, angles_), first.set,
+        described(path, angles_), set));
+  }
+
+  std::vector<Constraint> constraints() const {
+    std::vector<Constraint> all;
+    for (const auto& [key, origin] : imposed_) all.push_back({key.first, key.second, origin.path});
+    return all;
+  }
+
+ private:
+  struct Origin {
+    ImposedPath path;
+    std::string set;
+  };
+  const Case& description_;
+  const std::vector<double>& angles_;
+  std::map<std::pair<int, int>, Origin> imposed_;
+};
+
+/// The constraints of a case; their angles are added to those that are known.
+std::vector<Constraint> make_constraints(const Case& description, const NodalField& points,
+                                         const NodeSets& sets, std::vector<double>& angles) {
+  ImposedPaths imposed(description, angles);
+  for (const auto& displacement : description.displacements) {
+    for (const int node : node_set(description, sets, "displacement.set", displacement.set)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!displacement.components[i]) continue;
+        imposed.add(node, i, {{displacement.value[i]}}, displacement.set);
+      }
+    }
+  }
+  for (const auto& turned : description.rotations) {
+    const auto& nodes = node_set(description, sets, "rotation.set", turned.set);
+    const Vector center = turned.center.value_or(mean_position(points, nodes));
+    const auto known = std::find(angles.begin(), angles.end(), turned.angle);
+    const auto angle = static_cast<std::size_t>(known - angles.begin());
+    if (known == angles.end()) angles.push_back(turned.angle);
+    for (const int node : nodes) {
+      const auto paths = turning_paths(turned, points[static_cast<std::size_t>(node)], center, angle);
+      for (std::size_t i = 0; i < 3; ++i) imposed.add(node, i, paths[i], turned.set);
+    }
+  }
+  return imposed.constraints();
+}
+
+/// The largest length (m) of the imposed displacements, and of a function of each node that turns: of its
+/// final displacement beside the rotation (m), its distance from the axis (m) and the angle (rad).
+template <class Turning>
+double largest_length(const Scene& scene, const Turning& turning) {
+  double largest = 0.0;
+  for (const auto& displacement : scene.description.displacements) {
+    const auto& d = displacement.value;
+    largest = std::max(largest, length(d));
+  }
+  const auto& constraints = scene.constraints;
+  for (std::size_t k = 0; k < constraints.size();) {
+    PathTerms square{};
+    std::size_t angle = 0;
+    for (const int node = constraints[k].node; k < constraints.size() && constraints[k].node == node; ++k) {
+      const ImposedPath& path = constraints[k].path;
+      for (std::size_t i = 0; i < 3; ++i) square[i] += path.share[i] * path.share[i];
+      angle = std::max(angle, path.angle);
+    }
+    if (angle == 0) continue;
+    const double length = turning(std::sqrt(square[0]), std::sqrt(square[1]), std::abs(scene.angles[angle]));
+    largest = std::max(largest, length);
+  }
+  return largest;
+}
+
+/// The sum of all imposed forces at each node.
+std::vector<NodalLoad> make_loads(const Case& description, const Mesh& mesh, const NodeSets& sets) {
+  std::map<int, Vector> sums;
+  for (const auto& [name, total, moment] : description.forces) {
+    const auto& nodes = node_set(description, sets, "force.set", name);
+    const auto faces = faces_within(mesh, nodes);
+    if (faces.empty()) {
+      throw InputError(
+          fmt::format("{}: force.set = '{}' has no boundary face among its {} nodes; a force acts on faces "
+                      "of the boundary "
+                      "whose four nodes all lie in its set",
+                      description.file.string(), name, nodes.size()));
+    }
+    for (const auto& [node, force] : consistent_loads(mesh.points, faces, total, moment)) {
+      for (std::size_t i = 0; i < 3; ++i) sums[node][i] += force[i];
+    }
+  }
+  std::vector<NodalLoad> loads;
+  loads.reserve(sums.size());
+  for (const auto& [node, force] : sums) loads.push_back({node, force});
+  return loads;
+}
+
+/// The sum of all initial velocities at each node; empty where a case has none.
+NodalField make_initial_velocities(const Case& description, const Mesh& mesh, const NodeSets& sets) {
+  if (description.velocities.empty()) return {};
+  const auto masses = lumped_masses(mesh, element_masses(mesh, description.density));
+  std::vector<int> body(mesh.points.size());
+  std::iota(body.begin(), body.end(), 0);
+  NodalField sums(mesh.points.size());
+  for (const auto& velocity : description.velocities) {
+    const auto& nodes = velocity.set ? node_set(description, sets, "velocity.set", *velocity.set) : body;
+    const InitialMotion motion(velocity, mesh.points, masses, nodes);
+    if (const auto axis = motion.axis_without_extent()) {
+      throw InputError(fmt::format(
+          "{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
+          "one, 0 stands for no wave",
+          description.file.string(), velocity.half_waves[*axis], "xyz"[*axis],
+          velocity.set.value_or("of all nodes"), "xyz"[*axis]));
+    }
+    for (const int node : nodes) {
+      const auto n = static_cast<std::size_t>(node);
+      const Vector v = motion.at(mesh.points[n]);
+      for (std::size_t i = 0; i < 3; ++i) sums[n][i] += v[i];
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+const std::vector<int>& node_set(const Case& description, const NodeSets& sets, const std::string& key,
+                                 const std::string& name) {
+  const auto found = sets.find(name);
+  if (found == sets.end() && sets.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} = '{}' is not a node set of this case, which has none: [sets] gives rules for them, a "
+        "mesh from a file brings its physical groups (Gmsh), NSETs (Abaqus) or point arrays (VTK)",
+        description.file.string(), key, name));
+  }
+  if (found == sets.end()) {
+    throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}",
+                                 description.file.string(), key, name, suggestion(name, names(sets))));
+  }
+  if (found->second.empty()) {
+    throw InputError(fmt::format("{}: {} = '{}' has no node in the mesh; a set needs at least one",
+                                 description.file.string(), key, name));
+  }
+  return found->second;
+}
+
+Mesh generate_mesh(const AnyGenerator& generator) {
+  return std::visit([](const auto& g) { return g.build(); }, generator);
+}
+
+Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file) {
+  Scene scene{.description = std::move(description),
+              .mesh = std::move(mesh),
+              .sets = std::move(sets_of_file),
+              .constraints = {},
+              .angles = {0.0},
+              .loads = {},
+              .initial_velocities = {},
+              .case_hash = {},
+              .mesh_hash = {}};
+  const std::string file = scene.description.file.string();
+  try {
+    require_positive_jacobians(scene.mesh);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+  const auto on_boundary = boundary_nodes(scene.mesh);
+  for (const auto& rule : scene.description.sets) {
+    auto nodes = select_nodes(scene.mesh, on_boundary, rule);
+    if (nodes.empty()) {
+      throw InputError(fmt::format(
+          "{}: sets.{} selects no node; its rule must hold for at least one of the {} nodes of the mesh",
+          file, rule.name, scene.mesh.points.size()));
+    }
+    scene.sets[rule.name] = std::move(nodes);
+  }
+  scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
+  scene.loads = make_loads(scene.description, scene.mesh, scene.sets);
+  scene.initial_velocities = make_initial_velocities(scene.description, scene.mesh, scene.sets);
+  scene.case_hash = case_hash(scene.description);
+  scene.mesh_hash = mesh_hash(scene.mesh, scene.sets);
+  return scene;
+}
+
+double largest_imposed(const Scene& scene) {
+  return largest_length(scene, [](double displacement, double radius, double angle) {
+    return displacement + 2.0 * radius * std::sin(0.5 * std::min(angle, std::numbers::pi));
+  });
+}
+
+double fastest_imposed(const Scene& scene) {
+  return largest_length(
+      scene, [](double displacement, double radius, double angle) { return displacement + radius * angle; });
+}
+
+double final_value(const Scene& scene, const Constraint& constraint) {
+  return constraint.path.along(path_terms(scene.angles[constraint.path.angle], 1.0));
+}
+
+double displacement_unit(const Scene& scene, const NodalField& reference) {
+  double unit = largest_imposed(scene);
+  if (unit > 0.0) return unit;
+  for (const auto& u : reference) unit = std::max(unit, length(u));
+  return unit;
+}
+
+}  // namespace sandglass

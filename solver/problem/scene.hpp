@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/face_load.hpp"
+#include "problem/case.hpp"
+#include "problem/imposed_path.hpp"
+
+namespace sandglass {
+
+/// One imposed displacement component.
+struct Constraint {
+  int node;
+  int component;
+  ImposedPath path;
+};
+
+/// The mesh of a case with its node sets; shared by all methods.
+struct Scene {
+  Case description;
+  Mesh mesh;
+  NodeSets sets;
+  std::vector<Constraint> constraints;  ///< sorted by node, then component
+  std::vector<double> angles;           ///< rad, of paths; the first is zero, for those that do not turn
+  std::vector<NodalLoad> loads;         ///< final forces, sorted by node
+  NodalField initial_velocities;        ///< m/s; empty: at rest. Imposed components do not obey them
+  std::string case_hash;
+  std::string mesh_hash;
+};
+
+/// Node sets by their rules, constraints from the imposed displacements and rotations, loads from the imposed
+/// forces, initial velocities. Throws InputError for an inverted element, an empty set, a node to which two
+/// different paths are imposed, a force on a set without boundary faces, and a wave along an axis on which
+/// its set has no extent.
+Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {});
+
+/// The mesh of a case whose mesh comes from a generator.
+Mesh generate_mesh(const AnyGenerator& generator);
+
+/// The nodes of a set that `key` of a case names. Throws InputError that names the file and the key if there
+/// is no such set, or if it is empty.
+const std::vector<int>& node_set(const Case& description, const NodeSets& sets, const std::string& key,
+                                 const std::string& name);
+
+/// Largest imposed displacement, m: of a set that turns, the largest on its way, where a displacement beside
+/// the rotation counts in full; zero when the case is driven by forces alone.
+double largest_imposed(const Scene& scene);
+
+/// The final displacement (m) of a constraint, where the load factor is one.
+double final_value(const Scene& scene, const Constraint& constraint);
+
+/// Upper bound of the speeds |du/df| (m) of all imposed nodes on their ways; sharp where nothing moves and
+/// turns at once.
+double fastest_imposed(const Scene& scene);
+
+/// The unit of all relative errors against a reference (m): the largest imposed displacement; where none is
+/// imposed, the reference's own largest.
+double displacement_unit(const Scene& scene, const NodalField& reference);
+
+}  // namespace sandglass

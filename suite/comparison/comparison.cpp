@@ -1,0 +1,113 @@
+#include "comparison/comparison.hpp"
+
+#include "assembly/method_entry.hpp"
+#include "io/case_file.hpp"
+#include "io/case_variants.hpp"
+#include "io/table_reader.hpp"
+
+namespace sandglass {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Along an axis, or around it.
+std::vector<std::string> directions() {
+  return {"x", "y", "z", "around-x", "around-y", "around-z"};
+}
+
+PublishedValue read_published(TableReader table) {
+  PublishedValue published;
+  published.set = table.required<std::string>("set");
+  published.component = table.required_choice("component", directions());
+  published.value = table.required<double>("value", Range::any());
+  if (published.value == 0.0)
+    table.fail("value", "= 0 must not be zero: results are reported as shares of it");
+  published.source = table.required<std::string>("source");
+  table.finish();
+  return published;
+}
+
+Profile read_profile(TableReader table) {
+  Profile profile{.set = table.required<std::string>("set"),
+                  .order = table.required_choice("order", directions())};
+  table.finish();
+  return profile;
+}
+
+/// A kappa as written: a number, "auto" (also when absent) or "best".
+std::string read_kappa(TableReader& table) {
+  if (table.holds_number("kappa"))
+    return fmt::to_string(table.required<double>("kappa", Range::at_least(0.0)));
+  return table.optional<std::string>("kappa") ? table.required_choice("kappa", {"auto", "best"}) : "auto";
+}
+
+Expectation read_expectation(TableReader table) {
+  Expectation expected;
+  expected.method = table.required_choice("method", method_names());
+  expected.kappa = read_kappa(table);
+  expected.reference = table.required_choice("reference", {"golden", "truth", "published"});
+  expected.figure = table.required_choice(
+      "figure",
+      expected.reference == "published"
+          ? std::vector<std::string>{"relative_error"}
+          : std::vector<std::string>{"max_relative_error", "profile_relative_error", "rms_relative_error"});
+  expected.below = table.optional<double>("below");
+  expected.above = table.optional<double>("above");
+  expected.reason = table.required<std::string>("reason");
+  table.finish();
+  if (expected.below.has_value() == expected.above.has_value()) {
+    table.fail("below", "or above must be given, one of the two");
+  }
+  return expected;
+}
+
+void read_comparison_table(TableReader table, const fs::path& folder, Comparison& comparison) {
+  comparison.kappas =
+      table.optional<std::vector<double>>("kappas", Range::at_least(0.0)).value_or(comparison.kappas);
+  if (const auto golden = table.optional<std::string>("golden")) comparison.golden = folder / *golden;
+  if (const auto truth = table.optional<std::string>("truth")) comparison.truth = folder / *truth;
+  table.finish();
+}
+
+}  // namespace
+
+Comparison read_comparison(const Case& description) {
+  Comparison comparison;
+  std::error_code ignored;
+  if (!fs::exists(description.file, ignored)) return comparison;
+  const CaseTables tables = read_case_tables(description.file, description.variants);
+  TableReader reader(tables.root, description.file, "");
+  const fs::path folder = description.file.parent_path();
+  comparison.golden = folder / ".." / "reference" / "golden" / (description.name + ".h5");
+  comparison.truth = folder / ".." / "reference" / "truth" / (description.name + ".h5");
+  if (auto profile = reader.table("profile")) comparison.profile = read_profile(*profile);
+  if (auto table = reader.table("comparison")) read_comparison_table(*table, folder, comparison);
+  for (const auto& table : reader.tables("published")) comparison.published.push_back(read_published(table));
+  for (const auto& table : reader.tables("expect"))
+    comparison.expectations.push_back(read_expectation(table));
+  return comparison;
+}
+
+Comparison read_comparison(const Scene& scene) {
+  Comparison comparison = read_comparison(scene.description);
+  const auto require_set = [&](const char* key, const std::string& set) {
+    node_set(scene.description, scene.sets, key, set);
+  };
+  if (comparison.profile) require_set("profile.set", comparison.profile->set);
+  for (const auto& published : comparison.published) require_set("published.set", published.set);
+  return comparison;
+}
+
+std::string describe_comparison_keys() {
+  return R"(
+[profile] set = NAME, order = "x" | "y" | "z" | "around-x" | "around-y" | "around-z"
+[comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
+[[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
+  rotation of the set, source: a text
+[[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth" or "published"),
+  figure, below or above, reason
+)";
+}
+
+}  // namespace sandglass

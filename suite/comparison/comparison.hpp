@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/scene.hpp"
+
+namespace sandglass {
+
+/// The method of the golden's element: eight points and one pressure. Every other method is compared with it.
+inline constexpr std::string_view golden_method = "tl-mean-dilatation";
+
+/// A published motion of a node set.
+struct PublishedValue {
+  std::string set;
+  std::string component;  ///< "x", "y", "z": mean displacement; "around-x", ...: mean rotation
+  double value = 0.0;     ///< m or rad; not zero
+  std::string source;     ///< where it was published
+};
+
+/// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.
+struct Profile {
+  std::string set;
+  std::string
+      order;  ///< "x", "y", "z" along an axis; "around-x", ... by angle about an axis through the centroid
+};
+
+/// A limit that `sandglass verify` checks for a method.
+struct Expectation {
+  std::string method;
+  std::string kappa = "auto";   ///< a number, "auto", or "best": the smallest figure over the case's kappas
+  std::string reference;        ///< "golden", "truth" or "published"
+  std::string figure;           ///< "max_relative_error", "profile_relative_error" or "rms_relative_error";
+                                ///< "relative_error" of published values
+  std::optional<double> below;  ///< the figure must be at most this, fraction
+  std::optional<double> above;  ///< the figure must be more than this: the method must fail visibly
+  std::string reason;
+};
+
+/// What a case file says about answers and their limits: the tables [profile], [comparison], [[published]]
+/// and
+/// [[expect]], which the library does not read.
+struct Comparison {
+  std::optional<Profile> profile;
+  std::vector<double> kappas;  ///< the curve that `sandglass verify` computes in addition to `auto`
+  std::vector<Expectation> expectations;
+  std::vector<PublishedValue> published;
+  std::filesystem::path golden;
+  std::filesystem::path truth;
+};
+
+/// Reads the comparison of a case from its file, as strictly as the library reads the case. A case without a
+/// file has an empty one. Throws InputError that names file, line, key, value and rule.
+Comparison read_comparison(const Case& description);
+
+/// The same for the case of a scene; sets named in it must exist in the scene.
+Comparison read_comparison(const Scene& scene);
+
+/// The keys of these tables, for people.
+std::string describe_comparison_keys();
+
+}  // namespace sandglass

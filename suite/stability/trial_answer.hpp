@@ -1,0 +1,27 @@
+#pragma once
+
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "comparison/answer.hpp"
+#include "stability/trial.hpp"
+
+namespace sandglass {
+
+/// Computes a trial. What goes wrong becomes part of the answer, not an exception.
+Answer compute(const Trial& trial);
+
+/// Answers that several cells need, each computed once, by whoever asks first. May be shared by threads.
+class Answers {
+ public:
+  /// The answer of a trial; waits where somebody else is at it.
+  std::shared_ptr<const Answer> of(const Trial& trial);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::shared_future<std::shared_ptr<const Answer>>> known_;
+};
+
+}  // namespace sandglass
