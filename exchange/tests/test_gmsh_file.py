@@ -60,7 +60,7 @@ def edited(tmp_path, form, *changes):
         ("2.2", b"$EndNodes", b"$Ennodes", r"\$Nodes has no \$EndNodes: the file is cut off"),
         ("2.2", b"Nodes", b"Nodos", r"section \$Nodes is missing"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n2 nan 0 0\n", "finite; those of node 2 are not"),
-        ("2.2", b"\n2 0.1 0 0\n", b"\n2 0.1 x 0\n", "no number"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n2 0.1 x 0\n", "invalid number"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n1 0.1 0 0\n", "node 1 given twice"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n-2 0.1 0 0\n", "node -2: ids of nodes must not be negative"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n2.5 0.1 0 0\n", "no whole number"),
