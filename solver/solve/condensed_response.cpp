@@ -85,7 +85,7 @@ class FreeStiffness {
     std::vector<int> sizes;
     double least = INFINITY;
     for (const auto& set : imposed_sets(scene.description)) {
-      auto found = layers_from(nodes_beside(scene, set, components), neighbours);
+      auto found = layers_from(nodes_next_to(scene, set, components), neighbours);
       std::vector<int> found_sizes;
       double work = 0.0;
       for (const auto& layer : found) {
@@ -136,17 +136,17 @@ class FreeStiffness {
   }
 
   /// The free nodes that share an element with a set.
-  static std::vector<int> nodes_beside(const Scene& scene, const std::string& set,
-                                       const std::vector<int>& components) {
+  static std::vector<int> nodes_next_to(const Scene& scene, const std::string& set,
+                                        const std::vector<int>& components) {
     std::vector<bool> member(scene.mesh.points.size(), false);
     for (const int node : scene.sets.at(set)) member[index(node)] = true;
-    std::set<int> beside;
+    std::set<int> neighbours;
     for (const auto& cell : scene.mesh.cells) {
       if (std::none_of(cell.begin(), cell.end(), [&](int node) { return member[index(node)]; })) continue;
-      std::copy_if(cell.begin(), cell.end(), std::inserter(beside, beside.end()),
+      std::copy_if(cell.begin(), cell.end(), std::inserter(neighbours, neighbours.end()),
                    [&](int node) { return components[index(node)] > 0; });
     }
-    return {beside.begin(), beside.end()};
+    return {neighbours.begin(), neighbours.end()};
   }
 
   std::vector<int> row_;  // of each component, -1 where it is constrained
