@@ -376,7 +376,7 @@ TEST(ErrorEstimate, is_the_error) {
     const ErrorEstimate estimate = estimate_error(Model(scene, choice), u);
     EXPECT_NEAR(estimate.largest / largest_distance(u, exact), 1.0, 0.05) << method;
     double squares = 0.0;
-    for (std::size_t n = 0; n < u.size(); ++n) squares += std::pow(distance(u[n], exact[n]), 2);
+    for (std::size_t n = 0; n < u.size(); ++n) squares += std::pow(sandglass::distance(u[n], exact[n]), 2);
     EXPECT_NEAR(estimate.rms / std::sqrt(squares / static_cast<double>(u.size())), 1.0, 0.05) << method;
   }
   EXPECT_LT(estimate_error(Model(scene, {"tl-mean-dilatation"}), exact).largest,
