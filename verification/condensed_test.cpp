@@ -253,6 +253,50 @@ TEST(CondensedTest, loads_superpose) {
   }
 }
 
+/// Two loads with factors of their own are one load that is their sum, to the rounding of displacements of
+/// some centimetres and of forces of a tenth.
+TEST(CondensedTest, loads_have_factors_of_their_own) {
+  const Scene scene = distorted_bar({0.03, -0.01, 0.02});
+  NodalField one(scene.mesh.points.size()), other = one, sum = one;
+  one[70] = {0.01, -0.02, 0.03};
+  other[55] = {-0.04, 0.0, 0.01};
+  for (std::size_t n = 0; n < sum.size(); ++n) {
+    for (std::size_t i = 0; i < 3; ++i) sum[n][i] = 2.0 * one[n][i] - 3.0 * other[n][i];
+  }
+  const auto answer = [&](const std::vector<NodalField>& loads, std::span<const double> factors) {
+    const CondensedResponse<double> response(Model(scene, condensed_method), handles_of_sets(scene),
+                                             all_nodes(scene), loads);
+    const std::vector<Vector> held(2);
+    std::pair found{NodalField(sum.size()), std::vector<Vector>(2)};
+    response.displacements(held, found.first, 1, factors);
+    response.forces(held, found.second, factors);
+    return found;
+  };
+  const auto [u, f] = answer({one, other}, std::array{2.0, -3.0});
+  const auto [u_sum, f_sum] = answer({sum}, std::array{1.0});
+  EXPECT_GT(largest_distance(u_sum, NodalField(u.size())), 1e-3);
+  EXPECT_LT(largest_distance(u, u_sum), 64 * eps);
+  EXPECT_LT(largest_distance(f, f_sum), 1e-12);
+}
+
+/// A node of two sets moves with the first.
+TEST(CondensedTest, nodes_of_two_sets_follow_the_first) {
+  Scene scene = distorted_bar({0.0, 0.0, 0.02});
+  NodeSets sets = scene.sets;
+  const int shared = sets.at("head").front();
+  sets["one"] = {shared};
+  Case description = scene.description;
+  description.displacements.push_back({"one", {0.0, 0.0, 0.02}});
+  scene = make_scene(description, scene.mesh, sets);
+  const Handles handles = handles_of_sets(scene);
+  ASSERT_EQ(handles.count, 3U);
+  for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
+    if (scene.constraints[k].node == shared) {
+      EXPECT_EQ(handles.of_constraint[k], 1) << k;
+    }
+  }
+}
+
 TEST(CondensedTest, scenes_that_it_cannot_answer_are_refused) {
   Case description = plain_case(sample_law<NeoHookean>(0.49));
   const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});

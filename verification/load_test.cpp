@@ -260,6 +260,23 @@ TEST(Load, reactions_carry_all_loads) {
   expect_near(sum, {0.0, -3.01, -0.02}, 3e-8);  // the residual, 1e-8 of loads and reactions
 }
 
+/// Forces on sets that share faces add up, to a few roundings.
+TEST(Load, forces_on_one_node_add_up) {
+  const auto pulled = [](const std::vector<ImposedForce>& forces) {
+    Scene scene = pulled_bar(sample_law<NeoHookean>(0.3), 0.0);
+    Case description = scene.description;
+    description.forces = forces;
+    return make_scene(description, scene.mesh, scene.sets).loads;
+  };
+  const auto both = pulled({{"end", {0.1, 0.0, 0.4}, {}}, {"end", {0.2, -0.3, 0.0}, {0.0, 0.05, 0.0}}});
+  const auto once = pulled({{"end", {0.3, -0.3, 0.4}, {0.0, 0.05, 0.0}}});
+  ASSERT_EQ(both.size(), once.size());
+  for (std::size_t k = 0; k < both.size(); ++k) {
+    EXPECT_EQ(both[k].node, once[k].node);
+    expect_near(both[k].force, once[k].force, 1e-15);
+  }
+}
+
 /// Relative errors are in units of the largest imposed displacement; under forces alone, of the reference's
 /// own largest one.
 TEST(Load, unit_of_errors_without_imposed_displacement_is_the_references_own) {

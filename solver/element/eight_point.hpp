@@ -153,10 +153,10 @@ struct EightPoint {
                            const Law& law) {
     const auto H = point_gradients(motion, element);
     const auto dilatation = Pressure::dilatations(point_dilatations(H), element);
-    const auto points = gauss_points();
+    const auto places = gauss_points();
     const auto spatial_gradient = [&](std::size_t q) {
       const Tensor<T> to_space = T(8) * (element.inverse_jacobian[q] * inverse(identity<T>() + H[q]));
-      return from_double<T>(parent_gradient(points[q])) * to_space;
+      return from_double<T>(parent_gradient(places[q])) * to_space;
     };
     return point_bound<Pressure::shared>(H, dilatation, element.weight, element.V, spatial_gradient, law);
   }

@@ -180,7 +180,7 @@ struct Ogden : QuadraticVolume<Ogden> {
   Tensor<T> isochoric_kirchhoff(const Tensor<T>& H) const {
     const Spectrum<T> S = spectrum(relative_deviator(H));
     return isotropic_tensor(S, principal_stresses(logarithmic_stretches(S.values)),
-                            [this](const auto& values) { return stress_secants(values); });
+                            [this](const auto& values) { return this->stress_secants(values); });
   }
 };
 
