@@ -221,6 +221,12 @@ PYBIND11_MODULE(sandglass, m) {
           "Advances in time, in equal steps of at most `step_size`; driven nodes and forces change "
           "linearly to their new values. Raises ComputationError if the computation diverges.")
       .def(
+          "settle", [](AnySimulation& self) { return self.with([](auto& s) { return s.settle(); }); },
+          py::call_guard<py::gil_scoped_release>(),
+          "Moves the body to its static equilibrium with driven nodes and forces at their new values, and "
+          "stops it there; the time stays. Returns the number of evaluations of the internal forces. "
+          "Raises ComputationError if no equilibrium is found.")
+      .def(
           "reaction",
           [](AnySimulation& self, const std::string& set) {
             return py::array_t<double>(py::cast(self.with([&](const auto& s) { return s.reaction(set); })));

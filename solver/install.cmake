@@ -1,10 +1,9 @@
 # What `cmake --install` puts where, and how other projects find it: find_package(sandglass), installed or in the build folder.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS sandglass_library sandglass_solver EXPORT sandglassTargets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
+install(TARGETS sandglass_library EXPORT sandglassTargets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
 install(FILES sandglass/simulation.hpp DESTINATION include/sandglass)
-install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION include/sandglass FILES_MATCHING PATTERN "*.hpp"
-  PATTERN sandglass EXCLUDE)
+install(FILES base/error.hpp DESTINATION include/sandglass/base)  # the errors that it throws
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cases DESTINATION ${SANDGLASS_SHARE} FILES_MATCHING PATTERN "*.toml")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/reference/golden ${PROJECT_SOURCE_DIR}/reference/truth
   DESTINATION ${SANDGLASS_SHARE}/reference FILES_MATCHING PATTERN "*.h5")

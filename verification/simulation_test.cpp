@@ -209,6 +209,65 @@ TEST(Simulation, views_show_the_present_in_one_place_and_steps_allocate_nothing)
   EXPECT_EQ(moved.displacements().data, u.data);
 }
 
+/// The static answer of the same loads, to the bit in double, since both are the same search; displacements
+/// of a float answer are floats.
+template <class Real>
+void expect_settled(const char* method, const std::string& driven, double factor) {
+  SCOPED_TRACE(method);
+  Simulation<Real> simulation(block(), text_of(driven), {.method = method});
+  const auto* before = simulation.displacements().data;
+  simulation.impose(0.3 * factor);
+  simulation.advance(0.05);
+  simulation.impose(factor);
+  EXPECT_GT(simulation.settle(), 10);
+  Scene scene = read_scene(text_of(driven), checked(block()));
+  scale_load(scene.description, factor);
+  scene = make_scene(scene.description, scene.mesh, scene.sets);
+  Observer silent;
+  const bool single = std::is_same_v<Real, float>;
+  const Relaxation expected =
+      relax(Model(scene, {.method = method,
+                          .precision = single ? Precision::single_precision : Precision::double_precision}),
+            silent);
+  EXPECT_EQ(field_of(simulation), expected.u);
+  EXPECT_EQ(simulation.displacements().data, before);
+  EXPECT_EQ(simulation.time(), 0.05);
+}
+
+TEST(Simulation, settles_where_a_static_run_ends) {
+  const std::string loaded = pulled + "[[force]]\nset = \"foot\"\ntotal = [0.0, 0.0, 1.0]\n";
+  for (const char* method : {"tl-perturbation", "tl-mean-dilatation", "tl-adaptive", "ul-perturbation"}) {
+    expect_settled<double>(method, pulled, 0.7);
+    expect_settled<float>(method, pulled, 0.7);
+  }
+  expect_settled<double>("tl-perturbation", loaded, 0.7);
+}
+
+/// In equilibrium nothing moves: forces are as far from balance as the search left them, 1e-8 of the
+/// reactions. Without the levels of an adaptive answer, or with velocities of before, it would.
+TEST(Simulation, rests_after_settling) {
+  for (const char* method : {"tl-perturbation", "tl-adaptive"}) {
+    Simulation<double> simulation(block(), text_of(pulled), {.method = method});
+    simulation.move("head", {0.02, 0.01, 0.03});
+    simulation.advance(0.05);
+    simulation.settle();
+    const NodalField at_rest = field_of(simulation);
+    simulation.advance(0.05);
+    EXPECT_LT(largest_distance(field_of(simulation), at_rest), 1e-7 * 0.03) << method;
+  }
+}
+
+TEST(Simulation, without_equilibrium_it_stays_as_it_was) {
+  const std::string impatient = "[relaxation]\nmax_steps = 3\n";
+  Simulation<double> simulation(block(), text_of(pulled) + impatient);
+  simulation.impose(1.0);
+  simulation.advance(0.05);
+  const NodalField before = field_of(simulation);
+  EXPECT_THROW(simulation.settle(), ComputationError);
+  EXPECT_EQ(field_of(simulation), before);
+  simulation.advance(0.01);
+}
+
 TEST(Simulation, a_copy_is_a_snapshot_to_the_bit) {
   for (const char* method : {"tl-perturbation", "tl-adaptive", "ul-viscous"}) {
     Simulation<double> simulation(block(), text_of(pulled), {.method = method});

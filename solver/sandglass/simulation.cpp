@@ -10,6 +10,7 @@
 #include "sandglass/mesh_arrays.hpp"
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
+#include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
 
 namespace sandglass {
@@ -88,8 +89,7 @@ class Simulation<Real>::Parts {
       : problem_(std::make_shared<const Problem>(
             std::move(the_scene), settings,
             std::is_same_v<Real, double> ? Precision::double_precision : Precision::single_precision)),
-        leapfrog_(problem_->model,
-                  *std::get<std::unique_ptr<InternalForce<Real>>>(problem_->model.internal_force()),
+        leapfrog_(problem_->model, elements(),
                   settings.damping.value_or(scene().description.dynamics.damping)),
         adaption_(problem_->model, body()),
         step_fraction_(settings.step_fraction),
@@ -144,11 +144,60 @@ class Simulation<Real>::Parts {
       left = steps > 1.0 ? left - step : 0.0;
       take(step, 1.0 - left / seconds);
     }
+    arrive();
+  }
+
+  long settle() {
+    const Scene present = scene_at_present();
+    const Model model(present, problem_->model.choice());
+    LevelsObserver observer;
+    const Relaxation answer = relax(model, observer);
+    if (!in_equilibrium(answer, model.choice().precision)) {
+      throw ComputationError(fmt::format("no equilibrium: {} after {} evaluations, residual {:.1e}",
+                                         outcome(answer, model.choice().precision), answer.steps,
+                                         answer.residual));
+    }
+    Body<Real>& body = leapfrog_.body();
+    State<Real> reached = state_at(elements(), answer.u);
+    std::copy(reached.u.begin(), reached.u.end(), body.state().u.begin());  // views stay where they are
+    reached.u.swap(body.state().u);
+    body.state() = std::move(reached);
+    elements().set_levels(body.state(), observer.levels);
+    body.impose(to_, factor_to_);
+    body.evaluate_forces();
+    std::fill(body.state().increment.begin(), body.state().increment.end(), Row<Real>{});
+    arrive();
+    choose_step();
+    return answer.steps;
+  }
+
+ private:
+  /// Keeps the levels of the elements of the last frame.
+  struct LevelsObserver final : Observer {
+    void frame(const Frame& frame) override { levels = frame.levels; }
+    std::vector<double> levels;
+  };
+
+  const InternalForce<Real>& elements() const {
+    return *std::get<std::unique_ptr<InternalForce<Real>>>(problem_->model.internal_force());
+  }
+
+  /// The scene whose full load is where driven nodes and forces are to be.
+  Scene scene_at_present() const {
+    Scene present = scene();
+    present.angles = {0.0};
+    for (std::size_t k = 0; k < to_.size(); ++k) present.constraints[k].path = {{to_[k]}};
+    for (auto& load : present.loads) {
+      for (double& f : load.force) f *= factor_to_;
+    }
+    return present;
+  }
+
+  void arrive() {
     from_ = to_;
     factor_from_ = factor_to_;
   }
 
- private:
   /// A step that ends where a share of the way from `from_` to `to_` is gone.
   void take(double step, double share) {
     const double rest = 1.0 - share;
@@ -235,6 +284,11 @@ void Simulation<Real>::impose(double factor) {
 template <class Real>
 void Simulation<Real>::advance(double seconds) {
   parts_->advance(seconds);
+}
+
+template <class Real>
+long Simulation<Real>::settle() {
+  return parts_->settle();
 }
 
 template <class Real>

@@ -84,6 +84,13 @@ class Simulation {
   /// stiff the body has become.
   void advance(double seconds);
 
+  /// Moves the body to its static equilibrium with driven nodes and forces at their new values, and stops it
+  /// there; the time stays. Driven nodes go straight from the undeformed body to these values, in load levels
+  /// as in a quasi-static run of `sandglass run`, with the [relaxation] of the case; what elements remember
+  /// is as if they had gone there in one step. Returns the number of evaluations of the internal forces.
+  /// Throws ComputationError if no equilibrium is found; the body is then as it was.
+  long settle();
+
   double time() const;       ///< s
   double step_size() const;  ///< s, the longest step at present
 
