@@ -54,6 +54,17 @@ def as_compiler(arguments):
     return done.returncode
 
 
+def words_of(entry):
+    """The words of a compile command, without precompiled headers: sources include what they need."""
+    words = [
+        w for w in shlex.split(entry["command"]) if w not in ("-Winvalid-pch", "-fpch-preprocess")
+    ]
+    if "-include" in words:
+        first = words.index("-include")
+        words = words[:first] + words[first + 2 :]
+    return words
+
+
 def main(build, *sources):
     """Checks the sources on all cores: 1 where one has a finding or is not compiled, else 0."""
     entries = json.loads((Path(build) / "compile_commands.json").read_text())
@@ -64,7 +75,7 @@ def main(build, *sources):
         return 1
     chosen = [compiled[str(Path(source).resolve())] for source in sources]
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as cores:
-        results = cores.map(lambda e: check(shlex.split(e["command"]), e["directory"]), chosen)
+        results = cores.map(lambda e: check(words_of(e), e["directory"]), chosen)
     return int(any(results))
 
 
