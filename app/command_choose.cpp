@@ -51,8 +51,8 @@ std::string cost_columns(const std::optional<Cost>& cost) {
                      cost->per_simulated_second());
 }
 
-std::string answer_columns(const Judgement& judgement) {
-  const auto& [error, smallest_jacobian, reason] = judgement;
+std::string answer_columns(const Evaluation& evaluation) {
+  const auto& [error, smallest_jacobian, reason] = evaluation;
   return fmt::format("{:>9}{:>8}", error ? fmt::format("{:.3g}", 100.0 * *error) : "-",
                      smallest_jacobian ? fmt::format("{:.2g}", *smallest_jacobian) : "-");
 }
@@ -61,12 +61,12 @@ void print_coarser(const Scene& scene, const Choice& choice) {
   if (std::holds_alternative<MeshFile>(scene.description.mesh)) {
     fmt::print("the mesh comes from a file: no coarser one was looked at\n");
   }
-  for (const auto& [mesh, judgement, kept] : choice.coarser) {
+  for (const auto& [mesh, evaluation, kept] : choice.coarser) {
     fmt::print("coarser mesh, {}: {}{}{}\n", counts_text(mesh),
-               judgement.error
-                   ? fmt::format("the golden's own element is {:.3g} % off", 100.0 * *judgement.error)
+               evaluation.error
+                   ? fmt::format("the golden's own element is {:.3g} % off", 100.0 * *evaluation.error)
                    : "",
-               judgement.error && !kept ? ", " : "", kept ? "" : judgement.reason);
+               evaluation.error && !kept ? ", " : "", kept ? "" : evaluation.reason);
   }
 }
 
@@ -77,17 +77,17 @@ void print_attempts(const Choice& choice) {
              "step ms", "s/sim. s", "error %", "det F", "outcome");
   long not_tried = 0;
   std::string last;
-  for (const auto& [rung, cost, judgement, outcome] : choice.attempts) {
+  for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
     if (outcome == Outcome::not_tried) {
       ++not_tried;
       continue;
     }
-    const std::string key = rung.choice.method + judgement.reason;
+    const std::string key = rung.choice.method + evaluation.reason;
     if (!cost && key == last) continue;
     last = cost ? "" : key;
     fmt::print("{:<46}{:<34}{}{}  {}{}{}\n", name_of(rung), rung.mesh->name(), cost_columns(cost),
-               answer_columns(judgement), name_of(outcome), judgement.reason.empty() ? "" : ": ",
-               judgement.reason);
+               answer_columns(evaluation), name_of(outcome), evaluation.reason.empty() ? "" : ": ",
+               evaluation.reason);
   }
   if (not_tried > 0) fmt::print("{} dearer ones were not tried; --all tries them\n", not_tried);
 }
@@ -114,7 +114,7 @@ void print_choice(const Scene& scene, const Choice& choice, const std::string& o
   }
   const Attempt& chosen = choice.attempts[*choice.chosen];
   fmt::print("choose {}, {}: {:.4g} % at most, {:.3g} s for a simulated second\n", name_of(chosen.rung),
-             chosen.rung.mesh->name(), 100.0 * *chosen.judgement.error, chosen.cost->per_simulated_second());
+             chosen.rung.mesh->name(), 100.0 * *chosen.evaluation.error, chosen.cost->per_simulated_second());
 }
 
 void write_chosen(const Scene& scene, const Choice& choice, const std::string& output) {

@@ -217,7 +217,7 @@ void require_sensible(const RunOptions& options) {
 }
 
 /// Throws InputError for options that are for quasi-static cases only.
-void require_rest(const RunOptions& options, const Case& description) {
+void require_quasi_static(const RunOptions& options, const Case& description) {
   if (description.quasi_static) return;
   const auto refuse = [&](const char* option, const char* what) {
     throw InputError(
@@ -227,7 +227,7 @@ void require_rest(const RunOptions& options, const Case& description) {
   if (options.sleep) refuse("--sleep", "what sleeps is known of");
 }
 
-/// What a run has found, at rest or in motion.
+/// What a run has found, static or dynamic.
 struct Answer {
   NodalField u;
   std::string status;  ///< "complete", or why not
@@ -242,17 +242,17 @@ void print_outcome(const Model& model, const std::string& what) {
 }
 
 /// A static answer, of the whole or of what moves.
-Relaxation relax_as_asked(const Model& model, const std::optional<double>& sleep, Observer& observer,
-                          const Checkpoint* from) {
+Relaxation relax_as_requested(const Model& model, const std::optional<double>& sleep, Observer& observer,
+                              const Checkpoint* from) {
   if (!sleep) return relax(model, observer, from);
   LocalRelaxation local = relax_awake(model.scene(), model.choice(), *sleep, observer);
   fmt::print("awake: {} of {} elements\n", local.elements, model.scene().mesh.cells.size());
   return std::move(local.relaxation);
 }
 
-Answer answer_at_rest(const Model& model, const std::optional<double>& sleep, Observer& observer,
-                      const Checkpoint* from) {
-  Relaxation found = relax_as_asked(model, sleep, observer, from);
+Answer static_answer(const Model& model, const std::optional<double>& sleep, Observer& observer,
+                     const Checkpoint* from) {
+  Relaxation found = relax_as_requested(model, sleep, observer, from);
   const Precision precision = model.choice().precision;
   const std::string ending = outcome(found, precision);
   print_outcome(model,
@@ -261,7 +261,7 @@ Answer answer_at_rest(const Model& model, const std::optional<double>& sleep, Ob
           found.seconds, found.adaption_seconds};
 }
 
-Answer answer_in_motion(const Model& model, Observer& observer, const Checkpoint* from) {
+Answer dynamic_answer(const Model& model, Observer& observer, const Checkpoint* from) {
   Motion found = integrate(model, observer, from);
   const std::string status =
       found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete";
@@ -279,8 +279,8 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
   watch_for_interrupt();
   RunObserver observer(scene.description.name, writer, keeper);
-  Answer answer = quasi_static ? answer_at_rest(model, given.sleep, observer, from)
-                               : answer_in_motion(model, observer, from);
+  Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from)
+                               : dynamic_answer(model, observer, from);
   print_energies(scene, observer.last());
   print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
   if (quasi_static && answer.status == "complete") {
@@ -295,7 +295,7 @@ int run_case(const RunOptions& options) {
   const Given given = parse(options);
   require_sensible(options);
   const Scene scene = read_scene(find_case(options.name));
-  require_rest(options, scene.description);
+  require_quasi_static(options, scene.description);
   const Model model(scene, choose_method(options, given, scene.description));
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);

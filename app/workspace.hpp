@@ -10,7 +10,7 @@
 namespace sandglass {
 
 /// The folder of the canonical cases: the environment variable SANDGLASS_CASES, else ./cases, else that which
-/// is installed beside the program, else that of the source.
+/// is installed next to the program, else that of the source.
 std::filesystem::path case_folder();
 
 /// All case files of that folder, in alphabetical order.

@@ -94,7 +94,7 @@ TEST(Choose, takes_the_first_that_suffices) {
   ASSERT_TRUE(choice.chosen);
   double before = 0.0;
   for (std::size_t n = 0; n < choice.attempts.size(); ++n) {
-    const auto& [rung, cost, judgement, outcome] = choice.attempts[n];
+    const auto& [rung, cost, evaluation, outcome] = choice.attempts[n];
     if (!cost) {
       EXPECT_EQ(outcome, Outcome::refused) << name_of(rung);
       continue;
@@ -109,12 +109,12 @@ TEST(Choose, takes_the_first_that_suffices) {
                           : n > *choice.chosen ? Outcome::not_tried
                                                : Outcome::chosen;
     EXPECT_EQ(outcome, expected) << name_of(rung);
-    EXPECT_EQ(judgement.reason.empty(), outcome != Outcome::refused) << name_of(rung);
-    EXPECT_TRUE(outcome != Outcome::not_tried || !judgement.error);
+    EXPECT_EQ(evaluation.reason.empty(), outcome != Outcome::refused) << name_of(rung);
+    EXPECT_TRUE(outcome != Outcome::not_tried || !evaluation.error);
   }
   for (const auto& mesh : choice.coarser)
-    EXPECT_EQ(mesh.kept, *mesh.judgement.error <= 0.02) << mesh.judgement.reason;
-  const Judgement& chosen = choice.attempts[*choice.chosen].judgement;
+    EXPECT_EQ(mesh.kept, *mesh.evaluation.error <= 0.02) << mesh.evaluation.reason;
+  const Evaluation& chosen = choice.attempts[*choice.chosen].evaluation;
   EXPECT_LE(*chosen.error, 0.02);
   EXPECT_GT(*chosen.smallest_jacobian, 0.0);
 }
@@ -129,10 +129,10 @@ TEST(Choose, predicts_what_a_run_gives) {
   Observer silent;
   const NodalField golden = equilibrium_answer(scene, {"tl-mean-dilatation"}, silent).u;
   int compared = 0;
-  for (const auto& [rung, cost, judgement, outcome] : choice.attempts) {
+  for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
     if (rung.mesh->coarser) continue;
     const NodalField u = equilibrium_answer(scene, rung.choice, silent).u;
-    EXPECT_EQ(*judgement.error, largest_distance(u, golden) / 0.3) << name_of(rung);
+    EXPECT_EQ(*evaluation.error, largest_distance(u, golden) / 0.3) << name_of(rung);
     ++compared;
   }
   EXPECT_EQ(compared, 2 + 6);
@@ -147,7 +147,7 @@ TEST(Choose, takes_small_strains_for_small_motions_only) {
   const Choice large = choose_quietly(cantilever(0.6), {.tolerance = 0.05, .methods = linear_ones});
   EXPECT_FALSE(large.chosen);
   for (const auto& attempt : large.attempts) {
-    EXPECT_TRUE(contains(attempt.judgement.reason, "small-strain theory")) << name_of(attempt.rung);
+    EXPECT_TRUE(contains(attempt.evaluation.reason, "small-strain theory")) << name_of(attempt.rung);
   }
   EXPECT_TRUE(contains(remarks(large).back(), "the nearest"));
 }
@@ -158,7 +158,7 @@ TEST(Choose, always_has_the_reference_itself) {
   ASSERT_TRUE(choice.chosen);
   const Attempt& chosen = choice.attempts[*choice.chosen];
   EXPECT_EQ(chosen.rung.choice.method, choice.reference.name);
-  EXPECT_EQ(*chosen.judgement.error, 0.0);
+  EXPECT_EQ(*chosen.evaluation.error, 0.0);
 }
 
 /// Nothing is as fast as a picosecond; what is too dear is not computed unless all is asked for.
@@ -167,14 +167,14 @@ TEST(Choose, keeps_within_the_budget) {
   Choice choice = choose_quietly(cantilever(0.1), demand);
   EXPECT_FALSE(choice.chosen);
   for (const auto& attempt : choice.attempts) {
-    EXPECT_TRUE(contains(attempt.judgement.reason, "a step takes"));
-    EXPECT_FALSE(attempt.judgement.error);
+    EXPECT_TRUE(contains(attempt.evaluation.reason, "a step takes"));
+    EXPECT_FALSE(attempt.evaluation.error);
   }
   EXPECT_TRUE(contains(remarks(choice).back(), "too dear"));
   demand.all = true;
   choice = choose_quietly(cantilever(0.1), demand);
   EXPECT_FALSE(choice.chosen);
-  for (const auto& attempt : choice.attempts) EXPECT_TRUE(attempt.judgement.error);
+  for (const auto& attempt : choice.attempts) EXPECT_TRUE(attempt.evaluation.error);
 }
 
 /// A soft body has ten milliseconds for a step, ten thousand times what a machine needs; one with a stiffness
@@ -187,7 +187,7 @@ TEST(Choose, tells_what_real_time_allows) {
   const Choice stiff = choose_quietly(description, demand);
   EXPECT_FALSE(stiff.chosen);
   for (const auto& attempt : stiff.attempts) {
-    EXPECT_TRUE(contains(attempt.judgement.reason, "not in real time"));
+    EXPECT_TRUE(contains(attempt.evaluation.reason, "not in real time"));
   }
 }
 
@@ -203,15 +203,15 @@ TEST(Choose, refuses_what_it_cannot_do) {
   EXPECT_THROW(choose(scene_of_case(cantilever(0.1)), {}, stop), ComputationError);
 }
 
-/// The judge with one method on the user's mesh.
-class JudgeTest : public ::testing::Test {
+/// The evaluator with one method on the user's mesh.
+class EvaluatorTest : public ::testing::Test {
  protected:
-  Judgement judged(const Case& description, const MethodChoice& choice, double tolerance) {
+  Evaluation evaluated(const Case& description, const MethodChoice& choice, double tolerance) {
     const Scene scene = scene_of_case(description);
     const Proceed proceed = go_on;
     const Reference reference = make_reference(scene, "", proceed);
     const LadderMesh own{{}, scene, reference.u};
-    return Judge(scene, reference, tolerance, proceed).judge({choice, &own});
+    return Evaluator(scene, reference, tolerance, proceed).evaluate({choice, &own});
   }
 
   static bool inverts(const Case& description) {
@@ -223,23 +223,23 @@ class JudgeTest : public ::testing::Test {
 
 /// Small strains turn elements under a pressed node inside out at some depth, where the golden's own element
 /// gives way: beyond 1/1.1 of that depth there is no reserve, before it there is.
-TEST_F(JudgeTest, asks_for_a_reserve_of_load) {
+TEST_F(EvaluatorTest, asks_for_a_reserve_of_load) {
   double low = 0.0, high = 1.0;
   ASSERT_TRUE(inverts(pushed_cube(high)));
   for (int n = 0; n < 12; ++n) {
     const double middle = 0.5 * (low + high);
     (inverts(pushed_cube(middle)) ? high : low) = middle;
   }
-  const Judgement near = judged(pushed_cube(low / 1.09), {"linear-condensed"}, 10.0);
+  const Evaluation near = evaluated(pushed_cube(low / 1.09), {"linear-condensed"}, 10.0);
   EXPECT_TRUE(contains(near.reason, "no reserve: with a tenth more load an element turns inside out"));
   ASSERT_TRUE(near.smallest_jacobian);
   EXPECT_GT(*near.smallest_jacobian, 0.0);
-  EXPECT_EQ(judged(pushed_cube(low / 1.11), {"linear-condensed"}, 10.0).reason, "");
+  EXPECT_EQ(evaluated(pushed_cube(low / 1.11), {"linear-condensed"}, 10.0).reason, "");
 }
 
 /// A body that is pressed to a twentieth along x, and can move nowhere else, cannot be pressed by a tenth
 /// more, by no method: nobody is asked for what the golden's own element has not.
-TEST_F(JudgeTest, asks_nobody_for_what_the_golden_has_not) {
+TEST_F(EvaluatorTest, asks_nobody_for_what_the_golden_has_not) {
   Case description = cantilever(0.0);
   description.displacements[1].value = {-0.95, 0.0, 0.0};
   description.sets.push_back({.name = "all"});
@@ -249,18 +249,18 @@ TEST_F(JudgeTest, asks_nobody_for_what_the_golden_has_not) {
   const Proceed proceed = go_on;
   const Reference reference{"none", NodalField(scene.mesh.points.size()), 1.0, {}};
   const LadderMesh own{{}, scene, reference.u};
-  Judge judge(scene, reference, 10.0, proceed);
-  const Judgement found = judge.judge({{.method = "linear-condensed"}, &own});
+  Evaluator evaluator(scene, reference, 10.0, proceed);
+  const Evaluation found = evaluator.evaluate({{.method = "linear-condensed"}, &own});
   EXPECT_EQ(found.reason, "");
   EXPECT_NEAR(found.smallest_jacobian.value_or(0.0), 0.05, 1e-9);
 }
 
 /// Displacement elements lock as Poisson's ratio nears one half; without volume to keep they do not.
-TEST_F(JudgeTest, names_locking_and_hourglassing) {
+TEST_F(EvaluatorTest, names_locking_and_hourglassing) {
   Case description = cantilever(0.2);
   std::get<NeoHookean>(description.law).poisson_ratio = 0.4999;
-  EXPECT_TRUE(contains(judged(description, {"tl-full"}, 0.01).reason, "locks"));
-  EXPECT_TRUE(contains(judged(cantilever(0.2), {"tl-perturbation", 1e-5}, 0.01).reason, "nodes zigzag"));
+  EXPECT_TRUE(contains(evaluated(description, {"tl-full"}, 0.01).reason, "locks"));
+  EXPECT_TRUE(contains(evaluated(cantilever(0.2), {"tl-perturbation", 1e-5}, 0.01).reason, "nodes zigzag"));
 }
 
 /// A truth that is known to a percent cannot show that anything is within a tenth of that.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "choice/case_writer.hpp"
-#include "choice/judge.hpp"
+#include "choice/evaluation.hpp"
 #include "comparison/comparison.hpp"
 #include "io/case_file.hpp"
 #include "io/toml_text.hpp"

@@ -24,8 +24,8 @@ struct RunSoFar {
 /// InputError or ComputationError when that fails.
 void write_checkpoint_file(const std::filesystem::path& path, const Identity& identity, const RunSoFar& run);
 
-/// Reads it for a mesh of so many nodes and elements. Throws InputError when the file is damaged, and when
-/// its identity is another: the text tells all that differs.
+/// Reads it for a mesh of this number of nodes and elements. Throws InputError when the file is damaged, and
+/// when its identity is another: the text tells all that differs.
 RunSoFar read_checkpoint_file(const std::filesystem::path& path, const Identity& identity,
                               std::size_t n_nodes, std::size_t n_elements);
 

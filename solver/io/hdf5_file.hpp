@@ -24,8 +24,8 @@ struct Storage {
 
 /// An HDF5 file that closes itself. Errors of reading, and of places that cannot be written, are InputError
 /// with the file, the name inside it and the rule; a disk that does not take the bytes is a ComputationError.
-/// A file being written goes to a temporary beside its place and is renamed by `commit`; without it nothing
-/// is left.
+/// A file being written goes to a temporary file next to its place and is renamed by `commit`; without it
+/// nothing is left.
 class Hdf5File {
  public:
   /// Starts a new file. Throws InputError when the place cannot be written.

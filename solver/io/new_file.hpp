@@ -4,9 +4,9 @@
 
 namespace sandglass {
 
-/// A file on its way: its bytes go to a temporary beside its place, and `commit` puts them there. Without it
-/// nothing is left, and a file that stood there before stays as it was. What a program left that was killed
-/// goes when the next one writes to the same place.
+/// A file on its way: its bytes go to a temporary file next to its place, and `commit` puts them there.
+/// Without it nothing is left, and a file that stood there before stays as it was. What a program left that
+/// was killed goes when the next one writes to the same place.
 class NewFile {
  public:
   /// Makes the temporary, empty. Throws InputError when that cannot be done, and where something stands at

@@ -14,7 +14,7 @@
 
 namespace sandglass {
 
-/// One TOML table read strictly: every read is checked, and `finish` refuses the keys that nobody asked for.
+/// One TOML table read strictly: every read is checked, and `finish` rejects the keys that nobody read.
 /// All errors are InputErrors that name file, line, key, value and rule.
 class TableReader {
  public:
@@ -81,7 +81,7 @@ class TableReader {
   /// Accepts a key without reading it.
   void leave(const std::string& key) { asked_.insert(key); }
 
-  /// Throws when the table has a key that was not asked for; suggests the nearest that was.
+  /// Throws when the table has a key that was not read; suggests the nearest that was.
   void finish() const;
 
   /// Throws an InputError about a key: "file:line: prefix.key message".

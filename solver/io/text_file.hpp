@@ -7,8 +7,8 @@
 
 namespace sandglass {
 
-/// A text file on its way: written beside its place, where `commit` puts it. Throws InputError when the place
-/// cannot be written, ComputationError when the disk does not take the text.
+/// A text file on its way: written next to its place, where `commit` puts it. Throws InputError when the
+/// place cannot be written, ComputationError when the disk does not take the text.
 class NewTextFile {
  public:
   NewTextFile(const std::filesystem::path& path, const std::string& text);

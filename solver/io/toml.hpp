@@ -9,6 +9,8 @@
 /// space.
 ///
 /// Its functions are compiled once, in toml.cpp.
+#include <cstdint>
+
 #define TOML_HEADER_ONLY 0
 #pragma push_macro("NDEBUG")
 #undef NDEBUG

@@ -34,7 +34,7 @@ struct ImposedRotation {
   Vector axis{};                 ///< of length one; turns by the right-hand rule
   double angle = 0.0;            ///< final angle, rad
   std::optional<Vector> center;  ///< a point of the axis, m; else the mean of the nodes' positions
-  Vector displacement{};         ///< final displacement beside the rotation, m
+  Vector displacement{};         ///< final displacement in addition to the rotation, m
 };
 
 /// A dead load on the boundary faces within a node set; it follows the loading curve.

@@ -43,7 +43,7 @@ Mesh generate_mesh(const AnyGenerator& generator);
 const std::vector<int>& node_set(const Case& description, const NodeSets& sets, const std::string& key,
                                  const std::string& name);
 
-/// Largest imposed displacement, m: of a set that turns, the largest on its way, where a displacement beside
+/// Largest imposed displacement, m: of a set that turns, the largest on its way, where a displacement besides
 /// the rotation counts in full; zero when the case is driven by forces alone.
 double largest_imposed(const Scene& scene);
 

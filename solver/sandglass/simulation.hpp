@@ -22,7 +22,7 @@ struct MeshArrays {
   std::map<std::string, std::vector<int>> sets = {};
 };
 
-/// What a program chooses beside the case.
+/// What a program chooses in addition to the case.
 struct SimulationSettings {
   std::optional<std::string> method =
       {};                              ///< see `sandglass methods`; none: the case's, else tl-perturbation
@@ -79,7 +79,7 @@ class Simulation {
   void impose(double factor);
 
   /// Goes on for `seconds`, in equal steps of at most `step_size()`; driven nodes and forces go straight to
-  /// where they shall be. n steps are `advance(n * step_size())`. Every so many steps (check_interval of the
+  /// where they shall be. n steps are `advance(n * step_size())`. Every check_interval steps (of the
   /// case) it looks for inverted elements and not-a-number (ComputationError), and adapts the step to how
   /// stiff the body has become.
   void advance(double seconds);

@@ -32,7 +32,7 @@ struct Speed {
   long steps;                       ///< timed
   std::optional<double> real_time;  ///< simulated seconds per wall second at the stable step
   double gflops;                    ///< counted operations over the median
-  double peak_share;                ///< of the peak with so many threads
+  double peak_share;                ///< of the peak with this number of threads
   double gbs;                       ///< estimated bytes over the median
   double memory_share;              ///< of the triad in memory; above 1 when a mesh stays in a cache
   double roofline_fraction;

@@ -4,8 +4,8 @@
 
 namespace sandglass {
 
-/// Nodes of a scene up to which condensed methods are set up to be timed, for each variant anew: some seconds
-/// for a cube of so many; the work grows with their number to the power of 7/3.
+/// Nodes of a scene up to which condensed methods are set up to be timed, again for each variant: some
+/// seconds for a cube of this size; the work grows with their number to the power of 7/3.
 inline constexpr std::size_t most_condensed_nodes = 10000;
 
 /// A condensed method that repeats its update: from displacements of the driven sets to those of all nodes

@@ -9,8 +9,8 @@
 
 namespace sandglass {
 
-/// A box of about so many cubes with the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3), clamped
-/// at z = 0 and moved at its other end.
+/// A box of about this number of cubes with the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3),
+/// clamped at z = 0 and moved at its other end.
 Scene box_scene(int elements);
 
 /// The shortest distance between two nodes of an element, m.

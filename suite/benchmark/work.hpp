@@ -12,7 +12,7 @@ namespace sandglass {
 /// by the update; inverse mass read; displacement and increment read and written.
 inline constexpr std::size_t rows_of_update = 1 + 1 + 1 + 2 + 2;
 
-/// Bytes per element of a mesh of so many elements, spare lanes and rows of the layout included.
+/// Bytes per element of a mesh of this number of elements, spare lanes and rows of the layout included.
 double bytes_per_element(const Traffic& traffic, std::size_t bytes_of_number, const Layout& layout,
                          std::size_t elements);
 

@@ -9,8 +9,8 @@
 /// What a method contributes to the ladder.
 namespace sandglass {
 
-/// Strengths of the hourglass control beside that of `auto`, as multiples of it: what is best for one scene
-/// is within that.
+/// Strengths of the hourglass control in addition to that of `auto`, as multiples of it: what is best for one
+/// scene is within that.
 inline constexpr std::array other_strengths{0.5, 2.0};
 
 /// Accuracies that are tried with an adaptive method, as multiples of the user's tolerance: how near its

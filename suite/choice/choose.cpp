@@ -32,7 +32,7 @@ void require_possible(const Scene& scene, const Demand& demand) {
 
 /// The user's mesh, and those coarser ones that the golden's own element can still answer on. What was looked
 /// at is told in `looked_at`.
-std::deque<LadderMesh> make_meshes(const Scene& scene, const Reference& reference, Judge& judge,
+std::deque<LadderMesh> make_meshes(const Scene& scene, const Reference& reference, Evaluator& evaluator,
                                    std::vector<MeshAttempt>& looked_at) {
   std::deque<LadderMesh> meshes;
   meshes.push_back({{}, scene, reference.u});
@@ -46,11 +46,11 @@ std::deque<LadderMesh> make_meshes(const Scene& scene, const Reference& referenc
       Scene on_it = scene_on(coarser, meshes.front().scene.description);
       NodalField there = interpolate(scene.mesh, reference.u, on_it.mesh.points);
       LadderMesh mesh{coarser, std::move(on_it), std::move(there)};
-      attempt.judgement = judge.judge_mesh(mesh);
-      attempt.kept = attempt.judgement.reason.empty();
+      attempt.evaluation = evaluator.evaluate_mesh(mesh);
+      attempt.kept = attempt.evaluation.reason.empty();
       if (attempt.kept) meshes.push_back(std::move(mesh));
     } catch (const InputError& error) {
-      attempt.judgement.reason = error.what();
+      attempt.evaluation.reason = error.what();
     }
     looked_at.push_back(std::move(attempt));
   }
@@ -82,9 +82,9 @@ std::vector<Attempt> make_attempts(std::vector<Rung> rungs, const std::vector<Co
   std::vector<Attempt> attempts;
   for (std::size_t n = 0; n < rungs.size(); ++n) {
     Attempt attempt{.rung = std::move(rungs[n]), .cost = costings[n].cost};
-    attempt.judgement.reason = attempt.rung.unfit;
-    if (!attempt.cost && attempt.rung.unfit.empty()) attempt.judgement.reason = costings[n].status;
-    if (!attempt.judgement.reason.empty()) attempt.outcome = Outcome::refused;
+    attempt.evaluation.reason = attempt.rung.unfit;
+    if (!attempt.cost && attempt.rung.unfit.empty()) attempt.evaluation.reason = costings[n].status;
+    if (!attempt.evaluation.reason.empty()) attempt.outcome = Outcome::refused;
     attempts.push_back(std::move(attempt));
   }
   std::stable_sort(attempts.begin(), attempts.end(),
@@ -97,8 +97,8 @@ bool can_show(const Reference& reference, double error) {
   return reference.name != "truth" || reference.own.largest.value_or(0.0) <= error;
 }
 
-/// Judges rungs from the cheapest on.
-void climb(Choice& choice, Judge& judge, const ProgressOf& progress) {
+/// Evaluates rungs from the cheapest on.
+void climb(Choice& choice, Evaluator& evaluator, const ProgressOf& progress) {
   const Demand& demand = choice.demand;
   for (std::size_t n = 0; n < choice.attempts.size(); ++n) {
     Attempt& attempt = choice.attempts[n];
@@ -108,12 +108,12 @@ void climb(Choice& choice, Judge& judge, const ProgressOf& progress) {
     if (!progress(share, name_of(attempt.rung)))
       throw ComputationError("choose: interrupted; nothing was written");
     const std::string too_dear = cost_reason(*attempt.cost, demand);
-    if (too_dear.empty() || demand.all) attempt.judgement = judge.judge(attempt.rung);
-    if (!too_dear.empty()) attempt.judgement.reason = too_dear;
-    if (attempt.judgement.reason.empty() && !can_show(choice.reference, demand.tolerance)) {
-      attempt.judgement.reason = "nearer to the truth than the truth itself is known";
+    if (too_dear.empty() || demand.all) attempt.evaluation = evaluator.evaluate(attempt.rung);
+    if (!too_dear.empty()) attempt.evaluation.reason = too_dear;
+    if (attempt.evaluation.reason.empty() && !can_show(choice.reference, demand.tolerance)) {
+      attempt.evaluation.reason = "nearer to the truth than the truth itself is known";
     }
-    attempt.outcome = attempt.judgement.reason.empty() ? Outcome::sufficient : Outcome::refused;
+    attempt.outcome = attempt.evaluation.reason.empty() ? Outcome::sufficient : Outcome::refused;
     if (attempt.outcome == Outcome::refused || choice.chosen) continue;
     attempt.outcome = Outcome::chosen;
     choice.chosen = n;
@@ -144,8 +144,8 @@ std::string reference_remark(const Choice& choice) {
 const Attempt* nearest(const Choice& choice) {
   const Attempt* best = nullptr;
   for (const auto& attempt : choice.attempts) {
-    const auto& error = attempt.judgement.error;
-    if (error && (best == nullptr || *error < *best->judgement.error)) best = &attempt;
+    const auto& error = attempt.evaluation.error;
+    if (error && (best == nullptr || *error < *best->evaluation.error)) best = &attempt;
   }
   return best;
 }
@@ -171,15 +171,15 @@ Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progre
   std::string stage = "reference";
   const Proceed proceed = [&](double share) { return progress(share, stage); };
   Choice choice{.demand = demand, .reference = make_reference(scene, demand.against, proceed), .meshes = {}};
-  Judge judge(scene, choice.reference, demand.tolerance, proceed);
+  Evaluator evaluator(scene, choice.reference, demand.tolerance, proceed);
   stage = "coarser meshes";
-  choice.meshes = make_meshes(scene, choice.reference, judge, choice.coarser);
+  choice.meshes = make_meshes(scene, choice.reference, evaluator, choice.coarser);
   stage = "time of steps";
   auto rungs = make_ladder(choice.meshes, {demand.methods, demand.tolerance, demand.threads});
   const auto costings = measure_costs(rungs, proceed);
   choice.attempts = make_attempts(std::move(rungs), costings);
   stage = "answers";
-  climb(choice, judge, progress);
+  climb(choice, evaluator, progress);
   return choice;
 }
 
@@ -191,22 +191,23 @@ std::vector<std::string> remarks(const Choice& choice) {
   const Attempt* best = nearest(choice);
   if (best != nullptr) {
     said.push_back(fmt::format("the nearest of those that were computed is {}, {}: {}", name_of(best->rung),
-                               best->rung.mesh->name(), percent(*best->judgement.error)));
+                               best->rung.mesh->name(), percent(*best->evaluation.error)));
   }
   for (const auto& attempt : choice.attempts) {
-    const auto& [rung, cost, judgement, outcome] = attempt;
+    const auto& [rung, cost, evaluation, outcome] = attempt;
     const bool is_golden = rung.choice.method == golden_method && !rung.mesh->coarser &&
                            rung.choice.precision == Precision::double_precision;
-    if (!is_golden || !judgement.error || !(*judgement.error > tolerance)) continue;
+    if (!is_golden || !evaluation.error || !(*evaluation.error > tolerance)) continue;
     said.push_back(
         fmt::format("the golden's own element is {} off on this mesh: so much is the mesh's, and no "
                     "method mends it. Errors that fall with the square of the element size would ask "
                     "for about {:.2g} times as many elements in each direction",
-                    percent(*judgement.error), std::sqrt(*judgement.error / tolerance)));
+                    percent(*evaluation.error), std::sqrt(*evaluation.error / tolerance)));
   }
   const auto dear =
       std::count_if(choice.attempts.begin(), choice.attempts.end(), [&](const Attempt& attempt) {
-        return attempt.cost && !cost_reason(*attempt.cost, choice.demand).empty() && !attempt.judgement.error;
+        return attempt.cost && !cost_reason(*attempt.cost, choice.demand).empty() &&
+               !attempt.evaluation.error;
       });
   if (dear > 0)
     said.push_back(fmt::format("{} rungs are too dear and were not computed; --all computes them", dear));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "choice/cost.hpp"
-#include "choice/judge.hpp"
+#include "choice/evaluation.hpp"
 
 namespace sandglass {
 
@@ -29,14 +29,14 @@ std::string_view name_of(Outcome outcome);
 struct Attempt {
   Rung rung;
   std::optional<Cost> cost = {};
-  Judgement judgement = {};
+  Evaluation evaluation = {};
   Outcome outcome = Outcome::not_tried;
 };
 
 /// A mesh that was looked at before any method.
 struct MeshAttempt {
   AnyGenerator mesh;
-  Judgement judgement = {};
+  Evaluation evaluation = {};
   bool kept = false;
 };
 

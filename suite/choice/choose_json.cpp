@@ -17,7 +17,7 @@ Json or_null(const std::optional<Value>& value) {
 }
 
 Json to_record(const Attempt& attempt) {
-  const auto& [rung, cost, judgement, outcome] = attempt;
+  const auto& [rung, cost, evaluation, outcome] = attempt;
   return {
       {"rung", name_of(rung)},
       {"method", rung.choice.method},
@@ -29,10 +29,10 @@ Json to_record(const Attempt& attempt) {
       {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
       {"step_size", cost ? or_null(cost->step_size) : Json(nullptr)},
       {"seconds_per_simulated_second", cost ? Json(cost->per_simulated_second()) : Json(nullptr)},
-      {"error", or_null(judgement.error)},
-      {"smallest_jacobian", or_null(judgement.smallest_jacobian)},
+      {"error", or_null(evaluation.error)},
+      {"smallest_jacobian", or_null(evaluation.smallest_jacobian)},
       {"outcome", name_of(outcome)},
-      {"reason", judgement.reason}};
+      {"reason", evaluation.reason}};
 }
 
 }  // namespace
@@ -53,11 +53,11 @@ std::string to_json(const Provenance& provenance, const Scene& scene, const Choi
   document["chosen"] = or_null(choice.chosen);
   document["remarks"] = remarks(choice);
   document["coarser_meshes"] = Json::array();
-  for (const auto& [mesh, judgement, kept] : choice.coarser) {
+  for (const auto& [mesh, evaluation, kept] : choice.coarser) {
     document["coarser_meshes"].push_back({{"mesh", counts_text(mesh)},
-                                          {"error", or_null(judgement.error)},
+                                          {"error", or_null(evaluation.error)},
                                           {"kept", kept},
-                                          {"reason", judgement.reason}});
+                                          {"reason", evaluation.reason}});
   }
   document["rungs"] = Json::array();
   for (const auto& attempt : choice.attempts) document["rungs"].push_back(to_record(attempt));

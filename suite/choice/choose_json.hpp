@@ -7,7 +7,7 @@
 
 namespace sandglass {
 
-/// A choice as JSON text: provenance, what was asked for, the reference, coarser meshes, and one record for
+/// A choice as JSON text: provenance, the demand, the reference, coarser meshes, and one record for
 /// each rung in the order of cost. What is not known is null. "chosen" counts into the records; null: nothing
 /// suffices.
 std::string to_json(const Provenance& provenance, const Scene& scene, const Choice& choice);

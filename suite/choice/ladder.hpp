@@ -19,14 +19,15 @@ struct LadderMesh {
   std::string name() const;
 };
 
-/// A way to compute a scene: what `sandglass choose` chooses among.
+/// A combination of method, precision and mesh: a rung of the ladder that `sandglass choose` climbs from the
+/// cheapest on.
 struct Rung {
   MethodChoice choice;
   const LadderMesh* mesh = nullptr;
-  std::string unfit = {};  ///< why nobody should use it, whatever it costs; empty: fit
+  std::string unfit = {};  ///< why it should not be used, whatever it costs; empty: fit
 };
 
-/// What a ladder is made of.
+/// What the rungs of a ladder are made from.
 struct LadderPlan {
   std::vector<std::string> methods;  ///< none: all of the list
   double tolerance = 0.01;           ///< of the user
@@ -34,12 +35,12 @@ struct LadderPlan {
 };
 
 /// All rungs of some meshes, not yet in order: every method of the list in double and in float. A method
-/// whose kappa matters at rest is there with auto, half and twice that; an adaptive one with several
-/// accuracies about the user's tolerance. A method that has no
-/// answer at rest, or leaves hourglass modes to themselves, is there once, as unfit.
+/// whose kappa affects the static answer appears with auto, half and twice that; an adaptive one with several
+/// accuracies around the user's tolerance. A method that has no static answer, or does not control hourglass
+/// modes, appears once, as unfit.
 std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan);
 
-/// What is on a rung, for people: "tl-perturbation kappa 0.00325 float".
+/// The name of a rung: "tl-perturbation kappa 0.00325 float".
 std::string name_of(const Rung& rung);
 
 /// Whether two rungs do the same work in a step, so that one time stands for both.

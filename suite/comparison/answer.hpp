@@ -13,7 +13,7 @@ namespace sandglass {
 struct Answer {
   NodalField u;                         ///< m; empty where the computation broke down
   double energy = 0.0;                  ///< strain and hourglass energy at u, J
-  std::optional<Finding> failure = {};  ///< how it broke down, or that it is not at rest
+  std::optional<Finding> failure = {};  ///< how it broke down, or that it is not in equilibrium
   bool refused = false;                 ///< the method does not take this case
   std::string status = "ok";            ///< or why not, in words
   long steps = 0;

@@ -49,8 +49,8 @@ struct HourglassContent {
 };
 HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u);
 
-/// The symptoms of displacements u (m) with strain and hourglass energy `energy` (J) beside the golden;
-/// `unit` is the length that errors are fractions of.
+/// The symptoms of displacements u (m) with strain and hourglass energy `energy` (J) compared with the
+/// golden; `unit` is the length that errors are fractions of.
 Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const NodalField& golden,
                   double unit);
 

@@ -8,7 +8,7 @@
 
 namespace sandglass {
 
-/// A published motion beside the computed one.
+/// A published motion and the computed one.
 struct PublishedResult {
   PublishedValue published;
   std::optional<double> computed;  ///< m or rad; none when the computation failed
@@ -26,7 +26,7 @@ struct PublishedResult {
 /// sum (r x u)_k / sum (|r|^2 - r_k^2).
 double motion_of(const Scene& scene, const NodalField& u, const PublishedValue& published);
 
-/// The published values of a scene beside those of its truth, where there is one; nothing is computed
+/// The published values of a scene next to those of its truth, where there is one; nothing is computed
 /// yet.
 std::vector<PublishedResult> published_results(const Scene& scene, const std::vector<PublishedValue>& values,
                                                const std::optional<NodalField>& truth);

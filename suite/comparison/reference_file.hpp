@@ -10,7 +10,7 @@ namespace sandglass {
 
 /// Displacements (m) of a stored golden or truth at the nodes of the scene. Throws InputError when the file
 /// is missing or broken, and when its hashes are not those of the scene; the text names the command that
-/// makes it anew.
+/// makes it again.
 NodalField read_reference(const std::filesystem::path& path, const Scene& scene);
 
 /// What a stored answer says of its own error.

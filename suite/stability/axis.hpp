@@ -45,7 +45,7 @@ struct Map {
 /// The map of "X,Y" or "X", with the axes' own values. Throws InputError.
 Map parse_map(const std::string& text);
 
-/// The maps that a case is given when none is asked for: all that are possible with it.
+/// The maps of a case when none is requested: all that are possible with it.
 std::vector<Map> usual_maps(const Case& description);
 
 /// Replaces the values of an axis in all maps by "AXIS=V1,V2,...". Throws InputError for a value out of

@@ -13,9 +13,9 @@ struct Trial {
   MethodChoice choice;
   double aspect = 1.0;               ///< z of mesh and imposed motions times this
   double skew = 0.0;                 ///< and x plus this times z
-  std::optional<double> step = {};   ///< dynamic, at so many stable steps per step; none: at rest
-  std::optional<double> noise = {};  ///< dynamic, without load, from a zigzag of velocities of so many times
-                                     ///< the speed of shear waves
+  std::optional<double> step = {};   ///< dynamic: stable steps per step; none: static
+  std::optional<double> noise = {};  ///< dynamic, without load, from a zigzag of velocities of this many
+                                     ///< times the speed of shear waves
 
   bool is_dynamic() const { return step || noise; }
 };

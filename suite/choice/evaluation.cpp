@@ -1,4 +1,4 @@
-#include "choice/judge.hpp"
+#include "choice/evaluation.hpp"
 
 #include <fmt/format.h>
 
@@ -131,30 +131,30 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
   return reference;
 }
 
-Judge::Judge(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed)
+Evaluator::Evaluator(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed)
     : scene_(scene),
       reference_(reference),
       tolerance_(tolerance),
       proceed_(proceed),
       largest_gradient_(largest_gradient(scene.mesh, reference.u)) {}
 
-Judgement Judge::judge(const Rung& rung) {
-  Judgement found = judge_answer(rung);
+Evaluation Evaluator::evaluate(const Rung& rung) {
+  Evaluation found = evaluate_answer(rung);
   if (found.reason.empty()) found.reason = margin_reason(rung);
   return found;
 }
 
-Judgement Judge::judge_mesh(const LadderMesh& mesh) {
-  Judgement found = judge_answer({golden_element(1), &mesh});
+Evaluation Evaluator::evaluate_mesh(const LadderMesh& mesh) {
+  Evaluation found = evaluate_answer({golden_element(1), &mesh});
   if (!found.reason.empty() && found.error) found.reason = "too coarse for any method";
   return found;
 }
 
-Judgement Judge::judge_answer(const Rung& rung) {
+Evaluation Evaluator::evaluate_answer(const Rung& rung) {
   const Scene& scene = rung.mesh->scene;
   const Answer answer = find_answer(scene, rung.choice, proceed_);
   if (answer.refused || answer.u.empty()) return {.reason = failure_reason(answer)};
-  Judgement found;
+  Evaluation found;
   found.smallest_jacobian = smallest_jacobian(Model(scene, rung.choice), answer.u);
   const NodalField u = rung.mesh->coarser ? interpolate(scene.mesh, answer.u, scene_.mesh.points) : answer.u;
   found.error = accuracy(u, reference_.u, nullptr, reference_.unit).max_relative_error;
@@ -170,7 +170,7 @@ Judgement Judge::judge_answer(const Rung& rung) {
   return found;
 }
 
-std::string Judge::margin_reason(const Rung& rung) {
+std::string Evaluator::margin_reason(const Rung& rung) {
   const auto survives = [&](const MethodChoice& choice) {
     const Scene harder = with_margin(rung.mesh->scene);
     return find_answer(harder, choice, proceed_);

@@ -24,30 +24,30 @@ struct Reference {
 /// element finds no answer.
 Reference make_reference(const Scene& scene, const std::string& against, const Proceed& proceed);
 
-/// How well a rung answers.
-struct Judgement {
+/// The error of a rung's answer, and why it is rejected, if it is.
+struct Evaluation {
   std::optional<double> error = {};              ///< max over all nodes of the user's mesh, over the unit
   std::optional<double> smallest_jacobian = {};  ///< det F, at the answer
-  std::string reason = {};                       ///< why it is refused; empty: good enough
+  std::string reason = {};                       ///< why it is rejected; empty: good enough
 };
 
-/// Judges rungs of one scene by one reference.
-class Judge {
+/// Compares rungs of one scene with one reference.
+class Evaluator {
  public:
-  /// `scene` is the user's; it and the reference must outlive the judge.
-  Judge(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed);
+  /// `scene` is the user's; it and the reference must outlive the evaluator.
+  Evaluator(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed);
 
   /// Computes the rung's answer and its distance from the reference at all nodes of the user's mesh. One that
-  /// is near enough must come to rest with a tenth more load, too, where the golden's own element does.
+  /// is near enough must also come to rest with a tenth more load where the golden's own element does.
   /// Throws ComputationError when told to end.
-  Judgement judge(const Rung& rung);
+  Evaluation evaluate(const Rung& rung);
 
   /// The error of the golden's own element on a mesh: what the mesh costs, whatever the method.
-  Judgement judge_mesh(const LadderMesh& mesh);
+  Evaluation evaluate_mesh(const LadderMesh& mesh);
 
  private:
   /// All but the margin.
-  Judgement judge_answer(const Rung& rung);
+  Evaluation evaluate_answer(const Rung& rung);
   std::string margin_reason(const Rung& rung);
 
   const Scene& scene_;
