@@ -1,5 +1,7 @@
-"""Checks that includes point one way only: the program sees the suite, the suite the library, and in
-each a layer itself and the layers before it. Exit code 1 names every include that points the other way.
+"""Checks that includes point one way only.
+
+The program sees the suite, the suite the library, and in each a layer itself and the layers before
+it. Exit code 1 names every include that points the other way.
 """
 
 import pathlib

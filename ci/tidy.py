@@ -55,7 +55,7 @@ def as_compiler(arguments):
 
 
 def words_of(entry):
-    """The words of a compile command, without precompiled headers: sources include what they need."""
+    """The words of a compile command without precompiled headers: sources include what they use."""
     words = [
         w for w in shlex.split(entry["command"]) if w not in ("-Winvalid-pch", "-fpch-preprocess")
     ]

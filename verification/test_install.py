@@ -76,7 +76,7 @@ def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):
 
 
 def test_only_public_headers_are_installed(prefix):
-    """Kernels would need the flags of the library, and other packs of the same name would break it."""
+    """Kernels need the flags of the library; with others, packs of one name would differ."""
     headers = {str(f.relative_to(prefix / "include")) for f in (prefix / "include").rglob("*.hpp")}
     assert headers == {"sandglass/simulation.hpp", "sandglass/base/error.hpp"}
 

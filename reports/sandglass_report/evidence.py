@@ -120,7 +120,9 @@ def _read_mutants(path, files):
     lines = path.read_text(encoding="utf-8").splitlines()
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if "|" in line]
     if not rows or tuple(rows[0]) != COLUMNS or any(len(row) != len(COLUMNS) for row in rows):
-        raise InputError(f"{path}: not the table of verification/mutants/run.py: its columns must be {COLUMNS}")
+        raise InputError(
+            f"{path}: not the table of verification/mutants/run.py: its columns must be {COLUMNS}"
+        )
     made = next((line for line in lines if line.startswith("Made by")), "")
     return made, tuple(_mutant(row, files) for row in rows[2:])
 

@@ -32,7 +32,8 @@ def arguments(given):
     parser = argparse.ArgumentParser(prog="ci/gate", description=__doc__.splitlines()[0])
     add = parser.add_argument
     add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")
-    add("--baseline", type=Path, default="verification/gate/baseline.json", help="default: %(default)s")
+    baseline = "verification/gate/baseline.json"
+    add("--baseline", type=Path, default=baseline, help="default: %(default)s")
     add(
         "--verdicts",
         metavar="FILE",

@@ -34,12 +34,13 @@ def flops(folder):
 
 
 def bench(folder, name):
-    """The file of one process of `bench`, scalar kernels included, by the program next to it that has them.
+    """The file of one process of `bench`, by the program next to it that has scalar kernels.
 
     Wrong forces are reported in the file.
     """
     file = folder / f"{name}.json"
-    output_of(binary().with_name("sandglass-scalar"), "bench", *BENCH, "--json", file, allowed=(0, 1))
+    program = binary().with_name("sandglass-scalar")
+    output_of(program, "bench", *BENCH, "--json", file, allowed=(0, 1))
     return file
 
 

@@ -65,7 +65,8 @@ def write_table(patches, revision):
     counts = ", ".join(f"{verdicts.count(v)} {v}" for v in sorted(set(verdicts)))
     clean = stored(CLEAN)
     text = "# Mutants\n\n"
-    text += f"Made by `verification/mutants/run.py` on {datetime.date.today()}, revision {revision}: {counts}.\n"
+    today = datetime.date.today()
+    text += f"Made by `verification/mutants/run.py` on {today}, revision {revision}: {counts}.\n"
     if clean:
         runs, alarms = len(clean["alarms"]), sum(map(len, clean["alarms"]))
         text += f"The tree without a mistake: runs {runs}, false alarms {alarms}.\n"
