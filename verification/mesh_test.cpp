@@ -13,6 +13,7 @@
 #include "mesh/hexahedron.hpp"
 #include "mesh/node_set.hpp"
 #include "mesh/quality.hpp"
+#include "problem/masses.hpp"
 #include "support/plain_generators.hpp"
 #include "support/scenes.hpp"
 #include "support/typed_lists.hpp"
