@@ -186,7 +186,15 @@ class Simulation<Real>::Parts {
   Scene scene_at_present() const {
     Scene present = scene();
     present.angles = {0.0};
-    for (std::size_t k = 0; k < to_.size(); ++k) present.constraints[k].path = {{to_[k]}};
+    std::map<int, Vector> displacements;  // of driven nodes
+    for (std::size_t k = 0; k < to_.size(); ++k) {
+      Constraint& constraint = present.constraints[k];
+      constraint.path = {{to_[k]}};
+      displacements[constraint.node][static_cast<std::size_t>(constraint.component)] = to_[k];
+    }
+    present.description.rotations.clear();
+    present.description.displacements.clear();
+    for (const auto& [node, d] : displacements) present.description.displacements.push_back({"driven", d});
     for (auto& load : present.loads) {
       for (double& f : load.force) f *= factor_to_;
     }
