@@ -209,8 +209,8 @@ TEST(Simulation, views_show_the_present_in_one_place_and_steps_allocate_nothing)
   EXPECT_EQ(moved.displacements().data, u.data);
 }
 
-/// The static answer of the same loads, to the bit in double, since both are the same search; displacements
-/// of a float answer are floats.
+/// The static answer of the same loads, to the bit, since both are the same search: a factor that is a power
+/// of two is exact.
 template <class Real>
 void expect_settled(const char* method, const std::string& driven, double factor) {
   SCOPED_TRACE(method);

@@ -192,6 +192,7 @@ class Simulation<Real>::Parts {
       constraint.path = {{to_[k]}};
       displacements[constraint.node][static_cast<std::size_t>(constraint.component)] = to_[k];
     }
+    scale_load(present.description, factor_to_);
     present.description.rotations.clear();
     present.description.displacements.clear();
     for (const auto& [node, d] : displacements) present.description.displacements.push_back({"driven", d});

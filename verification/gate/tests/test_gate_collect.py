@@ -28,10 +28,11 @@ def play(tmp_path, monkeypatch):
     """Replaces the program under test by a script with these commands instead of `run`."""
 
     def made(body="", code=3):
-        script = tmp_path / "program"
-        script.write_text(PROGRAM.replace("{body}", body).replace("{code}", str(code)))
-        script.chmod(0o755)
-        monkeypatch.setenv("SANDGLASS_BINARY", str(script))
+        for name in ("sandglass", "sandglass-scalar"):
+            script = tmp_path / name
+            script.write_text(PROGRAM.replace("{body}", body).replace("{code}", str(code)))
+            script.chmod(0o755)
+        monkeypatch.setenv("SANDGLASS_BINARY", str(tmp_path / "sandglass"))
         return tmp_path
 
     return made
