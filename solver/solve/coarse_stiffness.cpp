@@ -55,7 +55,7 @@ CoarseStiffness::CoarseStiffness(const Scene& scene, const CoarseGrid& grid)
       boxes_(grid.boxes()),
       fixed_(size_ * size_),
       matrix_(fixed_.size()),
-      solver_(size_) {
+      inverse_(size_) {
   for (std::size_t c = 0; c < boxes_.size(); ++c) boxes_[c].nodes = grid.nodes_of(c);
   const NodalField free = free_components(scene);
   const auto& hexahedra = scene.mesh.cells;

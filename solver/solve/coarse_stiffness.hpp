@@ -3,7 +3,7 @@
 #include "problem/model.hpp"
 #include "solve/coarse_grid.hpp"
 #include "solve/coarse_transfer.hpp"
-#include "solve/semidefinite_solver.hpp"
+#include "solve/semidefinite_inverse.hpp"
 
 namespace sandglass {
 
@@ -13,7 +13,7 @@ struct ElementTangent {
   double volume;           ///< reference volume, m^3
 };
 
-/// The factorised tangent stiffness (N/m) on a coarse grid, with the law's initial moduli. Free and small
+/// The inverse tangent stiffness (N/m) on a coarse grid, with the law's initial moduli. Free and small
 /// elements use the gradients of the grid's functions at their centre, pushed forward with their own
 /// deformation. Elements that touch a constraint, or are not smaller than boxes of the grid, use the exact
 /// nodal values of the functions, but in the undeformed state.
@@ -24,7 +24,7 @@ class CoarseStiffness {
 
   std::size_t size() const { return size_; }
 
-  /// Assembles and factorises the tangent at a deformation, where `tangent_of(e)` is the ElementTangent of
+  /// Assembles and inverts the tangent at a deformation, where `tangent_of(e)` is the ElementTangent of
   /// element e.
   template <class TangentOf>
   void update(const TangentOf& tangent_of, int threads) {
@@ -35,11 +35,11 @@ class CoarseStiffness {
         add_element(T, grid_.gradients(local), tangent_of(element));
     });
     assemble();
-    solver_.factorise(matrix_);
+    inverse_.invert(matrix_);
   }
 
   /// c = A^-1 q; zero for functions that move only constrained nodes.
-  void solve(const CoarseVector& q, CoarseVector& c) { solver_.solve(q, c); }
+  void solve(const CoarseVector& q, CoarseVector& c) const { inverse_.solve(q, c); }
 
  private:
   /// Sums of V G_ai G_bj over the elements of a box, G_a the gradients of its eight functions.
@@ -68,7 +68,7 @@ class CoarseStiffness {
   std::vector<Box> boxes_;
   std::vector<double> fixed_;   // part of A that does not follow the deformation
   std::vector<double> matrix_;  // A, by rows
-  SemidefiniteSolver solver_;
+  SemidefiniteInverse inverse_;
 };
 
 }  // namespace sandglass
