@@ -256,10 +256,11 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
     for (std::size_t g = part.first; g < part.last; ++g) {
       const ElementGroups::Group group = groups.groups[g];
       FaceMotion lower = this->template gather_face<Method>(groups, state, volumes, group.first_face);
+      const auto* const blocks = part.blocks.data() + (group.first_rank - part.first_block);
       Faces carried{};
       for (std::size_t k = 0; k < group.ranks; ++k) {
         const std::size_t block = group.first_rank + k;
-        const auto& element = part.blocks[block - part.first_block];
+        const auto& element = blocks[k];
         const FaceMotion upper =
             this->template gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
         if (this->streams_) prefetch_block(part, state, block + ranks_ahead);
