@@ -18,8 +18,7 @@ class CorpusTest : public ::testing::TestWithParam<Reader> {};
 TEST_P(CorpusTest, is_read_or_refused) {
   const TemporaryFolder folder;
   int read = 0, refused = 0;
-  for (const auto& entry :
-       fs::directory_iterator(fs::path(SANDGLASS_SOURCE) / "verification/fuzz/corpus" / GetParam().name)) {
+  for (const auto& entry : fs::directory_iterator(fs::path(SANDGLASS_CORPUS) / GetParam().name)) {
     std::ostringstream stream;
     stream << std::ifstream(entry.path(), std::ios::binary).rdbuf();
     const std::string bytes = stream.str();
