@@ -7,6 +7,7 @@
 #include "app/machine.hpp"
 #include "assembly/method_entry.hpp"
 #include "element/operation_count.hpp"
+#include "element/paper_hourglass_force.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "material/laws.hpp"

@@ -8,6 +8,7 @@
 
 #include "element/methods.hpp"
 #include "element/operation_count.hpp"
+#include "element/paper_hourglass_force.hpp"
 #include "math/counted.hpp"
 #include "math/pack.hpp"
 #include "support/fitting_elements.hpp"

@@ -29,6 +29,12 @@ T gram_bound(const std::array<T, N>& c, const std::array<NodalVectors<T>, N>& g)
   return bound;
 }
 
+/// An upper bound of lambda_max(gamma^T gamma): the largest sum of absolute values in a row.
+template <class T>
+T shape_vector_bound(const Matrix<T, 8, 4>& gamma) {
+  return row_sum_bound(transpose(gamma) * gamma);
+}
+
 /// An upper bound of sum_n c_n |v^T g_n|^2 / |v|^2, c_n >= 0, for nodal vectors v: the largest absolute row
 /// sum of the 8 x 8 matrix sum_n c_n g_n g_n^T, which acts on each component of v.
 template <class T, std::size_t N>

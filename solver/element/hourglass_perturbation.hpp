@@ -1,48 +1,11 @@
 #pragma once
 
-#include <cmath>
-
 #include "element/element_motion.hpp"
-#include "element/hourglass_settings.hpp"
-#include "material/laws.hpp"
-#include "math/symmetric_matrix.hpp"
+#include "element/gram_bound.hpp"
+#include "element/perturbation_stiffness.hpp"
 #include "mesh/hexahedron.hpp"
 
 namespace sandglass {
-
-/// The stiffness parameter of both forms of the perturbation control, Total and Updated Lagrangian.
-struct PerturbationStiffness {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = true;
-
-  /// The modulus that kappa multiplies, Pa: rho c_D^2 = lambda + 2 mu (eq. 9), or mu.
-  template <class Law>
-  static double kappa_modulus(const Law& law, KappaModulus modulus) {
-    const double mu = law.shear_modulus();
-    return modulus == KappaModulus::shear ? mu : lame_lambda(law) + 2.0 * mu;
-  }
-
-  /// The kappa whose product with its modulus is E/9: with it a cube bends with its exact energy at every
-  /// Poisson's ratio. A fixed kappa on lambda + 2 mu locks as nu -> 1/2; on mu the same value varies only
-  /// from .278 (nu = .25) to .333.
-  template <class Law>
-  static double auto_kappa(const Law& law, KappaModulus modulus = KappaModulus::p_wave) {
-    return young_modulus(law) / (9.0 * kappa_modulus(law, modulus));
-  }
-
-  /// kappa rho c_D^2 (Pa), the material's factor of eq. 12, with either modulus.
-  template <class Law>
-  static double modulus(const Law& law, const HourglassSettings& settings) {
-    const double kappa = settings.kappa.value_or(auto_kappa(law, settings.kappa_modulus));
-    return kappa * kappa_modulus(law, settings.kappa_modulus);
-  }
-};
-
-/// An upper bound of lambda_max(gamma^T gamma): the largest sum of absolute values in a row.
-template <class T>
-T shape_vector_bound(const Matrix<T, 8, 4>& gamma) {
-  return row_sum_bound(transpose(gamma) * gamma);
-}
 
 /// Perturbation hourglass control of Flanagan and Belytschko in the Total Lagrangian formulation (eq. 2 to
 /// eq. 14 of the paper). gamma is orthogonal to linear fields, so rigid motions and uniform strains, however
@@ -83,13 +46,5 @@ struct PerturbationHourglassControl : PerturbationStiffness {
     return element.k * shape_vector_bound(gamma);
   }
 };
-
-/// f = k gamma gamma^T u (eq. 14) as the paper writes it, two dense products: 360 operations. The kernel,
-/// `OnePoint::force`, computes the same with fewer; this form serves tests and the operation count.
-template <class T>
-NodalVectors<T> paper_hourglass_force(const NodalVectors<T>& u, const Matrix<T, 8, 4>& gamma, const T& k) {
-  const Matrix<T, 4, 3> q = transpose(gamma) * u;
-  return gamma * (k * q);
-}
 
 }  // namespace sandglass

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "element/hourglass_perturbation.hpp"
+#include "element/gram_bound.hpp"
 #include "element/updated_one_point.hpp"
 
 namespace sandglass {

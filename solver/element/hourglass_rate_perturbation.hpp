@@ -1,6 +1,7 @@
 #pragma once
 
 #include "element/hourglass_rate.hpp"
+#include "element/perturbation_stiffness.hpp"
 
 namespace sandglass {
 

@@ -1,6 +1,10 @@
 #pragma once
 
-#include "element/hourglass_perturbation.hpp"
+#include <cmath>
+
+#include "element/element_motion.hpp"
+#include "element/gram_bound.hpp"
+#include "element/hourglass_settings.hpp"
 #include "element/updated_one_point.hpp"
 
 namespace sandglass {

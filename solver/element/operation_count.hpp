@@ -6,7 +6,6 @@
 #include "element/element_work.hpp"
 #include "element/formulation.hpp"
 #include "element/hourglass_none.hpp"
-#include "element/hourglass_perturbation.hpp"
 #include "material/memory.hpp"
 #include "material/small_strain.hpp"
 #include "math/rows.hpp"
@@ -161,17 +160,6 @@ OperationCount count_operations(const Law& law) {
     count.force = without.force;
   }
   return count;
-}
-
-/// The operations of eq. 14 in the paper's form: 360 by its Table I.
-inline Operations count_paper_hourglass_force() {
-  Operations tally;
-  NodalVectors<Counted> u;
-  Matrix<Counted, 8, 4> gamma;
-  for (auto& entry : u.entries) entry = Counted(1e-3, tally);
-  for (auto& entry : gamma.entries) entry = Counted(0.5, tally);
-  paper_hourglass_force(u, gamma, Counted(2.0, tally));
-  return tally;
 }
 
 }  // namespace sandglass
