@@ -21,15 +21,17 @@ MEMORY = 8 << 30  # bytes that a test program may use: a mistake may allocate wi
 SECONDS_TO_COMPILE = (3, 5)
 SLOWER = 20  # a program that takes this many times longer than on the clean tree hangs
 SHORTEST_LIMIT = 120  # s
-# Folders of Python tests, with the folders whose modules they use; SOLVER is the built program.
-SOLVER = "solver"
+# Folders of what is compiled into the program.
+COMPILED = ("solver", "suite", "app")
+# Folders of Python tests, with the folders whose modules they use and, where they run it, those of
+# the program.
 PYTHON_FOLDERS = {
-    "bench": ("bench", "common", "exchange", "reference", SOLVER),
+    "bench": ("bench", "common", "exchange", "reference", *COMPILED),
     "common": ("common",),
-    "exchange": ("common", "exchange", SOLVER),
-    "reference": ("common", "reference", SOLVER),
+    "exchange": ("common", "exchange", *COMPILED),
+    "reference": ("common", "reference", *COMPILED),
     "reports": ("common", "reports"),
-    "verification": ("common", "verification", SOLVER),
+    "verification": ("common", "verification", *COMPILED),
 }
 PYTHON = "/usr/bin/python3"
 
@@ -158,7 +160,7 @@ class Worker:
                 if status:
                     error = re.search(r"^.*error: .*$", text, re.MULTILINE)
                     return Failure("broken", error[0] if error else text[-300:], program.name)
-                scripts = changed & set(PYTHON_FOLDERS.get(program.name, ())) - {SOLVER}
+                scripts = changed & set(PYTHON_FOLDERS.get(program.name, ())) - set(COMPILED)
                 if not scripts and self._binary(program).stat().st_mtime < since:
                     continue
                 found = self._test(program, deadline - time.monotonic())
@@ -169,7 +171,7 @@ class Worker:
     @staticmethod
     def _may_change(program, changed):
         """Whether a patch of these folders can change what a program does."""
-        sources = PYTHON_FOLDERS[program.name] if program.is_python else (SOLVER, "verification")
+        sources = PYTHON_FOLDERS.get(program.name, (*COMPILED, "verification"))
         return not changed.isdisjoint(sources)
 
     @staticmethod
