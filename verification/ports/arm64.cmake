@@ -1,9 +1,10 @@
 # arm64 from another machine: Debian's cross compiler, its programs under QEMU. Of other libraries there are only the headers of this
-# machine, which are the same for all; what a test never calls, above all HDF5, stays unresolved.
+# machine, which are the same for all; what a test never calls, above all HDF5, stays unresolved, which the loader of shared
+# libraries does not always accept: programs are static.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L /usr/aarch64-linux-gnu)
-set(CMAKE_EXE_LINKER_FLAGS_INIT -Wl,--unresolved-symbols=ignore-all)
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,--unresolved-symbols=ignore-all -static")
 set(CMAKE_PROJECT_TOP_LEVEL_INCLUDES ${CMAKE_CURRENT_LIST_DIR}/headers_only.cmake)
