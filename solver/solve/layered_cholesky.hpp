@@ -15,8 +15,8 @@ std::vector<std::vector<int>> layers_from(const std::vector<int>& first,
 /// The Cholesky factorisation A = L L^T of a symmetric, positive definite matrix whose rows are in layers
 /// coupled only with adjacent layers: a block tridiagonal matrix with dense blocks, eliminated layer by
 /// layer. It takes about 7/3 sum w^3 operations and 2 sum w^2 numbers for layers of w rows, nearly all in
-/// products of dense blocks, which Eigen computes. Its SimplicialLLT (ordered by AMD) takes 12 times as long
-/// for a block of 27,000 rows, CHOLMOD's simplicial part 2.5 times, with half and a quarter of the memory.
+/// products of dense blocks, which Eigen computes. Eigen's SimplicialLLT and CHOLMOD's simplicial
+/// factorisation need less memory but take longer.
 class LayeredCholesky {
  public:
   /// `sizes` are the numbers of rows of the layers. Rows are numbered consecutively.

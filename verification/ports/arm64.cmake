@@ -1,6 +1,6 @@
 # arm64 from another machine: Debian's cross compiler, its programs under QEMU. Of other libraries there are only the headers of this
-# machine, which are the same for all; what a test never calls, above all HDF5, stays unresolved, which the loader of shared
-# libraries does not always accept: programs are static.
+# machine, which are the same for all. Symbols that no test uses, above all HDF5's, stay unresolved. The dynamic loader does not
+# always accept that, so programs are linked statically.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
