@@ -16,6 +16,7 @@ TARGETS = {
         "mesh",
         "element",
         "assembly",
+        "multigrid",
         "problem",
         "io",
         "solve",

@@ -72,6 +72,12 @@ class InternalForce {
   /// The bits do not depend on the number of threads.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
+  /// Sets `force` to the nodal forces (N) of pressures p - lambda (J - 1) (Pa), one for each element in the
+  /// numbering of the mesh, J its volume ratio, and `defect` to V (J - 1 - p / lambda) (m^3). Added to the
+  /// internal forces, they replace the part of each element's own pressure that belongs to lambda by p.
+  virtual void replace_pressures(const State<Real>& state, std::span<const Real> p, double lambda,
+                                 Rows<Real>& force, std::span<Real> defect) const = 0;
+
   /// Gives each element the cheapest sufficient level, if the method has several. The difference between an
   /// element's force and that at the highest level, times `mobility` (m/N, by row and component), displaces
   /// its nodes. An element is promoted to the lowest level at which no node is displaced by more than

@@ -15,7 +15,9 @@
 #include "assembly/prefetch.hpp"
 #include "base/error.hpp"
 #include "base/type_list.hpp"
+#include "element/hourglass_none.hpp"
 #include "element/method_traits.hpp"
+#include "material/given_pressure.hpp"
 #include "mesh/node_elements.hpp"
 
 namespace sandglass {
@@ -116,6 +118,25 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       }
       regroup(state, std::move(wanted));
     }
+  }
+
+  void replace_pressures(const State<Real>& state, std::span<const Real> p, double lambda, Rows<Real>& force,
+                         std::span<Real> defect) const override {
+    const Plan& plan = plan_of(state);
+    std::vector<Real> volumes;
+    if constexpr (averages_over_nodes) {
+      volumes.resize(4 * layout_->rows());
+      sum_volumes(state, volumes.data());
+    }
+    sum_over_chunks(*layout_, threads_, numbers_of(force), [&](std::size_t c) {
+      std::apply(
+          [&](const auto&... part) {
+            (add_pressures(part, state, volumes.data(), p, static_cast<Real>(lambda), numbers_of(force),
+                           defect),
+             ...);
+          },
+          *plan.chunks[c]);
+    });
   }
 
   void jacobians(const State<Real>& state, std::span<double> jacobians) const override {
@@ -337,6 +358,62 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
         }
         scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.ranks, volumes);
       }
+    }
+  }
+
+  /// The part of `replace_pressures` of the elements of a part.
+  template <class Method>
+  [[gnu::flatten, gnu::aligned(64)]] void add_pressures(const Part<Method>& part, const State<Real>& state,
+                                                        const Real* volumes, std::span<const Real> p,
+                                                        Real lambda, Real* force,
+                                                        std::span<Real> defect) const {
+    using Kernel = Formulation<typename Method::Kinematics, NoHourglassControl, GivenPressure<Number>>;
+    const ElementGroups& groups = *part.groups;
+    const Number inverse_step(static_cast<Real>(1.0 / state.step));
+    const Number stiffness(lambda), compliance(Real(1) / lambda);
+    for (std::size_t g = part.first; g < part.last; ++g) {
+      const ElementGroups::Group group = groups.groups[g];
+      FaceMotion lower = gather_face<Method>(groups, state, volumes, group.first_face);
+      Faces carried{};
+      for (std::size_t k = 0; k < group.ranks; ++k) {
+        const std::size_t block = group.first_rank + k;
+        const int* numbers = groups.elements.data() + block * width;
+        const FaceMotion upper = gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
+        const auto motion = between<Method>(lower, upper, inverse_step);
+        const auto& body = part.blocks[block - part.first_block].body;
+        Number own(Real(0));
+        for (int lane = 0; lane < width; ++lane) {
+          if (numbers[lane] >= 0) Lanes<Number>::set(own, lane, p[static_cast<std::size_t>(numbers[lane])]);
+        }
+        Number dilatation;
+        if constexpr (is_linear<Method>) {
+          const Tensor<Number> H = OnePoint::mean_gradient(motion.u, body);
+          dilatation = H(0, 0) + H(1, 1) + H(2, 2);
+        } else {
+          dilatation = Kernel::Kinematics::dilatation(motion, body);
+        }
+        const Number V = Kernel::Kinematics::volume(motion, body);
+        const Number error = V * (dilatation - compliance * own);
+        for (int lane = 0; lane < width; ++lane) {
+          if (numbers[lane] >= 0)
+            defect[static_cast<std::size_t>(numbers[lane])] = Lanes<Number>::get(error, lane);
+        }
+        const GivenPressure<Number> law{own - stiffness * dilatation};
+        Modes<Number> f;
+        if constexpr (is_linear<Method>) {
+          f = OnePoint::body_forces((V * law.p) * identity<Number>(), body);
+        } else {
+          NoHourglassControl::Element<Number> control;
+          NoHistory<Number> none;
+          f = Kernel::Kinematics::template force<NoHourglassControl>(
+              Kernel::Kinematics::template deformation<NoHourglassControl>(motion, body), body, control, none,
+              law);
+        }
+        scatter_face_modes(carried + lower_face(f), force, groups, group.first_face + k);
+        carried = upper_face(f);
+        lower = upper;
+      }
+      scatter_face_modes(carried, force, groups, group.first_face + group.ranks);
     }
   }
 

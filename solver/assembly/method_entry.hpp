@@ -29,6 +29,7 @@ struct MethodEntry {
   bool damps_only = false;                 ///< only their velocities are resisted
   bool takes_kappa = false;                ///< a user may choose the strength of its hourglass control
   bool kappa_affects_equilibrium = false;  ///< and kappa changes its static answers
+  bool pressure_varies = false;            ///< an element has more than one pressure
   bool is_linear = false;                  ///< forces are linear in the displacements, f = K u
   bool is_condensed = false;               ///< answers by condensation instead of steps
   bool knows_viscoelasticity = true;       ///< supports viscoelastic laws

@@ -20,6 +20,7 @@ MethodEntry method_facts() {
       .damps_only = DampsOnly<Hourglass>,
       .takes_kappa = Hourglass::takes_kappa,
       .kappa_affects_equilibrium = kappa_affects_equilibrium<Method>,
+      .pressure_varies = pressure_varies<Method>,
       .is_linear = is_linear<Method>,
       .is_condensed = is_condensed<Method>,
       .knows_viscoelasticity = knows_law<Method, Viscoelastic<CalledLaw>>,

@@ -55,8 +55,8 @@ struct CompactOnePoint {
   }
 
   template <class T>
-  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
-    return OnePoint::mean_jacobian(motion, OnePoint::geometry(motion.X));
+  static T dilatation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
+    return OnePoint::dilatation(motion, OnePoint::geometry(motion.X));
   }
 
   template <class Hourglass, class T, class Law>

@@ -142,8 +142,8 @@ struct EightPoint {
   }
 
   template <class T>
-  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + volume_average(point_dilatations(point_gradients(motion, element)), element);
+  static T dilatation(const ElementMotion<T>& motion, const Element<T>& element) {
+    return volume_average(point_dilatations(point_gradients(motion, element)), element);
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness.

@@ -29,8 +29,10 @@ struct ElementConstants {
 /// An element: kinematics (from displacements to strains and from stresses to forces), an hourglass control
 /// and a material law. All functions are templated on the number type T: double, a pack, a counting or a dual
 /// number. Kinematics and controls implement functions of the same names, which are documented here.
-template <class Kinematics, class Hourglass, class Law>
+template <class KinematicsType, class Hourglass, class Law>
 struct Formulation {
+  using Kinematics = KinematicsType;
+
   template <class T>
   using Element = ElementConstants<Kinematics, Hourglass, T>;
 
@@ -130,7 +132,7 @@ struct Formulation {
   /// The volume ratio of the element.
   template <class T>
   static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return Kinematics::mean_jacobian(motion, element.body);
+    return T(1) + Kinematics::dilatation(motion, element.body);
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, hourglass part included, for a

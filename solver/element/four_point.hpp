@@ -111,8 +111,8 @@ struct FourPoint {
   }
 
   template <class T>
-  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + mean(dilatations(motion, element));
+  static T dilatation(const ElementMotion<T>& motion, const Element<T>& element) {
+    return mean(dilatations(motion, element));
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness.

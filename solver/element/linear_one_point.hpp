@@ -106,8 +106,8 @@ struct LinearOnePoint {
   }
 
   template <class T>
-  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return OnePoint::mean_jacobian(motion, element);
+  static T dilatation(const ElementMotion<T>& motion, const Element<T>& element) {
+    return OnePoint::dilatation(motion, element);
   }
 
   /// The bound (N/m) of the undeformed OnePoint for all displacements: the stiffness is constant.

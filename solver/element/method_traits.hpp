@@ -25,6 +25,13 @@ template <class Method>
 inline constexpr bool kappa_affects_equilibrium =
     Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
 
+/// Whether a method resists volume changes at several points of an element or around its nodes, and not their
+/// average by one pressure.
+template <class Method>
+inline constexpr bool pressure_varies = requires {
+  requires !Method::Kinematics::averages_pressure || Method::Kinematics::averages_over_nodes;
+};
+
 /// Whether a method's forces are linear in the displacements, f = K u.
 template <class Method>
 inline constexpr bool is_linear = requires {

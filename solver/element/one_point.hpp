@@ -179,13 +179,13 @@ struct OnePoint {
   /// The smallest volume ratio det F at the integration points.
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return mean_jacobian(motion, element);
+    return T(1) + dilatation(motion, element);
   }
 
   /// The element's volume over its reference volume: det F of the mean deformation.
   template <class T>
-  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + jacobian_minus_one(mean_gradient(motion.u, element));
+  static T dilatation(const ElementMotion<T>& motion, const Element<T>& element) {
+    return jacobian_minus_one(mean_gradient(motion.u, element));
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness. The body's part follows from

@@ -128,11 +128,11 @@ struct Tetrahedra {
   }
 
   template <class T>
-  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    const TetrahedronValues<T> dilatation = dilatations(gradients(motion, element));
-    T sum = element.weight[0] * dilatation[0];
-    for (std::size_t e = 1; e < tetrahedron_count; ++e) sum = sum + element.weight[e] * dilatation[e];
-    return T(1) + sum / volume(motion, element);
+  static T dilatation(const ElementMotion<T>& motion, const Element<T>& element) {
+    const TetrahedronValues<T> each = dilatations(gradients(motion, element));
+    T sum = element.weight[0] * each[0];
+    for (std::size_t e = 1; e < tetrahedron_count; ++e) sum = sum + element.weight[e] * each[e];
+    return sum / volume(motion, element);
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, see gram_bound.hpp. With nodal

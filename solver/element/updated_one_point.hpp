@@ -85,14 +85,13 @@ struct UpdatedOnePoint {
   /// The smallest volume ratio det F at the integration points.
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return mean_jacobian(motion, element);
+    return T(1) + dilatation(motion, element);
   }
 
   /// det F as this element sees it.
   template <class T>
-  static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
-    return T(1) +
-           jacobian_minus_one(displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));
+  static T dilatation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
+    return jacobian_minus_one(displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));
   }
 
   /// An upper bound of the largest absolute eigenvalue (N/m) of the tangent stiffness, as for OnePoint, with

@@ -1,0 +1,335 @@
+#include "multigrid/element_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "assembly/chunk_sum.hpp"
+#include "assembly/face_gather.hpp"
+#include "element/one_point.hpp"
+#include "math/pack.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// The pressures take so many steps in the smoother: with fewer the multigrid cycle converges slower by more
+/// than they cost.
+constexpr int pressure_steps = 3;
+
+/// W floats.
+template <int W>
+using LanesOfFloat = std::conditional_t<W == 1, float, Pack<float, W>>;
+
+template <int W>
+class Elements final : public ElementLevel {
+  using Number = LanesOfFloat<W>;
+
+  struct Block {
+    OnePoint::Element<Number> body;  ///< in the present configuration
+    Number stress;                   ///< 2 mu V, V of the undeformed element
+    Number hourglass;                ///< stiffness, N/m
+  };
+
+ public:
+  Elements(const Mesh& mesh, const Layout& layout, const Rows<float>& free, int threads)
+      : ElementLevel(threads, pressure_steps),
+        layout_(layout),
+        coordinates_(centred_coordinates<float>(mesh.points, layout)),
+        present_(layout.rows()),
+        blocks_(layout.ranks()) {
+    resize(layout.rows(), layout.elements.size());
+    free_ = free;
+    stiffness_.resize(layout.rows());
+    tangents_.resize(layout.elements.size());
+    cells_.resize(mesh.cells.size());
+    for (std::size_t cell = 0; cell < layout.elements.size(); ++cell) {
+      if (layout.elements[cell] >= 0) cells_[static_cast<std::size_t>(layout.elements[cell])] = cell;
+    }
+  }
+
+  void update(const Rows<float>& u, const ModelModuli& moduli) override {
+    moduli_ = moduli;
+    for (std::size_t r = 0; r < present_.size(); ++r) {
+      for (std::size_t i = 0; i < 3; ++i) present_[r][i] = coordinates_[r][i] + u[r][i];
+    }
+    std::vector<float> bounds(layout_.chunks.size());
+    in_parallel(bounds.size(), threads_, [&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c]); });
+    sum_over_chunks(layout_, threads_, numbers_of(stiffness_),
+                    [&](std::size_t c) { add_diagonals(layout_.chunks[c]); });
+    set_smoother(stiffness_, *std::max_element(bounds.begin(), bounds.end()));
+  }
+
+  void apply(const MixedVector& x, MixedVector& y) const override {
+    sum_over_chunks(layout_, threads_, numbers_of(y.u),
+                    [&](std::size_t c) { apply_to(layout_.chunks[c], x, y); });
+  }
+
+  void divergence(const Rows<float>& u, std::vector<float>& g) const override {
+    in_parallel(layout_.chunks.size(), threads_, [&](std::size_t c) { diverge(layout_.chunks[c], u, g); });
+  }
+
+  void gradient(const std::vector<float>& p, Rows<float>& f) const override {
+    sum_over_chunks(layout_, threads_, numbers_of(f),
+                    [&](std::size_t c) { add_gradients(layout_.chunks[c], p, f); });
+  }
+
+  double largest_gradient(const Rows<float>& u) const override {
+    Number largest(0.0f);
+    for (const auto& chunk : layout_.chunks) {
+      for_each_rank(chunk, [&](std::size_t rank, std::size_t face) {
+        const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), blocks_[rank].body);
+        largest = max(largest, double_dot(H, H));
+      });
+    }
+    return std::sqrt(largest_lane(largest));
+  }
+
+ protected:
+  void for_each_corner(const VisitCorner& visit) const override {
+    for (const auto& group : layout_.groups) {
+      for (std::size_t k = 0; k < group.ranks; ++k) {
+        const std::size_t rank = group.first_rank + k, face = group.first_face + k;
+        const NodalVectors<Number> b = nodal_gradients(blocks_[rank]);
+        const Number& V = blocks_[rank].body.V;
+        for (int lane = 0; lane < W; ++lane) {
+          const std::size_t cell = rank * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
+          if (layout_.elements[cell] < 0) continue;
+          for (std::size_t I = 0; I < 8; ++I) {
+            const std::size_t row = layout_.places(face + I / 4, I % 4)[lane] / 4;
+            std::array<float, 3> column;
+            for (int i = 0; i < 3; ++i) {
+              column[static_cast<std::size_t>(i)] = Lanes<Number>::get(V * b(static_cast<int>(I), i), lane);
+            }
+            visit(cell, row, column);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  static float largest_lane(const Number& number) {
+    float most = Lanes<Number>::get(number, 0);
+    for (int lane = 1; lane < W; ++lane) most = std::max(most, Lanes<Number>::get(number, lane));
+    return most;
+  }
+
+  static Number load(const std::vector<float>& values, std::size_t rank) {
+    Number lanes;
+    std::memcpy(static_cast<void*>(&lanes), values.data() + rank * static_cast<std::size_t>(W),
+                sizeof(lanes));
+    return lanes;
+  }
+
+  static void store(const Number& lanes, std::vector<float>& values, std::size_t rank) {
+    std::memcpy(values.data() + rank * static_cast<std::size_t>(W), static_cast<const void*>(&lanes),
+                sizeof(lanes));
+  }
+
+  /// 2 mu V sym(H).
+  static Tensor<Number> weighted_stress(const Number& twice_mu_V, const Tensor<Number>& H) {
+    const Number half = Number(0.5f) * twice_mu_V;
+    Tensor<Number> T;
+    for (int i = 0; i < 3; ++i) {
+      T(i, i) = twice_mu_V * H(i, i);
+      for (int j = i + 1; j < 3; ++j) T(i, j) = T(j, i) = half * (H(i, j) + H(j, i));
+    }
+    return T;
+  }
+
+  /// The forces of A on the displacements with these modes, and of a pressure.
+  static Modes<Number> forces(const Block& block, const Modes<Number>& u, const Tensor<Number>& H,
+                              const Number& weighted_pressure) {
+    Tensor<Number> T = weighted_stress(block.stress, H);
+    for (int i = 0; i < 3; ++i) T(i, i) = T(i, i) + weighted_pressure;
+    return OnePoint::modal_forces(T, block.hourglass * OnePoint::hourglass_displacements(u, H, block.body),
+                                  block.body.c, block.body);
+  }
+
+  static Modes<Number> gradient_modes(const Block& block) {
+    Modes<Number> modes{};
+    for (int m = 0; m < 6; ++m) {
+      for (int i = 0; i < 3; ++i) modes(m, i) = block.body.h(m, i);
+    }
+    return modes;
+  }
+
+  static NodalVectors<Number> nodal_gradients(const Block& block) {
+    return from_modes(gradient_modes(block));
+  }
+
+  /// The block of the diagonal of A at a node whose function has the gradient g.
+  static Triple<Number> diagonal(const Block& block, const NodalVectors<Number>& g, int n) {
+    const Number mu_V = Number(0.5f) * block.stress;
+    const Number x = g(n, 0), y = g(n, 1), z = g(n, 2);
+    // The sum over the hourglass modes of gamma^2 is about that of Gamma.
+    const Number same = mu_V * (x * x + y * y + z * z) + Number(4.0f) * block.hourglass;
+    Triple<Number> D;
+    D(0, 0) = mu_V * x * x + same;
+    D(1, 0) = mu_V * y * y + same;
+    D(2, 0) = mu_V * z * z + same;
+    return D;
+  }
+
+  Modes<Number> modes_of(const Rows<float>& rows, std::size_t face) const {
+    return modes_between(gather_face_modes<Number>(rows, layout_, face),
+                         gather_face_modes<Number>(rows, layout_, face + 1));
+  }
+
+  template <class Visit>
+  void for_each_rank(const Layout::Chunk& chunk, const Visit& visit) const {
+    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
+      const auto [first_rank, first_face, ranks] = layout_.groups[group];
+      for (std::size_t k = 0; k < ranks; ++k) visit(first_rank + k, first_face + k);
+    }
+  }
+
+  [[gnu::flatten]] void apply_to(const Layout::Chunk& chunk, const MixedVector& x, MixedVector& y) const {
+    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
+      const auto [first_rank, first_face, ranks] = layout_.groups[group];
+      auto lower = gather_face_modes<Number>(x.u, layout_, first_face);
+      FaceModes<Number> carried{};
+      for (std::size_t k = 0; k < ranks; ++k) {
+        const std::size_t rank = first_rank + k;
+        const Block& block = blocks_[rank];
+        const auto upper = gather_face_modes<Number>(x.u, layout_, first_face + k + 1);
+        const Modes<Number> u = modes_between(lower, upper);
+        const Tensor<Number> H = OnePoint::mean_gradient(u, block.body);
+        const Number p = load(x.p, rank);
+        store(block.body.V * (H(0, 0) + H(1, 1) + H(2, 2)) - load(compliance_, rank) * p, y.p, rank);
+        const Modes<Number> f = forces(block, u, H, block.body.V * p);
+        scatter_face_modes(carried + lower_face(f), numbers_of(y.u), layout_, first_face + k);
+        carried = upper_face(f);
+        lower = upper;
+      }
+      scatter_face_modes(carried, numbers_of(y.u), layout_, first_face + ranks);
+    }
+  }
+
+  [[gnu::flatten]] void diverge(const Layout::Chunk& chunk, const Rows<float>& u,
+                                std::vector<float>& g) const {
+    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
+      const auto [first_rank, first_face, ranks] = layout_.groups[group];
+      auto lower = gather_face_modes<Number>(u, layout_, first_face);
+      for (std::size_t k = 0; k < ranks; ++k) {
+        const Block& block = blocks_[first_rank + k];
+        const auto upper = gather_face_modes<Number>(u, layout_, first_face + k + 1);
+        const Modes<Number> modes = modes_between(lower, upper);
+        Number sum(0.0f);
+        for (int m = 0; m < 6; ++m) {
+          for (int i = 0; i < 3; ++i) sum = sum + modes(m, i) * block.body.h(m, i);
+        }
+        store(block.body.V * sum, g, first_rank + k);
+        lower = upper;
+      }
+    }
+  }
+
+  [[gnu::flatten]] void add_gradients(const Layout::Chunk& chunk, const std::vector<float>& p,
+                                      Rows<float>& f) const {
+    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
+      const auto [first_rank, first_face, ranks] = layout_.groups[group];
+      FaceModes<Number> carried{};
+      for (std::size_t k = 0; k < ranks; ++k) {
+        const Block& block = blocks_[first_rank + k];
+        const Modes<Number> modes = (block.body.V * load(p, first_rank + k)) * gradient_modes(block);
+        scatter_face_modes(carried + lower_face(modes), numbers_of(f), layout_, first_face + k);
+        carried = upper_face(modes);
+      }
+      scatter_face_modes(carried, numbers_of(f), layout_, first_face + ranks);
+    }
+  }
+
+  /// Bounds the eigenvalues of D^-1 A of the element alone, D the diagonal; no sum of elements has larger
+  /// ones.
+  static Number eigenvalue_bound(const Block& block) {
+    const NodalVectors<Number> g = nodal_gradients(block);
+    NodalVectors<Number> x;
+    for (int I = 0; I < 8; ++I) {
+      for (int i = 0; i < 3; ++i)
+        x(I, i) = Number(1.0f + 0.37f * static_cast<float>((7 * I + 5 * i) % 11 - 5));
+    }
+    Number largest(1.0f);
+    for (int k = 0; k < 10; ++k) {
+      const Modes<Number> u = to_modes(x);
+      const NodalVectors<Number> y =
+          from_modes(forces(block, u, OnePoint::mean_gradient(u, block.body), Number(0.0f)));
+      Number square(0.0f);
+      for (int I = 0; I < 8; ++I) {
+        const Triple<Number> D = diagonal(block, g, I);
+        for (int i = 0; i < 3; ++i) {
+          x(I, i) = y(I, i) / D(i, 0);
+          square = square + x(I, i) * x(I, i);
+        }
+      }
+      largest = sqrt(square);
+      const Number inverse = Number(1.0f) / largest;
+      for (auto& entry : x.entries) entry = entry * inverse;
+    }
+    return largest;
+  }
+
+  [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk) {
+    Number largest(1.0f);
+    const Number mu(static_cast<float>(moduli_.mu)), hourglass(static_cast<float>(moduli_.hourglass));
+    for_each_rank(chunk, [&](std::size_t rank, std::size_t face) {
+      const Modes<Number> x = modes_of(present_, face);
+      const auto reference = OnePoint::geometry(modes_of(coordinates_, face));
+      const Tensor<Number> F_inverse = inverse(OnePoint::mean_gradient(x, reference));
+      Block& block = blocks_[rank];
+      block.body = OnePoint::geometry(x);
+      block.stress = Number(2.0f) * mu * reference.V;
+      // eq. 12; |h|^2 by nodes is eight times that by modes
+      block.hourglass = hourglass * reference.V * double_dot(block.body.h, block.body.h);
+      largest = max(largest, eigenvalue_bound(block));
+      for (int lane = 0; lane < W; ++lane) {
+        const std::size_t cell = rank * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
+        if (layout_.elements[cell] < 0) continue;
+        ElementTangent& tangent = tangents_[cell];
+        for (std::size_t n = 0; n < 9; ++n)
+          tangent.inverse[n] = Lanes<Number>::get(F_inverse.entries[n], lane);
+        tangent.volume = Lanes<Number>::get(reference.V, lane);
+        tangent.jacobian = Lanes<Number>::get(block.body.V, lane) / tangent.volume;
+        compliance_[cell] = tangent.volume / static_cast<float>(moduli_.lambda);
+      }
+    });
+    return 1.05f * largest_lane(largest);
+  }
+
+  [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
+    for_each_rank(chunk, [&](std::size_t rank, std::size_t face) {
+      const NodalVectors<Number> g = nodal_gradients(blocks_[rank]);
+      for (std::size_t I = 0; I < 8; ++I) {
+        const Triple<Number> D = diagonal(blocks_[rank], g, static_cast<int>(I));
+        scatter_add<Number>({D(0, 0), D(1, 0), D(2, 0)}, numbers_of(stiffness_),
+                            layout_.places(face + I / 4, I % 4));
+      }
+    });
+  }
+
+  const Layout& layout_;
+  Rows<float> coordinates_;  // m
+  Rows<float> present_;      // m
+  std::vector<Block> blocks_;
+};
+
+}  // namespace
+
+std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Layout& layout,
+                                                 const Rows<float>& free, int threads) {
+  switch (layout.width) {
+    case 1:
+      return std::make_unique<Elements<1>>(mesh, layout, free, threads);
+    case 2:
+      return std::make_unique<Elements<2>>(mesh, layout, free, threads);
+    case 4:
+      return std::make_unique<Elements<4>>(mesh, layout, free, threads);
+    case 8:
+      return std::make_unique<Elements<8>>(mesh, layout, free, threads);
+    default:
+      return std::make_unique<Elements<16>>(mesh, layout, free, threads);
+  }
+}
+
+}  // namespace sandglass

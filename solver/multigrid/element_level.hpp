@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+
+#include "assembly/layout.hpp"
+#include "multigrid/saddle_level.hpp"
+
+namespace sandglass {
+
+/// The moduli of the model problem, Pa.
+struct ModelModuli {
+  double lambda;
+  double mu;
+  double hourglass;  ///< what kappa is for the perturbation control: its k is this times V |h|^2 / 8 (eq. 12)
+};
+
+/// An element as the levels below see it.
+struct ElementTangent {
+  std::array<float, 9> inverse;  ///< F^-1 by rows
+  float volume;                  ///< reference volume, m^3
+  float jacobian;                ///< det F
+};
+
+/// The finest level, in single precision as all levels: every element as a one-point hexahedron in the
+/// present configuration with the law's initial moduli and a constant hourglass stiffness, whatever the
+/// method. Nothing is assembled. Rows are those of a layout, cells its lanes, rank by rank.
+class ElementLevel : public SaddleLevel {
+ public:
+  using SaddleLevel::SaddleLevel;
+
+  /// Takes the configuration with displacements u (m), in which no element may be inverted, and moduli.
+  virtual void update(const Rows<float>& u, const ModelModuli& moduli) = 0;
+
+  /// The largest norm of an element's gradient of displacements u, in the present configuration.
+  virtual double largest_gradient(const Rows<float>& u) const = 0;
+
+  /// The cell of each element of the mesh.
+  const std::vector<std::size_t>& cells() const { return cells_; }
+
+  /// The tangents of the elements by cell.
+  const std::vector<ElementTangent>& tangents() const { return tangents_; }
+
+  /// The moduli of the last update.
+  const ModelModuli& moduli() const { return moduli_; }
+
+  /// The diagonal of A on constrained components too, N/m.
+  const Rows<float>& stiffness() const { return stiffness_; }
+
+ protected:
+  ModelModuli moduli_{};
+  std::vector<std::size_t> cells_;
+  std::vector<ElementTangent> tangents_;
+  Rows<float> stiffness_;
+};
+
+/// For the rows and the lanes of a layout. `free` is 1, or 0 on constrained components and spare rows.
+std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Layout& layout,
+                                                 const Rows<float>& free, int threads);
+
+}  // namespace sandglass

@@ -1,0 +1,203 @@
+#include "multigrid/element_transfer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/row_loops.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// The stiffness of the springs at constrained components over the node's own: high enough for the grid's
+/// functions to be held, low enough not to spoil its smoother.
+constexpr float spring = 10.0f;
+
+/// An element wider than this share of a box along an axis bends within the box: a sample at its centre alone
+/// would miss that stiffness.
+constexpr double wide = 0.6;
+
+Vector centre(const Mesh& mesh, const Hexahedron& cell) {
+  Vector sum{};
+  for (const int n : cell) {
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += mesh.points[static_cast<std::size_t>(n)][i] / 8.0;
+  }
+  return sum;
+}
+
+bool is_wide(const Mesh& mesh, const Hexahedron& cell, const Vector& box) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    double least = INFINITY, most = -INFINITY;
+    for (const int n : cell) {
+      const double x = mesh.points[static_cast<std::size_t>(n)][i];
+      least = std::min(least, x);
+      most = std::max(most, x);
+    }
+    if (most - least > wide * box[i]) return true;
+  }
+  return false;
+}
+
+/// The gradients (1/m) of a box's functions, by corner.
+std::array<std::array<float, 3>, 8> gradients(const std::array<float, 3>& local, const Vector& size) {
+  const auto factor = [&](std::size_t c, std::size_t i) {
+    return (c >> i & 1) != 0 ? local[i] : 1.0f - local[i];
+  };
+  std::array<std::array<float, 3>, 8> G;
+  for (std::size_t c = 0; c < 8; ++c) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float slope = ((c >> i & 1) != 0 ? 1.0f : -1.0f) / static_cast<float>(size[i]);
+      G[c][i] = slope * factor(c, (i + 1) % 3) * factor(c, (i + 2) % 3);
+    }
+  }
+  return G;
+}
+
+/// The same in the present configuration.
+std::array<float, 24> pushed_forward(const std::array<std::array<float, 3>, 8>& G,
+                                     const ElementTangent& tangent) {
+  std::array<float, 24> g;
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      g[3 * a + j] =
+          G[a][0] * tangent.inverse[j] + G[a][1] * tangent.inverse[3 + j] + G[a][2] * tangent.inverse[6 + j];
+    }
+  }
+  return g;
+}
+
+}  // namespace
+
+ElementTransfer::ElementTransfer(const Mesh& mesh, const Layout& layout, const ElementLevel& elements,
+                                 GridLevel& grid)
+    : elements_(elements),
+      grid_(grid),
+      boxes_(layout.elements.size()),
+      contents_(grid.grid().nodes()),
+      sums_(contents_.size()) {
+  for (std::size_t row = 0; row < layout.rows(); ++row) {
+    places_.push_back(grid.grid().locate(mesh.points[static_cast<std::size_t>(layout.node_of_row[row])]));
+    if (row < layout.nodes) contents_[places_[row].box].rows.push_back(static_cast<std::uint32_t>(row));
+  }
+  for (std::size_t element = 0; element < mesh.cells.size(); ++element) sample(mesh, element);
+}
+
+/// Samples an element at its centre, or at eight points of a Gauss rule.
+void ElementTransfer::sample(const Mesh& mesh, std::size_t element) {
+  const Grid& grid = grid_.grid();
+  const auto cell = static_cast<std::uint32_t>(elements_.cells()[element]);
+  const Vector middle = centre(mesh, mesh.cells[element]);
+  const Grid::Location place = grid.locate(middle);
+  boxes_[cell] = place.box;
+  contents_[place.box].cells.push_back(cell);
+  if (!is_wide(mesh, mesh.cells[element], grid.size)) {
+    contents_[place.box].samples.push_back({cell, 1.0f, place.local});
+    return;
+  }
+  for (const int n : mesh.cells[element]) {
+    Vector x = middle;
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[i] += (mesh.points[static_cast<std::size_t>(n)][i] - middle[i]) / std::sqrt(3.0);
+    }
+    const Grid::Location at = grid.locate(x);
+    contents_[at.box].samples.push_back({cell, 0.125f, at.local});
+  }
+}
+
+void ElementTransfer::gather() {
+  grid_.for_each_line(0, [&](std::size_t first, std::size_t count) {
+    for (std::size_t box = first; box < first + count; ++box) {
+      grid_.problems()[box] = problem_of(contents_[box]);
+    }
+  });
+}
+
+BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
+  const auto mu = static_cast<float>(elements_.moduli().mu),
+             lambda = static_cast<float>(elements_.moduli().lambda);
+  BoxProblem problem{};
+  std::array<float, 24 * 24> T{};  // integral of the products of gradients
+  for (const auto& [cell, share, local] : contents.samples) {
+    const ElementTangent& tangent = elements_.tangents()[cell];
+    const float volume = share * tangent.volume;
+    const std::array<float, 24> g = pushed_forward(gradients(local, grid_.grid().size), tangent);
+    for (std::size_t m = 0; m < 24; ++m) {
+      const float Vg = volume * g[m];
+      float* row = T.data() + 24 * m;
+#pragma omp simd
+      for (std::size_t n = 0; n < 24; ++n) row[n] += Vg * g[n];
+      problem.B[m] += tangent.jacobian * Vg;
+    }
+    problem.C += volume / lambda;
+  }
+  // 2 mu sym(grad u) : sym(grad v)
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t b = 0; b < 8; ++b) {
+      const auto product = [&](std::size_t i, std::size_t j) { return T[24 * (3 * a + i) + 3 * b + j]; };
+      const float scalar = product(0, 0) + product(1, 1) + product(2, 2);
+      for (std::size_t i = 0; i < 3; ++i) {
+        float* row = &problem.A[24 * (3 * a + i) + 3 * b];
+        for (std::size_t j = 0; j < 3; ++j) row[j] += mu * product(j, i);
+        row[i] += mu * scalar;
+      }
+    }
+  }
+  for (const std::uint32_t row : contents.rows) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (elements_.free()[row][i] != 0.0f) continue;
+      const auto w = weights(places_[row].local);
+      const float k = spring * elements_.stiffness()[row][i];
+      for (std::size_t a = 0; a < 8; ++a) {
+        for (std::size_t b = 0; b < 8; ++b) problem.A[24 * (3 * a + i) + 3 * b + i] += k * w[a] * w[b];
+      }
+    }
+  }
+  return problem;
+}
+
+void ElementTransfer::restrict_residual(const MixedVector& r, MixedVector& b) {
+  grid_.for_each_line(0, [&](std::size_t first, std::size_t count) {
+    for (std::size_t box = first; box < first + count; ++box) {
+      auto& sums = sums_[box];
+      sums.fill({});
+      for (const std::uint32_t row : contents_[box].rows) {
+        const auto w = weights(places_[row].local);
+        for (std::size_t a = 0; a < 8; ++a) {
+          for (std::size_t i = 0; i < 4; ++i) sums[a][i] += w[a] * r.u[row][i];
+        }
+      }
+      float p = 0.0f;
+      for (const std::uint32_t cell : contents_[box].cells) p += r.p[cell];
+      b.p[box] = p;
+    }
+  });
+  grid_.for_each_line(1, [&](std::size_t first, std::size_t count) {
+    for (std::size_t n = first; n < first + count; ++n) {
+      Row<float> sum;
+      for (std::size_t a = 0; a < 8; ++a) {
+        for (std::size_t i = 0; i < 4; ++i) sum[i] += sums_[n - grid_.grid().corner(a)][a][i];
+      }
+      b.u[n] = sum;
+    }
+  });
+}
+
+void ElementTransfer::add_correction(const MixedVector& x, MixedVector& fine) const {
+  const auto& free = elements_.free();
+  for_each_block(fine.u.size(), elements_.threads(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      const auto w = weights(places_[row].local);
+      Row<float> sum;
+      for (std::size_t a = 0; a < 8; ++a) {
+        const Row<float>& v = x.u[places_[row].box + grid_.grid().corner(a)];
+        for (std::size_t i = 0; i < 4; ++i) sum[i] += w[a] * v[i];
+      }
+      for (std::size_t i = 0; i < 4; ++i) fine.u[row][i] += free[row][i] * sum[i];
+    }
+  });
+  for_each_block(fine.p.size(), elements_.threads(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t cell = first; cell < last; ++cell) fine.p[cell] += x.p[boxes_[cell]];
+  });
+}
+
+}  // namespace sandglass

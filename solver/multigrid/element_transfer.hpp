@@ -1,0 +1,51 @@
+#pragma once
+
+#include "multigrid/element_level.hpp"
+#include "multigrid/grid_level.hpp"
+
+namespace sandglass {
+
+/// Carries problems, residuals and corrections between the elements of a mesh and the first grid around it.
+/// Displacements interpolate the grid's, pressures of elements are those of the boxes their centres are in.
+class ElementTransfer {
+ public:
+  /// Both levels must live as long.
+  ElementTransfer(const Mesh& mesh, const Layout& layout, const ElementLevel& elements, GridLevel& grid);
+
+  /// Sets the problems of the boxes from the tangents of the elements. Constrained components of nodes hold
+  /// the grid's functions by springs.
+  void gather();
+
+  /// b = the residual r of the elements for the grid.
+  void restrict_residual(const MixedVector& r, MixedVector& b);
+
+  /// Adds the grid's correction x to the unknowns of the elements.
+  void add_correction(const MixedVector& x, MixedVector& fine) const;
+
+ private:
+  /// A point of an element at which its box's functions are evaluated.
+  struct Sample {
+    std::uint32_t cell;
+    float share;  // of the element's volume
+    std::array<float, 3> local;
+  };
+
+  /// The contents of a box.
+  struct Contents {
+    std::vector<Sample> samples;
+    std::vector<std::uint32_t> rows;
+    std::vector<std::uint32_t> cells;
+  };
+
+  void sample(const Mesh& mesh, std::size_t element);
+  BoxProblem problem_of(const Contents& contents) const;
+
+  const ElementLevel& elements_;
+  GridLevel& grid_;
+  std::vector<Grid::Location> places_;  // of rows
+  std::vector<std::size_t> boxes_;      // of cells
+  std::vector<Contents> contents_;
+  std::vector<std::array<Row<float>, 8>> sums_;  // of the corners of boxes
+};
+
+}  // namespace sandglass

@@ -1,0 +1,131 @@
+#include "multigrid/saddle_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/matrix.hpp"
+#include "math/row_loops.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// body(k) for all k < n, in parallel.
+template <class Body>
+void for_all(std::size_t n, int threads, const Body& body) {
+  for_each_block(n, threads, [&](std::size_t first, std::size_t last) {
+#pragma omp simd
+    for (std::size_t k = first; k < last; ++k) body(k);
+  });
+}
+
+/// The largest eigenvalue of D M, M symmetric, within 3^(1/4): the trace of the fourth power bounds its
+/// fourth power.
+float eigenvalue_bound(const Row<float>& D, const Tensor<float>& M) {
+  Tensor<float> DM;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) DM(i, j) = D[static_cast<std::size_t>(i)] * M(i, j);
+  }
+  DM = DM * DM;
+  DM = DM * DM;
+  return std::sqrt(std::sqrt(DM(0, 0) + DM(1, 1) + DM(2, 2)));
+}
+
+}  // namespace
+
+void SaddleLevel::resize(std::size_t rows, std::size_t cells) {
+  free_.assign(rows, {});
+  relaxation_.assign(rows, {});
+  compliance_.assign(cells, 0.0f);
+  schur_.assign(cells, 0.0f);
+  y_ = zero();
+  t_.resize(rows);
+  r_.resize(cells);
+  change_.resize(cells);
+  sum_.resize(cells);
+}
+
+void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
+  constexpr float step = 1.3f;
+  for (std::size_t r = 0; r < free_.size(); ++r) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      relaxation_[r][i] = free_[r][i] > 0.0f ? step / (bound * diagonal[r][i]) : 0.0f;
+    }
+  }
+  // At each node, S couples the cells around it through M = sum of b b^T / (b^T D b): the largest eigenvalue
+  // of D M over all nodes bounds those of diag(S)^-1 S.
+  schur_ = compliance_;
+  std::vector<Tensor<float>> M(free_.size());
+  for_each_corner([&](std::size_t cell, std::size_t row, const std::array<float, 3>& b) {
+    const Row<float>& D = relaxation_[row];
+    const float own = D[0] * b[0] * b[0] + D[1] * b[1] * b[1] + D[2] * b[2] * b[2];
+    schur_[cell] += own;
+    if (!(own > 0.0f)) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        M[row](static_cast<int>(i), static_cast<int>(j)) += b[i] * b[j] / own;
+      }
+    }
+  });
+  float largest = 1.0f;
+  for (std::size_t r = 0; r < M.size(); ++r)
+    largest = std::max(largest, eigenvalue_bound(relaxation_[r], M[r]));
+  for (float& s : schur_) s = s > 0.0f ? 1.0f / (largest * s) : 0.0f;
+}
+
+void SaddleLevel::smooth_from_zero(const MixedVector& b, MixedVector& x) {
+  const float *f = numbers_of(b.u), *D = numbers_of(relaxation_);
+  float* u = numbers_of(x.u);
+  for_all(4 * free_.size(), threads_, [=](std::size_t k) { u[k] = D[k] * f[k]; });
+  std::fill(x.p.begin(), x.p.end(), 0.0f);
+  relax_pressures(b, x);
+}
+
+void SaddleLevel::smooth(const MixedVector& b, MixedVector& x) {
+  apply(x, y_);
+  const float *f = numbers_of(b.u), *D = numbers_of(relaxation_), *y = numbers_of(y_.u);
+  float* u = numbers_of(x.u);
+  for_all(4 * free_.size(), threads_, [=](std::size_t k) { u[k] += D[k] * (f[k] - y[k]); });
+  relax_pressures(b, x);
+}
+
+void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
+  const std::size_t rows = 4 * free_.size(), cells = compliance_.size();
+  const float *C = compliance_.data(), *D = numbers_of(relaxation_), *S = schur_.data();
+  float *r = r_.data(), *d = change_.data(), *q = sum_.data(), *t = numbers_of(t_), *p = x.p.data();
+  divergence(x.u, r_);
+  // Chebyshev steps for eigenvalues between 1 / n^2 and 1, n the number of steps.
+  const float least = 1.0f / static_cast<float>(pressure_steps_ * pressure_steps_);
+  const float centre = 0.5f * (1.0f + least), radius = 0.5f * (1.0f - least), sigma = centre / radius;
+  float rho = 1.0f / sigma;
+  for_all(cells, threads_, [=, g = b.p.data()](std::size_t k) {
+    r[k] -= C[k] * p[k] + g[k];
+    q[k] = d[k] = S[k] * r[k] / centre;
+  });
+  for (int step = 1; step < pressure_steps_; ++step) {
+    gradient(change_, t_);
+    for_all(rows, threads_, [=](std::size_t k) { t[k] *= D[k]; });
+    divergence(t_, y_.p);
+    const float next = 1.0f / (2.0f * sigma - rho), keep = next * rho, add = 2.0f * next / radius;
+    rho = next;
+    for_all(cells, threads_, [=, y = y_.p.data()](std::size_t k) {
+      r[k] -= y[k] + C[k] * d[k];
+      d[k] = keep * d[k] + add * S[k] * r[k];
+      q[k] += d[k];
+    });
+  }
+  for_all(cells, threads_, [=](std::size_t k) { p[k] += q[k]; });
+  gradient(sum_, t_);
+  float* u = numbers_of(x.u);
+  for_all(rows, threads_, [=](std::size_t k) { u[k] -= D[k] * t[k]; });
+}
+
+void SaddleLevel::residual(const MixedVector& b, const MixedVector& x, MixedVector& r) const {
+  apply(x, r);
+  const float *f = numbers_of(b.u), *free = numbers_of(free_), *g = b.p.data();
+  float *y = numbers_of(r.u), *z = r.p.data();
+  for_all(4 * free_.size(), threads_, [=](std::size_t k) { y[k] = free[k] * (f[k] - y[k]); });
+  for_all(r.p.size(), threads_, [=](std::size_t k) { z[k] = g[k] - z[k]; });
+}
+
+}  // namespace sandglass

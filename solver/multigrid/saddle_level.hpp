@@ -1,0 +1,80 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "multigrid/mixed_vector.hpp"
+
+namespace sandglass {
+
+/// One level of a multigrid method for the saddle-point problem of a nearly incompressible body,
+///   A u + B^T p = f,   B u - C p = g,
+/// with A the stiffness without that of volume changes, B their derivative (m^2), and C the diagonal of
+/// volumes over lambda (m^3/Pa). Solving for both at once, no step suffers from a large lambda.
+class SaddleLevel {
+ public:
+  /// The pressures of the smoother take so many steps.
+  SaddleLevel(int threads, int pressure_steps) : threads_(threads), pressure_steps_(pressure_steps) {}
+  SaddleLevel(const SaddleLevel&) = delete;
+  SaddleLevel& operator=(const SaddleLevel&) = delete;
+  virtual ~SaddleLevel() = default;
+
+  /// A vector of this level, zero.
+  MixedVector zero() const { return {Rows<float>(free_.size()), std::vector<float>(compliance_.size())}; }
+
+  /// y = (A u + B^T p, B u - C p).
+  virtual void apply(const MixedVector& x, MixedVector& y) const = 0;
+
+  /// g = B u.
+  virtual void divergence(const Rows<float>& u, std::vector<float>& g) const = 0;
+
+  /// f = B^T p.
+  virtual void gradient(const std::vector<float>& p, Rows<float>& f) const = 0;
+
+  /// One step of the smoother from x: an inexact Uzawa step, symmetric, after Braess and Sarazin 1997.
+  /// Displacements relax with D, pressures with Chebyshev steps on S = B D B^T + C, and the displacements
+  /// follow the pressures.
+  void smooth(const MixedVector& b, MixedVector& x);
+
+  /// The same from zero, whatever x is.
+  void smooth_from_zero(const MixedVector& b, MixedVector& x);
+
+  /// r = b - (A u + B^T p, B u - C p), zero on constrained components.
+  void residual(const MixedVector& b, const MixedVector& x, MixedVector& r) const;
+
+  /// The diagonal matrix D (m/N): that of A, inverted and scaled such that D A has eigenvalues below 2; zero
+  /// on constrained components.
+  const Rows<float>& relaxation() const { return relaxation_; }
+
+  /// 1, or 0 on constrained components and unused rows.
+  const Rows<float>& free() const { return free_; }
+
+  int threads() const { return threads_; }
+
+ protected:
+  /// Calls visit(cell, row, b) for every cell and each of its corners, with the column b (m^2) of B.
+  using VisitCorner = std::function<void(std::size_t cell, std::size_t row, const std::array<float, 3>& b)>;
+  virtual void for_each_corner(const VisitCorner& visit) const = 0;
+
+  void resize(std::size_t rows, std::size_t cells);
+
+  /// Sets the smoother from the diagonal of A (N/m) and a bound of the eigenvalues of its inverse times A.
+  void set_smoother(const Rows<float>& diagonal, float bound);
+
+  int threads_;
+  Rows<float> free_;
+  std::vector<float> compliance_;  // C
+
+ private:
+  void relax_pressures(const MixedVector& b, MixedVector& x);
+
+  int pressure_steps_;
+  Rows<float> relaxation_;    // D
+  std::vector<float> schur_;  // the inverse of the diagonal of S, scaled such that its product with S has
+                              // eigenvalues up to 1
+  MixedVector y_;             // scratch
+  Rows<float> t_;
+  std::vector<float> r_, change_, sum_;
+};
+
+}  // namespace sandglass
