@@ -301,8 +301,15 @@ int run_case(const RunOptions& options) {
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
-  const std::string status =
-      compute(options, given, model, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr).status;
+  std::string status;
+  try {
+    status = compute(options, given, model, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr).status;
+  } catch (const ComputationError& error) {
+    if (!writer || writer->frames() < 2) throw;
+    writer->commit("failed");
+    throw ComputationError(fmt::format("{}; what was complete is in {}", error.what(), options.output),
+                           error.breakdown());
+  }
   if (writer) {
     writer->commit(status);
     fmt::print("wrote {}\n", options.output);

@@ -132,7 +132,7 @@ TEST(Choose, predicts_what_a_run_gives) {
   for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
     if (rung.mesh->coarser) continue;
     const NodalField u = equilibrium_answer(scene, rung.choice, silent).u;
-    EXPECT_EQ(*evaluation.error, largest_distance(u, golden) / 0.3) << name_of(rung);
+    EXPECT_DOUBLE_EQ(*evaluation.error, largest_distance(u, golden) / 0.3) << name_of(rung);
     ++compared;
   }
   EXPECT_EQ(compared, 2 + 6);

@@ -240,6 +240,22 @@ std::string refusal(const Case& description, const NodeSets& sets) {
   return "accepted";
 }
 
+/// A whole turn ends where it began; the body is twisted all the same, for the way there counts. Its energy
+/// is that of the turn in many equal levels.
+TEST(Rotation, a_whole_turn_is_not_taken_for_none) {
+  const auto energy = [](int levels) {
+    Scene scene = turned_block({"head", {0.0, 0.0, 1.0}, 2.0 * pi, {}, {}});
+    scene.description.relaxation.levels = levels;
+    Observer silent;
+    const Relaxation found = relax(Model(scene, {"tl-mean-dilatation"}), silent);
+    EXPECT_TRUE(found.converged);
+    return found.energies.strain;
+  };
+  const double many = energy(60);
+  EXPECT_GT(many, 0.0);
+  EXPECT_NEAR(energy(0), many, 1e-6 * many);
+}
+
 /// A node may turn and be held, or turn twice, where all paths are the same.
 TEST(Rotation, two_paths_of_a_node_must_be_the_same) {
   const Mesh mesh = box({0.1, 0.1, 0.1}, {1, 1, 1});

@@ -105,7 +105,7 @@ struct Touched {
     });
     touched.displacements = {{"base", {}}, {"touched", {0, 0, -depth}}};
     touched.relaxation.tolerance = 1e-6;
-    touched.relaxation.check_interval = 10;
+    touched.relaxation.check_interval = 2;
     scene = make_scene(std::move(touched), std::move(mesh), std::move(sets));
   }
 

@@ -30,6 +30,9 @@ class ResultWriter {
   void frame(const Frame& frame);
   void history(const HistoryRow& row) { history_.push_back(row); }
 
+  /// The frames so far; the first is the undeformed body.
+  std::size_t frames() const { return times_.size(); }
+
   /// `status` is "complete" or says how the run ended.
   void commit(const std::string& status);
 

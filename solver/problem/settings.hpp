@@ -7,23 +7,21 @@
 
 namespace sandglass {
 
-/// How a quasi-static answer is found: levels of what is imposed, relaxed by conjugate gradients.
+/// How a quasi-static answer is found: levels of what is imposed, each brought to rest.
 struct RelaxationSettings {
   double tolerance = 1e-8;
   int levels = 0;
   int cycles = 0;
-  int max_steps = 200000;
-  int check_interval = 50;
+  int max_steps = 100000;
+  int check_interval = 5;
 
   static constexpr auto parameters() {
     using S = RelaxationSettings;
     return std::tuple{
         Parameter{&S::tolerance, "tolerance", "-", Range::positive(),
                   "stop when |residual| / |reactions and loads| falls below this", false},
-        Parameter{
-            &S::levels, "levels", "-", Range::at_least(0),
-            "load levels; 0 chooses them so that no element's displacement gradient changes by more than 0.3",
-            false},
+        Parameter{&S::levels, "levels", "-", Range::at_least(0),
+                  "equal load levels; 0 chooses as few as the answer needs", false},
         Parameter{&S::cycles, "cycles", "-", Range::at_least(0),
                   "how often the load goes back to a tenth and up again before the answer", false},
         Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1),

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/row_loops.hpp"
 #include "solve/health.hpp"
-#include "solve/row_loops.hpp"
 
 namespace sandglass {
 
@@ -85,6 +85,16 @@ void Body<Real>::impose(std::span<const double> displacements, double factor) {
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     impose(constraints_[k], static_cast<Real>(displacements[k]));
   }
+}
+
+template <class Real>
+Rows<Real> Body<Real>::loads(double factor) const {
+  Rows<Real> rows(force_.size());
+  for (const auto& [row, load] : loads_) {
+    for (std::size_t i = 0; i < 3; ++i) rows[row][i] = static_cast<Real>(factor) * load[i];
+  }
+  for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
+  return rows;
 }
 
 template <class Real>

@@ -47,6 +47,9 @@ class Body {
   /// increments to the change; from now on loads are `factor` times their final value.
   void impose(std::span<const double> displacements, double factor);
 
+  /// The loads (N) of a factor, by row; zero on constrained components.
+  Rows<Real> loads(double factor) const;
+
   /// The present factor of the loads.
   double load_factor() const { return load_factor_; }
 

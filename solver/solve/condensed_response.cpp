@@ -10,9 +10,9 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "math/row_loops.hpp"
 #include "problem/linear_stiffness.hpp"
 #include "solve/layered_cholesky.hpp"
-#include "solve/row_loops.hpp"
 
 namespace sandglass {
 

@@ -1,190 +1,259 @@
 #include "solve/equilibrium.hpp"
 
-#include <numeric>
+#include <algorithm>
+#include <cmath>
 
-#include "solve/row_loops.hpp"
+#include "math/row_loops.hpp"
+#include "solve/newton_step.hpp"
 
 namespace sandglass {
 
 namespace {
 
-double dot(const CoarseVector& a, const CoarseVector& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
+/// The steps in which the norm must halve.
+constexpr int accelerated_patience = 12, patient_patience = 100, multiplied_patience = 100,
+              descent_patience = 100;
 
-/// N sums of products over the rows of a block, each as a vector of lanes.
-template <class Real, std::size_t N>
-class LaneSums {
- public:
-  /// Adds a * b to sum n.
-  template <int W>
-  void add(std::size_t n, const RowVector<Real, W>& a, const RowVector<Real, W>& b) {
-    if constexpr (W == row_vector_width<Real>) {
-      wide_[n] += a * b;
-    } else {
-      single_[n] += a * b;
-    }
-  }
+/// The method of multipliers ends when the norm has fallen to this share.
+constexpr double multiplied_share = 0.1;
 
-  double sum(std::size_t n) const { return sum_of_lanes(wide_[n]) + sum_of_lanes(single_[n]); }
+/// So often it may hand over to accelerated steps before the potential's descent begins.
+constexpr int most_returns = 2;
 
- private:
-  std::array<RowVector<Real, row_vector_width<Real>>, N> wide_{};
-  std::array<RowVector<Real, 4>, N> single_{};
-};
+/// The resistance to volume changes that multipliers leave to the elements, over the shear modulus.
+constexpr double penalty_over_shear = 5.0;
 
-/// Sums of the first pass.
-struct Comparison {
-  ConjugateGradient::TrialSums trial;
-  double force_square = 0.0;
-  Comparison& operator+=(const Comparison& other) {
-    trial += other.trial;
-    force_square += other.force_square;
-    return *this;
-  }
-};
+/// Evaluations for one Newton step.
+constexpr int most_products_with_multipliers = 200, most_products = 500;
+
+/// Accelerated steps after which the configuration may have changed too much for the multigrid method, and
+/// the norm, over that at the start, below which that no longer matters.
+constexpr std::size_t steps_between_updates = 8;
+constexpr double close_enough = 1e-4;
 
 }  // namespace
 
 template <class Real>
-Equilibrium<Real>::Equilibrium(const Model& model, const InternalForce<Real>& elements)
-    : body_(model, elements),
-      tells_increment_(elements.needs_increment()),
-      preconditioner_(model, elements, body_),
-      g_(body_.state().u.size()),
-      p_(g_.size()),
-      coarse_g_(preconditioner_.coarse_size()),
-      coarse_d_(coarse_g_.size()),
-      solved_g_(coarse_g_.size()),
-      solved_d_(coarse_g_.size()) {}
+bool Equilibrium<Real>::Progress::take(double norm, int patience) {
+  if (norm < 0.5 * halved) {
+    halved = norm;
+    waited = 0;
+  }
+  return ++waited <= patience;
+}
 
-/// With g and p zero, the first step takes the whole force, in the direction of steepest descent.
+template <class Real>
+void Equilibrium<Real>::take_own_pressures() {
+  mixed_.linearize();
+  mixed_.take_own_pressures();
+}
+
 template <class Real>
 void Equilibrium<Real>::begin() {
-  preconditioner_.update(body_);
-  method_ = {};
-  clear(g_, body_.threads());
-  clear(p_, body_.threads());
-  std::fill(coarse_g_.begin(), coarse_g_.end(), 0.0);
-  std::fill(solved_g_.begin(), solved_g_.end(), 0.0);
+  mixed_.linearize();
+  mixed_.weigh();
 }
 
 template <class Real>
-void Equilibrium<Real>::start() {
+void Equilibrium<Real>::start(Effort effort) {
+  effort_ = effort;
+  returns_ = 0;
   begin();
-  evaluate();
-}
-
-template <class Real>
-void Equilibrium<Real>::restart() {
-  begin();
-  compare();
+  mixed_.evaluate();
+  first_ = mixed_.norm();
+  if (mixed_.pressure_varies()) {
+    begin_descent();
+  } else {
+    begin_acceleration();
+    start_ = best_;
+  }
 }
 
 template <class Real>
 bool Equilibrium<Real>::step() {
-  switch (method_.assess(sums_)) {
-    case ConjugateGradient::Action::move:
-      advance();
-      break;
-    case ConjugateGradient::Action::retry:
-      retry();
-      break;
-    case ConjugateGradient::Action::fail:
-      return false;
+  switch (stage_) {
+    case Stage::acceleration:
+      return accelerated();
+    case Stage::multipliers:
+      return multiplied();
+    case Stage::descent:
+      return descended();
   }
-  evaluate();
+  return false;
+}
+
+template <class Real>
+void Equilibrium<Real>::begin_acceleration() {
+  stage_ = Stage::acceleration;
+  acceleration_.clear();
+  norms_.clear();
+  best_norm_ = mixed_.norm();
+  if (effort_ == Effort::full) best_ = {body().state(), pressures()};
+  progress_ = {best_norm_};
+}
+
+template <class Real>
+bool Equilibrium<Real>::accelerated() {
+  const double norm = mixed_.norm();
+  if (effort_ == Effort::full && norm < best_norm_) {
+    best_norm_ = norm;
+    best_ = {body().state(), pressures()};
+  }
+  const int patience = effort_ == Effort::patient ? patient_patience : accelerated_patience;
+  if (progress_.take(norm, patience) && linearized_step()) return true;
+  if (effort_ != Effort::full) return false;
+  if (returns_++ < most_returns) {
+    begin_multipliers();
+  } else {
+    go_to_lower();
+    begin_descent();
+  }
+  return true;
+}
+
+/// To where the residual would be least after the steps so far, and from there by a multigrid cycle; shorter
+/// while the norm is much larger than the last ones.
+template <class Real>
+bool Equilibrium<Real>::linearized_step() {
+  const double norm = mixed_.norm();
+  norms_.push_back(norm);
+  if (!std::isfinite(norm) || norm > 1e3 * norms_.front()) return false;
+  if (norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front() &&
+      body().healthy()) {
+    mixed_.linearize();
+  }
+  reduced_ = mixed_.residuals();
+  step_ = reduced_;
+  acceleration_.combine(reduced_, step_);
+  correction_ = reduced_;
+  mixed_.correct(reduced_, correction_);
+  add(1.0f, correction_, step_, body().threads());
+  const std::size_t recent = std::min<std::size_t>(norms_.size(), 3);
+  const double allowed = 3.0 * *std::max_element(norms_.end() - static_cast<long>(recent), norms_.end());
+  constexpr int most_trials = 7;
+  double share = 1.0, done = 0.0;
+  for (int trial = 0; trial < most_trials; ++trial, share *= 0.5) {
+    mixed_.move(step_, share - done);
+    done = share;
+    mixed_.evaluate();
+    const double next = mixed_.norm();
+    if (std::isfinite(next) && next <= allowed) {
+      if (share < 1.0) multiply(static_cast<float>(share), step_, body().threads());
+      acceleration_.moved(step_);
+      return true;
+    }
+  }
+  return false;
+}
+
+template <class Real>
+void Equilibrium<Real>::begin_multipliers() {
+  stage_ = Stage::multipliers;
+  go_to(best_);
+  mixed_.evaluate();
+  progress_ = {mixed_.norm()};
+  enough_ = multiplied_share * progress_.halved;
+}
+
+/// One Newton step with the pressures as multipliers, which follow.
+template <class Real>
+bool Equilibrium<Real>::multiplied() {
+  if (mixed_.norm() < enough_) {
+    begin_acceleration();
+    return accelerated();
+  }
+  if (progress_.take(mixed_.norm(), multiplied_patience)) {
+    const double lambda = mixed_.moduli().lambda, penalty = penalty_over_shear * mixed_.moduli().mu;
+    const double left = penalty * lambda / (lambda + penalty);  // of lambda
+    typename MixedBody<Real>::Multipliers multipliers{pressures(), lambda - left};
+    for (Real& m : multipliers.pressures) m *= static_cast<Real>(lambda / (lambda + penalty));
+    if (body().healthy()) mixed_.linearize(left);
+    if (newton_step(mixed_, &multipliers, most_products_with_multipliers)) {
+      mixed_.take_pressures(multipliers);
+      begin();
+      mixed_.compare();
+      return true;
+    }
+  }
+  go_to_lower();
+  begin_descent();
   return true;
 }
 
 template <class Real>
-void Equilibrium<Real>::evaluate() {
-  body_.evaluate_forces();
-  ++evaluations_;
-  compare();
+void Equilibrium<Real>::begin_descent() {
+  stage_ = Stage::descent;
+  progress_ = {residual()};
 }
 
-/// Computes the sums with d = f - g, d on the coarse grid, and the residual.
+/// One Newton step of the body's own forces.
 template <class Real>
-void Equilibrium<Real>::compare() {
-  const Real *f = numbers_of(body_.free_forces()), *g = numbers_of(g_), *p = numbers_of(p_);
-  const auto sums =
-      sum_over_blocks<Comparison>(4 * g_.size(), body_.threads(), [&](std::size_t first, std::size_t last) {
-        LaneSums<Real, 4> lanes;
-        for_each_row_vector<Real>(first, last, [&]<int W>(std::size_t k) {
-          const auto fk = load<W>(f + k), gk = load<W>(g + k);
-          const RowVector<Real, W> d = fk - gk;
-          const auto Bd = preconditioner_.template nodal<W>(k, d);
-          lanes.template add<W>(0, load<W>(p + k), d);
-          lanes.template add<W>(1, gk, Bd);
-          lanes.template add<W>(2, d, Bd);
-          lanes.template add<W>(3, fk, fk);
-        });
-        return Comparison{{lanes.sum(0), lanes.sum(1), lanes.sum(2)}, lanes.sum(3)};
-      });
-  sums_ = sums.trial;
-  residual_ = body_.residual(sums.force_square);
-  preconditioner_.restrict_to_coarse(body_.free_forces(), coarse_d_, body_.threads());
-  for (std::size_t k = 0; k < coarse_d_.size(); ++k) coarse_d_[k] -= coarse_g_[k];
-  preconditioner_.solve(coarse_d_, solved_d_);
-  sums_.g_P_d += dot(solved_g_, coarse_d_);
-  sums_.d_P_d += dot(solved_d_, coarse_d_);
+bool Equilibrium<Real>::descended() {
+  if (body().healthy()) mixed_.linearize();
+  return progress_.take(residual(), descent_patience) && newton_step<Real>(mixed_, nullptr, most_products);
 }
 
-/// The updates of ConjugateGradient and the next trial.
 template <class Real>
-void Equilibrium<Real>::advance() {
-  const double move = method_.move();
-  for (std::size_t k = 0; k < coarse_g_.size(); ++k) {
-    coarse_g_[k] += move * coarse_d_[k];
-    solved_g_[k] += move * solved_d_[k];
+void Equilibrium<Real>::go_to(const Point& point) {
+  body().state() = point.state;
+  pressures() = point.pressures;
+}
+
+/// To the point of lower potential: where the search began, or the best since.
+template <class Real>
+void Equilibrium<Real>::go_to_lower() {
+  go_to(potential_at(best_) < potential_at(start_) ? best_ : start_);
+  mixed_.evaluate();
+}
+
+/// Infinite where an element is inverted.
+template <class Real>
+double Equilibrium<Real>::potential_at(const Point& point) {
+  go_to(point);
+  return body().healthy() ? mixed_.potential(nullptr) : INFINITY;
+}
+
+template <class Real>
+double Equilibrium<Real>::extend(double load, double most) {
+  const Rows<Real> before = body().state().u;
+  const double load_before = body().load_factor();
+  begin();
+  body().impose(load);
+  const MixedVector zero = mixed_.multigrid().elements().zero();
+  MixedVector x = zero, forces = zero;
+  for (std::size_t row = 0; row < before.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i)
+      x.u[row][i] = static_cast<float>(body().state().u[row][i] - before[row][i]);
   }
-  preconditioner_.take(solved_g_);
-  const auto share = static_cast<Real>(move), turn = static_cast<Real>(method_.turn());
-  const auto rest_of_step = static_cast<Real>((move - 1.0) * length_);  // from the trial to the minimum
-  const auto length = static_cast<Real>(method_.length());
-  const Real* f = numbers_of(body_.free_forces());
-  Real *g = numbers_of(g_), *p = numbers_of(p_), *u = numbers_of(body_.state().u);
-  Real* increment = tells_increment_ ? numbers_of(body_.state().increment) : nullptr;
-  auto sums = sum_over_blocks<ConjugateGradient::DirectionSums>(
-      4 * g_.size(), body_.threads(), [&](std::size_t first, std::size_t last) {
-        LaneSums<Real, 2> lanes;
-        for_each_row_vector<Real>(first, last, [&]<int W>(std::size_t k) {
-          const auto g_before = load<W>(g + k), p_before = load<W>(p + k);
-          const RowVector<Real, W> gk = g_before + share * (load<W>(f + k) - g_before);
-          const auto Bg = preconditioner_.template nodal<W>(k, gk);
-          const auto Zc = preconditioner_.template from_coarse<W>(k);
-          const RowVector<Real, W> pk = turn * p_before - (Bg + Zc);
-          const RowVector<Real, W> step = rest_of_step * p_before + length * pk;
-          store(gk, g + k);
-          store(pk, p + k);
-          store(RowVector<Real, W>(load<W>(u + k) + step), u + k);
-          if (increment != nullptr) store(step, increment + k);
-          lanes.template add<W>(0, gk, pk);
-          lanes.template add<W>(1, gk, Bg);
-        });
-        return ConjugateGradient::DirectionSums{lanes.sum(0), lanes.sum(1)};
-      });
-  sums.g_P_g += dot(solved_g_, coarse_g_);
-  method_.take(sums);
-  length_ = method_.length();
-}
-
-/// Moves to another trial along the same direction.
-template <class Real>
-void Equilibrium<Real>::retry() {
-  const auto change = static_cast<Real>(method_.length() - length_);
-  length_ = method_.length();
-  const Real* p = numbers_of(p_);
-  Real* u = numbers_of(body_.state().u);
-  Real* increment = numbers_of(body_.state().increment);
-  for_each_block(4 * p_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
-#pragma omp simd
-    for (std::size_t k = first; k < last; ++k) {
-      increment[k] = change * p[k];
-      u[k] += increment[k];
-    }
-  });
+  MixedVector loads = zero;
+  loads.u = rounded_rows<float>(body().loads(load - load_before));
+  // The linear problem, by accelerated cycles.
+  const auto evaluate = [&] {
+    mixed_.multigrid().elements().apply(x, forces);
+    reduced_ = forces;
+    add(-1.0f, loads, reduced_, body().threads());
+    mixed_.weigh(reduced_);
+    return std::sqrt(dot(reduced_, reduced_, body().threads()));
+  };
+  acceleration_.clear();
+  const double first = evaluate();
+  constexpr int most_cycles = 30;
+  for (int k = 0; k < most_cycles; ++k) {
+    step_ = correction_ = zero;
+    acceleration_.combine(reduced_, step_);
+    mixed_.correct(reduced_, correction_);
+    add(1.0f, correction_, step_, body().threads());
+    add(1.0f, step_, x, body().threads());
+    acceleration_.moved(step_);
+    if (!(evaluate() > 0.1 * first)) break;
+  }
+  const double gradient = mixed_.multigrid().elements().largest_gradient(x.u);
+  const double share = mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient);
+  const double reached = share < 1.0 ? load_before + share * (load - load_before) : load;
+  body().move_to(before);
+  mixed_.move(x, share);
+  body().impose(reached);
+  return reached;
 }
 
 template class Equilibrium<double>;

@@ -1,70 +1,106 @@
 #pragma once
 
-#include "solve/body.hpp"
-#include "solve/conjugate_gradient.hpp"
-#include "solve/preconditioner.hpp"
+#include <optional>
+
+#include "solve/acceleration.hpp"
+#include "solve/mixed_body.hpp"
 
 namespace sandglass {
 
-/// The search for the equilibrium of a body at fixed imposed displacements, by preconditioned conjugate
-/// gradients. A step takes one evaluation of the forces and two passes over the rows: the first reads the
-/// forces f, g and p, the second reads f, g, p and u and writes g, p and u; both read the preconditioner's
-/// blocks.
+/// What a search does where its steps go astray: it gives up at once, after a while, or goes through all
+/// stages.
+enum class Effort { brief, patient, full };
+
+/// The search for the equilibrium of a body at fixed loads and imposed displacements, in up to three stages:
+/// accelerated steps, each a multigrid cycle and one evaluation of the forces; where they go astray, the
+/// method of multipliers; where that is no better, descent of the body's own potential. See README.md.
 template <class Real>
 class Equilibrium {
  public:
   /// For the undeformed body of the model; `start` must follow.
-  Equilibrium(const Model& model, const InternalForce<Real>& elements);
+  Equilibrium(const Model& model, const InternalForce<Real>& elements)
+      : mixed_(model, elements), acceleration_(model.choice().threads) {}
 
   /// The body; its forces and displacements are those of the last evaluation. Callers that move it must set
   /// its increment.
-  Body<Real>& body() { return body_; }
-  const Body<Real>& body() const { return body_; }
+  Body<Real>& body() { return mixed_.body(); }
+  const Body<Real>& body() const { return mixed_.body(); }
 
-  /// Starts from the present displacements, at which no element may be inverted, with their tangent as
-  /// preconditioner. Takes one evaluation.
-  void start();
+  /// Pressures of the elements, Pa.
+  std::vector<Real>& pressures() { return mixed_.pressures(); }
 
-  /// The same with forces that are already evaluated.
-  void restart();
+  /// Sets the pressures to those that belong to the displacements.
+  void take_own_pressures();
 
-  /// Takes one step with one evaluation; false if the forces are not finite for any length of the step.
+  /// Imposes a load and moves the body by the linear answer to its increase, or by as much of both as changes
+  /// no element's displacement gradient by more than `most`. Returns the load.
+  double extend(double load, double most);
+
+  /// Starts from the present displacements and pressures, at which no element may be inverted, with one
+  /// evaluation. Later stages descend a potential, which forces must have.
+  void start(Effort effort);
+
+  /// Takes one step with one evaluation, or more in later stages; false if the search goes astray.
   bool step();
 
   /// The residual of the last evaluation; see Body::residual.
-  double residual() const { return residual_; }
+  double residual() const { return mixed_.residual(); }
+
+  /// The norm of the residuals of both unknowns over that at the start; 1 in the last stage, which has no
+  /// pressures.
+  double reduction() const { return stage_ == Stage::descent ? 1.0 : mixed_.norm() / first_; }
 
   /// Evaluations of the forces since construction.
-  long evaluations() const { return evaluations_; }
+  long evaluations() const { return mixed_.evaluations(); }
 
   /// The data that `start` depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
-    archive("evaluations", evaluations_);
-    body_.keep(archive);
+    mixed_.keep(archive);
   }
 
  private:
-  void begin();
-  void evaluate();
-  void compare();
-  void advance();
-  void retry();
+  enum class Stage { acceleration, multipliers, descent };
 
-  Body<Real> body_;
-  bool tells_increment_;
-  Preconditioner<Real> preconditioner_;
-  ConjugateGradient method_;
-  ConjugateGradient::TrialSums sums_;  // of the last evaluation
-  Rows<Real> g_;                       // force at the start of the step, moved there along secants
-  Rows<Real> p_;                       // direction
-  double length_ = 0.0;                // of the last trial, in p_
-  CoarseVector coarse_g_;              // Z^T g
-  CoarseVector coarse_d_;
-  CoarseVector solved_g_;  // A^-1 Z^T g
-  CoarseVector solved_d_;
-  double residual_ = 0.0;
-  long evaluations_ = 0;
+  /// The unknowns of a step.
+  struct Point {
+    State<Real> state;
+    std::vector<Real> pressures;
+  };
+
+  /// Waits for a norm to halve.
+  struct Progress {
+    double halved = 0.0;
+    int waited = 0;
+
+    /// Counts a step; whether it is within `patience` steps of the last halving.
+    bool take(double norm, int patience);
+  };
+
+  void begin();
+  void begin_acceleration();
+  void begin_multipliers();
+  void begin_descent();
+  bool accelerated();
+  bool multiplied();
+  bool descended();
+  bool linearized_step();
+  void go_to(const Point& point);
+  void go_to_lower();
+  double potential_at(const Point& point);
+
+  MixedBody<Real> mixed_;
+  Acceleration acceleration_;
+  MixedVector step_, correction_, reduced_;
+  Effort effort_ = Effort::brief;
+  Stage stage_ = Stage::acceleration;
+  Progress progress_;
+  Point start_, best_;
+  double best_norm_ = 0.0;
+  double first_ = 1.0;         // norm
+  double enough_ = 0.0;        // norm at which multipliers have done their work
+  int returns_ = 0;            // to acceleration
+  std::vector<double> norms_;  // since acceleration began
 };
 
 extern template class Equilibrium<double>;

@@ -19,7 +19,8 @@ ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   if (!search.body().healthy()) {
     throw ComputationError("the mean-dilatation element is inverted at this answer: no estimate");
   }
-  search.start();
+  search.take_own_pressures();
+  search.start(Effort::full);
   const double enough = std::max(share_left * search.residual(), scene.description.relaxation.tolerance);
   while (search.residual() > enough) {
     if (!search.step()) {

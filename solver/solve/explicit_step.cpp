@@ -1,6 +1,6 @@
 #include "solve/explicit_step.hpp"
 
-#include "solve/row_loops.hpp"
+#include "math/row_loops.hpp"
 
 namespace sandglass {
 

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "element/one_point.hpp"
-#include "solve/body.hpp"
-#include "solve/row_loops.hpp"
+#include "math/row_loops.hpp"
+#include "solve/equilibrium.hpp"
 
 namespace sandglass {
 
@@ -47,23 +48,41 @@ inline std::vector<double> turning_loads(int cycles) {
   return loads;
 }
 
-/// The load levels of a search: their loads, relative to the case's, and the displacements to start from.
+/// The load levels of a search: their loads, relative to the case's, and the displacements to start from. As
+/// many equal ones as the user wants. Otherwise, where forces depend on the path, equal ones so short that no
+/// element's displacement gradient changes by more than 0.3; else as few as possible, each twice as long as
+/// the one before.
 template <class Real>
 class LoadLevels {
  public:
   /// Starts from an undeformed body.
-  LoadLevels(const Model& model, const Body<Real>& undeformed)
+  LoadLevels(const Model& model, const Body<Real>& undeformed, bool forces_depend_on_path)
       : model_(model),
+        chosen_(model.scene().description.relaxation.levels),
+        depends_on_path_(forces_depend_on_path),
+        equal_(chosen_ > 0 || forces_depend_on_path),
         turns_(turning_loads(model.scene().description.relaxation.cycles)),
-        load_(first_load(model)),
-        before_(undeformed.state().u),
-        last_(undeformed.state()) {}
+        longest_(longest_increment(model.scene())),
+        load_(equal_ ? first_load(model) : longest_),
+        increment_(load_),
+        last_{0.0, undeformed.state(), std::vector<Real>(model.scene().mesh.cells.size())},
+        before_{0.0, last_.state.u, last_.pressures} {}
 
   double load() const { return load_; }
-  double increment() const { return load_ - last_load_; }
+  double increment() const { return load_ - last_.load; }
+
+  /// The load of the last level that was solved.
+  double solved_load() const { return last_.load; }
 
   /// Whether this load level is the last.
   bool full() const { return leg_ + 1 == turns_.size() && load_ == turns_.back(); }
+
+  /// The effort for this level: brief, unless shorter increments have not helped. Forces that depend on the
+  /// path have no potential for more than patience.
+  Effort effort() const {
+    if (in_a_row_ == 0 && failures_ < few_failures) return Effort::brief;
+    return depends_on_path_ ? Effort::patient : Effort::full;
+  }
 
   /// The length of the path through all loads up to here.
   double travelled() const { return before_leg_ + std::abs(load_ - turns_[leg_ - 1]); }
@@ -79,34 +98,51 @@ class LoadLevels {
   std::vector<PathTerms> moved() const {
     std::vector<PathTerms> changes;
     for (const double angle : model_.scene().angles) {
-      const PathTerms from = path_terms(angle, last_load_), to = path_terms(angle, load_);
+      const PathTerms from = path_terms(angle, last_.load), to = path_terms(angle, load_);
       changes.push_back({to[0] - from[0], to[1] - from[1], to[2] - from[2]});
     }
     return changes;
   }
 
-  /// Extrapolates a body from the last two load levels linearly, and imposes this load.
-  void predict(Body<Real>& body) const {
-    if (last_load_ != before_load_) {
-      const auto t = static_cast<Real>((load_ - last_load_) / (last_load_ - before_load_));
-      Rows<Real> target = last_.u;
-      const Real* before = numbers_of(before_);
-      Real* to = numbers_of(target);
-      for (std::size_t k = 0; k < 4 * target.size(); ++k) to[k] += t * (to[k] - before[k]);
-      body.move_to(target);
-    } else {
-      body.move_to(last_.u);
+  /// Extrapolates the search from the last two load levels linearly, and imposes this load; the first time by
+  /// the linear answer, as far as that goes.
+  void predict(Equilibrium<Real>& search) {
+    Body<Real>& body = search.body();
+    body.move_to(last_.state.u);
+    search.pressures() = last_.pressures;
+    if (last_.load == before_.load) {
+      load_ = search.extend(load_, largest_first_gradient);
+      return;
     }
+    const auto t = static_cast<Real>((load_ - last_.load) / (last_.load - before_.load));
+    Rows<Real> target = last_.state.u;
+    const Real* before = numbers_of(before_.u);
+    Real* to = numbers_of(target);
+    for (std::size_t k = 0; k < 4 * target.size(); ++k) to[k] += t * (to[k] - before[k]);
+    for (std::size_t e = 0; e < before_.pressures.size(); ++e) {
+      search.pressures()[e] += t * (last_.pressures[e] - before_.pressures[e]);
+    }
+    body.move_to(target);
     body.impose(load_);
   }
 
+  /// Whether a search below the full load has come far enough for predictions.
+  static bool far_enough(const Equilibrium<Real>& search) {
+    constexpr double residual = 0.1, reduction = 0.03;
+    return search.residual() < residual || search.reduction() < reduction;
+  }
+
   /// Proceeds to the next load level from a solved one.
-  void solved(const Body<Real>& body) {
-    if (last_load_ == 0.0) increment_ = choose_increment(body.field(body.state().u));
-    before_ = std::move(last_.u);
-    before_load_ = last_load_;
-    last_ = body.state();
-    last_load_ = load_;
+  void solved(Equilibrium<Real>& search) {
+    const Body<Real>& body = search.body();
+    if (!equal_) {
+      increment_ = std::min(2.0 * std::abs(increment()), longest_);
+    } else if (last_.load == 0.0) {
+      increment_ = choose_increment(body.field(body.state().u));
+    }
+    in_a_row_ = 0;
+    before_ = {last_.load, std::move(last_.state.u), std::move(last_.pressures)};
+    last_ = {load_, body.state(), search.pressures()};
     if (load_ == turns_[leg_] && leg_ + 1 < turns_.size()) {
       before_leg_ = travelled();
       ++leg_;
@@ -116,10 +152,11 @@ class LoadLevels {
 
   /// Resets the body to the last load level and halves the increment; false after too many attempts.
   bool failed(Body<Real>& body) {
-    body.state() = last_;
+    body.state() = last_.state;
     increment_ = 0.5 * std::abs(increment());
     aim();
-    return ++failures_ <= most_failures;
+    ++in_a_row_;
+    return ++failures_ <= most_failures && in_a_row_ <= most_in_a_row && load_ != last_.load;
   }
 
   /// The data that the next load levels depend on, for a body at the last one; see checkpoint.hpp.
@@ -132,41 +169,75 @@ class LoadLevels {
     archive("way before the leg", before_leg_);
     archive("load", load_);
     archive("load increment", increment_);
-    archive("load before", before_load_);
-    archive("displacement before", before_);
-    archive("last load", last_load_);
+    archive("load before", before_.load);
+    archive("displacement before", before_.u);
+    archive("pressure before", before_.pressures);
+    archive("last load", last_.load);
+    archive("last pressure", last_.pressures);
     archive("failures", failures_);
-    last_ = body.state();
+    archive("failures in a row", in_a_row_);
+    last_.state = body.state();
   }
 
  private:
-  static constexpr int most_failures = 10;
+  /// The change of displacement gradients that the first level may have.
+  static constexpr double largest_first_gradient = 0.4;
+
+  /// The load increment may shrink to a few millionths of itself.
+  static constexpr int most_in_a_row = 20;
+
+  /// Levels that are solved between failures may come nearer and nearer to a load without ever passing it.
+  static constexpr int most_failures = 200;
+
+  /// After so many failures in all every level is worth more effort.
+  static constexpr int few_failures = 4;
+
+  struct Solved {
+    double load;
+    State<Real> state;
+    std::vector<Real> pressures;
+  };
+  struct Before {
+    double load;
+    Rows<Real> u;
+    std::vector<Real> pressures;
+  };
+
+  /// Rotations advance by at most an eighth of a turn: a whole turn at once would look like none.
+  static double longest_increment(const Scene& scene) {
+    double largest = 0.0;
+    for (const double angle : scene.angles) largest = std::max(largest, std::abs(angle));
+    constexpr double eighth = std::numbers::pi / 4.0;
+    return largest > eighth ? eighth / largest : 1.0;
+  }
 
   /// The increment of equal load levels: as many as the user wants, or such that no element's displacement
   /// gradient changes by more than 0.3.
   double choose_increment(const NodalField& u) const {
-    const int chosen = model_.scene().description.relaxation.levels;
-    if (chosen > 0) return 1.0 / chosen;
+    if (chosen_ > 0) return 1.0 / chosen_;
     const double gradient = largest_gradient(model_.scene().mesh, u) / load_;
     return 1.0 / std::clamp(std::ceil(gradient / 0.3), 2.0, 50.0);
   }
 
   void aim() {
-    const double left = turns_[leg_] - last_load_;
-    load_ = std::abs(left) < 1.1 * increment_ ? turns_[leg_] : last_load_ + std::copysign(increment_, left);
+    const double left = turns_[leg_] - last_.load;
+    load_ = std::abs(left) < 1.1 * increment_ ? turns_[leg_] : last_.load + std::copysign(increment_, left);
   }
 
   const Model& model_;
+  int chosen_;
+  bool depends_on_path_;
+  bool equal_;
   std::vector<double> turns_;
+  double longest_;
   std::size_t leg_ = 1;      // index of the next turning point
   double before_leg_ = 0.0;  // length of the path up to the previous one
   double load_;
-  double increment_ = 1.0;
-  double before_load_ = 0.0;
-  Rows<Real> before_;
-  double last_load_ = 0.0;
-  State<Real> last_;
+  double increment_;
   int failures_ = 0;
+  int in_a_row_ = 0;
+  Solved last_;
+  Before before_;
 };
 
 }  // namespace sandglass

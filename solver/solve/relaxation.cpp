@@ -12,6 +12,7 @@
 #include "solve/condensed_answer.hpp"
 #include "solve/equilibrium.hpp"
 #include "solve/load_levels.hpp"
+#include "solve/stagnation.hpp"
 
 namespace sandglass {
 
@@ -24,12 +25,15 @@ class Search {
   Search(const Model& model, const InternalForce<Real>& elements, Observer& observer)
       : model_(model),
         settings_(model.scene().description.relaxation),
+        most_evaluations_(without_stiffness(model) ? std::min(few_evaluations, settings_.max_steps)
+                                                   : settings_.max_steps),
         observer_(observer),
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
-        load_levels_(model, equilibrium_.body()),
+        load_levels_(model, equilibrium_.body(), elements.needs_increment()),
         no_velocity_(model.masses().size()),
-        reactions_(model.scene().constraints.size(), 0.0) {}
+        reactions_(model.scene().constraints.size(), 0.0),
+        next_check_(settings_.check_interval) {}
 
   Relaxation run(const Checkpoint* from) {
     if (from != nullptr) {
@@ -44,7 +48,7 @@ class Search {
         keep(CheckpointWriter(checkpoint));
         return checkpoint;
       });
-      load_levels_.predict(body());
+      load_levels_.predict(equilibrium_);
       if (body().healthy() && solve()) {
         finish_load_level();
       } else if (!ended_) {
@@ -61,17 +65,18 @@ class Search {
   }
 
  private:
-  /// A residual that is sufficient for predictions, below the full load.
-  static constexpr double tolerance_on_the_way = 0.1;
-
   /// The residual at which elements first choose their levels at the full load; levels that would still
   /// change at smaller residuals are corrected at the end.
   static constexpr double tolerance_for_adaption = 1e-3;
 
-  /// Evaluations after which a search restarts from its present displacements, with a new preconditioner;
-  /// then twice as many. It also restarts once when the residual stagnates, which removes the roundoff of the
-  /// secants.
-  static constexpr long first_renewal = 500;
+  /// Elements without stiffness against hourglass modes have no stable equilibrium, but on coarse meshes; the
+  /// search for one ends after so many evaluations.
+  static constexpr int few_evaluations = 2000;
+
+  static bool without_stiffness(const Model& model) {
+    const MethodEntry& method = method_named(model.choice().method);
+    return !method.controls_hourglass || method.damps_only;
+  }
 
   static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
 
@@ -82,13 +87,14 @@ class Search {
   void keep(Archive archive) {
     equilibrium_.keep(archive);
     load_levels_.keep(archive, body());
+    archive("next check", next_check_);
     archive("reaction", reactions_);
     archive("load path", load_path_);
     archive("work", work_);
   }
 
+  /// At the full load.
   double tolerance() const {
-    if (!load_levels_.full()) return std::max(settings_.tolerance, tolerance_on_the_way);
     if (adaption_.active() && !settled_) return std::max(settings_.tolerance, tolerance_for_adaption);
     return settings_.tolerance;
   }
@@ -101,32 +107,32 @@ class Search {
   }
 
   /// Searches the equilibrium at this load; whether it was found, within the tolerance or roundoff, with no
-  /// element inverted.
+  /// element inverted. A search that stagnates starts once more, without the roundoff of its earlier steps.
   bool solve() {
     first_evaluation_ = equilibrium_.evaluations();
-    long renewal = first_renewal;
-    int stagnations = 0;
     Stagnation stagnation(epsilon);
-    equilibrium_.start();
-    while (!(equilibrium_.residual() < tolerance()) || settle()) {
+    int stagnations = 0;
+    equilibrium_.start(load_levels_.effort());
+    while (!arrived() || settle()) {
       check();
       if (ended_) return false;
-      const bool late = equilibrium_.evaluations() - first_evaluation_ >= renewal;
-      if (stagnation.reached() && ++stagnations > 1) {
+      if (!equilibrium_.step() && !stagnation.at_roundoff()) return false;
+      stagnation.take(equilibrium_.residual());
+      if (!stagnation.reached()) continue;
+      if (++stagnations > 1) {
         if (!settle()) break;
         stagnations = 0;
-        stagnation = Stagnation(epsilon);
       }
-      if ((late || stagnation.reached()) && body().healthy()) {
-        if (late) renewal *= 2;
-        stagnation = Stagnation(epsilon);
-        equilibrium_.restart();
-      }
-      if (!equilibrium_.step()) return false;
-      stagnation.take(equilibrium_.residual());
+      stagnation = Stagnation(epsilon);
+      equilibrium_.start(load_levels_.effort());
     }
-    result_.stagnated = !(equilibrium_.residual() < tolerance());
+    result_.stagnated = !arrived();
     return body().healthy();
+  }
+
+  bool arrived() const {
+    return load_levels_.full() ? equilibrium_.residual() < tolerance()
+                               : load_levels_.far_enough(equilibrium_);
   }
 
   /// Lets elements choose their levels at the present displacements; whether the search must continue. At the
@@ -140,7 +146,7 @@ class Search {
     const Adaptation changes = adaption_.apply(body(), lowered_ ? Demotion::never : Demotion::where_enough);
     lowered_ = true;
     if (changes.promoted + changes.demoted == 0) return !std::exchange(settled_, true) && adaption_.active();
-    equilibrium_.start();
+    equilibrium_.start(load_levels_.effort());
     return true;
   }
 
@@ -151,26 +157,34 @@ class Search {
     report();
     if (ended_) return;
     observer_.frame(body().frame(load_levels_.travelled(), no_velocity_));
-    load_levels_.solved(body());
+    load_levels_.solved(equilibrium_);
   }
 
   void retry_load_level() {
     const State<Real> failed = body().state();
     if (load_levels_.failed(body())) return;
     body().state() = failed;
-    body().require_healthy(equilibrium_.evaluations());
+    const std::string where =
+        fmt::format("the last equilibrium is at {:.6g} of the load", load_levels_.solved_load());
+    try {
+      body().require_healthy(equilibrium_.evaluations());
+    } catch (const ComputationError& error) {
+      throw ComputationError(fmt::format("{}; {}", error.what(), where), error.breakdown());
+    }
     throw ComputationError(
-        "no equilibrium was found, however small the increment of the load; remedy: impose less, or refine "
-        "the "
-        "mesh",
+        fmt::format(
+            "no equilibrium was found, however small the increment of the load; {}; remedy: impose less, "
+            "or refine the mesh",
+            where),
         Breakdown::no_balance);
   }
 
   /// Ends the run if the observer requests it or the evaluations are used up.
   void check() {
     const long evaluations = equilibrium_.evaluations();
-    ended_ = evaluations >= settings_.max_steps;
-    if (evaluations % settings_.check_interval != 0) return;
+    ended_ = evaluations >= most_evaluations_;
+    if (evaluations < next_check_) return;
+    next_check_ = evaluations + settings_.check_interval;
     if (load_levels_.full()) report();
     const double residual = equilibrium_.residual();
     const double digits =
@@ -208,6 +222,7 @@ class Search {
 
   const Model& model_;
   const RelaxationSettings& settings_;
+  int most_evaluations_;
   Observer& observer_;
   Equilibrium<Real> equilibrium_;
   Adaption<Real> adaption_;
@@ -218,6 +233,7 @@ class Search {
   double load_path_ = 0.0;
   double work_ = 0.0;
   long first_evaluation_ = 0;  // of this load level
+  long next_check_;            // evaluations
   bool lowered_ = false;       // whether elements had the opportunity to be demoted at the full load
   bool settled_ = false;       // whether levels no longer changed at a moderate residual
   bool ended_ = false;

@@ -22,12 +22,12 @@ struct Relaxation {
 };
 
 /// Finds the displacements at which forces are in equilibrium, with the settings of the case. The imposed
-/// displacements and forces grow in load levels; each starts from the linear extrapolation of the two
-/// previous answers and is solved by preconditioned conjugate gradients, to a coarse tolerance except at the
-/// full load. A load level that fails is repeated with half the increment. A condensed method superposes its
-/// answer in one step. Throws ComputationError if an element remains inverted or no increment is small
-/// enough. The search can be resumed from the start of every load level; with `from`, a checkpoint of the
-/// same model, it starts there, and nothing is reported twice. A condensed method has no checkpoints.
+/// displacements and forces grow in load levels (load_levels.hpp), each solved by `Equilibrium`, to a coarse
+/// tolerance except at the full load. A load level that fails is repeated with half the increment. A
+/// condensed method superposes its answer in one step. Throws ComputationError if an element remains inverted
+/// or no increment is small enough. The search can be resumed from the start of every load level; with
+/// `from`, a checkpoint of the same model, it starts there, and nothing is reported twice. A condensed method
+/// has no checkpoints.
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from = nullptr);
 
 /// Whether the answer is in equilibrium within the tolerance, or within roundoff: in single precision the

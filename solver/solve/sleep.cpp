@@ -132,7 +132,8 @@ class FirstAnswer {
     Equilibrium<Real> search(model_, elements);
     search.body().state() = state_at(elements, u);
     search.body().impose(load);
-    search.start();
+    search.take_own_pressures();
+    search.start(Effort::brief);
     const double enough = share_left * search.residual();
     while (search.residual() > enough && search.evaluations() < most_evaluations && search.step()) {
     }

@@ -18,7 +18,7 @@ namespace sandglass {
 namespace {
 
 /// Evaluations of the forces after which a rung is not at rest: answers that exist take some hundreds.
-constexpr int most_evaluations = 20000;
+constexpr int most_evaluations = 2000;
 
 void require_possible(const Scene& scene, const Demand& demand) {
   if (!scene.description.quasi_static) {

@@ -1,0 +1,70 @@
+#include "solve/acceleration.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace sandglass {
+
+void Acceleration::clear() {
+  pairs_.clear();
+  has_step_ = false;
+}
+
+void Acceleration::moved(const MixedVector& step) {
+  step_ = step;
+  has_step_ = true;
+}
+
+/// Adds the last step and the change of the residual along it.
+void Acceleration::remember(const MixedVector& residual) {
+  if (pairs_.size() == most_pairs) {
+    pairs_.pop_front();
+    for (Pair& pair : pairs_) pair.with_earlier.erase(pair.with_earlier.begin());
+  }
+  Pair pair{std::move(step_), residual, {}, 0.0};
+  add(-1.0f, before_, pair.change, threads_);
+  for (Pair& earlier : pairs_) {
+    const double product = dot(earlier.change, pair.change, threads_);
+    earlier.with_residual += product;
+    pair.with_earlier.push_back(product);
+  }
+  pair.with_earlier.push_back(dot(pair.change, pair.change, threads_));
+  pair.with_residual = dot(pair.change, residual, threads_);
+  pairs_.push_back(std::move(pair));
+  has_step_ = false;
+}
+
+/// The shares of the changes whose sum is nearest to the residual, by normal equations of unit diagonal.
+std::vector<double> Acceleration::best_shares() const {
+  constexpr double least = 1e-11;  // added to the diagonal: steps may repeat each other
+  const auto n = static_cast<Eigen::Index>(pairs_.size());
+  Eigen::MatrixXd products(n, n);
+  Eigen::VectorXd shares(n), scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(i)];
+    scale[i] = 1.0 / std::sqrt(std::max(pair.with_earlier.back(), 1e-300));
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      products(i, j) = scale[i] * scale[j] * pair.with_earlier[static_cast<std::size_t>(j)];
+    }
+    products(i, i) += least;
+    shares[i] = scale[i] * pair.with_residual;
+  }
+  products.llt().solveInPlace(shares);
+  shares.array() *= scale.array();
+  return {shares.begin(), shares.end()};
+}
+
+void Acceleration::combine(MixedVector& residual, MixedVector& step) {
+  if (has_step_) remember(residual);
+  before_ = residual;
+  sandglass::clear(step, threads_);
+  if (pairs_.empty()) return;
+  const std::vector<double> shares = best_shares();
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    add(static_cast<float>(-shares[i]), pairs_[i].change, residual, threads_);
+    add(static_cast<float>(-shares[i]), pairs_[i].step, step, threads_);
+  }
+}
+
+}  // namespace sandglass

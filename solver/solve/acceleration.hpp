@@ -1,0 +1,48 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "multigrid/mixed_vector.hpp"
+
+namespace sandglass {
+
+/// Anderson's acceleration (1965) of an iteration that corrects an unknown by an approximate inverse of its
+/// residual: of the last steps and the changes of the residual along them, it takes the combination that
+/// leaves the least residual. For a linear problem this is GMRES.
+class Acceleration {
+ public:
+  explicit Acceleration(int threads) : threads_(threads) {}
+
+  /// Forgets all steps.
+  void clear();
+
+  /// From the residual at the present point, replaces it by the least one and sets `step` to what leads
+  /// there.
+  void combine(MixedVector& residual, MixedVector& step);
+
+  /// Tells the step that was taken since.
+  void moved(const MixedVector& step);
+
+ private:
+  /// The number of steps it remembers.
+  static constexpr std::size_t most_pairs = 15;
+
+  struct Pair {
+    MixedVector step;
+    MixedVector change;                ///< of the residual
+    std::vector<double> with_earlier;  ///< products with the changes of all earlier pairs and its own
+    double with_residual = 0.0;        ///< product of the change with the present residual
+  };
+
+  void remember(const MixedVector& residual);
+  std::vector<double> best_shares() const;
+
+  int threads_;
+  std::deque<Pair> pairs_;
+  MixedVector before_;  // residual at the start of the last step
+  MixedVector step_;
+  bool has_step_ = false;
+};
+
+}  // namespace sandglass

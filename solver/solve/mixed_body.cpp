@@ -1,0 +1,208 @@
+#include "solve/mixed_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "assembly/method_entry.hpp"
+#include "element/perturbation_stiffness.hpp"
+#include "math/row_loops.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Displacement gradients that change by less leave the multigrid method as good as it was.
+constexpr double hardly_changed = 0.1;
+
+/// The grids do not see a stiffness of hourglass modes: a model with all of a strong control converges more
+/// slowly than one with some of it. The same holds where volume changes are resisted at several points of an
+/// element. In shares of E/9.
+constexpr double strongest_control = 2.0, strongest_resistance = 16.0;
+
+/// Of the undeformed law and of the method's control.
+ModelModuli moduli_of(const Model& model) {
+  const MethodChoice& choice = model.choice();
+  const MethodEntry& method = method_named(choice.method);
+  HourglassSettings settings;
+  if (method.kappa_affects_equilibrium)
+    settings = {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
+  return std::visit(
+      [&](const auto& law) {
+        const double lambda = lame_lambda(law), unit = young_modulus(law) / 9.0;
+        const double control =
+            std::min(PerturbationStiffness::modulus(law, settings), strongest_control * unit);
+        const double resistance = std::min(unit + lambda / 9.0, strongest_resistance * unit);
+        return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control};
+      },
+      model.scene().description.law);
+}
+
+}  // namespace
+
+template <class Real>
+MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elements)
+    : elements_(elements),
+      body_(model, elements),
+      moduli_(moduli_of(model)),
+      linear_(method_named(model.choice().method).is_linear),
+      pressure_varies_(method_named(model.choice().method).pressure_varies),
+      free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
+      multigrid_(model.scene().mesh, elements.layout(), rounded_rows<float>(free_), model.choice().threads),
+      linearized_at_(free_.size()),
+      p_(model.scene().mesh.cells.size()),
+      defect_(p_.size()),
+      pressure_force_(free_.size()),
+      weights_(multigrid_.elements().zero()),
+      residuals_(weights_),
+      b_(weights_) {}
+
+template <class Real>
+void MixedBody<Real>::linearize(double lambda) {
+  Rows<float> u = linear_ ? Rows<float>(free_.size()) : rounded_rows<float>(body_.state().u);
+  if (lambda == linearized_lambda_) {
+    if (!linearized_) update_multigrid();
+    Rows<float> change = u;
+    for (std::size_t row = 0; row < change.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) change[row][i] -= linearized_at_[row][i];
+    }
+    if (multigrid_.elements().largest_gradient(change) < hardly_changed) return;
+  }
+  linearized_at_ = std::move(u);
+  linearized_lambda_ = lambda;
+  update_multigrid();
+}
+
+template <class Real>
+void MixedBody<Real>::update_multigrid() {
+  multigrid_.update(linearized_at_, {linearized_lambda_, moduli_.mu, moduli_.hourglass});
+  linearized_ = true;
+}
+
+template <class Real>
+void MixedBody<Real>::weigh() {
+  const auto& diagonal = multigrid_.elements().relaxation();
+  for (std::size_t row = 0; row < diagonal.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) weights_.u[row][i] = std::sqrt(diagonal[row][i]);
+  }
+  for (std::size_t e = 0; e < p_.size(); ++e) {
+    weights_.p[cell(e)] = static_cast<float>(std::sqrt(moduli_.mu / volume(e)));
+  }
+}
+
+template <class Real>
+void MixedBody<Real>::evaluate() {
+  body_.evaluate_forces();
+  ++evaluations_;
+  residual_ = body_.residual();
+  compare();
+}
+
+template <class Real>
+void MixedBody<Real>::compare() {
+  elements_.replace_pressures(body_.state(), p_, moduli_.lambda, pressure_force_, defect_);
+  const Real *f = numbers_of(body_.free_forces()), *g = numbers_of(pressure_force_),
+             *free = numbers_of(free_);
+  const float* w = numbers_of(weights_.u);
+  float* r = numbers_of(residuals_.u);
+  for_each_block(4 * free_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+#pragma omp simd
+    for (std::size_t k = first; k < last; ++k) r[k] = w[k] * static_cast<float>(f[k] + free[k] * g[k]);
+  });
+  for_each_block(p_.size(), body_.threads(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t e = first; e < last; ++e) {
+      residuals_.p[cell(e)] = weights_.p[cell(e)] * static_cast<float>(defect_[e]);
+    }
+  });
+}
+
+template <class Real>
+void MixedBody<Real>::weigh(MixedVector& residuals) const {
+  for (std::size_t row = 0; row < residuals.u.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) residuals.u[row][i] *= weights_.u[row][i];
+  }
+  for (std::size_t c = 0; c < residuals.p.size(); ++c) residuals.p[c] *= weights_.p[c];
+}
+
+template <class Real>
+void MixedBody<Real>::correct(const MixedVector& weighted, MixedVector& step) {
+  // The range of single precision is small.
+  const double size = std::sqrt(dot(weighted, weighted, body_.threads()));
+  const auto scale = static_cast<float>(size > 0.0 ? -1.0 / size : 1.0);
+  const auto divide = [&](const float* r, const float* w, float* b, std::size_t n) {
+    for_each_block(n, body_.threads(), [=](std::size_t first, std::size_t last) {
+#pragma omp simd
+      for (std::size_t k = first; k < last; ++k) b[k] = w[k] > 0.0f ? scale * r[k] / w[k] : 0.0f;
+    });
+  };
+  divide(numbers_of(weighted.u), numbers_of(weights_.u), numbers_of(b_.u), 4 * b_.u.size());
+  divide(weighted.p.data(), weights_.p.data(), b_.p.data(), b_.p.size());
+  multigrid_.cycle(b_, step);
+  multiply(static_cast<float>(size), step, body_.threads());
+}
+
+template <class Real>
+void MixedBody<Real>::move(const MixedVector& step, double share) {
+  const auto factor = static_cast<Real>(share);
+  const float* s = numbers_of(step.u);
+  Real *u = numbers_of(body_.state().u), *increment = numbers_of(body_.state().increment);
+  for_each_block(4 * step.u.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+#pragma omp simd
+    for (std::size_t k = first; k < last; ++k) {
+      increment[k] = factor * static_cast<Real>(s[k]);
+      u[k] += increment[k];
+    }
+  });
+  for_each_block(p_.size(), body_.threads(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t e = first; e < last; ++e) p_[e] += factor * static_cast<Real>(step.p[cell(e)]);
+  });
+}
+
+template <class Real>
+void MixedBody<Real>::take_own_pressures() {
+  std::fill(p_.begin(), p_.end(), Real(0));
+  elements_.replace_pressures(body_.state(), p_, moduli_.lambda, pressure_force_, defect_);
+  for (std::size_t e = 0; e < p_.size(); ++e) {
+    p_[e] = static_cast<Real>(moduli_.lambda * static_cast<double>(defect_[e]) / volume(e));
+  }
+}
+
+template <class Real>
+void MixedBody<Real>::evaluate(const Multipliers* multipliers, Rows<Real>& f) {
+  body_.evaluate_forces();
+  ++evaluations_;
+  residual_ = body_.residual();
+  f = body_.free_forces();
+  if (multipliers == nullptr) return;
+  elements_.replace_pressures(body_.state(), multipliers->pressures, multipliers->given_up, pressure_force_,
+                              defect_);
+  for (std::size_t row = 0; row < f.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) f[row][i] += free_[row][i] * pressure_force_[row][i];
+  }
+}
+
+template <class Real>
+double MixedBody<Real>::potential(const Multipliers* multipliers) const {
+  const StrainEnergies energies = body_.energies();
+  double sum = energies.strain + energies.hourglass - body_.load_factor() * body_.load_path();
+  if (multipliers == nullptr) return sum;
+  for (std::size_t e = 0; e < p_.size(); ++e) {
+    const auto m = static_cast<double>(multipliers->pressures[e]);
+    const double change = static_cast<double>(defect_[e]) / volume(e) + m / multipliers->given_up;  // J - 1
+    sum += volume(e) * (m * change - 0.5 * multipliers->given_up * change * change);
+  }
+  return sum;
+}
+
+template <class Real>
+void MixedBody<Real>::take_pressures(const Multipliers& multipliers) {
+  for (std::size_t e = 0; e < p_.size(); ++e) {
+    const auto m = static_cast<double>(multipliers.pressures[e]);
+    const double change = static_cast<double>(defect_[e]) / volume(e) + m / multipliers.given_up;
+    p_[e] = static_cast<Real>(m + (moduli_.lambda - multipliers.given_up) * change);
+  }
+}
+
+template class MixedBody<double>;
+template class MixedBody<float>;
+
+}  // namespace sandglass

@@ -1,0 +1,141 @@
+#pragma once
+
+#include "multigrid/saddle_multigrid.hpp"
+#include "solve/body.hpp"
+
+namespace sandglass {
+
+/// A body whose pressures are unknowns of their own, one for each element, beside the displacements. With
+/// internal forces f_int, loads f, and J - 1 the mean volume change of an element of volume V, its residuals
+/// are
+///   R_u = f_int(u) - f + B^T (p - lambda (J - 1)),   R_p = V (J - 1 - p / lambda),
+/// B the derivative of V J. In equilibrium p is lambda (J - 1) and R_u the force of the method, whatever its
+/// law of the volume; but no step has to follow the narrow valley of nearly incompressible motions.
+template <class Real>
+class MixedBody {
+ public:
+  /// The undeformed body of the model; `linearize` must follow.
+  MixedBody(const Model& model, const InternalForce<Real>& elements);
+
+  /// The body; its forces are those of the last evaluation.
+  Body<Real>& body() { return body_; }
+  const Body<Real>& body() const { return body_; }
+
+  /// Pressures of the elements, Pa.
+  std::vector<Real>& pressures() { return p_; }
+  const std::vector<Real>& pressures() const { return p_; }
+
+  /// Whether the method's forces are linear in the displacements.
+  bool is_linear() const { return linear_; }
+
+  /// Whether the method resists volume changes otherwise than by one pressure for each element, which is all
+  /// that the pressures here can carry.
+  bool pressure_varies() const { return pressure_varies_; }
+
+  /// Adapts the multigrid method to the present configuration, unless that has hardly changed since the last
+  /// time; no element may be inverted.
+  void linearize() { linearize(moduli_.lambda); }
+
+  /// The same with another lambda, Pa.
+  void linearize(double lambda);
+
+  /// Sets the weights of the residuals, by which both have the unit of a root of energy, from the last
+  /// configuration linearized.
+  void weigh();
+
+  /// Evaluates forces and residuals.
+  void evaluate();
+
+  /// Evaluates residuals from the forces of the last evaluation.
+  void compare();
+
+  /// Weighted residuals of the last evaluation, root of J.
+  const MixedVector& residuals() const { return residuals_; }
+
+  /// Their norm.
+  double norm() const { return std::sqrt(dot(residuals_, residuals_, body_.threads())); }
+
+  /// Body::residual of the last evaluation.
+  double residual() const { return residual_; }
+
+  /// step = minus an approximate solution of the linear problem for weighted residuals.
+  void correct(const MixedVector& weighted, MixedVector& step);
+
+  /// Weights residuals in place.
+  void weigh(MixedVector& residuals) const;
+
+  /// Adds `share` times a step to both unknowns, m and Pa.
+  void move(const MixedVector& step, double share);
+
+  /// Sets the pressures to those that belong to the displacements, lambda (J - 1).
+  void take_own_pressures();
+
+  /// Instead of an element's own resistance to volume changes, lambda (J - 1), one that is lower by
+  /// `given_up`, and a constant pressure: the forces of an augmented Lagrangian.
+  struct Multipliers {
+    std::vector<Real> pressures;  ///< of elements, Pa
+    double given_up;              ///< Pa
+  };
+
+  /// Sets `f` to the forces (N) with multipliers, zero on constrained components; null: to the body's own.
+  void evaluate(const Multipliers* multipliers, Rows<Real>& f);
+
+  /// The energy (J), less the work of the loads, of which these forces are the derivative, at the last
+  /// evaluation.
+  double potential(const Multipliers* multipliers) const;
+
+  /// Sets the pressures to those of the last evaluation with multipliers.
+  void take_pressures(const Multipliers& multipliers);
+
+  SaddleMultigrid& multigrid() { return multigrid_; }
+  const SaddleMultigrid& multigrid() const { return multigrid_; }
+
+  const ModelModuli& moduli() const { return moduli_; }
+
+  /// 1, or 0 on constrained components and in spare rows.
+  const Rows<Real>& free() const { return free_; }
+
+  /// Evaluations of the forces since construction.
+  long evaluations() const { return evaluations_; }
+
+  /// The data that the next load level depends on; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("evaluations", evaluations_);
+    archive("linearized at", linearized_at_);
+    archive("linearized with lambda", linearized_lambda_);
+    linearized_ = false;
+    body_.keep(archive);
+  }
+
+ private:
+  double volume(std::size_t element) const {
+    return static_cast<double>(multigrid_.elements().tangents()[cell(element)].volume);
+  }
+  void update_multigrid();
+  std::size_t cell(std::size_t element) const { return multigrid_.elements().cells()[element]; }
+
+  const InternalForce<Real>& elements_;
+  Body<Real> body_;
+  ModelModuli moduli_;
+  bool linear_;
+  bool pressure_varies_;
+  Rows<Real> free_;
+  SaddleMultigrid multigrid_;
+  Rows<float> linearized_at_;       // m
+  double linearized_lambda_ = 0.0;  // Pa; zero before the first time
+  bool linearized_ = false;         // whether the multigrid method is that of these two
+  std::vector<Real> p_;
+  std::vector<Real> defect_;  // R_p
+  Rows<Real> pressure_force_;
+  MixedVector weights_;  // roots of m/N and of Pa/m^3
+  MixedVector residuals_;
+  MixedVector b_;  // scratch
+  double residual_ = 0.0;
+  long evaluations_ = 0;
+};
+
+extern template class MixedBody<double>;
+extern template class MixedBody<float>;
+
+}  // namespace sandglass
