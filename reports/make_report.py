@@ -16,6 +16,7 @@ if __name__ == "__main__":
 
 from common.command import exit_code
 from sandglass_report.evidence import read_evidence
+from sandglass_report.growth import growth_plate, read_growth
 from sandglass_report.verdicts import read_verdicts
 from sandglass_report.measured import read_measured
 from sandglass_report.page import Inputs, write_report
@@ -33,7 +34,8 @@ def make(options):
     found = read_measured(*files, options.curves, options.maps, options.kept_maps)
     evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
     pictures = tuple(sorted(options.pictures.glob("stability.*.png")))
-    inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures)
+    growth = growth_plate(read_growth(options.growth)) if options.growth.exists() else None
+    inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures, growth)
     size = write_report(inputs, options.output)
     seconds = time.monotonic() - start
     print(f"{options.output}: {size / 1e6:.1f} MB, made in {seconds:.0f} s")
@@ -61,6 +63,7 @@ def main(arguments=None):
     add("--maps", type=Path, default="build/stability", help="folder of sandglass stability --json")
     add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")
     add("--pictures", type=Path, default="reports/figures", help="folder of drawn failure maps")
+    add("--growth", type=Path, default="reports/figures/growth.json", help="of bench/growth.py")
     add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
     add(
         "--mutants",

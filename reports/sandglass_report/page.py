@@ -17,7 +17,17 @@ TEMPLATES = Path(__file__).parent / "templates"
 # A claim's name for a section -> the id of the section's heading.
 ANCHORS = {"chart": "chart-head"} | {
     name: name
-    for name in ("paper", "shapes", "bending", "maps", "kappa", "golden", "limits", "runs")
+    for name in (
+        "paper",
+        "shapes",
+        "bending",
+        "growth",
+        "maps",
+        "kappa",
+        "golden",
+        "limits",
+        "runs",
+    )
 }
 
 
@@ -31,6 +41,7 @@ class Inputs:
     measured: object  # Measured
     evidence: object  # Evidence
     pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not recomputed
+    growth: plates.Plate | None = None
 
 
 @dataclass(frozen=True)
@@ -62,6 +73,7 @@ def write_report(inputs, page):
             **_of_measured(inputs, palette),
             sections=sections,
             bending=bent,
+            growth=inputs.growth,
             evidence=inputs.evidence,
             anchors=ANCHORS,
         )
@@ -69,7 +81,8 @@ def write_report(inputs, page):
     folder = page.parent / "figures"
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        for plate in (*_static_plates(inputs, palette, sections), *bent):
+        grown = (inputs.growth,) if inputs.growth else ()
+        for plate in (*_static_plates(inputs, palette, sections), *bent, *grown):
             plates.save_plate(plate, folder)
     write_whole(page, html)
     return len(html.encode())

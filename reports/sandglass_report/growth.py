@@ -1,0 +1,71 @@
+"""How the cost of an answer grows with the mesh and as Poisson's ratio nears one half."""
+
+from common.errors import InputError
+from common.files import read_json
+from common.records import NUMBER, entries, entry
+from sandglass_report.plates import Panel, Plate
+
+COLOURS = {
+    "tl-mean-dilatation": "#2f6fb2",
+    "tl-perturbation": "#2a9d5c",
+    "FEniCSx": "#c8553d",
+    "CalculiX": "#8a6fb0",
+}
+LINES = {0.3: ":", 0.49: "-", 0.4999: "--"}
+
+
+def read_growth(path):
+    """The records of `bench/growth.py --json`. Raises InputError."""
+    records = []
+    for where, found in entries(path, read_json(path, "bench/growth.py --json"), "records"):
+        for key, kind in (
+            ("poisson_ratio", NUMBER),
+            ("elements", int),
+            ("name", str),
+            ("seconds", NUMBER),
+            ("steps", int),
+        ):
+            entry(where, found, key, kind)
+        if found["name"] not in COLOURS or found["poisson_ratio"] not in LINES:
+            raise InputError(f"{where}: is not of bench/growth.py")
+        records.append(found)
+    return records
+
+
+def growth_plate(records):
+    """A plate of seconds, and of steps, over the number of elements."""
+    lines = {}
+    for found in records:
+        lines.setdefault((found["name"], found["poisson_ratio"]), []).append(found)
+
+    def panel(key, title, words):
+        def draw(axes):
+            for (name, ratio), points in lines.items():
+                points = sorted(points, key=lambda point: point["elements"])
+                axes.plot(
+                    [point["elements"] for point in points],
+                    [point[key] for point in points],
+                    LINES[ratio],
+                    color=COLOURS[name],
+                    marker="o",
+                    ms=3,
+                    lw=1.2,
+                )
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.set_xlabel("elements")
+            axes.set_ylabel(words)
+
+        largest = max(records, key=lambda found: found["elements"])
+        alt = f"{title}: up to {largest['elements']} elements, {largest[key]:.3g} {words}"
+        return Panel(f"growth.{key}", title, alt, draw, 420, 320)
+
+    panels = (panel("seconds", "Seconds to rest", "s"), panel("steps", "Steps to rest", "steps"))
+    note = (
+        "A bent beam on ever finer meshes, one thread. Poisson's ratio: "
+        ".3 dotted, .49 solid, .4999 dashed. Steps are evaluations of the forces, each with a "
+        "multigrid cycle; of FEniCSx and CalculiX, Newton iterations, each with a factorisation."
+    )
+    names = dict.fromkeys(name for name, _ in lines)
+    legend = tuple((name, COLOURS[name], "o") for name in names)
+    return Plate("growth", "How the cost grows", panels, 2, note, legend)
