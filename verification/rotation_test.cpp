@@ -244,8 +244,14 @@ std::string refusal(const Case& description, const NodeSets& sets) {
 /// is that of the turn in many equal levels.
 TEST(Rotation, a_whole_turn_is_not_taken_for_none) {
   const auto energy = [](int levels) {
-    Scene scene = turned_block({"head", {0.0, 0.0, 1.0}, 2.0 * pi, {}, {}});
-    scene.description.relaxation.levels = levels;
+    Case description = plain_case(sample_law<NeoHookean>(0.45));
+    const Mesh mesh = box({0.1, 0.1, 1.0}, {2, 2, 16});
+    const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                        {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.99; })}};
+    description.displacements = {{"foot", {}}};
+    description.rotations = {{"head", {0.0, 0.0, 1.0}, 2.0 * pi, {}, {}}};
+    description.relaxation.levels = levels;
+    const Scene scene = make_scene(description, mesh, sets);
     Observer silent;
     const Relaxation found = relax(Model(scene, {"tl-mean-dilatation"}), silent);
     EXPECT_TRUE(found.converged);
