@@ -9,12 +9,13 @@ namespace sandglass {
 
 namespace {
 
-/// The stiffness of the springs at constrained components over the node's own: high enough for the grid's
-/// functions to be held, low enough not to spoil its smoother.
+/// The stiffness of the springs at constrained components over the node's own:
+/// high enough for the grid's functions to be held, low enough not to spoil its
+/// smoother.
 constexpr float spring = 10.0f;
 
-/// An element wider than this share of a box along an axis bends within the box: a sample at its centre alone
-/// would miss that stiffness.
+/// An element wider than this share of a box along an axis bends within the
+/// box: a sample at its centre alone would miss that stiffness.
 constexpr double wide = 0.6;
 
 Vector centre(const Mesh& mesh, const Hexahedron& cell) {
@@ -25,17 +26,8 @@ Vector centre(const Mesh& mesh, const Hexahedron& cell) {
   return sum;
 }
 
-bool is_wide(const Mesh& mesh, const Hexahedron& cell, const Vector& box) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    double least = INFINITY, most = -INFINITY;
-    for (const int n : cell) {
-      const double x = mesh.points[static_cast<std::size_t>(n)][i];
-      least = std::min(least, x);
-      most = std::max(most, x);
-    }
-    if (most - least > wide * box[i]) return true;
-  }
-  return false;
+bool is_wide(const Vector& extent, const Vector& box) {
+  return extent[0] > wide * box[0] || extent[1] > wide * box[1] || extent[2] > wide * box[2];
 }
 
 /// The gradients (1/m) of a box's functions, by corner.
@@ -90,7 +82,7 @@ void ElementTransfer::sample(const Mesh& mesh, std::size_t element) {
   const Grid::Location place = grid.locate(middle);
   boxes_[cell] = place.box;
   contents_[place.box].cells.push_back(cell);
-  if (!is_wide(mesh, mesh.cells[element], grid.size)) {
+  if (!is_wide(extent(mesh, mesh.cells[element]), grid.size)) {
     contents_[place.box].samples.push_back({cell, 1.0f, place.local});
     return;
   }

@@ -5,25 +5,30 @@
 
 namespace sandglass {
 
-Grid Grid::around(const Mesh& mesh) {
-  const auto [low, high] = bounding_box(mesh.points);
-  Vector extent{};  // of an element's bounding box
-  for (const auto& cell : mesh.cells) {
+Vector extent(const Mesh& mesh, const Hexahedron& cell) {
+  Vector low = mesh.points[static_cast<std::size_t>(cell[0])], high = low;
+  for (const int n : cell) {
+    const Vector& X = mesh.points[static_cast<std::size_t>(n)];
     for (std::size_t i = 0; i < 3; ++i) {
-      double least = INFINITY, most = -INFINITY;
-      for (const int n : cell) {
-        const double x = mesh.points[static_cast<std::size_t>(n)][i];
-        least = std::min(least, x);
-        most = std::max(most, x);
-      }
-      extent[i] += (most - least) / static_cast<double>(mesh.cells.size());
+      low[i] = std::min(low[i], X[i]);
+      high[i] = std::max(high[i], X[i]);
     }
   }
-  const double narrowest = *std::min_element(extent.begin(), extent.end());
+  return {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+}
+
+Grid Grid::around(const Mesh& mesh) {
+  const auto [low, high] = bounding_box(mesh.points);
+  Vector mean{};
+  for (const auto& cell : mesh.cells) {
+    const Vector own = extent(mesh, cell);
+    for (std::size_t i = 0; i < 3; ++i) mean[i] += own[i] / static_cast<double>(mesh.cells.size());
+  }
+  const double narrowest = *std::min_element(mean.begin(), mean.end());
   Grid grid;
   grid.low = low;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double width = std::max(extent[i], 2.0 * narrowest);
+    const double width = std::max(mean[i], 2.0 * narrowest);
     grid.boxes[i] = static_cast<std::size_t>(std::max(1.0, std::round((high[i] - low[i]) / width)));
     grid.size[i] = (high[i] - low[i]) / static_cast<double>(grid.boxes[i]);
   }

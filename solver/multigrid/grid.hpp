@@ -48,6 +48,9 @@ struct Grid {
   Location locate(const Vector& point) const;
 };
 
+/// The extent of an element's bounding box, m.
+Vector extent(const Mesh& mesh, const Hexahedron& cell);
+
 /// The functions of a box's corners at a place in it.
 std::array<float, 8> weights(const std::array<float, 3>& local);
 
