@@ -9,13 +9,12 @@ namespace sandglass {
 
 namespace {
 
-/// The stiffness of the springs at constrained components over the node's own:
-/// high enough for the grid's functions to be held, low enough not to spoil its
-/// smoother.
+/// The stiffness of the springs at constrained components over the node's own: high enough for the grid's
+/// functions to be held, low enough not to spoil its smoother.
 constexpr float spring = 10.0f;
 
-/// An element wider than this share of a box along an axis bends within the
-/// box: a sample at its centre alone would miss that stiffness.
+/// An element wider than this share of a box along an axis bends within the box: a sample at its centre alone
+/// would miss that stiffness.
 constexpr double wide = 0.6;
 
 Vector centre(const Mesh& mesh, const Hexahedron& cell) {
