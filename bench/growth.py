@@ -1,6 +1,6 @@
 """How the cost of an answer grows: seconds and steps to rest over mesh size and Poisson's ratio.
 
-Usage: /usr/bin/python3 bench/growth.py [--json FILE]
+Usage: /usr/bin/python3 bench/growth.py [--json FILE] [--most N] [--most-implicit N]
 A beam, clamped at one end and moved at the other, on ever finer meshes; Sandglass beside FEniCSx
 and CalculiX, one thread each. Needs the solver's binary: build/release/sandglass, or the one given by
 SANDGLASS_BINARY. Programs that are not installed are named and skipped.
@@ -67,7 +67,9 @@ def time_sandglass(job):
     for _ in range(ROUNDS):
         for method in METHODS:
             command = (binary(), "run", job.path, "-m", method, "--threads", "1")
-            found[method].append(rest_records.read_run("beam", method, output_of(*command)))
+            found[method].append(
+                rest_records.read_run("beam", method, output_of(*command))
+            )
     for method, runs in found.items():
         seconds = statistics.median(run["seconds_to_rest"] for run in runs)
         yield method, seconds, runs[0]["steps"]
@@ -84,52 +86,53 @@ def time_implicit(job):
         yield record["program"], record["seconds_to_rest"], record["iterations"]
 
 
+def time_beam(width, ratio, options, versions):
+    """Records of one mesh and Poisson's ratio, as far as the programs got, and an exit code."""
+    elements, found = 5 * width**3, []
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "beam.toml"
+        text = BEAM.format(width=width, length=5 * width, ratio=ratio)
+        path.write_text(text, encoding="utf-8")
+        given = SimpleNamespace(case=path, threads=1, load_steps=[1], elements=["C3D8"])
+        job = time_to_rest.Job(given, folder)
+        try:
+            found += time_sandglass(job)
+            if elements <= options.most_implicit:
+                found += time_implicit(job)
+        except ComputationError as error:
+            job.fail(error)
+        versions |= job.versions
+    keys = "poisson_ratio", "elements", "name", "seconds", "steps"
+    return [
+        dict(zip(keys, (ratio, elements, *of), strict=True)) for of in found
+    ], job.exit_code
+
+
 def measure(options):
     """Measure, print, store. Returns the exit code. Raises InputError."""
+    smallest = 5 * WIDTHS[0] ** 3
+    if options.most < smallest:
+        raise InputError(
+            f"--most: {options.most} is less than {smallest}, the smallest mesh"
+        )
     if options.json:
         require_writable(options.json)
-    place, records, code = time_to_rest.machine(1), [], 0
+    place, records, worst = time_to_rest.machine(1), [], 0
+    versions = {"sandglass": time_to_rest.version_of(binary())}
     for ratio in RATIOS:
         for width in WIDTHS:
-            elements = 5 * width**3
-            if elements > options.most:
+            if 5 * width**3 > options.most:
                 continue
-            with tempfile.TemporaryDirectory() as folder:
-                path = Path(folder) / "beam.toml"
-                path.write_text(
-                    BEAM.format(width=width, length=5 * width, ratio=ratio), encoding="utf-8"
-                )
-                job = time_to_rest.Job(
-                    SimpleNamespace(case=path, threads=1, load_steps=[1], elements=["C3D8"]), folder
-                )
-                found = []
-                try:
-                    found += time_sandglass(job)
-                    if elements <= options.most_implicit:
-                        found += time_implicit(job)
-                except ComputationError as error:
-                    job.fail(error)
-                code = max(code, job.exit_code)
-            for name, seconds, steps in found:
-                print(
-                    f"{ratio:<7} {elements:>7} {name:<20} {seconds:9.3f} s {steps:5} steps",
-                    flush=True,
-                )
-                records.append(
-                    {
-                        "poisson_ratio": ratio,
-                        "elements": elements,
-                        "name": name,
-                        "seconds": seconds,
-                        "steps": steps,
-                    }
-                )
+            found, code = time_beam(width, ratio, options, versions)
+            worst = max(worst, code)
+            records += found
+            for of in found:
+                words = "{poisson_ratio:<7} {elements:>7} {name:<20} {seconds:9.3f} s {steps:5} steps"
+                print(words.format(**of), flush=True)
     place["load_average_after"] = os.getloadavg()[0]
     if options.json:
-        write_json(options.json, {**place, "records": records})
-    if not records:
-        raise InputError(f"--most: must be at least {5 * WIDTHS[0] ** 3}, the smallest mesh")
-    return code
+        write_json(options.json, {**place, "versions": versions, "records": records})
+    return worst
 
 
 def main(arguments=None):

@@ -196,7 +196,7 @@ def time_sandglass(job):
     InputError.
     """
     solver = binary()
-    job.versions["sandglass"] = output_of(solver, "--version").split(maxsplit=1)[-1].strip()
+    job.versions["sandglass"] = version_of(solver)
     records = _records_of_bench(job, solver)
     for method in METHODS:
         command = [solver, "run", job.path, "-m", method]
@@ -256,6 +256,11 @@ def compare(job):
     for timed, displacement in job.displacements:
         errors = relative_errors(displacement, golden, job.mesh.largest_imposed())
         timed["error_to_golden_max"], timed["error_to_golden_rms"] = map(float, errors)
+
+
+def version_of(solver):
+    """The version that the solver's binary reports."""
+    return output_of(solver, "--version").split(maxsplit=1)[-1].strip()
 
 
 def machine(threads):

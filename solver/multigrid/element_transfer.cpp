@@ -107,7 +107,7 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
   const auto mu = static_cast<float>(elements_.moduli().mu),
              lambda = static_cast<float>(elements_.moduli().lambda);
   BoxProblem problem{};
-  std::array<float, 24 * 24> T{};  // integral of the products of gradients
+  std::array<float, 576> T{};  // integral of the products of gradients
   for (const auto& [cell, share, local] : contents.samples) {
     const ElementTangent& tangent = elements_.tangents()[cell];
     const float volume = share * tangent.volume;

@@ -8,7 +8,7 @@ namespace sandglass {
 
 /// The saddle-point problem of one box, on the components of its eight corners.
 struct BoxProblem {
-  std::array<float, 24 * 24> A{};
+  std::array<float, 576> A{};
   std::array<float, 24> B{};
   float C = 0.0f;  ///< zero without elements
 };
@@ -47,7 +47,7 @@ class GridLevel final : public SaddleLevel {
   float eigenvalue_bound() const;
 
   /// Columns of the 3 x 3 blocks of a node's 27 neighbours.
-  using Stencil = std::array<Row<float>, 27 * 3>;
+  using Stencil = std::array<Row<float>, 81>;
 
   Grid grid_;
   std::vector<BoxProblem> problems_;

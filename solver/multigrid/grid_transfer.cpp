@@ -50,7 +50,7 @@ BoxProblem GridTransfer::problem_of(const Indices& box) const {
     const BoxProblem& fine = fine_.problems()[part];
     if (!(fine.C > 0.0f)) return;
     const auto& w = weights_[octant];
-    std::array<float, 24 * 24> right{};  // A times the interpolation
+    std::array<float, 576> right{};  // A times the interpolation
     for (std::size_t m = 0; m < 24; ++m) {
       for (std::size_t d = 0; d < 8; ++d) {
         for (std::size_t b = 0; b < 8; ++b) {

@@ -1,0 +1,47 @@
+"""How the cost grows: what is stored, one step count for all rounds, wrong input."""
+
+import json
+
+import pytest
+
+import growth
+
+
+def _measure(tmp_path, *options):
+    """Exit code and stored document (None without one) of the command line."""
+    output = tmp_path / "growth.json"
+    code = growth.main(["--json", str(output), *options])
+    return code, json.loads(output.read_text()) if output.exists() else None
+
+
+def test_every_method_is_timed_at_every_ratio(tmp_path, capsys):
+    code, document = _measure(tmp_path, "--most", "400", "--most-implicit", "0")
+    assert code == 0
+    assert document["processor"] and document["versions"]["sandglass"]
+    records = document["records"]
+    found = [(record["poisson_ratio"], record["name"]) for record in records]
+    assert found == [(ratio, method) for ratio in growth.RATIOS for method in growth.METHODS]
+    assert all(record["elements"] == 320 for record in records)
+    assert all(record["seconds"] > 0 and record["steps"] > 0 for record in records)
+    assert capsys.readouterr().out.count(" steps\n") == len(records)
+
+
+def test_other_programs_stand_beside_it(tmp_path, monkeypatch):
+    pytest.importorskip("dolfinx")
+    monkeypatch.setattr(growth, "RATIOS", (0.3,))
+    code, document = _measure(tmp_path, "--most", "400")
+    assert code == 0
+    iterations = {record["name"]: record["steps"] for record in document["records"]}
+    assert 2 < iterations["FEniCSx"] < 20  # Newton's method on a mild load
+
+
+def test_less_than_the_smallest_mesh_is_wrong_input(tmp_path, capsys):
+    code, document = _measure(tmp_path, "--most", "319")
+    assert (code, document) == (2, None)
+    assert "--most: 319 is less than 320" in capsys.readouterr().err
+
+
+def test_a_folder_that_is_not_there_is_noticed_before_anything_is_measured(tmp_path, capsys):
+    assert growth.main(["--json", str(tmp_path / "none" / "growth.json")]) == 2
+    streams = capsys.readouterr()
+    assert "none" in streams.err and streams.out == ""

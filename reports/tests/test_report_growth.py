@@ -1,0 +1,69 @@
+"""How the cost grows: what the plate draws; broken files are rejected."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from common.errors import InputError
+from common.program import ROOT
+from sandglass_report.growth import growth_plate, read_growth
+
+SCRIPT = ROOT / "reports" / "make_growth.py"
+
+
+def record(elements, seconds, **changed):
+    found = {"poisson_ratio": 0.49, "elements": elements, "name": "FEniCSx", "seconds": seconds}
+    return found | {"steps": 7} | changed
+
+
+def write(tmp_path, *records):
+    path = tmp_path / "growth.json"
+    path.write_text(json.dumps({"records": records}))
+    return path
+
+
+class Axes:
+    """Notes what is plotted."""
+
+    def __init__(self):
+        self.lines = []
+
+    def plot(self, x, y, *words, **options):
+        self.lines.append((x, y))
+
+    def __getattr__(self, name):
+        return lambda *words: None
+
+
+def test_a_line_per_program_and_ratio_in_the_order_of_the_meshes(tmp_path):
+    records = record(2560, 4.0), record(320, 0.5), record(320, 0.25, poisson_ratio=0.3)
+    plate = growth_plate(read_growth(write(tmp_path, *records)))
+    seconds, steps = plate.panels
+    for panel, expected in (
+        (seconds, [([320, 2560], [0.5, 4.0]), ([320], [0.25])]),
+        (steps, [([320, 2560], [7, 7]), ([320], [7])]),
+    ):
+        axes = Axes()
+        panel.draw(axes)
+        assert axes.lines == expected
+    assert "2560 elements, 4 s" in seconds.alt
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [{"name": "other"}, {"poisson_ratio": 0.2}, {"seconds": "1"}, {"steps": None}],
+    ids=lambda changed: next(iter(changed)),
+)
+def test_a_broken_file_is_rejected(tmp_path, broken):
+    with pytest.raises(InputError, match="growth.json"):
+        read_growth(write(tmp_path, record(320, 1.0) | broken))
+
+
+def test_the_script_draws_the_plate(tmp_path):
+    command = [sys.executable, str(SCRIPT), str(write(tmp_path, record(320, 1.0)))]
+    subprocess.run([*command, "-o", str(tmp_path)], check=True)
+    assert "How the cost grows" in (tmp_path / "growth.svg").read_text()
+    missing = [*command[:2], str(tmp_path / "none.json"), "-o", str(tmp_path)]
+    assert subprocess.run(missing, capture_output=True).returncode == 2
