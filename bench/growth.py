@@ -67,9 +67,7 @@ def time_sandglass(job):
     for _ in range(ROUNDS):
         for method in METHODS:
             command = (binary(), "run", job.path, "-m", method, "--threads", "1")
-            found[method].append(
-                rest_records.read_run("beam", method, output_of(*command))
-            )
+            found[method].append(rest_records.read_run("beam", method, output_of(*command)))
     for method, runs in found.items():
         seconds = statistics.median(run["seconds_to_rest"] for run in runs)
         yield method, seconds, runs[0]["steps"]
@@ -103,18 +101,14 @@ def time_beam(width, ratio, options, versions):
             job.fail(error)
         versions |= job.versions
     keys = "poisson_ratio", "elements", "name", "seconds", "steps"
-    return [
-        dict(zip(keys, (ratio, elements, *of), strict=True)) for of in found
-    ], job.exit_code
+    return [dict(zip(keys, (ratio, elements, *of), strict=True)) for of in found], job.exit_code
 
 
 def measure(options):
     """Measure, print, store. Returns the exit code. Raises InputError."""
     smallest = 5 * WIDTHS[0] ** 3
     if options.most < smallest:
-        raise InputError(
-            f"--most: {options.most} is less than {smallest}, the smallest mesh"
-        )
+        raise InputError(f"--most: {options.most} is less than {smallest}, the smallest mesh")
     if options.json:
         require_writable(options.json)
     place, records, worst = time_to_rest.machine(1), [], 0
@@ -127,7 +121,9 @@ def measure(options):
             worst = max(worst, code)
             records += found
             for of in found:
-                words = "{poisson_ratio:<7} {elements:>7} {name:<20} {seconds:9.3f} s {steps:5} steps"
+                words = (
+                    "{poisson_ratio:<7} {elements:>7} {name:<20} {seconds:9.3f} s {steps:5} steps"
+                )
                 print(words.format(**of), flush=True)
     place["load_average_after"] = os.getloadavg()[0]
     if options.json:
