@@ -86,6 +86,9 @@ void add_mesh_command(CLI::App& app) {
                scene.mesh.points.size(), scene.mesh.cells.size(), quality.smallest);
     print_quality(quality);
     for (const auto& [name, nodes] : scene.sets) fmt::print("  set {}: {} nodes\n", name, nodes.size());
+    for (const auto& [name, elements] : scene.element_sets) {
+      fmt::print("  element set {}: {} elements\n", name, elements.size());
+    }
   });
 }
 

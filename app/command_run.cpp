@@ -87,8 +87,8 @@ std::string kappa_text(const Model& model) {
   const auto& choice = model.choice();
   const MethodEntry& method = method_named(choice.method);
   if (!method.takes_kappa) return "";
-  const auto automatic =
-      method.auto_kappa(elastic_law(kernel_law(model.scene().description.law)), choice.kappa_modulus);
+  const auto automatic = method.auto_kappa(
+      elastic_law(kernel_law(model.scene().description.materials.front().law)), choice.kappa_modulus);
   const double value = choice.kappa.value_or(automatic.value_or(0.0));
   return fmt::format("{:.6g}{}{}", value, choice.kappa ? "" : " (auto)",
                      choice.kappa_modulus == KappaModulus::shear ? " of the shear modulus" : "");

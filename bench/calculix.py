@@ -37,17 +37,27 @@ class Solution:
     version: str
 
 
-def deck(title, mesh, law, material, element="C3D8", tolerance=None, explicit=None, share=1.0):
+def material_of(case):
+    """The only Material of a Case of reference/. Raises InputError if CalculiX cannot have it."""
+    if len(case.materials) > 1:
+        raise InputError(f"{case.name}: has several materials; decks here have one")
+    if case.materials[0].law not in calculix_deck.LAWS:
+        raise InputError(f"{case.name}: CalculiX has no law {case.materials[0].law!r}")
+    return case.materials[0]
+
+
+def deck(title, mesh, material, element="C3D8", tolerance=None, explicit=None, share=1.0):
     """The input deck of a case, as text.
 
-    title: one line. mesh: HexMesh of reference/. law: a name in LAWS. material: dict of its
-    parameters (SI). element, tolerance, explicit: as for calculix_deck.deck. share: the share of
-    the displacements to impose. Raises InputError for a law that ccx lacks.
+    title: one line. mesh: HexMesh and material: Material of reference/. element, tolerance,
+    explicit: as for calculix_deck.deck. share: the share of the displacements to impose. Raises
+    InputError for a law that ccx lacks.
     """
     prescribed, values = mesh.imposed(share)
     plain = HexMesh(mesh.points, mesh.cells, {})
     options = {"element": element, "tolerance": tolerance, "explicit": explicit}
-    return calculix_deck.deck(title, plain, law, material, prescribed, values, **options)
+    law, parameters = material.law, material.parameters
+    return calculix_deck.deck(title, plain, law, parameters, prescribed, values, **options)
 
 
 def read_progress(path):

@@ -2,7 +2,7 @@
 
 Usage: /usr/bin/python3 bench/growth.py [--json FILE] [--most N] [--most-implicit N]
 A beam, clamped at one end and moved at the other, on ever finer meshes; Sandglass beside FEniCSx
-and CalculiX, one thread each. Needs the solver's binary: build/release/sandglass, or the one given by
+and CalculiX, one thread each. Needs the solver: build/release/sandglass, or the one given by
 SANDGLASS_BINARY. Programs that are not installed are named and skipped.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """

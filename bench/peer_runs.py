@@ -157,7 +157,8 @@ class Motion:
         """CalculiX's deck."""
         case, mesh = self.bench.case, self.bench.mesh
         options = {"explicit": self.explicit(longer), "share": self.share}
-        return calculix.deck(case.name, mesh, case.law, case.material, element, **options)
+        material = calculix.material_of(case)
+        return calculix.deck(case.name, mesh, material, element, **options)
 
     def write_case(self, longer, time_step=None):
         """Writes the motion as a case of Sandglass; returns its path. time_step: 0: default."""

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import calculix
+from case_file import Material
 from common.errors import ComputationError, InputError
 from exchange import frd_file
 from hexahedra import Condition, HexMesh
@@ -49,7 +50,7 @@ def test_conditions_of_a_mesh_come_into_the_deck():
     edge = Condition((CORNERS[:, 0] == 0) & (CORNERS[:, 2] == 1), (2,), np.full((8, 3), -0.125))
     held = brick(("x0", (0,), (0.0, 9.0, 9.0)))
     mesh = HexMesh(held.points, held.cells, held.conditions + (edge,))
-    text = calculix.deck("one", mesh, "neo-hookean", MATERIAL, "C3D8R")
+    text = calculix.deck("one", mesh, Material("neo-hookean", MATERIAL), "C3D8R")
     imposed = text[text.index("*BOUNDARY") : text.index("*NODE FILE")].splitlines()[1:]
     held = [f"{node}, 1, 1, 0.0" for node in (1, 4, 5, 8)]
     assert sorted(imposed) == sorted([*held, "5, 3, 3, -0.125", "8, 3, 3, -0.125"])
@@ -58,7 +59,7 @@ def test_conditions_of_a_mesh_come_into_the_deck():
 
 def test_deck_of_a_law_that_ccx_lacks():
     with pytest.raises(InputError, match="'glass'.*known: neo-hookean"):
-        calculix.deck("t", brick(), "glass", MATERIAL)
+        calculix.deck("t", brick(), Material("glass", MATERIAL))
 
 
 def test_damaged_result_file(tmp_path):
@@ -141,7 +142,7 @@ def test_ccx_stretches_a_brick_as_the_energy_says(tmp_path, element):
         ("z0", (2,), (0, 0, 0)),
         ("z1", (2,), (0, 0, 0.25)),
     )
-    text = calculix.deck("tension", mesh, "neo-hookean", MATERIAL, element, 1e-8)
+    text = calculix.deck("tension", mesh, Material("neo-hookean", MATERIAL), element, 1e-8)
     found = calculix.solve(text, 8, tmp_path)
     lateral = _lateral_stretch(1.25)
     exact = CORNERS * [lateral - 1, lateral - 1, 0.25]

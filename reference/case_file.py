@@ -43,12 +43,19 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Material:
+    """A material: a name in LAWS, and the law's parameters (SI units), directions as tuples."""
+
+    law: str
+    parameters: dict
+
+
+@dataclass(frozen=True)
 class Case:
-    """A case: name, law, parameters of the law (SI units), imposed motions and forces."""
+    """A case: name, materials in the order of the file, imposed motions and forces."""
 
     name: str
-    law: str
-    material: dict
+    materials: tuple
     displacements: tuple
     forces: tuple = ()
     rotations: tuple = ()
@@ -87,16 +94,6 @@ def read_case(path, name=None):
     Returns a Case. Raises InputError naming file, key, value, rule and what is allowed.
     """
     name, tables = _chosen(path, read_tables(path), name)
-    where, table = f"{path}: material", entry(path, tables, "material", dict)
-    law = entry(where, table, "law", str)
-    if law not in LAWS:
-        raise InputError(f"{where}.law = {law!r} is not known; {suggestion(law, LAWS)}")
-    _check_keys(where, table, ("law", "density", *parameters(law)))
-    material = {
-        key: _material_number(where, table, key)
-        for key, required in parameters(law).items()
-        if required or key in table
-    }
 
     def read_all(key, read):
         return tuple(read(*one) for one in (entries(path, tables, key) if key in tables else ()))
@@ -108,10 +105,13 @@ def read_case(path, name=None):
         raise InputError(
             f"{path}: has no [[displacement]] or [[rotation]]; at least one table is required"
         )
+    if "materials" in tables:
+        materials = read_all("materials", _material)
+    else:
+        materials = (_material(f"{path}: material", entry(path, tables, "material", dict)),)
     return Case(
         name=name,
-        law=law,
-        material=material,
+        materials=materials,
         displacements=displacements,
         forces=read_all("force", _force),
         rotations=rotations,
@@ -128,6 +128,20 @@ def _chosen(path, cases, name):
     if name not in cases:
         raise InputError(f"{path}: has no case {name!r}; {suggestion(name, cases)}")
     return name, cases[name]
+
+
+def _material(where, table):
+    """A checked [material] table, or one of [[materials]], as a Material."""
+    law = entry(where, table, "law", str)
+    if law not in LAWS:
+        raise InputError(f"{where}.law = {law!r} is not known; {suggestion(law, LAWS)}")
+    _check_keys(where, table, ("law", "density", "elements", *parameters(law)))
+    numbers = {
+        key: _material_number(where, table, key)
+        for key, required in parameters(law).items()
+        if required or key in table
+    }
+    return Material(law, numbers)
 
 
 def _material_number(where, table, key):

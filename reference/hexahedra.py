@@ -72,13 +72,15 @@ class HexMesh:
     """Trilinear hexahedra, the displacements imposed on their nodes, the tractions on faces.
 
     points: (n, 3) undeformed coordinates, m. cells: (m, 8) node numbers in VTK order.
-    conditions: tuple of Condition. tractions: tuple of Traction.
+    conditions: tuple of Condition. tractions: tuple of Traction. materials: (m,) the number of
+    each element's material, or None if there is only one.
     """
 
     points: np.ndarray
     cells: np.ndarray
     conditions: tuple
     tractions: tuple = ()
+    materials: np.ndarray | None = None
 
     def imposed(self, load=1.0):
         """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""
@@ -203,4 +205,5 @@ def refine(mesh):
     )
     tractions = tuple(dataclasses.replace(t, nodes=extend(t.nodes, np.all)) for t in mesh.tractions)
     cells = np.stack(children, axis=1).reshape(-1, 8)
-    return HexMesh(extend(mesh.points, np.mean), cells, conditions, tractions)
+    materials = None if mesh.materials is None else np.repeat(mesh.materials, 8)
+    return HexMesh(extend(mesh.points, np.mean), cells, conditions, tractions, materials)

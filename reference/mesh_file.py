@@ -15,7 +15,10 @@ from hexahedra import Condition, HexMesh, traction, turn_about
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, and where it came from."""
+    """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, where it came from.
+
+    materials: (m,) the number of each element's material; None without several.
+    """
 
     points: np.ndarray
     cells: np.ndarray
@@ -23,6 +26,7 @@ class MeshFile:
     case: str
     case_hash: str
     mesh_hash: str
+    materials: np.ndarray | None = None
 
 
 def make_mesh(case_path, output, name=None):
@@ -51,6 +55,9 @@ def read_mesh(path):
                 name: _dataset(path, file, f"/mesh/sets/{name}", np.int64, None)
                 for name in file.get("/mesh/sets", {})
             }
+            materials = None
+            if "/mesh/materials" in file:
+                materials = _dataset(path, file, "/mesh/materials", np.int64, None)
             attributes = {}
             for name in ("case", "case_hash", "mesh_hash"):
                 if name not in file.attrs:
@@ -66,7 +73,12 @@ def read_mesh(path):
                 f"{path}: /mesh/{name}: node numbers {nodes.min()}..{nodes.max()} must be in "
                 f"0..{len(points) - 1}"
             )
-    return MeshFile(points=points, cells=cells, sets=sets, **attributes)
+    if materials is not None and len(materials) != len(cells):
+        raise InputError(
+            f"{path}: /mesh/materials has {len(materials)} numbers; it must have one for each of "
+            f"the {len(cells)} elements"
+        )
+    return MeshFile(points=points, cells=cells, sets=sets, materials=materials, **attributes)
 
 
 def load_case_mesh(case, mesh_path):
@@ -82,7 +94,14 @@ def load_case_mesh(case, mesh_path):
             f"{mesh_path}: attribute case = {file.case!r} must be {case.name!r}: the mesh is "
             f"that of another case (sandglass mesh {case.name} -o FILE)"
         )
-    mesh = HexMesh(file.points, file.cells, ())
+    if len(case.materials) > 1 and (
+        file.materials is None or file.materials.max() >= len(case.materials)
+    ):
+        raise InputError(
+            f"{mesh_path}: /mesh/materials must have a number below {len(case.materials)} for each "
+            "element: the case has so many materials"
+        )
+    mesh = HexMesh(file.points, file.cells, (), materials=file.materials)
     for entry in case.displacements:
         nodes = _mask(file, _members(mesh_path, file, "displacement", entry.set_name))
         condition = Condition(nodes, entry.components, np.tile(entry.value, (len(nodes), 1)))

@@ -45,14 +45,14 @@ TRUTH = ElementPair("Q2-P1", 2, "DPC", 1, 4)
 class MixedProblem:
     """Equilibrium of a HexMesh: residual and tangent in the displacement's unknowns.
 
-    mesh: HexMesh. pair: ElementPair. law: a name in LAWS. material: dict of its parameters (SI),
-    directions as tuples.
+    mesh: HexMesh. pair: ElementPair. materials: list of Material, of which the mesh's elements
+    have the numbers.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
     dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
     (the other dofs), load (the current factor of the tractions, 0 to 1).
     """
 
-    def __init__(self, mesh, pair, law, material):
+    def __init__(self, mesh, pair, materials):
         vertex = ufl.VectorElement("Lagrange", "hexahedron", 1)
         lexicographic = mesh.cells[:, LEXICOGRAPHIC]
         domain = dolfinx.mesh.create_mesh(
@@ -63,8 +63,14 @@ class MixedProblem:
         self.displacement = fem.Function(fem.FunctionSpace(domain, displacements))
         self.pressure = fem.Function(fem.FunctionSpace(domain, pressures))
         # Constants rather than literals, so that one compiled form serves every case.
-        constants = {name: fem.Constant(domain, value) for name, value in material.items()}
-        self._forms = _compile_forms(self.displacement, self.pressure, pair, law, constants)
+        laws = [
+            partial(LAWS[m.law], **{k: fem.Constant(domain, v) for k, v in m.parameters.items()})
+            for m in materials
+        ]
+        of_cell = None
+        if len(laws) > 1:
+            of_cell = mesh.materials[np.asarray(domain.topology.original_cell_index)]
+        self._forms = _compile_forms(self.displacement, self.pressure, pair, laws, of_cell)
         self._matrices = {
             name: fem.petsc.create_matrix(form) for name, form in self._forms["matrices"].items()
         }
@@ -168,14 +174,24 @@ class MixedProblem:
         return fem.assemble_vector(self._forms["vectors"][name]).array
 
 
-def _compile_forms(u, p, pair, law, material):
-    """First and second derivatives of the energy with respect to displacement and pressure."""
+def _compile_forms(u, p, pair, laws, of_cell):
+    """First and second derivatives of the energy with respect to displacement and pressure.
+
+    laws: list of functions (F, p) -> energy density. of_cell: the number of the law of each cell,
+    if there are several.
+    """
     degree = 2 * pair.gauss_points - 1
     points, _ = basix.make_quadrature(basix.CellType.hexahedron, degree)
     assert len(points) == pair.gauss_points**3, "FEniCSx chose another Gauss rule"
     measure = ufl.dx(metadata={"quadrature_rule": "default", "quadrature_degree": degree})
+    parts = [measure]
+    if of_cell is not None:
+        cells = np.arange(len(of_cell), dtype=np.int32)
+        domain = u.function_space.mesh
+        tags = dolfinx.mesh.meshtags(domain, 3, cells, of_cell.astype(np.int32))
+        parts = [measure(number, subdomain_data=tags) for number in range(len(laws))]
     F = ufl.Identity(3) + ufl.grad(u)
-    energy = LAWS[law](F, p, **material) * measure
+    energy = sum(law(F, p) * part for law, part in zip(laws, parts, strict=True))
     v, du = ufl.TestFunction(u.function_space), ufl.TrialFunction(u.function_space)
     q, dp = ufl.TestFunction(p.function_space), ufl.TrialFunction(p.function_space)
     by_u, by_p = ufl.derivative(energy, u, v), ufl.derivative(energy, p, q)

@@ -52,7 +52,7 @@ def solve_case(kind, case, mesh, refinements, load_steps, pair=None):
     displacements, coarse = [], None
     for level in range(refinements + 1):
         part = refine(part) if level else part
-        problem = MixedProblem(part, pair or PAIRS[kind], case.law, case.material)
+        problem = MixedProblem(part, pair or PAIRS[kind], case.materials)
         if coarse:
             problem.start_from(coarse)
         try:
@@ -93,7 +93,7 @@ def run(options):
         "element": pair.name,
         "refinements": refinements,
         "quadrature": pair.quadrature,
-        "law": case.law,
+        "law": ", ".join(material.law for material in case.materials),
         "mirror_planes": mirrors,
         "boundary_rule": BOUNDARY_RULE,
         "largest_imposed": unit,

@@ -76,16 +76,20 @@ def _half(mesh, axis):
                 return None
     if not all(_has_mirror(t, mesh, axis, side, image) for t in mesh.tractions):
         return None
+    if mesh.materials is not None and not _same_materials(mesh, image):
+        return None
     kept = np.flatnonzero(side >= 0)
     number = np.full(len(side), -1)
     number[kept] = np.arange(len(kept))
-    cells = mesh.cells[(side[mesh.cells] >= 0).all(axis=1)]
+    kept_cells = (side[mesh.cells] >= 0).all(axis=1)
+    cells = mesh.cells[kept_cells]
+    materials = None if mesh.materials is None else mesh.materials[kept_cells]
     conditions = [Condition(c.nodes[kept], c.components, c.values[kept]) for c in mesh.conditions]
     conditions.append(Condition(side[kept] == 0, (axis,), np.zeros((len(kept), 3))))
     mirrored = side < 0
     source = number[np.where(mirrored, image, np.arange(len(side)))]
     tractions = tuple(replace(t, nodes=t.nodes[kept]) for t in mesh.tractions)
-    half = HexMesh(mesh.points[kept], number[cells], tuple(conditions), tractions)
+    half = HexMesh(mesh.points[kept], number[cells], tuple(conditions), tractions, materials)
     return Half(axis, half, source, mirrored)
 
 
@@ -102,6 +106,13 @@ def _has_mirror(traction, mesh, axis, side, image):
             return False
     faces = mesh.cells[:, FACES]  # (m, 6, 4)
     return not (traction.nodes[faces] & (side[faces] == 0)).all(axis=2).any()
+
+
+def _same_materials(mesh, image):
+    """Whether every cell of a HexMesh has the material of its mirror image."""
+    own, mirrored = np.sort(mesh.cells, axis=1), np.sort(image[mesh.cells], axis=1)
+    order, mirrored_order = np.lexsort(own.T), np.lexsort(mirrored.T)
+    return np.array_equal(mesh.materials[order], mesh.materials[mirrored_order])
 
 
 def _as_sets(cells):

@@ -390,7 +390,7 @@ TEST(Adaptive, wrong_input_is_refused) {
                          "accuracy"));
   }
   Scene relaxing = scene;
-  relaxing.description.law = sample_law<Viscoelastic<NeoHookean>>(0.45);
+  relaxing.materials.list.front().law = sample_law<Viscoelastic<NeoHookean>>(0.45);
   EXPECT_TRUE(contains(input_error([&] { Model(relaxing, {"tl-adaptive"}); }), "viscoelastic"));
   const Model model(scene, {"tl-adaptive"});
   State<double> state = elements_of(model).undeformed();

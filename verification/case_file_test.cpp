@@ -61,9 +61,9 @@ TEST(CaseFile, good_case_is_read_as_written) {
   EXPECT_EQ(c.name, "good");
   EXPECT_TRUE(c.quasi_static);
   EXPECT_EQ(scene.mesh.cells.size(), 6U);
-  EXPECT_EQ(std::get<NeoHookean>(c.law).young_modulus, 3000.0);
-  EXPECT_EQ(std::get<NeoHookean>(c.law).poisson_ratio, 0.49);
-  EXPECT_EQ(c.density, 1000.0);
+  EXPECT_EQ(std::get<NeoHookean>(c.materials.front().law).young_modulus, 3000.0);
+  EXPECT_EQ(std::get<NeoHookean>(c.materials.front().law).poisson_ratio, 0.49);
+  EXPECT_EQ(c.materials.front().density, 1000.0);
   EXPECT_EQ(c.relaxation.tolerance, 1e-7);
   const Comparison comparison = read_comparison(scene);
   EXPECT_EQ(comparison.kappas, (std::vector<double>{0.01, 0.02}));

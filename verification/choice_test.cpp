@@ -183,7 +183,7 @@ TEST(Choose, tells_what_real_time_allows) {
   Case description = cantilever(0.1);
   const Demand demand{.tolerance = 0.5, .real_time = true, .methods = {"tl-perturbation"}};
   EXPECT_TRUE(choose_quietly(description, demand).chosen);
-  std::get<NeoHookean>(description.law).young_modulus = 3e17;
+  std::get<NeoHookean>(description.materials.front().law).young_modulus = 3e17;
   const Choice stiff = choose_quietly(description, demand);
   EXPECT_FALSE(stiff.chosen);
   for (const auto& attempt : stiff.attempts) {
@@ -258,7 +258,7 @@ TEST_F(EvaluatorTest, asks_nobody_for_what_the_golden_has_not) {
 /// Displacement elements lock as Poisson's ratio nears one half; without volume to keep they do not.
 TEST_F(EvaluatorTest, names_locking_and_hourglassing) {
   Case description = cantilever(0.2);
-  std::get<NeoHookean>(description.law).poisson_ratio = 0.4999;
+  std::get<NeoHookean>(description.materials.front().law).poisson_ratio = 0.4999;
   EXPECT_TRUE(contains(evaluated(description, {"tl-full"}, 0.01).reason, "locks"));
   EXPECT_TRUE(contains(evaluated(cantilever(0.2), {"tl-perturbation", 1e-5}, 0.01).reason, "nodes zigzag"));
 }

@@ -96,7 +96,7 @@ TEST(CaseWriter, gives_back_every_case) {
           folder.write("again.toml", case_text(original, choice, nullptr, folder / "again.toml")));
       EXPECT_EQ(again.name, original.name);
       EXPECT_EQ(case_hash(again), case_hash(original)) << original.name;
-      EXPECT_EQ(again.density, original.density);
+      EXPECT_EQ(again.materials.front().density, original.materials.front().density);
       EXPECT_EQ(again.requirement, original.requirement);
       EXPECT_EQ(again.relaxation.max_steps, original.relaxation.max_steps);
       EXPECT_EQ(again.dynamics.duration, original.dynamics.duration);

@@ -191,7 +191,7 @@ TEST(CondensedTest, driven_nodes_may_move_each_by_itself) {
   const auto twist = [](const Vector& X) {
     return X[2] > 0.2 ? Vector{-0.3 * X[1], 0.3 * X[0], 2.0 * X[0] * X[1]} : Vector{};
   };
-  Case description = plain_case(bar.description.law);
+  Case description = plain_case(bar.description.materials.front().law);
   description.relaxation = bar.description.relaxation;
   NodeSets sets;
   std::vector<Vector> d;

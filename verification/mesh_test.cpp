@@ -357,7 +357,7 @@ TEST(MeshQuality, every_corner_and_gauss_point_counts) {
 TEST(Masses, belong_to_the_elements_around) {
   Mesh mesh = box({2.0, 1.0, 1.0}, {2, 1, 1});
   for (auto& X : mesh.points) X[0] = X[0] < 1.5 ? X[0] : 4.0;
-  const auto masses = lumped_masses(mesh, element_masses(mesh, 80.0));
+  const auto masses = lumped_masses(mesh, element_masses(mesh, {{{NeoHookean{}, 80.0}}}));
   for (std::size_t n = 0; n < masses.size(); ++n) {
     const double x = mesh.points[n][0];
     EXPECT_NEAR(masses[n], x < 0.5 ? 10.0 : x < 2.0 ? 40.0 : 30.0, 1e-13) << "x = " << x;

@@ -125,7 +125,7 @@ TYPED_TEST(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
   const Model model(scene, this->method());
   Recorder recorder;
   const Relaxation answer = relax(model, recorder);
-  const auto& law = std::get<NeoHookean>(scene.description.law);
+  const auto& law = std::get<NeoHookean>(scene.description.materials.front().law);
   const double stiffness = law.bulk_modulus() * 0.1 * 0.1 * 0.2;  // J for a strain of one
   const double energy = answer.energies.strain + answer.energies.hourglass;
   const double work = recorder.rows.back().external_work;

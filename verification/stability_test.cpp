@@ -119,7 +119,8 @@ TEST_F(CellTest, elastic_bodies_forget_their_cycles) {
 
 TEST_F(CellTest, methods_refuse_what_they_do_not_know) {
   Case description = cantilever();
-  description.law = Viscoelastic<NeoHookean>{{.young_modulus = 3000.0, .poisson_ratio = 0.45}, 0.5, 1.0};
+  description.materials.front().law =
+      Viscoelastic<NeoHookean>{{.young_modulus = 3000.0, .poisson_ratio = 0.45}, 0.5, 1.0};
   const Cell c = cell("load", description, "linear", 1.0);
   EXPECT_TRUE(c.refused);
   EXPECT_FALSE(c.finding);
@@ -185,7 +186,7 @@ TEST(Map, tells_what_is_wrong) {
   set_values("nu=0.4,0.3,0.4", maps);
   EXPECT_EQ(maps[0].ys, (std::vector{0.3, 0.4}));
   Case description = cantilever();
-  description.law = Ogden{};
+  description.materials.front().law = Ogden{};
   EXPECT_THROW(require_possible(maps[0], description), InputError);
   EXPECT_EQ(usual_maps(description).size(), 3u);  // aspect-skew, cycles-load, step-load
 }

@@ -108,7 +108,7 @@ TYPED_TEST(StableStepTest, step_of_a_cube) {
     Case description = plain_case(law);
     const Scene scene = make_scene(description, box({h, h, h}, {1, 1, 1}));
     const Model model(scene, {std::string(TypeParam::Method::name), {}});
-    const double c = std::sqrt(p_wave_modulus(law) / description.density);
+    const double c = std::sqrt(p_wave_modulus(law) / description.materials.front().density);
     const double lambda = lame_lambda(law);
     const double mu = law.shear_modulus();
     const double number = stable_step(model, NodalField(8)).step * c / h;
@@ -124,7 +124,7 @@ TYPED_TEST(StableStepTest, step_of_a_cube) {
     const auto X = gather(scene.mesh.points, scene.mesh.cells[0]);
     const auto element = TypeParam::Formulation::precompute(X, law, {});
     const auto K = tangent_stiffness<typename TypeParam::Formulation>({}, element, law);
-    const double mass = description.density * h * h * h / 8;
+    const double mass = description.materials.front().density * h * h * h / 8;
     const double truth = 2 / std::sqrt(eigenvalues(K).back() / mass) * c / h;
     EXPECT_LE(number, truth * (1 + 1e-12));
     this->RecordProperty("step_over_true_step_nu_" + std::to_string(poisson_ratios[n]),

@@ -157,10 +157,10 @@ Scene bar_wave(const std::array<int, 3>& elements) {
 /// The parameters of the bar's closed form, from the case.
 struct Bar {
   explicit Bar(const Scene& scene)
-      : law(std::get<NeoHookean>(scene.description.law)),
+      : law(std::get<NeoHookean>(scene.description.materials.front().law)),
         box(std::get<BoxMesh>(std::get<AnyGenerator>(scene.description.mesh))),
         speed(scene.description.velocities.front().value[2]) {
-    const double wave_speed = std::sqrt(law.young_modulus / scene.description.density);
+    const double wave_speed = std::sqrt(law.young_modulus / scene.description.materials.front().density);
     const double h = box.size[2] / box.elements[2];
     omega = std::numbers::pi * wave_speed / box.size[2];
     omega_of_mesh = 2 * wave_speed / h * std::sin(std::numbers::pi * h / (2 * box.size[2]));

@@ -351,7 +351,7 @@ std::string with_parameters(const std::string& lines) {
 TEST(ViscoelasticCase, is_read_with_one_term_or_two) {
   const TemporaryFolder folder;
   const auto law_of = [&](const std::string& lines) {
-    return std::get<Law>(read_case_file(folder.write("hold.toml", with_parameters(lines))).law);
+    return std::get<Law>(read_case_file(folder.write("hold.toml", with_parameters(lines))).materials.front().law);
   };
   const Law one = law_of("relaxation_1 = 0.45\ntime_1 = 0.5");
   EXPECT_EQ(one.young_modulus, 2500.0);
@@ -384,7 +384,7 @@ TEST(ViscoelasticCase, wrong_parameters_are_refused_with_their_line) {
 /// follows.
 TEST(ViscoelasticCase, held_brain_tissue_loses_the_energy_of_its_relaxation_times) {
   const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "brain-hold.toml");
-  const Law law = std::get<Law>(scene.description.law);
+  const Law law = std::get<Law>(scene.description.materials.front().law);
   Recorder recorder;
   integrate(Model(scene, {"tl-perturbation"}), recorder);
   const auto springs = [&](double t) {

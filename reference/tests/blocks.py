@@ -3,9 +3,11 @@
 import h5py
 import numpy as np
 
+from case_file import Material
 from hexahedra import Condition, HexMesh
 
 MATERIAL = {"young_modulus": 3000.0, "poisson_ratio": 0.49}
+MATERIALS = [Material("neo-hookean", MATERIAL)]
 CASE = """
 [case]
 name = "block"

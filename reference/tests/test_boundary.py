@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blocks import MATERIAL, distorted_block
+from blocks import MATERIALS, distorted_block
 from hexahedra import Condition, HexMesh
 from problem import GOLDEN, TRUTH, MixedProblem
 
@@ -11,7 +11,7 @@ def _prescribed(pair, nodes_of, components=(0, 1, 2)):
     """The prescribed dofs of a regular 2 x 2 x 2 block: (points, components, values)."""
     points, cells, _ = distorted_block(n=2, distortion=0.0)
     condition = Condition(nodes_of(points), components, 1.0 + points)
-    problem = MixedProblem(HexMesh(points, cells, (condition,)), pair, "neo-hookean", MATERIAL)
+    problem = MixedProblem(HexMesh(points, cells, (condition,)), pair, MATERIALS)
     at = problem.displacement.function_space.tabulate_dof_coordinates()
     return at[problem.fixed // 3], problem.fixed % 3, problem.values
 

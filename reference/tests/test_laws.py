@@ -99,7 +99,7 @@ def test_the_solver_has_the_same_law(law, tmp_path):
     make_mesh(path, tmp_path / "mesh.h5")
     case = read_case(path)
     mesh, _ = load_case_mesh(case, tmp_path / "mesh.h5")
-    problem = MixedProblem(mesh, GOLDEN, case.law, case.material)
+    problem = MixedProblem(mesh, GOLDEN, case.materials)
     newton.solve(problem, 4, 1e-10)
     # The solver stops at forces of 1e-11 of the reactions, which means 1e-11 in displacements. A
     # c01 of 149 instead of 150 changes them by 1e-4.
@@ -107,7 +107,7 @@ def test_the_solver_has_the_same_law(law, tmp_path):
     assert np.abs(difference).max() < 1e-7 * mesh.largest_imposed()
     # A common factor of all moduli does not change displacements, but does change the energy, whose
     # error is of second order in that of the displacements.
-    assert abs(energy / _energy(problem, law, case.material) - 1) < 1e-9
+    assert abs(energy / _energy(problem, law, case.materials[0].parameters) - 1) < 1e-9
 
 
 def _energy(problem, law, material):

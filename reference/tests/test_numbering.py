@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from blocks import MATERIAL, affine, affine_patch
+from blocks import MATERIALS, affine, affine_patch
 from common.hexahedron import LEXICOGRAPHIC
 from hexahedra import Condition, HexMesh
 from newton import solve
@@ -25,7 +25,7 @@ def test_vertex_order_is_its_own_inverse():
 @pytest.mark.parametrize("pair", [GOLDEN, TRUTH], ids=lambda pair: pair.name)
 def test_affine_displacement_comes_back_in_the_callers_numbering(pair):
     mesh = affine_patch(GRADIENT)
-    problem = MixedProblem(mesh, pair, "neo-hookean", MATERIAL)
+    problem = MixedProblem(mesh, pair, MATERIALS)
     # dolfinx interpolates the vertices' coordinates: products and sums of numbers <= 1, so a few
     # units of the last place, 2.2e-16.
     assert np.abs(problem.nodal_points() - mesh.points).max() < 1e-14
@@ -43,7 +43,7 @@ def test_a_shuffled_mesh_gives_shuffled_displacements():
     other = HexMesh(mesh.points[order], np.argsort(order)[mesh.cells], (condition,))
     answers = []
     for m in (mesh, other):
-        problem = MixedProblem(m, GOLDEN, "neo-hookean", MATERIAL)
+        problem = MixedProblem(m, GOLDEN, MATERIALS)
         solve(problem, 2, 1e-10)
         answers.append(problem.nodal_displacement())
     # Both are exact to round-off times the conditioning of an 8-node interior, far below 1e-12;

@@ -5,7 +5,7 @@ import pytest
 
 import solve
 from common.accuracy import relative_errors
-from blocks import CASE, MATERIAL, affine, distorted_block
+from blocks import CASE, MATERIALS, affine, distorted_block
 from case_file import read_case
 from common.errors import InputError
 from hexahedra import Condition, HexMesh, refine, turn_about
@@ -50,7 +50,7 @@ def test_nodes_stay_on_their_circles(load):
 @pytest.mark.parametrize("pair", [GOLDEN, TRUTH], ids=lambda pair: pair.name)
 def test_a_turned_body_is_at_rest(pair):
     mesh = _turned_block(4.0)
-    problem = MixedProblem(mesh, pair, "neo-hookean", MATERIAL)
+    problem = MixedProblem(mesh, pair, MATERIALS)
     newton_solve(problem, 20, 1e-10)
     exact = affine(mesh.points - CENTER, _rotation(AXIS, 4.0)) + CENTER - mesh.points
     assert np.abs(problem.nodal_displacement() - exact).max() < 1e-11

@@ -3,18 +3,17 @@
 import numpy as np
 import pytest
 
-from blocks import MATERIAL, distorted_block, pressed_block
+from blocks import MATERIALS, distorted_block, pressed_block
 from hexahedra import HexMesh
 from newton import solve
 from problem import GOLDEN, TRUTH, MixedProblem
 from symmetry import halve
 
-LAW = "neo-hookean"
 TOLERANCE = 1e-10
 
 
 def _answer(mesh, pair):
-    problem = MixedProblem(mesh, pair, LAW, MATERIAL)
+    problem = MixedProblem(mesh, pair, MATERIALS)
     solve(problem, 2, TOLERANCE)
     return problem.nodal_displacement()
 

@@ -7,29 +7,29 @@
 namespace sandglass {
 
 template <class Method, class Number>
-ForceOf<Number> assemble(const Mesh& mesh, const KernelLaw& kernel_law, const HourglassSettings& settings,
+ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
                          int threads) {
   using Levels = LevelsOf<Method>;
-  const CalledLaw elastic = elastic_law(kernel_law);
-  if (const auto* law = std::get_if<NeoHookean>(&kernel_law)) {
+  const KernelLaws laws = kernel_laws(materials);
+  if (const auto* known = std::get_if<std::vector<NeoHookean>>(&laws)) {
     using Loop = ForceLoop<Levels, CalledLaw, NeoHookean, Number>;
-    return std::make_unique<Loop>(mesh, elastic, elastic, *law, settings, threads);
+    return std::make_unique<Loop>(mesh, materials, *known, settings, threads);
   }
   using ViscoelasticLaw = Viscoelastic<CalledLaw>;
   if constexpr (knows_law<Method, ViscoelasticLaw>) {
-    if (const auto* law = std::get_if<ViscoelasticLaw>(&kernel_law)) {
-      return std::make_unique<ForceLoop<Levels, ViscoelasticLaw, ViscoelasticLaw, Number>>(
-          mesh, elastic, *law, *law, settings, threads);
+    if (const auto* remembering = std::get_if<std::vector<ViscoelasticLaw>>(&laws)) {
+      using Loop = ForceLoop<Levels, ViscoelasticLaw, ViscoelasticLaw, Number>;
+      return std::make_unique<Loop>(mesh, materials, *remembering, settings, threads);
     }
   }
   using Loop = ForceLoop<Levels, CalledLaw, CalledLaw, Number>;
-  return std::make_unique<Loop>(mesh, elastic, elastic, elastic, settings, threads);
+  return std::make_unique<Loop>(mesh, materials, std::get<std::vector<CalledLaw>>(laws), settings, threads);
 }
 
 template <class Method>
-ForceOf<double> assemble_scalar(const Mesh& mesh, const KernelLaw& law, const HourglassSettings& settings,
-                                int threads) {
-  return assemble<Method, double>(mesh, law, settings, threads);
+ForceOf<double> assemble_scalar(const Mesh& mesh, const Materials& materials,
+                                const HourglassSettings& settings, int threads) {
+  return assemble<Method, double>(mesh, materials, settings, threads);
 }
 
 }  // namespace sandglass

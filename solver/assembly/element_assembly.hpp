@@ -9,8 +9,8 @@
 
 namespace sandglass {
 
-/// The elements of a mesh with a law: all functions that do not run in every step. Laws are called here, so
-/// that one class serves all elastic laws, and a second one all viscoelastic laws.
+/// The elements of a mesh with a law for each material: all functions that do not run in every step. Laws are
+/// called here, so that one class serves all elastic laws, and a second one all viscoelastic laws.
 template <class Levels, class Law, class Number>
 class ElementAssembly;
 
@@ -21,7 +21,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
  protected:
   using Base::layout_, Base::width, Base::top;
-  using typename Base::Real;
+  using typename Base::Real, typename Base::BlockPlace;
   template <class Method>
   using KernelOf = FormulationOf<Method, Law>;
 
@@ -35,9 +35,10 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   static constexpr std::size_t history_numbers = remembers ? sizeof(OnlyHistory) / sizeof(Real) : 0;
 
  public:
-  ElementAssembly(const Mesh& mesh, const CalledLaw& elastic, const Law& law,
+  template <class LoopLaw>
+  ElementAssembly(const Mesh& mesh, const Materials& materials, const std::vector<LoopLaw>& laws,
                   const HourglassSettings& settings, int threads)
-      : Base(mesh, elastic, settings, threads), law_(law) {}
+      : Base(mesh, materials, settings, threads), laws_(laws.begin(), laws.end()) {}
 
   State<Real> undeformed() const override {
     State<Real> state = Base::undeformed();
@@ -48,10 +49,11 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   StrainEnergies energies(const State<Real>& state) const override {
     StrainEnergies sum;
-    const auto law = at_step(law_, state.step);
-    this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, std::size_t block,
+    const auto laws = laws_at(state.step);
+    this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at,
                                                   const auto& for_each_lane) {
-      const auto energy = KernelOf<Method>::energy(motion, element, history<Method>(state, block), law);
+      const auto energy =
+          KernelOf<Method>::energy(motion, element, history<Method>(state, at.block), laws[at.material]);
       for_each_lane([&](std::size_t /*e*/, int lane) {
         sum.strain += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
         sum.hourglass += static_cast<double>(Lanes<Number>::get(energy.hourglass, lane));
@@ -61,21 +63,23 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   }
 
   void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const override {
-    const auto law = at_step(law_, state.step);
+    const auto laws = laws_at(state.step);
     this->per_element(state, densities,
-                      [&]<class Method>(const auto& motion, const auto& element, std::size_t block) {
+                      [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
                         using Kernel = KernelOf<Method>;
-                        return Kernel::energy(motion, element, history<Method>(state, block), law).hourglass /
+                        const auto remembered = history<Method>(state, at.block);
+                        return Kernel::energy(motion, element, remembered, laws[at.material]).hourglass /
                                Kernel::volume(motion, element);
                       });
   }
 
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
-    const auto law = at_step(law_, state.step);
-    this->per_element(
-        state, bounds, [&]<class Method>(const auto& motion, const auto& element, std::size_t block) {
-          return KernelOf<Method>::stiffness_bound(motion, element, history<Method>(state, block), law);
-        });
+    const auto laws = laws_at(state.step);
+    this->per_element(state, bounds,
+                      [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
+                        return KernelOf<Method>::stiffness_bound(
+                            motion, element, history<Method>(state, at.block), laws[at.material]);
+                      });
   }
 
   Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
@@ -125,9 +129,15 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     return state.history.data() + history_numbers * layout_->ranks();
   }
 
-  Law law_;
+  std::vector<Law> laws_;  // of each material
 
  private:
+  auto laws_at(double step) const {
+    std::vector<std::decay_t<decltype(at_step(laws_.front(), step))>> laws;
+    for (const Law& law : laws_) laws.push_back(at_step(law, step));
+    return laws;
+  }
+
   /// For each level except the highest its difference from the highest, as a displacement (m); see `adapt`.
   using Defects = std::array<double, top>;
 
@@ -168,7 +178,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const auto& group = layout_->groups[g];
       for (std::size_t k = 0; k < group.ranks; ++k) {
-        const auto squares = squared_defects(u, mobility, group.first_face + k);
+        const auto squares = squared_defects(u, mobility, group.first_face + k, group.material);
         for (int lane = 0; lane < width; ++lane) {
           const int e = layout_->elements[(group.first_rank + k) * width + static_cast<std::size_t>(lane)];
           if (e < 0) continue;
@@ -183,7 +193,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   /// The squares (m^2) of the defects of the elements between a face of the layout and the next one.
   [[gnu::flatten]] std::array<Number, top> squared_defects(const Rows<Real>& u, const Rows<Real>& mobility,
-                                                           std::size_t face) const {
+                                                           std::size_t face, std::size_t material) const {
     const auto modes = [&](const Rows<Real>& rows) {
       return modes_between(gather_face_modes<Number>(rows, *layout_, face),
                            gather_face_modes<Number>(rows, *layout_, face + 1));
@@ -194,7 +204,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const NodalVectors<Number> mobilities =
         nodes_of(gather_face_vectors<Number>(mobility, *layout_, face),
                  gather_face_vectors<Number>(mobility, *layout_, face + 1));
-    const std::array<Modes<Number>, top + 1> forces{force_at<KernelOf<Methods>>(motion, x)...};
+    const std::array<Modes<Number>, top + 1> forces{force_at<KernelOf<Methods>>(motion, x, material)...};
     std::array<Number, top> squares;
     for (std::size_t level = 0; level < top; ++level) {
       const NodalVectors<Number> difference = from_modes(forces[level] - forces[top]);
@@ -212,10 +222,12 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   }
 
   template <class Kernel>
-  Modes<Number> force_at(const ElementMotion<Number>& motion, const Modes<Number>& x) const {
-    const auto element = Kernel::template constants<Number>(x, law_, this->settings_);
+  Modes<Number> force_at(const ElementMotion<Number>& motion, const Modes<Number>& x,
+                         std::size_t material) const {
+    const Law& law = laws_[material];
+    const auto element = Kernel::template constants<Number>(x, law, this->setups_[material].settings);
     typename Kernel::template History<Number> none;
-    return Kernel::force(Kernel::deformation(motion, element), element, none, law_);
+    return Kernel::force(Kernel::deformation(motion, element), element, none, law);
   }
 };
 
@@ -227,9 +239,9 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
   using typename Base::Faces, typename Base::FaceMotion, typename Base::Real;
 
  public:
-  ForceLoop(const Mesh& mesh, const CalledLaw& elastic, const Law& law, const LoopLaw& loop_law,
+  ForceLoop(const Mesh& mesh, const Materials& materials, const std::vector<LoopLaw>& laws,
             const HourglassSettings& settings, int threads)
-      : Base(mesh, elastic, law, settings, threads), loop_law_(loop_law) {}
+      : Base(mesh, materials, laws, settings, threads), loop_laws_(laws) {}
 
   void evaluate(State<Real>& state, Rows<Real>& force) const override {
     const auto& plan = Base::plan_of(state);
@@ -241,19 +253,32 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
   }
 
  private:
-  /// Adds the forces of a part. Without `flatten` the compiler leaves small matrix functions out of line,
-  /// which costs a third of the time.
+  /// Adds the forces of a part: of runs of groups of one material.
+  template <class Method>
+  void add_forces(const typename Base::template Part<Method>& part, State<Real>& state, Real* force) const {
+    const auto& groups = part.groups->groups;
+    for (std::size_t first = part.first, last = first; first < part.last; first = last) {
+      const std::size_t material = groups[first].material;
+      while (last < part.last && groups[last].material == material) ++last;
+      add_forces(part, first, last, loop_laws_[material], state, force);
+    }
+  }
+
+  /// Adds the forces of groups `first` to `last` - 1 of a part. Without `flatten` the compiler leaves small
+  /// matrix functions out of line, which costs a third of the time.
   template <class Method>
   [[gnu::flatten, gnu::aligned(64)]] void add_forces(const typename Base::template Part<Method>& part,
-                                                     State<Real>& state, Real* force) const {
+                                                     std::size_t first, std::size_t last,
+                                                     const LoopLaw& loop_law, State<Real>& state,
+                                                     Real* force) const {
     using Kernel = typename Base::template KernelOf<Method>;
     const ElementGroups& groups = *part.groups;
     const auto law =
-        at_step(loop_law_, state.step);  // a copy that no store can alias, so that moduli are computed once
+        at_step(loop_law, state.step);  // a copy that no store can alias, so that moduli are computed once
     const bool timeless = !(state.step < std::numeric_limits<double>::infinity());
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     const Real* const volumes = this->volumes_of(state);
-    for (std::size_t g = part.first; g < part.last; ++g) {
+    for (std::size_t g = first; g < last; ++g) {
       const ElementGroups::Group group = groups.groups[g];
       FaceMotion lower = this->template gather_face<Method>(groups, state, volumes, group.first_face);
       const auto* const blocks = part.blocks.data() + (group.first_rank - part.first_block);
@@ -288,7 +313,7 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
     }
   }
 
-  LoopLaw loop_law_;
+  std::vector<LoopLaw> loop_laws_;  // of each material
 };
 
 }  // namespace sandglass

@@ -34,28 +34,28 @@ bool has_scalar_kernels() {
   return methods().front().assemble_scalar_double != nullptr;
 }
 
-AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& any_law, const MethodChoice& choice,
-                                     double density) {
+AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& materials,
+                                     const MethodChoice& choice) {
   const MethodEntry& method = method_named(choice.method);
   require_sensible(choice, method);
-  const KernelLaw law = kernel_law(any_law);
-  if (!method.knows_viscoelasticity && std::holds_alternative<Viscoelastic<CalledLaw>>(law)) {
+  for (const Material& material : materials.list) {
+    if (method.knows_viscoelasticity || !is_viscoelastic(material.law)) continue;
     throw InputError(fmt::format(
         "law: '{}' is viscoelastic, which method '{}' does not support; allowed: an elastic law, or "
         "another method",
-        name_of(any_law), method.name));
+        name_of(material.law), method.name));
   }
-  const HourglassSettings settings{choice.kappa, density, choice.kappa_modulus};
+  const HourglassSettings settings{.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
   if (choice.kernel == KernelWidth::scalar) {
     if (!has_scalar_kernels()) {
       throw InputError("kernel: this program has no scalar kernels; sandglass-scalar has");
     }
-    return method.assemble_scalar_double(mesh, law, settings, choice.threads);
+    return method.assemble_scalar_double(mesh, materials, settings, choice.threads);
   }
   if (choice.precision == Precision::double_precision) {
-    return method.assemble_packed_double(mesh, law, settings, choice.threads);
+    return method.assemble_packed_double(mesh, materials, settings, choice.threads);
   }
-  return method.assemble_packed_float(mesh, law, settings, choice.threads);
+  return method.assemble_packed_float(mesh, materials, settings, choice.threads);
 }
 
 template <class Real>

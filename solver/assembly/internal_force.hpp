@@ -10,7 +10,7 @@
 
 #include "assembly/layout.hpp"
 #include "element/hourglass_settings.hpp"
-#include "material/laws.hpp"
+#include "material/materials.hpp"
 #include "math/rows.hpp"
 
 namespace sandglass {
@@ -48,9 +48,9 @@ struct State {
                                                           ///< plays no part
 };
 
-/// The elements of a mesh with one method and one law: displacements in, internal forces out. Behind this
-/// interface, which hides the choice made at run time, loops are monomorphic. All functions are const, so
-/// that threads may share an object.
+/// The elements of a mesh with one method and their materials: displacements in, internal forces out. Behind
+/// this interface, which hides the choice made at run time, loops are monomorphic. All functions are const,
+/// so that threads may share an object.
 template <class Real>
 class InternalForce {
  public:
@@ -73,10 +73,12 @@ class InternalForce {
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
   /// Sets `force` to the nodal forces (N) of pressures p - lambda (J - 1) (Pa), one for each element in the
-  /// numbering of the mesh, J its volume ratio, and `defect` to V (J - 1 - p / lambda) (m^3). Added to the
-  /// internal forces, they replace the part of each element's own pressure that belongs to lambda by p.
-  virtual void replace_pressures(const State<Real>& state, std::span<const Real> p, double lambda,
-                                 Rows<Real>& force, std::span<Real> defect) const = 0;
+  /// numbering of the mesh, J its volume ratio and lambda (Pa) that of its material, and `defect` to
+  /// V (J - 1 - p / lambda) (m^3). Added to the internal forces, they replace the part of each element's own
+  /// pressure that belongs to lambda by p.
+  virtual void replace_pressures(const State<Real>& state, std::span<const Real> p,
+                                 std::span<const double> lambdas, Rows<Real>& force,
+                                 std::span<Real> defect) const = 0;
 
   /// Gives each element the cheapest sufficient level, if the method has several. The difference between an
   /// element's force and that at the highest level, times `mobility` (m/N, by row and component), displaces
@@ -145,12 +147,17 @@ using AnyInternalForce =
     std::variant<std::unique_ptr<InternalForce<double>>, std::unique_ptr<InternalForce<float>>>;
 
 /// The elements of `mesh` with the chosen method; the only place where the choice is dispatched. Hourglass
-/// controls that damp need the density (kg/m^3); with zero they give no force. Throws InputError for an
-/// unknown method (listing the known ones), for a kappa given to a method that takes none, for a law that the
-/// method does not support, for values out of range, and for scalar kernels in single precision, which do not
-/// exist.
-AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
-                                     double density = 0.0);
+/// controls that damp need densities; with zero they give no force. Throws InputError for an unknown method
+/// (listing the known ones), for a kappa given to a method that takes none, for a law that the method does
+/// not support, for values out of range, and for scalar kernels in single precision, which do not exist.
+AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& materials,
+                                     const MethodChoice& choice);
+
+/// The same for a body of one material.
+inline AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice,
+                                            double density = 0.0) {
+  return make_internal_force(mesh, Materials{{{law, density}}}, choice);
+}
 
 /// The state of a body whose nodes have moved from the undeformed state to displacements u (m) in one step.
 template <class Real>

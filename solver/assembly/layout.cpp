@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "assembly/strips.hpp"
@@ -74,6 +75,37 @@ std::size_t longest(const std::vector<Strip>& strips) {
   return most;
 }
 
+/// The strips of one material.
+struct MaterialStrips {
+  std::size_t material;
+  std::vector<Strip> strips;
+};
+
+/// Strips of elements, separately for each material.
+std::vector<MaterialStrips> cut_by_material(const Mesh& mesh, const NodeElements& neighbours,
+                                            std::span<const int> elements,
+                                            const std::vector<std::uint16_t>& materials) {
+  if (materials.empty()) return {{0, cut_into_strips(mesh, neighbours, elements)}};
+  std::map<std::size_t, std::vector<int>> by_material;
+  for (const int e : elements) by_material[materials[at(e)]].push_back(e);
+  std::vector<MaterialStrips> cut;
+  for (const auto& [material, own] : by_material) {
+    cut.push_back({material, cut_into_strips(mesh, neighbours, own)});
+  }
+  return cut;
+}
+
+/// The first of the longest strips.
+const Strip& longest(const std::vector<MaterialStrips>& parts) {
+  const Strip* found = &parts.front().strips.front();
+  for (const auto& part : parts) {
+    for (const Strip& strip : part.strips) {
+      if (strip.length() > found->length()) found = &strip;
+    }
+  }
+  return *found;
+}
+
 /// Packs strips of equal length side by side into groups.
 class StripPacker {
  public:
@@ -82,8 +114,10 @@ class StripPacker {
   /// Adds strips, cut into pieces of at most `most_ranks` elements. row_of(node) is called for the nodes of
   /// each group in turn; spare lanes run along the rows from `spare_row` on.
   template <class RowOf>
-  void add(std::vector<Strip> open, std::size_t most_ranks, std::size_t spare_row, const RowOf& row_of) {
-    while (!open.empty()) add_group(choose(open, most_ranks), spare_row, row_of);
+  void add(MaterialStrips open, std::size_t most_ranks, std::size_t spare_row, const RowOf& row_of) {
+    while (!open.strips.empty()) {
+      add_group(open.material, choose(open.strips, most_ranks), spare_row, row_of);
+    }
   }
 
   std::size_t groups() const { return groups_.groups.size(); }
@@ -151,9 +185,10 @@ class StripPacker {
   }
 
   template <class RowOf>
-  void add_group(const std::vector<Strip>& strips, std::size_t spare_row, const RowOf& row_of) {
+  void add_group(std::size_t material, const std::vector<Strip>& strips, std::size_t spare_row,
+                 const RowOf& row_of) {
     const std::size_t length = strips.front().length(), width = at(groups_.width);
-    groups_.groups.push_back({groups_.ranks(), groups_.face_places.size() / (4 * width), length});
+    groups_.groups.push_back({groups_.ranks(), groups_.face_places.size() / (4 * width), length, material});
     for (const auto& strip : strips) {
       for (const auto& face : strip.faces) {
         for (const int node : face) row_of(node);
@@ -189,12 +224,13 @@ std::vector<int> Layout::elements_of(const Chunk& chunk) const {
   return found;
 }
 
-Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
+Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows, std::vector<std::uint16_t> materials) {
   const NodeElements neighbours(mesh);
   const std::vector<int> order = sorted_along_the_mesh(mesh);
   const std::size_t n = choose_chunks(mesh, order);
   Layout layout;
   layout.nodes = mesh.points.size();
+  layout.materials = std::move(materials);
   layout.row_of_node.assign(layout.nodes, -1);
   const auto number = [&](int node) {
     int& row = layout.row_of_node[at(node)];
@@ -209,15 +245,15 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
   StripPacker packer(width, layout.nodes);
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t begin = chunk_begin(order.size(), n, c), end = chunk_begin(order.size(), n, c + 1);
-    const auto strips = cut_into_strips(mesh, neighbours, std::span(order).subspan(begin, end - begin));
+    const auto parts =
+        cut_by_material(mesh, neighbours, std::span(order).subspan(begin, end - begin), layout.materials);
+    const Strip& longest_strip = longest(parts);
     const std::size_t first = packer.groups(), first_row = layout.rows(),
-                      spare_row = layout.nodes + spare.size(), spare_ranks = longest(strips);
-    packer.add(strips, spare_ranks, spare_row, number);
+                      spare_row = layout.nodes + spare.size(), spare_ranks = longest_strip.length();
+    for (const auto& part : parts) packer.add(part, spare_ranks, spare_row, number);
     layout.chunks.push_back({first, packer.groups(), first_row, layout.rows(), spare_row, spare_ranks});
     if (spare_rows == SpareRows::where_needed && !packer.has_spare_lanes(first)) continue;
-    const auto longest_strip = std::find_if(
-        strips.begin(), strips.end(), [&](const Strip& strip) { return strip.length() == spare_ranks; });
-    for (const auto& face : longest_strip->faces) spare.insert(spare.end(), face.begin(), face.end());
+    for (const auto& face : longest_strip.faces) spare.insert(spare.end(), face.begin(), face.end());
   }
   for (std::size_t node = 0; node < layout.nodes; ++node) number(static_cast<int>(node));  // in no element
   layout.node_of_row.insert(layout.node_of_row.end(), spare.begin(), spare.end());
@@ -228,8 +264,10 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows) {
 ElementGroups groups_within(const Layout& layout, const Layout::Chunk& chunk, const Mesh& mesh,
                             const NodeElements& neighbours, std::span<const int> elements) {
   StripPacker packer(layout.width, layout.nodes);
-  packer.add(cut_into_strips(mesh, neighbours, elements), chunk.spare_ranks, chunk.spare_row,
-             [&](int node) { return at(layout.row_of_node[at(node)]); });
+  for (const auto& part : cut_by_material(mesh, neighbours, elements, layout.materials)) {
+    packer.add(part, chunk.spare_ranks, chunk.spare_row,
+               [&](int node) { return at(layout.row_of_node[at(node)]); });
+  }
   return packer.finish();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "math/rows.hpp"
@@ -7,15 +8,16 @@
 
 namespace sandglass {
 
-/// Elements in the order of a time loop. A group consists of up to `width` strips of equal length side by
-/// side, one per lane. Its k-th rank consists of the k-th elements of its strips, which are computed
-/// together. Lanes without a strip run along spare rows, which have the coordinates of nodes of the mesh and
-/// zero displacements, so that kernels need no branch.
+/// Elements in the order of a time loop. A group consists of up to `width` strips of one material and of
+/// equal length side by side, one per lane. Its k-th rank consists of the k-th elements of its strips, which
+/// are computed together. Lanes without a strip run along spare rows, which have the coordinates of nodes of
+/// the mesh and zero displacements, so that kernels need no branch.
 struct ElementGroups {
   struct Group {
     std::size_t first_rank;  ///< into `elements`, counted in ranks
     std::size_t first_face;  ///< into `face_places`, counted in faces; a group has one more than ranks
     std::size_t ranks;
+    std::size_t material;
   };
 
   int width = 1;
@@ -51,6 +53,7 @@ struct Layout : ElementGroups {
   std::vector<int> node_of_row;  ///< the node of a row, or the one whose coordinates a spare row has
   std::vector<int> row_of_node;
   std::vector<Chunk> chunks;
+  std::vector<std::uint16_t> materials;  ///< of each element; empty if there is only one
 
   std::size_t rows() const { return node_of_row.size(); }
 
@@ -61,8 +64,9 @@ struct Layout : ElementGroups {
 /// Which chunks have spare rows: those with spare lanes, or all, for groups made later.
 enum class SpareRows { where_needed, everywhere };
 
-/// The layout of a mesh for kernels that compute `width` elements at a time.
-Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows = SpareRows::where_needed);
+/// The layout of a mesh for kernels that compute `width` elements at a time; `materials` as in Layout.
+Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows = SpareRows::where_needed,
+                   std::vector<std::uint16_t> materials = {});
 
 class NodeElements;
 

@@ -60,6 +60,12 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     std::vector<Element> blocks;
   };
 
+  /// What the constants of an element depend on besides its shape.
+  struct Setup {
+    CalledLaw law;
+    HourglassSettings settings;
+  };
+
   /// One part for each level.
   using Parts = std::tuple<Part<Methods>...>;
 
@@ -70,12 +76,15 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   };
 
  public:
-  LevelledElements(const Mesh& mesh, const CalledLaw& law, const HourglassSettings& settings, int threads)
-      : layout_(std::make_shared<Layout>(
-            make_layout(mesh, width, adapts ? SpareRows::everywhere : SpareRows::where_needed))),
-        setup_law_(law),
-        settings_(settings),
+  LevelledElements(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
+                   int threads)
+      : layout_(std::make_shared<Layout>(make_layout(
+            mesh, width, adapts ? SpareRows::everywhere : SpareRows::where_needed, materials.of_element))),
         threads_(threads) {
+    for (const Material& material : materials.list) {
+      setups_.push_back({elastic_law(kernel_law(material.law)), settings});
+      setups_.back().settings.density = material.density;
+    }
     if constexpr (uses_coordinates || adapts) {
       coordinates_ = centred_coordinates<Real>(mesh.points, *layout_);
     }
@@ -120,8 +129,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
   }
 
-  void replace_pressures(const State<Real>& state, std::span<const Real> p, double lambda, Rows<Real>& force,
-                         std::span<Real> defect) const override {
+  void replace_pressures(const State<Real>& state, std::span<const Real> p, std::span<const double> lambdas,
+                         Rows<Real>& force, std::span<Real> defect) const override {
     const Plan& plan = plan_of(state);
     std::vector<Real> volumes;
     if constexpr (averages_over_nodes) {
@@ -131,22 +140,20 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     sum_over_chunks(*layout_, threads_, numbers_of(force), [&](std::size_t c) {
       std::apply(
           [&](const auto&... part) {
-            (add_pressures(part, state, volumes.data(), p, static_cast<Real>(lambda), numbers_of(force),
-                           defect),
-             ...);
+            (add_pressures(part, state, volumes.data(), p, lambdas, numbers_of(force), defect), ...);
           },
           *plan.chunks[c]);
     });
   }
 
   void jacobians(const State<Real>& state, std::span<double> jacobians) const override {
-    per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, std::size_t) {
+    per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, BlockPlace) {
       return KernelOf<Method>::mean_jacobian(motion, element);
     });
   }
 
   void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const override {
-    per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, std::size_t) {
+    per_element(state, jacobians, []<class Method>(const auto& motion, const auto& element, BlockPlace) {
       return KernelOf<Method>::smallest_jacobian(motion, element);
     });
   }
@@ -215,9 +222,14 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  /// Calls visit.operator()<Method>(motion, element, block, for_each_lane) for every block of elements, where
-  /// `block` is its index among those of its groups, and for_each_lane(use) calls use(e, lane) for each lane
-  /// with the number of its element.
+  /// A block of elements: its index among those of its groups, and its material.
+  struct BlockPlace {
+    std::size_t block;
+    std::size_t material;
+  };
+
+  /// Calls visit.operator()<Method>(motion, element, place, for_each_lane) for every block of elements, where
+  /// for_each_lane(use) calls use(e, lane) for each lane with the number of its element.
   template <class Visit>
   void for_each_block(const State<Real>& state, const Visit& visit) const {
     std::vector<Real> volumes;
@@ -235,8 +247,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
           const FaceMotion upper =
               gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
           visit.template operator()<Method>(
-              between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block], block,
-              [&](const auto& use) {
+              between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block],
+              BlockPlace{block, group.material}, [&](const auto& use) {
                 for (int lane = 0; lane < width; ++lane) {
                   const int e = part.groups->elements[block * width + static_cast<std::size_t>(lane)];
                   if (e >= 0) use(static_cast<std::size_t>(e), lane);
@@ -251,20 +263,19 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
   }
 
-  /// Sets values[e] for every element to its lane of evaluate.operator()<Method>(motion, element, block).
+  /// Sets values[e] for every element to its lane of evaluate.operator()<Method>(motion, element, place).
   template <class Evaluate>
   void per_element(const State<Real>& state, std::span<double> values, const Evaluate& evaluate) const {
     for_each_block(state, [&]<class Method>(const ElementMotion<Number>& motion, const auto& element,
-                                            std::size_t block, const auto& for_each_lane) {
-      const Number value = evaluate.template operator()<Method>(motion, element, block);
+                                            BlockPlace place, const auto& for_each_lane) {
+      const Number value = evaluate.template operator()<Method>(motion, element, place);
       for_each_lane(
           [&](std::size_t e, int lane) { values[e] = static_cast<double>(Lanes<Number>::get(value, lane)); });
     });
   }
 
   std::shared_ptr<const Layout> layout_;  // of all elements
-  CalledLaw setup_law_;
-  HourglassSettings settings_;
+  std::vector<Setup> setups_;             // of each material
   int threads_;
   Rows<Real> coordinates_;  // only if kernels need them, or adaptive methods
   bool streams_ = false;    // whether constants do not remain in the cache from step to step
@@ -329,9 +340,10 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   void fill_blocks(Part<Method>& part, const Mesh& mesh) const {
     for (std::size_t g = part.first; g < part.last; ++g) {
       const auto& group = part.groups->groups[g];
+      const Setup& setup = setups_[group.material];
       for (std::size_t k = 0; k < group.ranks; ++k) {
         part.blocks.push_back(element_block<KernelOf<Method>, Number>(
-            mesh, *part.groups, layout_->node_of_row, group.first_face + k, setup_law_, settings_));
+            mesh, *part.groups, layout_->node_of_row, group.first_face + k, setup.law, setup.settings));
       }
     }
   }
@@ -365,14 +377,15 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   template <class Method>
   [[gnu::flatten, gnu::aligned(64)]] void add_pressures(const Part<Method>& part, const State<Real>& state,
                                                         const Real* volumes, std::span<const Real> p,
-                                                        Real lambda, Real* force,
+                                                        std::span<const double> lambdas, Real* force,
                                                         std::span<Real> defect) const {
     using Kernel = Formulation<typename Method::Kinematics, NoHourglassControl, GivenPressure<Number>>;
     const ElementGroups& groups = *part.groups;
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
-    const Number stiffness(lambda), compliance(Real(1) / lambda);
     for (std::size_t g = part.first; g < part.last; ++g) {
       const ElementGroups::Group group = groups.groups[g];
+      const auto lambda = static_cast<Real>(lambdas[group.material]);
+      const Number stiffness(lambda), compliance(Real(1) / lambda);
       FaceMotion lower = gather_face<Method>(groups, state, volumes, group.first_face);
       Faces carried{};
       for (std::size_t k = 0; k < group.ranks; ++k) {

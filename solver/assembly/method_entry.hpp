@@ -14,9 +14,9 @@ namespace sandglass {
 template <class Number>
 using ForceOf = std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>>;
 
-/// Makes the elements of a mesh with a law that the method supports.
+/// Makes the elements of a mesh with materials whose laws the method supports.
 template <class Number>
-using Assemble = ForceOf<Number>(const Mesh&, const KernelLaw&, const HourglassSettings&, int threads);
+using Assemble = ForceOf<Number>(const Mesh&, const Materials&, const HourglassSettings&, int threads);
 
 /// A method at run time. Its definition at compile time is in `element/methods/`; its kernels are called
 /// through the functions here and compiled in source files of their own, so that a change of one method
@@ -56,13 +56,13 @@ struct MethodEntry {
 
 /// The elements of a mesh with a method, for `MethodEntry`. Defined in `assembly/assemble.hpp`.
 template <class Method, class Number>
-ForceOf<Number> assemble(const Mesh& mesh, const KernelLaw& law, const HourglassSettings& settings,
+ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
                          int threads);
 
 /// The same, one element at a time, to compare with. Weak: null in a program without `sandglass_scalar`, for
 /// these kernels serve tests and benchmarks alone. Defined in `assembly/assemble.hpp`.
 template <class Method>
-[[gnu::weak]] ForceOf<double> assemble_scalar(const Mesh& mesh, const KernelLaw& law,
+[[gnu::weak]] ForceOf<double> assemble_scalar(const Mesh& mesh, const Materials& materials,
                                               const HourglassSettings& settings, int threads);
 
 /// The entry of a method. Defined in `assembly/method_entry_of.hpp`.

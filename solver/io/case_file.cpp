@@ -43,10 +43,32 @@ void read_mesh(TableReader& reader, Case& description) {
   table.finish();
 }
 
-void read_material(TableReader table, Case& description) {
-  description.law = read_listed<Laws>(table, "law");
-  description.density = table.required<double>("density", Range::positive());
+CaseMaterial read_material(TableReader table, bool one_of_several) {
+  CaseMaterial material;
+  material.law = read_listed<Laws>(table, "law");
+  material.density = table.required<double>("density", Range::positive());
+  if (one_of_several) material.elements = table.optional<std::string>("elements").value_or("");
   table.finish();
+  return material;
+}
+
+/// [material], or several [[materials]].
+std::vector<CaseMaterial> read_materials(TableReader& reader) {
+  std::vector<CaseMaterial> materials;
+  for (const auto& table : reader.tables("materials")) materials.push_back(read_material(table, true));
+  if (materials.empty()) return {read_material(reader.required_table("material"), false)};
+  if (reader.table("material")) {
+    reader.fail("material", "and [[materials]] were given; a case has one or the other");
+  }
+  const auto others = std::count_if(materials.begin(), materials.end(),
+                                    [](const CaseMaterial& material) { return material.elements.empty(); });
+  if (others > 1) {
+    reader.fail("materials",
+                fmt::format("leave out their elements {} times; one material at most is that of all elements "
+                            "that no other names",
+                            others));
+  }
+  return materials;
 }
 
 CylinderRegion read_cylinder(TableReader table) {
@@ -58,10 +80,10 @@ CylinderRegion read_cylinder(TableReader table) {
   return region;
 }
 
-NodeSetRule read_set(TableReader table, const std::string& name) {
+NodeSetRule read_set(TableReader table, const std::string& name, bool of_nodes) {
   NodeSetRule rule;
   rule.name = name;
-  rule.surface = table.optional<bool>("surface").value_or(false);
+  if (of_nodes) rule.surface = table.optional<bool>("surface").value_or(false);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string key(1, "xyz"[i]);
     const auto ends = table.optional<std::array<double, 2>>(key);
@@ -207,11 +229,17 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   TableReader reader(tables.root, path, "");
   read_header(reader.required_table("case"), description);
   read_mesh(reader, description);
-  read_material(reader.required_table("material"), description);
-  if (auto sets = reader.table("sets")) {
-    for (const auto& name : sets->keys())
-      description.sets.push_back(read_set(sets->required_table(name), name));
-  }
+  description.materials = read_materials(reader);
+  const auto read_sets = [&](const std::string& key, bool of_nodes) {
+    std::vector<NodeSetRule> rules;
+    if (auto sets = reader.table(key)) {
+      for (const auto& name : sets->keys())
+        rules.push_back(read_set(sets->required_table(name), name, of_nodes));
+    }
+    return rules;
+  };
+  description.sets = read_sets("sets", true);
+  description.element_sets = read_sets("element_sets", false);
   for (const auto& table : reader.tables("displacement"))
     description.displacements.push_back(read_displacement(table));
   for (const auto& table : reader.tables("rotation")) description.rotations.push_back(read_rotation(table));
@@ -257,7 +285,8 @@ Case read_case_file(const std::filesystem::path& path) {
 Scene read_scene(Case description) {
   if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
     MeshWithSets read = read_mesh_of(description, *file);
-    return make_scene(std::move(description), std::move(read.mesh), std::move(read.sets));
+    return make_scene(std::move(description), std::move(read.mesh), std::move(read.sets),
+                      std::move(read.element_sets));
   }
   Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
   return make_scene(std::move(description), std::move(mesh));
@@ -273,7 +302,7 @@ Scene read_scene(const std::string& text, MeshWithSets mesh) {
     description.mesh = MeshFile{"in memory"};
   };
   return make_scene(read_case(parse_case_text(text, name), name, in_memory), std::move(mesh.mesh),
-                    std::move(mesh.sets));
+                    std::move(mesh.sets), std::move(mesh.element_sets));
 }
 
 MethodChoice method_of(const Case& description, const std::optional<std::string>& named) {

@@ -60,6 +60,13 @@ mesh.file = "FILE": instead of a generator, a mesh of hexahedra, in m: .h5 as `s
   those of the same name
 )";
 
+constexpr std::string_view several_materials = R"(
+[[materials]] instead of [material], several times, with the same keys and elements = NAME, an element set; one
+  of them may leave it out and is the material of all other elements
+[element_sets] NAME = { x = [low, high], y = ..., z = ..., cylinder = ... }: elements by their centres, with
+  the conditions of [sets]; a mesh from a file brings its physical volumes, ELSETs or cell arrays by their names
+)";
+
 constexpr std::string_view sets_and_loads = R"(
 [sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = "z",
   center = [x, y], semi_axes = [a, b] } }
@@ -88,6 +95,7 @@ std::string describe_case_keys() {
   text += mesh_file;
   text += described_list(Laws{}, "material", "law");
   text += key_line("material.density", "kg/m^3", Range::positive(), "required", "mass density at rest");
+  text += several_materials;
   text += sets_and_loads;
   text += "\n[relaxation]: how a quasi-static answer is found\n";
   text += described<RelaxationSettings>("relaxation");

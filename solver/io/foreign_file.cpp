@@ -150,7 +150,7 @@ void write_problem(const Scene& scene, Hdf5File& file) {
         file.write_attribute("/", "law", std::string(law.name));
         std::apply([&](const auto&... p) { (write_number(p.name, law.*(p.member)), ...); }, law.parameters());
       },
-      scene.description.law);
+      scene.description.materials.front().law);
 }
 
 }  // namespace
@@ -171,6 +171,10 @@ MeshWithSets read_foreign_mesh(const fs::path& path) {
 void write_foreign_mesh(const Scene& scene, const fs::path& path, const ForeignFormat& format) {
   if (format.deck && !scene.description.quasi_static) {
     throw InputError(fmt::format("{}: a dynamic case has no deck", scene.description.file.string()));
+  }
+  if (format.deck && scene.materials.list.size() > 1) {
+    throw InputError(fmt::format("{}: a case of {} materials has no deck; allowed is one material",
+                                 scene.description.file.string(), scene.materials.list.size()));
   }
   NewFile output(path);
   const TemporaryFolder folder;

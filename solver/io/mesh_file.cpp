@@ -12,10 +12,41 @@ namespace sandglass {
 
 namespace {
 
-void require_node(const Hdf5File& file, const std::string& name, std::int64_t node, std::size_t n_nodes) {
-  if (node >= 0 && node < static_cast<std::int64_t>(n_nodes)) return;
-  throw InputError(fmt::format("{}: {} names node {}; allowed are 0 to {}", file.path().string(), name, node,
-                               n_nodes - 1));
+/// `what`: "node" or "element".
+void require_number(const Hdf5File& file, const std::string& name, std::string_view what, std::int64_t number,
+                    std::size_t count) {
+  if (number >= 0 && number < static_cast<std::int64_t>(count)) return;
+  throw InputError(fmt::format("{}: {} names {} {}; allowed are 0 to {}", file.path().string(), name, what,
+                               number, count - 1));
+}
+
+void write_sets(const std::map<std::string, std::vector<int>>& sets, const std::string& group,
+                Hdf5File& file) {
+  for (const auto& [name, members] : sets) {
+    const std::vector<std::int64_t> ids(members.begin(), members.end());
+    file.write(group + "/" + name, {ids.size()}, std::span<const std::int64_t>(ids));
+  }
+}
+
+/// Sets of `what`, "node" or "element", of which the mesh has `count`.
+std::map<std::string, std::vector<int>> read_sets(const Hdf5File& file, const std::string& group,
+                                                  std::string_view what, std::size_t count) {
+  std::map<std::string, std::vector<int>> sets;
+  for (const auto& name : file.names_in(group)) {
+    const std::string dataset = group + "/" + name;
+    const auto members = file.read_integers(dataset).entries;
+    if (members.size() > count) {
+      throw InputError(fmt::format("{}: {} has {} {}s; allowed are the {} of the mesh, each once",
+                                   file.path().string(), dataset, members.size(), what, count));
+    }
+    auto& set = sets[name];
+    for (const auto member : members) {
+      require_number(file, dataset, what, member, count);
+      set.push_back(static_cast<int>(member));
+    }
+    std::sort(set.begin(), set.end());
+  }
+  return sets;
 }
 
 }  // namespace
@@ -28,9 +59,12 @@ void write_mesh(const Scene& scene, Hdf5File& file) {
   cells.reserve(8 * mesh.cells.size());
   for (const auto& cell : mesh.cells) cells.insert(cells.end(), cell.begin(), cell.end());
   file.write("/mesh/cells", {mesh.cells.size(), 8}, std::span<const std::int64_t>(cells));
-  for (const auto& [name, nodes] : scene.sets) {
-    const std::vector<std::int64_t> ids(nodes.begin(), nodes.end());
-    file.write("/mesh/sets/" + name, {ids.size()}, std::span<const std::int64_t>(ids));
+  write_sets(scene.sets, "/mesh/sets", file);
+  write_sets(scene.element_sets, "/mesh/element_sets", file);
+  if (!scene.materials.of_element.empty()) {
+    const std::vector<std::int64_t> materials(scene.materials.of_element.begin(),
+                                              scene.materials.of_element.end());
+    file.write("/mesh/materials", {materials.size()}, std::span<const std::int64_t>(materials));
   }
   file.write_attribute("/", "case", scene.description.name);
   file.write_attribute("/", "case_hash", scene.case_hash);
@@ -74,7 +108,7 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   result.mesh.points = read_nodal_field(file, "/mesh/points", n_nodes);
   result.mesh.cells.resize(cells.shape[0]);
   for (std::size_t k = 0; k < cells.entries.size(); ++k) {
-    require_node(file, "/mesh/cells", cells.entries[k], n_nodes);
+    require_number(file, "/mesh/cells", "node", cells.entries[k], n_nodes);
     result.mesh.cells[k / 8][k % 8] = static_cast<int>(cells.entries[k]);
   }
   std::vector<bool> used(n_nodes, false);
@@ -85,20 +119,8 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
                     "no mass and must be left out",
                     path.string(), unused - used.begin(), std::count(used.begin(), used.end(), false)));
   }
-  for (const auto& name : file.names_in("/mesh/sets")) {
-    const std::string dataset = "/mesh/sets/" + name;
-    const auto nodes = file.read_integers(dataset).entries;
-    if (nodes.size() > n_nodes) {
-      throw InputError(fmt::format("{}: {} has {} nodes; allowed are the {} of the mesh, each once",
-                                   path.string(), dataset, nodes.size(), n_nodes));
-    }
-    auto& set = result.sets[name];
-    for (const auto node : nodes) {
-      require_node(file, dataset, node, n_nodes);
-      set.push_back(static_cast<int>(node));
-    }
-    std::sort(set.begin(), set.end());
-  }
+  result.sets = read_sets(file, "/mesh/sets", "node", n_nodes);
+  result.element_sets = read_sets(file, "/mesh/element_sets", "element", result.mesh.cells.size());
   return result;
 }
 

@@ -7,17 +7,19 @@
 
 namespace sandglass {
 
-/// Writes mesh, node sets and hashes of a scene: /mesh/points, /mesh/cells, /mesh/sets/NAME. Throws
-/// InputError.
+/// Writes mesh, sets and hashes of a scene: /mesh/points, /mesh/cells, /mesh/sets/NAME,
+/// /mesh/element_sets/NAME and, where there are several, the number of each element's material,
+/// /mesh/materials. Throws InputError.
 void write_mesh_file(const Scene& scene, const std::filesystem::path& path);
 
 /// The same into a file that is being written.
 void write_mesh(const Scene& scene, Hdf5File& file);
 
-/// A mesh and the node sets that came with it.
+/// A mesh and the sets that came with it.
 struct MeshWithSets {
   Mesh mesh;
   NodeSets sets;
+  ElementSets element_sets = {};
 };
 
 /// Reads /mesh of a file. Throws InputError when it is no mesh of hexahedra (shape, node numbers).

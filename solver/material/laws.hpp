@@ -22,6 +22,11 @@ KernelLaw kernel_law(const AnyLaw& law);
 /// The elastic law, or the instantaneous response of a viscoelastic one, behind calls.
 CalledLaw elastic_law(const KernelLaw& law);
 
+/// Whether a law has a memory.
+inline bool is_viscoelastic(const AnyLaw& law) {
+  return std::holds_alternative<Viscoelastic<CalledLaw>>(kernel_law(law));
+}
+
 /// The name of a law chosen at run time.
 inline std::string_view name_of(const AnyLaw& any_law) {
   return std::visit([]<class Law>(const Law&) { return Law::name; }, any_law);

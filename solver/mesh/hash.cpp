@@ -20,7 +20,8 @@ std::string hash_of(std::string_view text) {
   return digits(XXH3_64bits(text.data(), text.size()));
 }
 
-std::string mesh_hash(const Mesh& mesh, const NodeSets& sets) {
+std::string mesh_hash(const Mesh& mesh, const NodeSets& sets,
+                      std::span<const std::uint16_t> material_of_element) {
   // The offset keeps lattice points, which are often multiples of the unit or of its half, away from the
   // limits of rounding.
   const double unit = 1e-7 * diagonal(mesh.points);
@@ -35,6 +36,7 @@ std::string mesh_hash(const Mesh& mesh, const NodeSets& sets) {
     for (const char c : name) words.push_back(c);
     words.insert(words.end(), nodes.begin(), nodes.end());
   }
+  words.insert(words.end(), material_of_element.begin(), material_of_element.end());
   return digits(XXH3_64bits(words.data(), words.size() * sizeof(std::int64_t)));
 }
 

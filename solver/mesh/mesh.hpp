@@ -41,6 +41,9 @@ struct Mesh {
 /// Named sets of nodes, each sorted.
 using NodeSets = std::map<std::string, std::vector<int>>;
 
+/// Named sets of elements, each sorted.
+using ElementSets = std::map<std::string, std::vector<int>>;
+
 /// The rows of a nodal field at the nodes of one element.
 inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& cell) {
   NodalVectors<double> rows;

@@ -34,4 +34,17 @@ std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boun
   return nodes;
 }
 
+std::vector<int> select_elements(const Mesh& mesh, const NodeSetRule& rule) {
+  const double tolerance = 1e-9 * diagonal(mesh.points);
+  std::vector<int> elements;
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    Vector centre{};
+    for (const int node : mesh.cells[e]) {
+      for (std::size_t i = 0; i < 3; ++i) centre[i] += mesh.points[static_cast<std::size_t>(node)][i] / 8.0;
+    }
+    if (selects(rule, centre, tolerance)) elements.push_back(static_cast<int>(e));
+  }
+  return elements;
+}
+
 }  // namespace sandglass

@@ -34,4 +34,8 @@ struct NodeSetRule {
 std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary,
                               const NodeSetRule& rule);
 
+/// The elements whose centres, the means of their nodes, satisfy the conditions of a rule on positions;
+/// sorted.
+std::vector<int> select_elements(const Mesh& mesh, const NodeSetRule& rule);
+
 }  // namespace sandglass

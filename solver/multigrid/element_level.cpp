@@ -48,13 +48,13 @@ class Elements final : public ElementLevel {
     }
   }
 
-  void update(const Rows<float>& u, const ModelModuli& moduli) override {
-    moduli_ = moduli;
+  void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli) override {
     for (std::size_t r = 0; r < present_.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) present_[r][i] = coordinates_[r][i] + u[r][i];
     }
     std::vector<float> bounds(layout_.chunks.size());
-    in_parallel(bounds.size(), threads_, [&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c]); });
+    in_parallel(bounds.size(), threads_,
+                [&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c], moduli); });
     sum_over_chunks(layout_, threads_, numbers_of(stiffness_),
                     [&](std::size_t c) { add_diagonals(layout_.chunks[c]); });
     set_smoother(stiffness_, *std::max_element(bounds.begin(), bounds.end()));
@@ -77,7 +77,7 @@ class Elements final : public ElementLevel {
   double largest_gradient(const Rows<float>& u) const override {
     Number largest(0.0f);
     for (const auto& chunk : layout_.chunks) {
-      for_each_rank(chunk, [&](std::size_t rank, std::size_t face) {
+      for_each_rank(chunk, [&](std::size_t rank, std::size_t face, std::size_t /*material*/) {
         const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), blocks_[rank].body);
         largest = max(largest, double_dot(H, H));
       });
@@ -180,14 +180,14 @@ class Elements final : public ElementLevel {
   template <class Visit>
   void for_each_rank(const Layout::Chunk& chunk, const Visit& visit) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks] = layout_.groups[group];
-      for (std::size_t k = 0; k < ranks; ++k) visit(first_rank + k, first_face + k);
+      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
+      for (std::size_t k = 0; k < ranks; ++k) visit(first_rank + k, first_face + k, material);
     }
   }
 
   [[gnu::flatten]] void apply_to(const Layout::Chunk& chunk, const MixedVector& x, MixedVector& y) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks] = layout_.groups[group];
+      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
       auto lower = gather_face_modes<Number>(x.u, layout_, first_face);
       FaceModes<Number> carried{};
       for (std::size_t k = 0; k < ranks; ++k) {
@@ -210,7 +210,7 @@ class Elements final : public ElementLevel {
   [[gnu::flatten]] void diverge(const Layout::Chunk& chunk, const Rows<float>& u,
                                 std::vector<float>& g) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks] = layout_.groups[group];
+      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
       auto lower = gather_face_modes<Number>(u, layout_, first_face);
       for (std::size_t k = 0; k < ranks; ++k) {
         const Block& block = blocks_[first_rank + k];
@@ -229,7 +229,7 @@ class Elements final : public ElementLevel {
   [[gnu::flatten]] void add_gradients(const Layout::Chunk& chunk, const std::vector<float>& p,
                                       Rows<float>& f) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks] = layout_.groups[group];
+      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
       FaceModes<Number> carried{};
       for (std::size_t k = 0; k < ranks; ++k) {
         const Block& block = blocks_[first_rank + k];
@@ -270,18 +270,20 @@ class Elements final : public ElementLevel {
     return largest;
   }
 
-  [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk) {
+  [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk, const std::vector<ModelModuli>& moduli) {
     Number largest(1.0f);
-    const Number mu(static_cast<float>(moduli_.mu)), hourglass(static_cast<float>(moduli_.hourglass));
-    for_each_rank(chunk, [&](std::size_t rank, std::size_t face) {
+    for_each_rank(chunk, [&](std::size_t rank, std::size_t face, std::size_t material) {
+      const auto mu = static_cast<float>(moduli[material].mu),
+                 lambda = static_cast<float>(moduli[material].lambda);
       const Modes<Number> x = modes_of(present_, face);
       const auto reference = OnePoint::geometry(modes_of(coordinates_, face));
       const Tensor<Number> F_inverse = inverse(OnePoint::mean_gradient(x, reference));
       Block& block = blocks_[rank];
       block.body = OnePoint::geometry(x);
-      block.stress = Number(2.0f) * mu * reference.V;
+      block.stress = Number(2.0f * mu) * reference.V;
       // eq. 12; |h|^2 by nodes is eight times that by modes
-      block.hourglass = hourglass * reference.V * double_dot(block.body.h, block.body.h);
+      block.hourglass = Number(static_cast<float>(moduli[material].hourglass)) * reference.V *
+                        double_dot(block.body.h, block.body.h);
       largest = max(largest, eigenvalue_bound(block));
       for (int lane = 0; lane < W; ++lane) {
         const std::size_t cell = rank * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
@@ -291,14 +293,16 @@ class Elements final : public ElementLevel {
           tangent.inverse[n] = Lanes<Number>::get(F_inverse.entries[n], lane);
         tangent.volume = Lanes<Number>::get(reference.V, lane);
         tangent.jacobian = Lanes<Number>::get(block.body.V, lane) / tangent.volume;
-        compliance_[cell] = tangent.volume / static_cast<float>(moduli_.lambda);
+        tangent.mu = mu;
+        tangent.lambda = lambda;
+        compliance_[cell] = tangent.volume / lambda;
       }
     });
     return 1.05f * largest_lane(largest);
   }
 
   [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
-    for_each_rank(chunk, [&](std::size_t rank, std::size_t face) {
+    for_each_rank(chunk, [&](std::size_t rank, std::size_t face, std::size_t /*material*/) {
       const NodalVectors<Number> g = nodal_gradients(blocks_[rank]);
       for (std::size_t I = 0; I < 8; ++I) {
         const Triple<Number> D = diagonal(blocks_[rank], g, static_cast<int>(I));

@@ -19,6 +19,7 @@ struct ElementTangent {
   std::array<float, 9> inverse;  ///< F^-1 by rows
   float volume;                  ///< reference volume, m^3
   float jacobian;                ///< det F
+  float mu, lambda;              ///< of the material, Pa
 };
 
 /// The finest level, in single precision as all levels: every element as a one-point hexahedron in the
@@ -28,8 +29,9 @@ class ElementLevel : public SaddleLevel {
  public:
   using SaddleLevel::SaddleLevel;
 
-  /// Takes the configuration with displacements u (m), in which no element may be inverted, and moduli.
-  virtual void update(const Rows<float>& u, const ModelModuli& moduli) = 0;
+  /// Takes the configuration with displacements u (m), in which no element may be inverted, and the moduli of
+  /// each material.
+  virtual void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli) = 0;
 
   /// The largest norm of an element's gradient of displacements u, in the present configuration.
   virtual double largest_gradient(const Rows<float>& u) const = 0;
@@ -40,14 +42,10 @@ class ElementLevel : public SaddleLevel {
   /// The tangents of the elements by cell.
   const std::vector<ElementTangent>& tangents() const { return tangents_; }
 
-  /// The moduli of the last update.
-  const ModelModuli& moduli() const { return moduli_; }
-
   /// The diagonal of A on constrained components too, N/m.
   const Rows<float>& stiffness() const { return stiffness_; }
 
  protected:
-  ModelModuli moduli_{};
   std::vector<std::size_t> cells_;
   std::vector<ElementTangent> tangents_;
   Rows<float> stiffness_;

@@ -104,22 +104,20 @@ void ElementTransfer::gather() {
 }
 
 BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
-  const auto mu = static_cast<float>(elements_.moduli().mu),
-             lambda = static_cast<float>(elements_.moduli().lambda);
   BoxProblem problem{};
-  std::array<float, 576> T{};  // integral of the products of gradients
+  std::array<float, 576> T{};  // integral of mu times the products of gradients
   for (const auto& [cell, share, local] : contents.samples) {
     const ElementTangent& tangent = elements_.tangents()[cell];
     const float volume = share * tangent.volume;
     const std::array<float, 24> g = pushed_forward(gradients(local, grid_.grid().size), tangent);
     for (std::size_t m = 0; m < 24; ++m) {
-      const float Vg = volume * g[m];
+      const float Vg = volume * g[m], mu_Vg = tangent.mu * Vg;
       float* row = T.data() + 24 * m;
 #pragma omp simd
-      for (std::size_t n = 0; n < 24; ++n) row[n] += Vg * g[n];
+      for (std::size_t n = 0; n < 24; ++n) row[n] += mu_Vg * g[n];
       problem.B[m] += tangent.jacobian * Vg;
     }
-    problem.C += volume / lambda;
+    problem.C += volume / tangent.lambda;
   }
   // 2 mu sym(grad u) : sym(grad v)
   for (std::size_t a = 0; a < 8; ++a) {
@@ -128,8 +126,8 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
       const float scalar = product(0, 0) + product(1, 1) + product(2, 2);
       for (std::size_t i = 0; i < 3; ++i) {
         float* row = &problem.A[24 * (3 * a + i) + 3 * b];
-        for (std::size_t j = 0; j < 3; ++j) row[j] += mu * product(j, i);
-        row[i] += mu * scalar;
+        for (std::size_t j = 0; j < 3; ++j) row[j] += product(j, i);
+        row[i] += scalar;
       }
     }
   }

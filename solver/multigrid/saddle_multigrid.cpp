@@ -40,7 +40,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Layout& layout, const R
   }
 }
 
-void SaddleMultigrid::update(const Rows<float>& u, const ModelModuli& moduli) {
+void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli>& moduli) {
   elements_->update(u, moduli);
   to_grid_->gather();
   for (Stage& stage : stages_) {

@@ -13,8 +13,9 @@ class SaddleMultigrid {
   /// `free` is 1, or 0 on constrained components and spare rows; `update` must follow.
   SaddleMultigrid(const Mesh& mesh, const Layout& layout, const Rows<float>& free, int threads);
 
-  /// Takes the configuration with displacements u, rows of the layout (m); no element may be inverted.
-  void update(const Rows<float>& u, const ModelModuli& moduli);
+  /// Takes the configuration with displacements u, rows of the layout (m), in which no element may be
+  /// inverted, and the moduli of each material.
+  void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli);
 
   /// x = an approximate solution for b: linear in b and symmetric, without the pressures positive.
   void cycle(const MixedVector& b, MixedVector& x);

@@ -42,8 +42,12 @@ std::string case_hash(const Case& description) {
   } else {
     text += "file";  // its content is in the mesh hash
   }
-  text += std::visit([](const auto& law) { return described(law); }, description.law);
+  for (const auto& material : description.materials) {
+    text += std::visit([](const auto& law) { return described(law); }, material.law);
+    if (description.materials.size() > 1) text += fmt::format("of({})", material.elements);
+  }
   for (const auto& rule : description.sets) text += described(rule);
+  for (const auto& rule : description.element_sets) text += "elements " + described(rule);
   for (const auto& imposed : description.displacements) {
     text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);
   }

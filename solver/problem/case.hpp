@@ -8,7 +8,7 @@
 
 #include "assembly/internal_force.hpp"
 #include "element/hourglass_settings.hpp"
-#include "material/laws.hpp"
+#include "material/materials.hpp"
 #include "mesh/generators.hpp"
 #include "mesh/node_set.hpp"
 #include "problem/settings.hpp"
@@ -18,6 +18,11 @@ namespace sandglass {
 /// A mesh read from a file, as `sandglass mesh` writes it.
 struct MeshFile {
   std::filesystem::path path;
+};
+
+/// A material and the elements that are made of it.
+struct CaseMaterial : Material {
+  std::string elements = {};  ///< an element set; empty: all elements that no other material names
 };
 
 /// Displacements imposed on a node set; they follow the loading curve.
@@ -62,9 +67,9 @@ struct Case {
   std::string requirement;
   bool quasi_static = true;  ///< else dynamic
   std::variant<AnyGenerator, MeshFile> mesh;
-  AnyLaw law;
-  double density = 0.0;  ///< kg/m^3
+  std::vector<CaseMaterial> materials = std::vector<CaseMaterial>(1);
   std::vector<NodeSetRule> sets;
+  std::vector<NodeSetRule> element_sets;  ///< for the centres of elements
   std::vector<ImposedDisplacement> displacements;
   std::vector<ImposedRotation> rotations;
   std::vector<ImposedForce> forces;
@@ -74,8 +79,8 @@ struct Case {
   std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
 };
 
-/// A hash of what decides the static answer: mesh recipe, law, node sets, imposed displacements,
-/// rotations and forces. Method, settings and words do not enter.
+/// A hash of what decides the static answer: mesh recipe, laws, sets, imposed displacements, rotations and
+/// forces. Method, settings and words do not enter.
 std::string case_hash(const Case& description);
 
 /// Multiplies imposed displacements, angles, forces and moments by `factor`.

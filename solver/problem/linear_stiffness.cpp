@@ -27,18 +27,20 @@ void for_each_stiffness(const Model& model,
   const Mesh& mesh = model.scene().mesh;
   with_named_type(Methods{}, choice.method, [&]<class Method>() {
     if constexpr (is_linear<Method>) {
-      std::visit(
-          [&]<class Law>(const Law& law) {
-            if constexpr (knows_law<Method, Law>) {  // others were refused when the model was made
-              using Kernel = NodalForm<FormulationOf<Method, Law>>;
-              const HourglassSettings settings{.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
-              for (const auto& cell : mesh.cells) {
+      const HourglassSettings settings{.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
+      const Materials& materials = model.scene().materials;
+      for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+        const Hexahedron& cell = mesh.cells[e];
+        std::visit(
+            [&]<class Law>(const Law& law) {
+              if constexpr (knows_law<Method, Law>) {  // others were refused when the model was made
+                using Kernel = NodalForm<FormulationOf<Method, Law>>;
                 const auto element = Kernel::precompute(gather(mesh.points, cell), law, settings);
                 visit(cell, stiffness_of<Kernel>(element, law));
               }
-            }
-          },
-          model.scene().description.law);
+            },
+            materials.list[materials.of(e)].law);
+      }
     } else {
       throw InputError(fmt::format("method '{}' has no constant stiffness; allowed: the linear methods, '{}'",
                                    Method::name, LinearPerturbation::name));

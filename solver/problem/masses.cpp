@@ -4,11 +4,12 @@
 
 namespace sandglass {
 
-std::vector<double> element_masses(const Mesh& mesh, double density) {
+std::vector<double> element_masses(const Mesh& mesh, const Materials& materials) {
   std::vector<double> masses;
   masses.reserve(mesh.cells.size());
-  for (const auto& cell : mesh.cells) {
-    masses.push_back(density * mean_gradient(gather(mesh.points, cell)).volume);
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    const double density = materials.list[materials.of(e)].density;
+    masses.push_back(density * mean_gradient(gather(mesh.points, mesh.cells[e])).volume);
   }
   return masses;
 }

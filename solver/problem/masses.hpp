@@ -2,12 +2,13 @@
 
 #include <vector>
 
+#include "material/materials.hpp"
 #include "mesh/mesh.hpp"
 
 namespace sandglass {
 
 /// Mass of each element, kg.
-std::vector<double> element_masses(const Mesh& mesh, double density);
+std::vector<double> element_masses(const Mesh& mesh, const Materials& materials);
 
 /// Lumped masses of the nodes (kg): an eighth of each element's mass at each of its nodes.
 std::vector<double> lumped_masses(const Mesh& mesh, const std::vector<double>& element_masses);

@@ -7,9 +7,8 @@ namespace sandglass {
 Model::Model(const Scene& scene, MethodChoice choice)
     : scene_(scene),
       choice_(std::move(choice)),
-      internal_force_(
-          make_internal_force(scene.mesh, scene.description.law, choice_, scene.description.density)),
-      element_masses_(sandglass::element_masses(scene.mesh, scene.description.density)),
+      internal_force_(make_internal_force(scene.mesh, scene.materials, choice_)),
+      element_masses_(sandglass::element_masses(scene.mesh, scene.materials)),
       masses_(lumped_masses(scene.mesh, element_masses_)) {}
 
 NodalField internal_forces(const Model& model, const NodalField& u) {

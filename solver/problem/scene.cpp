@@ -19,9 +19,9 @@ namespace sandglass {
 
 namespace {
 
-std::vector<std::string> names(const NodeSets& sets) {
+std::vector<std::string> names(const std::map<std::string, std::vector<int>>& sets) {
   std::vector<std::string> known;
-  for (const auto& [name, nodes] : sets) known.push_back(name);
+  for (const auto& [name, members] : sets) known.push_back(name);
   return known;
 }
 
@@ -167,10 +167,71 @@ std::vector<NodalLoad> make_loads(const Case& description, const Mesh& mesh, con
   return loads;
 }
 
+/// The elements of a set that a material names. Throws InputError if there is no such set or no element in
+/// it.
+const std::vector<int>& element_set(const Scene& scene, const std::string& name) {
+  const std::string file = scene.description.file.string();
+  const auto found = scene.element_sets.find(name);
+  if (found == scene.element_sets.end()) {
+    const auto known = names(scene.element_sets);
+    throw InputError(fmt::format(
+        "{}: materials.elements = '{}' is not an element set of this case{}", file, name,
+        known.empty()
+            ? ", which has none: [element_sets] gives rules for them, a mesh from a file brings its "
+              "physical volumes (Gmsh), ELSETs (Abaqus) or cell arrays (VTK)"
+            : "; " + suggestion(name, known)));
+  }
+  if (found->second.empty()) {
+    throw InputError(
+        fmt::format("{}: materials.elements = '{}' has no element in the mesh; a material needs at "
+                    "least one",
+                    file, name));
+  }
+  return found->second;
+}
+
+/// The materials of a case, each element with one.
+Materials make_materials(const Scene& scene) {
+  const auto& regions = scene.description.materials;
+  Materials materials;
+  for (const auto& region : regions) materials.list.push_back(region);
+  if (regions.size() == 1 && regions.front().elements.empty()) return materials;
+  constexpr std::uint16_t none = 0xffff;
+  std::uint16_t other = none;
+  auto& of_element = materials.of_element;
+  of_element.assign(scene.mesh.cells.size(), none);
+  for (std::uint16_t m = 0; m < regions.size(); ++m) {
+    const std::string& name = regions[m].elements;
+    if (name.empty()) {
+      other = m;
+      continue;
+    }
+    for (const int e : element_set(scene, name)) {
+      std::uint16_t& material = of_element[static_cast<std::size_t>(e)];
+      if (material != none) {
+        throw InputError(fmt::format("{}: element {} is in '{}' and in '{}'; an element has one material",
+                                     scene.description.file.string(), e, regions[material].elements, name));
+      }
+      material = m;
+    }
+  }
+  const auto left = std::count(of_element.begin(), of_element.end(), none);
+  if (left > 0 && other == none) {
+    throw InputError(
+        fmt::format("{}: materials: {} of the {} elements have none, the first is element {}; one "
+                    "of [[materials]] may leave out its elements and be that of all others",
+                    scene.description.file.string(), left, of_element.size(),
+                    std::find(of_element.begin(), of_element.end(), none) - of_element.begin()));
+  }
+  std::replace(of_element.begin(), of_element.end(), none, other);
+  return materials;
+}
+
 /// The sum of all initial velocities at each node; empty where a case has none.
-NodalField make_initial_velocities(const Case& description, const Mesh& mesh, const NodeSets& sets) {
+NodalField make_initial_velocities(const Case& description, const Mesh& mesh, const NodeSets& sets,
+                                   const Materials& materials) {
   if (description.velocities.empty()) return {};
-  const auto masses = lumped_masses(mesh, element_masses(mesh, description.density));
+  const auto masses = lumped_masses(mesh, element_masses(mesh, materials));
   std::vector<int> body(mesh.points.size());
   std::iota(body.begin(), body.end(), 0);
   NodalField sums(mesh.points.size());
@@ -219,10 +280,12 @@ Mesh generate_mesh(const AnyGenerator& generator) {
   return std::visit([](const auto& g) { return g.build(); }, generator);
 }
 
-Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file) {
+Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets element_sets_of_file) {
   Scene scene{.description = std::move(description),
               .mesh = std::move(mesh),
               .sets = std::move(sets_of_file),
+              .element_sets = std::move(element_sets_of_file),
+              .materials = {},
               .constraints = {},
               .angles = {0.0},
               .loads = {},
@@ -245,11 +308,16 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file) {
     }
     scene.sets[rule.name] = std::move(nodes);
   }
+  for (const auto& rule : scene.description.element_sets) {
+    scene.element_sets[rule.name] = select_elements(scene.mesh, rule);
+  }
+  scene.materials = make_materials(scene);
   scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
   scene.loads = make_loads(scene.description, scene.mesh, scene.sets);
-  scene.initial_velocities = make_initial_velocities(scene.description, scene.mesh, scene.sets);
+  scene.initial_velocities =
+      make_initial_velocities(scene.description, scene.mesh, scene.sets, scene.materials);
   scene.case_hash = case_hash(scene.description);
-  scene.mesh_hash = mesh_hash(scene.mesh, scene.sets);
+  scene.mesh_hash = mesh_hash(scene.mesh, scene.sets, scene.materials.of_element);
   return scene;
 }
 

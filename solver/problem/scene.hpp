@@ -16,11 +16,13 @@ struct Constraint {
   ImposedPath path;
 };
 
-/// The mesh of a case with its node sets; shared by all methods.
+/// The mesh of a case with its sets and materials; shared by all methods.
 struct Scene {
   Case description;
   Mesh mesh;
   NodeSets sets;
+  ElementSets element_sets;
+  Materials materials;
   std::vector<Constraint> constraints;  ///< sorted by node, then component
   std::vector<double> angles;           ///< rad, of paths; the first is zero, for those that do not turn
   std::vector<NodalLoad> loads;         ///< final forces, sorted by node
@@ -29,11 +31,12 @@ struct Scene {
   std::string mesh_hash;
 };
 
-/// Node sets by their rules, constraints from the imposed displacements and rotations, loads from the imposed
-/// forces, initial velocities. Throws InputError for an inverted element, an empty set, a node to which two
-/// different paths are imposed, a force on a set without boundary faces, and a wave along an axis on which
-/// its set has no extent.
-Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {});
+/// Sets by their rules, materials of the elements, constraints from the imposed displacements and rotations,
+/// loads from the imposed forces, initial velocities. Throws InputError for an inverted element, an empty
+/// set, an element that has no material or two, a node to which two different paths are imposed, a force on a
+/// set without boundary faces, and a wave along an axis on which its set has no extent.
+Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {},
+                 ElementSets element_sets_of_file = {});
 
 /// The mesh of a case whose mesh comes from a generator.
 Mesh generate_mesh(const AnyGenerator& generator);

@@ -13,10 +13,12 @@ namespace {
 /// For each node 1 / (mu sum over elements of the integral of |grad N|^2), in m/N; 0 for a node without
 /// elements.
 std::vector<double> nodal_mobilities(const Scene& scene) {
-  const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, scene.description.law);
+  const std::vector<double> moduli = shear_moduli(scene.materials);
   std::vector<double> stiffness(scene.mesh.points.size(), 0.0);
-  for (const auto& cell : scene.mesh.cells) {
+  for (std::size_t e = 0; e < scene.mesh.cells.size(); ++e) {
+    const Hexahedron& cell = scene.mesh.cells[e];
     const auto X = gather(scene.mesh.points, cell);
+    const double mu = moduli[scene.materials.of(e)];
     for (const auto& xi : gauss_points()) {
       const PointGradient point = point_gradient(X, xi);
       for (int I = 0; I < 8; ++I) {

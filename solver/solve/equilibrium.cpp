@@ -163,11 +163,8 @@ bool Equilibrium<Real>::multiplied() {
     return accelerated();
   }
   if (progress_.take(mixed_.norm(), multiplied_patience)) {
-    const double lambda = mixed_.moduli().lambda, penalty = penalty_over_shear * mixed_.moduli().mu;
-    const double left = penalty * lambda / (lambda + penalty);  // of lambda
-    typename MixedBody<Real>::Multipliers multipliers{pressures(), lambda - left};
-    for (Real& m : multipliers.pressures) m *= static_cast<Real>(lambda / (lambda + penalty));
-    if (body().healthy()) mixed_.linearize(left);
+    const auto multipliers = mixed_.multipliers(penalty_over_shear);
+    if (body().healthy()) mixed_.linearize(multipliers.penalty);
     if (newton_step(mixed_, &multipliers, most_products_with_multipliers)) {
       mixed_.take_pressures(multipliers);
       begin();

@@ -13,14 +13,19 @@ namespace sandglass {
 
 /// A load factor so small that no element inverts wherever the load acts. Driven nodes move by at most a
 /// hundredth of the smallest element's size h; and a cantilever as long as the mesh and as thick as that
-/// element, with the shear modulus for E, would rotate by about a hundredth under the sum F of the imposed
-/// forces, by F l^2 / (2 E I) with I = h^4 / 12, where moments count as forces at the end of l.
+/// element, with the smallest shear modulus for E, would rotate by about a hundredth under the sum F of the
+/// imposed forces, by F l^2 / (2 E I) with I = h^4 / 12, where moments count as forces at the end of l.
 inline double first_load(const Model& model) {
   const Scene& scene = model.scene();
-  const auto& masses = model.element_masses();
-  const double h = std::cbrt(*std::min_element(masses.begin(), masses.end()) / scene.description.density);
+  double smallest = INFINITY;  // volume
+  for (std::size_t e = 0; e < scene.mesh.cells.size(); ++e) {
+    const Material& material = scene.materials.list[scene.materials.of(e)];
+    smallest = std::min(smallest, model.element_masses()[e] / material.density);
+  }
+  const double h = std::cbrt(smallest);
   const double l = diagonal(scene.mesh.points);
-  const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, scene.description.law);
+  const std::vector<double> moduli = shear_moduli(scene.materials);
+  const double mu = *std::min_element(moduli.begin(), moduli.end());
   double F = 0.0;
   for (const auto& [set, total, moment] : scene.description.forces) {
     F += std::hypot(total[0], total[1], total[2]) + std::hypot(moment[0], moment[1], moment[2]) / l;

@@ -19,22 +19,21 @@ constexpr double hardly_changed = 0.1;
 /// element. In shares of E/9.
 constexpr double strongest_control = 2.0, strongest_resistance = 16.0;
 
-/// Of the undeformed law and of the method's control.
-ModelModuli moduli_of(const Model& model) {
+/// Of the undeformed laws and of the method's control.
+std::vector<ModelModuli> moduli_of(const Model& model) {
   const MethodChoice& choice = model.choice();
   const MethodEntry& method = method_named(choice.method);
   HourglassSettings settings;
   if (method.kappa_affects_equilibrium)
     settings = {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
-  return std::visit(
-      [&](const auto& law) {
-        const double lambda = lame_lambda(law), unit = young_modulus(law) / 9.0;
-        const double control =
-            std::min(PerturbationStiffness::modulus(law, settings), strongest_control * unit);
-        const double resistance = std::min(unit + lambda / 9.0, strongest_resistance * unit);
-        return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control};
-      },
-      model.scene().description.law);
+  const auto moduli = [&](const auto& law) {
+    const double lambda = lame_lambda(law), unit = young_modulus(law) / 9.0;
+    const double control = std::min(PerturbationStiffness::modulus(law, settings), strongest_control * unit);
+    const double resistance = std::min(unit + lambda / 9.0, strongest_resistance * unit);
+    return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control};
+  };
+  return by_material(model.scene().materials,
+                     [&](const Material& material) { return std::visit(moduli, material.law); });
 }
 
 }  // namespace
@@ -43,7 +42,9 @@ template <class Real>
 MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elements)
     : elements_(elements),
       body_(model, elements),
+      materials_(model.scene().materials),
       moduli_(moduli_of(model)),
+      lambdas_(lame_lambdas(materials_)),
       linear_(method_named(model.choice().method).is_linear),
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
@@ -57,9 +58,9 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       b_(weights_) {}
 
 template <class Real>
-void MixedBody<Real>::linearize(double lambda) {
+void MixedBody<Real>::linearize(double penalty) {
   Rows<float> u = linear_ ? Rows<float>(free_.size()) : rounded_rows<float>(body_.state().u);
-  if (lambda == linearized_lambda_) {
+  if (penalty == linearized_penalty_) {
     if (!linearized_) update_multigrid();
     Rows<float> change = u;
     for (std::size_t row = 0; row < change.size(); ++row) {
@@ -68,14 +69,38 @@ void MixedBody<Real>::linearize(double lambda) {
     if (multigrid_.elements().largest_gradient(change) < hardly_changed) return;
   }
   linearized_at_ = std::move(u);
-  linearized_lambda_ = lambda;
+  linearized_penalty_ = penalty;
   update_multigrid();
 }
 
 template <class Real>
 void MixedBody<Real>::update_multigrid() {
-  multigrid_.update(linearized_at_, {linearized_lambda_, moduli_.mu, moduli_.hourglass});
+  std::vector<ModelModuli> moduli = moduli_;
+  const std::vector<double> lambdas = remaining(linearized_penalty_);
+  for (std::size_t m = 0; m < moduli.size(); ++m) moduli[m].lambda = lambdas[m];
+  multigrid_.update(linearized_at_, moduli);
   linearized_ = true;
+}
+
+template <class Real>
+std::vector<double> MixedBody<Real>::remaining(double penalty) const {
+  std::vector<double> lambdas = lambdas_;
+  for (std::size_t m = 0; m < lambdas.size(); ++m) {
+    if (penalty < INFINITY) lambdas[m] = 1.0 / (1.0 / lambdas[m] + 1.0 / (penalty * moduli_[m].mu));
+  }
+  return lambdas;
+}
+
+template <class Real>
+auto MixedBody<Real>::multipliers(double penalty) const -> Multipliers {
+  const std::vector<double> left = remaining(penalty);
+  Multipliers multipliers{p_, penalty, lambdas_};
+  for (std::size_t m = 0; m < left.size(); ++m) multipliers.given_up[m] -= left[m];
+  for (std::size_t e = 0; e < p_.size(); ++e) {
+    const std::size_t m = materials_.of(e);
+    multipliers.pressures[e] *= static_cast<Real>(multipliers.given_up[m] / lambdas_[m]);
+  }
+  return multipliers;
 }
 
 template <class Real>
@@ -85,7 +110,7 @@ void MixedBody<Real>::weigh() {
     for (std::size_t i = 0; i < 3; ++i) weights_.u[row][i] = std::sqrt(diagonal[row][i]);
   }
   for (std::size_t e = 0; e < p_.size(); ++e) {
-    weights_.p[cell(e)] = static_cast<float>(std::sqrt(moduli_.mu / volume(e)));
+    weights_.p[cell(e)] = static_cast<float>(std::sqrt(moduli_[materials_.of(e)].mu / volume(e)));
   }
 }
 
@@ -99,7 +124,7 @@ void MixedBody<Real>::evaluate() {
 
 template <class Real>
 void MixedBody<Real>::compare() {
-  elements_.replace_pressures(body_.state(), p_, moduli_.lambda, pressure_force_, defect_);
+  elements_.replace_pressures(body_.state(), p_, lambdas_, pressure_force_, defect_);
   const Real *f = numbers_of(body_.free_forces()), *g = numbers_of(pressure_force_),
              *free = numbers_of(free_);
   const float* w = numbers_of(weights_.u);
@@ -160,9 +185,9 @@ void MixedBody<Real>::move(const MixedVector& step, double share) {
 template <class Real>
 void MixedBody<Real>::take_own_pressures() {
   std::fill(p_.begin(), p_.end(), Real(0));
-  elements_.replace_pressures(body_.state(), p_, moduli_.lambda, pressure_force_, defect_);
+  elements_.replace_pressures(body_.state(), p_, lambdas_, pressure_force_, defect_);
   for (std::size_t e = 0; e < p_.size(); ++e) {
-    p_[e] = static_cast<Real>(moduli_.lambda * static_cast<double>(defect_[e]) / volume(e));
+    p_[e] = static_cast<Real>(lambda(e) * static_cast<double>(defect_[e]) / volume(e));
   }
 }
 
@@ -187,8 +212,8 @@ double MixedBody<Real>::potential(const Multipliers* multipliers) const {
   if (multipliers == nullptr) return sum;
   for (std::size_t e = 0; e < p_.size(); ++e) {
     const auto m = static_cast<double>(multipliers->pressures[e]);
-    const double change = static_cast<double>(defect_[e]) / volume(e) + m / multipliers->given_up;  // J - 1
-    sum += volume(e) * (m * change - 0.5 * multipliers->given_up * change * change);
+    const double change = volume_change(e, *multipliers);
+    sum += volume(e) * change * (m - 0.5 * multipliers->given_up[materials_.of(e)] * change);
   }
   return sum;
 }
@@ -197,8 +222,8 @@ template <class Real>
 void MixedBody<Real>::take_pressures(const Multipliers& multipliers) {
   for (std::size_t e = 0; e < p_.size(); ++e) {
     const auto m = static_cast<double>(multipliers.pressures[e]);
-    const double change = static_cast<double>(defect_[e]) / volume(e) + m / multipliers.given_up;
-    p_[e] = static_cast<Real>(m + (moduli_.lambda - multipliers.given_up) * change);
+    const double left = lambda(e) - multipliers.given_up[materials_.of(e)];
+    p_[e] = static_cast<Real>(m + left * volume_change(e, multipliers));
   }
 }
 

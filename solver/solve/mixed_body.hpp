@@ -34,10 +34,10 @@ class MixedBody {
 
   /// Adapts the multigrid method to the present configuration, unless that has hardly changed since the last
   /// time; no element may be inverted.
-  void linearize() { linearize(moduli_.lambda); }
+  void linearize() { linearize(INFINITY); }
 
-  /// The same with another lambda, Pa.
-  void linearize(double lambda);
+  /// The same where volume changes are resisted as with multipliers of this penalty.
+  void linearize(double penalty);
 
   /// Sets the weights of the residuals, by which both have the unit of a root of energy, from the last
   /// configuration linearized.
@@ -70,12 +70,17 @@ class MixedBody {
   /// Sets the pressures to those that belong to the displacements, lambda (J - 1).
   void take_own_pressures();
 
-  /// Instead of an element's own resistance to volume changes, lambda (J - 1), one that is lower by
-  /// `given_up`, and a constant pressure: the forces of an augmented Lagrangian.
+  /// Instead of an element's own resistance to volume changes, lambda (J - 1), a constant pressure and
+  /// what remains of lambda with a penalty of so many shear moduli beside it: 1 / (1 / lambda + 1 / penalty).
+  /// The forces are those of an augmented Lagrangian.
   struct Multipliers {
-    std::vector<Real> pressures;  ///< of elements, Pa
-    double given_up;              ///< Pa
+    std::vector<Real> pressures;   ///< of elements, Pa
+    double penalty;                ///< in shear moduli
+    std::vector<double> given_up;  ///< of lambda, by material, Pa
   };
+
+  /// Multipliers that leave the forces at the present pressures as they are.
+  Multipliers multipliers(double penalty) const;
 
   /// Sets `f` to the forces (N) with multipliers, zero on constrained components; null: to the body's own.
   void evaluate(const Multipliers* multipliers, Rows<Real>& f);
@@ -90,8 +95,6 @@ class MixedBody {
   SaddleMultigrid& multigrid() { return multigrid_; }
   const SaddleMultigrid& multigrid() const { return multigrid_; }
 
-  const ModelModuli& moduli() const { return moduli_; }
-
   /// 1, or 0 on constrained components and in spare rows.
   const Rows<Real>& free() const { return free_; }
 
@@ -103,7 +106,7 @@ class MixedBody {
   void keep(Archive& archive) {
     archive("evaluations", evaluations_);
     archive("linearized at", linearized_at_);
-    archive("linearized with lambda", linearized_lambda_);
+    archive("linearized with a penalty", linearized_penalty_);
     linearized_ = false;
     body_.keep(archive);
   }
@@ -113,18 +116,31 @@ class MixedBody {
     return static_cast<double>(multigrid_.elements().tangents()[cell(element)].volume);
   }
   void update_multigrid();
+
+  /// What remains of lambda (Pa) with a penalty, by material.
+  std::vector<double> remaining(double penalty) const;
+  double lambda(std::size_t element) const { return moduli_[materials_.of(element)].lambda; }
+
+  /// J - 1 of an element from its defect with multipliers.
+  double volume_change(std::size_t element, const Multipliers& multipliers) const {
+    return static_cast<double>(defect_[element]) / volume(element) +
+           static_cast<double>(multipliers.pressures[element]) / multipliers.given_up[materials_.of(element)];
+  }
+
   std::size_t cell(std::size_t element) const { return multigrid_.elements().cells()[element]; }
 
   const InternalForce<Real>& elements_;
   Body<Real> body_;
-  ModelModuli moduli_;
+  const Materials& materials_;
+  std::vector<ModelModuli> moduli_;  // of each material
+  std::vector<double> lambdas_;      // Pa
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;
   SaddleMultigrid multigrid_;
-  Rows<float> linearized_at_;       // m
-  double linearized_lambda_ = 0.0;  // Pa; zero before the first time
-  bool linearized_ = false;         // whether the multigrid method is that of these two
+  Rows<float> linearized_at_;        // m
+  double linearized_penalty_ = 0.0;  // zero before the first time
+  bool linearized_ = false;          // whether the multigrid method is that of these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
   Rows<Real> pressure_force_;

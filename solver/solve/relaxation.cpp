@@ -27,6 +27,7 @@ class Search {
         settings_(model.scene().description.relaxation),
         most_evaluations_(without_stiffness(model) ? std::min(few_evaluations, settings_.max_steps)
                                                    : settings_.max_steps),
+        amplification_(largest_amplification(model.scene().materials)),
         observer_(observer),
         equilibrium_(model, elements),
         adaption_(model, equilibrium_.body()),
@@ -78,6 +79,14 @@ class Search {
     return !method.controls_hourglass || method.damps_only;
   }
 
+  /// The largest lambda / mu of the materials.
+  static double largest_amplification(const Materials& materials) {
+    const std::vector<double> lambdas = lame_lambdas(materials), moduli = shear_moduli(materials);
+    double largest = 0.0;
+    for (std::size_t m = 0; m < moduli.size(); ++m) largest = std::max(largest, lambdas[m] / moduli[m]);
+    return largest;
+  }
+
   static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
 
   Body<Real>& body() { return equilibrium_.body(); }
@@ -110,7 +119,7 @@ class Search {
   /// element inverted. A search that stagnates starts once more, without the roundoff of its earlier steps.
   bool solve() {
     first_evaluation_ = equilibrium_.evaluations();
-    Stagnation stagnation(epsilon);
+    Stagnation stagnation(epsilon, amplification_);
     int stagnations = 0;
     equilibrium_.start(load_levels_.effort());
     while (!arrived() || settle()) {
@@ -123,7 +132,7 @@ class Search {
         if (!settle()) break;
         stagnations = 0;
       }
-      stagnation = Stagnation(epsilon);
+      stagnation = Stagnation(epsilon, amplification_);
       equilibrium_.start(load_levels_.effort());
     }
     result_.stagnated = !arrived();
@@ -223,6 +232,7 @@ class Search {
   const Model& model_;
   const RelaxationSettings& settings_;
   int most_evaluations_;
+  double amplification_;
   Observer& observer_;
   Equilibrium<Real> equilibrium_;
   Adaption<Real> adaption_;

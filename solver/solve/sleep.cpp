@@ -46,12 +46,19 @@ Scene scene_of(const Scene& whole, const MeshPart& part) {
   Scene scene = {.description = whole.description,
                  .mesh = part.mesh,
                  .sets = {},
+                 .element_sets = {},
+                 .materials = {whole.materials.list},
                  .constraints = {},
                  .angles = whole.angles,
                  .loads = {},
                  .initial_velocities = {},
                  .case_hash = whole.case_hash,
                  .mesh_hash = whole.mesh_hash};
+  if (!whole.materials.of_element.empty()) {
+    for (const int e : part.element_of) {
+      scene.materials.of_element.push_back(whole.materials.of_element[at(e)]);
+    }
+  }
   for (const auto& constraint : whole.constraints) {
     const int node = part.part_of[at(constraint.node)];
     if (node >= 0 && !part.on_the_rim[at(node)]) {

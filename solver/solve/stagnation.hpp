@@ -1,15 +1,17 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace sandglass {
 
-/// Detects that a residual has reached the roundoff of the number type: it is below ten thousand epsilon, and
-/// has not halved in 12 steps.
+/// Detects that a residual has reached the roundoff of the number type: it has not halved in 12 steps, and is
+/// below ten thousand epsilon, or more where a nearly incompressible law amplifies the roundoff of J - 1.
 class Stagnation {
  public:
-  /// `epsilon` is the number type's.
-  explicit Stagnation(double epsilon) : reachable_(1e4 * epsilon) {}
+  /// `epsilon` is the number type's, `amplification` the largest lambda / mu of the body.
+  Stagnation(double epsilon, double amplification)
+      : reachable_(1e4 * epsilon * std::max(1.0, 0.01 * amplification)) {}
 
   /// Records the residual of another step.
   void take(double residual) {

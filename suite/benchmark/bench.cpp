@@ -63,7 +63,7 @@ Group make_group(const Scene& scene, const std::vector<MethodChoice>& variants, 
     group.models.push_back(make_stepped_model(scene, choice));
     BenchRecord record{scene.description.name, elements, nodes, choice, {}, 0.0, 0.0, {}, {}, {}, {}};
     const SteppedModel& made = *group.models.back();
-    record.force_limit = force_limit(choice.precision, scene.description.law);
+    record.force_limit = force_limit(choice.precision, scene.description.materials.front().law);
     record.work = made.work();
     record.stable_step = made.stable_step();
     taken += record.work.bytes * static_cast<double>(elements);

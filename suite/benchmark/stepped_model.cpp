@@ -71,7 +71,7 @@ class SteppedModelOf final : public SteppedModel {
   std::optional<double> stable_step() const override { return stable_step_; }
 
   Work work() const override {
-    return work_of(model_.choice(), model_.scene().description.law, elements_.layout(),
+    return work_of(model_.choice(), model_.scene().description.materials.front().law, elements_.layout(),
                    model_.scene().mesh.cells.size());
   }
 
@@ -122,8 +122,8 @@ Scene box_scene(int elements) {
   description.file = "box";
   description.name = "box";
   description.mesh = BoxMesh{{width, width, z}, {edge, edge, height}};
-  description.law = NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49};
-  description.density = 1000.0;
+  description.materials.front().law = NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49};
+  description.materials.front().density = 1000.0;
   description.sets = {{.name = "foot", .within = {{{}, {}, Interval{0.0, 0.0}}}},
                       {.name = "head", .within = {{{}, {}, Interval{z, z}}}}};
   description.displacements = {{.set = "foot"}, {.set = "head", .value = {0.0, 0.0, -0.1 * z}}};

@@ -51,7 +51,7 @@ Scene with_margin(const Scene& scene) {
   Case description = scene.description;
   scale_load(description, margin);
   description.sets.clear();
-  return make_scene(std::move(description), scene.mesh, scene.sets);
+  return make_scene(std::move(description), scene.mesh, scene.sets, scene.element_sets);
 }
 
 double smallest_jacobian(const Model& model, const NodalField& u) {

@@ -30,7 +30,8 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
       }
       for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
         plain.precision = precision;
-        for (auto& choice : choices_of(method, plain, mesh.scene.description.law, plan.tolerance)) {
+        for (auto& choice :
+             choices_of(method, plain, mesh.scene.description.materials.front().law, plan.tolerance)) {
           rungs.push_back({std::move(choice), &mesh});
         }
       }

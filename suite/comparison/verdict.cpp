@@ -81,7 +81,7 @@ std::optional<double> golden_to_truth(const Scene& scene, const References& refe
 Verdict run_and_compare(const Scene& scene, const References& references, const MethodChoice& choice,
                         NodalField& u) {
   const MethodEntry& method = method_named(choice.method);
-  const KernelLaw law = kernel_law(scene.description.law);
+  const KernelLaw law = kernel_law(scene.description.materials.front().law);
   Verdict verdict{
       .case_name = scene.description.name,
       .method = choice.method,

@@ -29,13 +29,14 @@ bool can_be_shaped(const Case& description) {
 }
 
 bool has_poisson_ratio(const Case& description) {
+  if (description.materials.size() > 1) return false;  // of which one?
   return std::visit(
       []<class Law>(const Law&) {
         return requires(Law law) {
           law.poisson_ratio = 0.0;
         };
       },
-      description.law);
+      description.materials.front().law);
 }
 
 bool can_move(const Trial& trial) {
@@ -57,7 +58,7 @@ void set_poisson_ratio(Trial& trial, double value) {
       [&](auto& law) {
         if constexpr (requires { law.poisson_ratio = value; }) law.poisson_ratio = value;
       },
-      trial.description.law);
+      trial.description.materials.front().law);
 }
 
 void set_load(Trial& trial, double value) {

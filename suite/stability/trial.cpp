@@ -17,8 +17,9 @@ constexpr double usual_step = 0.9;
 
 /// Shear waves, m/s.
 double shear_wave_speed(const Case& description) {
-  const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, description.law);
-  return std::sqrt(mu / description.density);
+  const double mu =
+      std::visit([](const auto& law) { return law.shear_modulus(); }, description.materials.front().law);
+  return std::sqrt(mu / description.materials.front().density);
 }
 
 /// The time in which a shear wave crosses the body, s.
@@ -42,11 +43,14 @@ Scene scene_of(const Trial& trial) {
   const auto on_boundary = boundary_nodes(mesh);
   NodeSets sets;
   for (const auto& rule : description.sets) sets[rule.name] = select_nodes(mesh, on_boundary, rule);
+  ElementSets element_sets;
+  for (const auto& rule : description.element_sets) element_sets[rule.name] = select_elements(mesh, rule);
   description.sets.clear();
+  description.element_sets.clear();
   for (auto& X : mesh.points) shape(X);
   for (auto& displacement : description.displacements) shape(displacement.value);
   if (trial.noise) scale_load(description, 0.0);
-  Scene scene = make_scene(std::move(description), std::move(mesh), std::move(sets));
+  Scene scene = make_scene(std::move(description), std::move(mesh), std::move(sets), std::move(element_sets));
   if (!trial.is_dynamic()) return scene;
   const double crossing = crossing_time(scene);
   scene.description.dynamics = {.duration = (trial.noise ? 10.0 : 4.0) * crossing,

@@ -25,8 +25,7 @@ inline Case plain_case(const AnyLaw& law, double density = 1000.0) {
   Case scene;
   scene.file = "made-in-a-test.toml";
   scene.name = "test";
-  scene.law = law;
-  scene.density = density;
+  scene.materials = {{{law, density}}};
   return scene;
 }
 

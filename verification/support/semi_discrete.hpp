@@ -21,7 +21,7 @@ class SemiDiscrete {
  public:
   SemiDiscrete(const Scene& scene, const Law& law)
       : scene_(scene),
-        assembly_(scene.mesh, law, {.kappa = {}, .density = scene.description.density}),
+        assembly_(scene.mesh, law, {.kappa = {}, .density = scene.description.materials.front().density}),
         masses_(assembly_.numbers() / 3, 0.0),
         load_(assembly_.numbers(), 0.0),
         final_(assembly_.numbers(), 0.0),
@@ -31,7 +31,8 @@ class SemiDiscrete {
       for (const auto& xi : gauss_points()) {
         volume += determinant(parent_jacobian(gather(scene.mesh.points, cell), xi));
       }
-      for (const int node : cell) masses_[index(node)] += scene.description.density * volume / 8.0;
+      for (const int node : cell)
+        masses_[index(node)] += scene.description.materials.front().density * volume / 8.0;
     }
     for (const auto& [node, force] : scene.loads) {
       for (std::size_t i = 0; i < 3; ++i) load_[3 * index(node) + i] = force[i];

@@ -1,0 +1,46 @@
+#include "material/materials.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// An elastic law as a viscoelastic one of which nothing decays.
+Viscoelastic<CalledLaw> to_viscoelastic(const KernelLaw& law) {
+  if (const auto* viscoelastic = std::get_if<Viscoelastic<CalledLaw>>(&law)) return *viscoelastic;
+  return {elastic_law(law), 0.0, 1.0, 0.0, 1.0};
+}
+
+template <class Law>
+bool holds(const KernelLaw& law) {
+  return std::holds_alternative<Law>(law);
+}
+
+}  // namespace
+
+KernelLaws kernel_laws(const Materials& materials) {
+  const std::vector<KernelLaw> laws =
+      by_material(materials, [](const Material& material) { return kernel_law(material.law); });
+  const auto converted = [&](const auto& convert) {
+    std::vector<std::decay_t<decltype(convert(laws.front()))>> list;
+    for (const KernelLaw& law : laws) list.push_back(convert(law));
+    return list;
+  };
+  if (std::any_of(laws.begin(), laws.end(), holds<Viscoelastic<CalledLaw>>))
+    return converted(to_viscoelastic);
+  if (std::any_of(laws.begin(), laws.end(), holds<CalledLaw>)) return converted(elastic_law);
+  return converted([](const KernelLaw& law) { return std::get<NeoHookean>(law); });
+}
+
+std::vector<double> shear_moduli(const Materials& materials) {
+  return by_material(materials, [](const Material& material) {
+    return std::visit([](const auto& law) { return law.shear_modulus(); }, material.law);
+  });
+}
+
+std::vector<double> lame_lambdas(const Materials& materials) {
+  return by_material(materials, [](const Material& material) {
+    return std::visit([](const auto& law) { return lame_lambda(law); }, material.law);
+  });
+}
+
+}  // namespace sandglass

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+#include "material/laws.hpp"
+
+namespace sandglass {
+
+/// What a body or a part of it is made of.
+struct Material {
+  AnyLaw law;
+  double density = 0.0;  ///< kg/m^3
+};
+
+/// The materials of a body.
+struct Materials {
+  std::vector<Material> list;
+  std::vector<std::uint16_t> of_element = {};  ///< the material of each element; empty: all have the first
+
+  /// The number of an element's material.
+  std::size_t of(std::size_t element) const { return of_element.empty() ? 0 : of_element[element]; }
+};
+
+/// A property of each material, law or density; `property(material)` returns it.
+template <class Property>
+auto by_material(const Materials& materials, const Property& property) {
+  std::vector<std::decay_t<decltype(property(materials.list.front()))>> values;
+  for (const Material& material : materials.list) values.push_back(property(material));
+  return values;
+}
+
+/// The laws of the materials as kernels take them: of one type, the simplest that all of them are.
+using KernelLaws =
+    std::variant<std::vector<NeoHookean>, std::vector<CalledLaw>, std::vector<Viscoelastic<CalledLaw>>>;
+
+KernelLaws kernel_laws(const Materials& materials);
+
+/// Initial shear moduli of the materials, Pa.
+std::vector<double> shear_moduli(const Materials& materials);
+
+/// Lame's first parameters of the undeformed materials, Pa.
+std::vector<double> lame_lambdas(const Materials& materials);
+
+}  // namespace sandglass
