@@ -1,0 +1,282 @@
+/// Bodies of several materials: each element has its own, in every method.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "element/methods.hpp"
+#include "io/case_file.hpp"
+#include "io/mesh_file.hpp"
+#include "mesh/generators.hpp"
+#include "mesh/mesh_part.hpp"
+#include "solve/relaxation.hpp"
+#include "solve/stable_step.hpp"
+#include "support/case_text.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/sample_law.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+template <class MethodType>
+struct MaterialsTest : ::testing::Test {
+  using Method = MethodType;
+  static constexpr bool remembers = knows_law<Method, Viscoelastic<CalledLaw>>;
+
+  /// Whether a force depends on elements of other materials around.
+  static constexpr bool averages = FormulationOf<Method, CalledLaw>::averages_over_nodes;
+
+  static MethodChoice choice(int threads = 1) {
+    return {.method = std::string(Method::name), .threads = threads};
+  }
+
+  /// Three materials, in no order: laws that the compiler inlines, others, and one with a memory where the
+  /// method knows it.
+  static Materials mixed(std::size_t elements) {
+    Materials materials{{{sample_law<NeoHookean>(0.45, 30000.0), 2000.0},
+                         {sample_law<Yeoh>(0.3), 1000.0},
+                         {sample_law<NeoHookean>(0.49), 500.0}}};
+    if (remembers) materials.list.push_back({sample_law<Viscoelastic<Ogden>>(0.4), 1500.0});
+    RandomGeometry random(11);
+    for (std::size_t e = 0; e < elements; ++e) {
+      materials.of_element.push_back(static_cast<std::uint16_t>(random.uniform(0.0, 0.999) *
+                                                                static_cast<double>(materials.list.size())));
+    }
+    return materials;
+  }
+
+  /// What the elements of a mesh say at displacements u, reached in a tenth of a second.
+  struct Answer {
+    Answer(const Mesh& mesh, const Materials& materials, const NodalField& u, int threads = 1)
+        : bounds(mesh.cells.size()), densities(mesh.cells.size()) {
+      const auto elements = std::get<0>(make_internal_force(mesh, materials, choice(threads)));
+      State<double> state = state_at(*elements, u);
+      state.step = 0.1;
+      Rows<double> rows(state.u.size());
+      elements->evaluate(state, rows);
+      force = to_field(rows, elements->layout());
+      energies = elements->energies(state);
+      elements->stiffness_bounds(state, bounds);
+      elements->hourglass_energy_densities(state, densities);
+      std::vector<double> p(mesh.cells.size(), 100.0), defect(p);
+      elements->replace_pressures(state, p, lame_lambdas(materials), rows, defect);
+      pressure_force = to_field(rows, elements->layout());
+    }
+    NodalField force, pressure_force;
+    StrainEnergies energies;
+    std::vector<double> bounds, densities;
+  };
+};
+TYPED_TEST_SUITE(MaterialsTest, MethodTypes, EntryName);
+
+/// The body is the sum of its parts, each of one material: forces and energies add up, and what belongs to an
+/// element is that of its part. Meshes of many chunks, with materials that leave lanes empty.
+TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
+  if (TestFixture::averages) GTEST_SKIP() << "dilatations are averaged over all elements around a node";
+  const Mesh mesh = box({0.1, 0.12, 0.2}, {6, 7, 12});
+  RandomGeometry random(5);
+  NodalField u(mesh.points.size());
+  for (auto& row : u) {
+    for (double& x : row) x = 0.001 * random.uniform(-1.0, 1.0);
+  }
+  const Materials materials = TestFixture::mixed(mesh.cells.size());
+  const typename TestFixture::Answer whole(mesh, materials, u);
+  NodalField force(u.size()), pressure_force(u.size());
+  StrainEnergies energies;
+  const double unit = largest_distance(whole.force, NodalField(u.size()));
+  for (std::size_t m = 0; m < materials.list.size(); ++m) {
+    std::vector<bool> marked(mesh.cells.size());
+    for (std::size_t e = 0; e < marked.size(); ++e) marked[e] = materials.of(e) == m;
+    const MeshPart part = part_of_mesh(mesh, marked);
+    NodalField u_part;
+    for (const int node : part.node_of) u_part.push_back(u[index(node)]);
+    const typename TestFixture::Answer alone(part.mesh, {{materials.list[m]}}, u_part);
+    for (std::size_t n = 0; n < u_part.size(); ++n) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        force[index(part.node_of[n])][i] += alone.force[n][i];
+        pressure_force[index(part.node_of[n])][i] += alone.pressure_force[n][i];
+      }
+    }
+    energies.strain += alone.energies.strain;
+    energies.hourglass += alone.energies.hourglass;
+    for (std::size_t e = 0; e < alone.bounds.size(); ++e) {
+      const std::size_t there = index(part.element_of[e]);
+      EXPECT_NEAR(whole.bounds[there], alone.bounds[e], 1e-9 * alone.bounds[e]);
+      EXPECT_NEAR(whole.densities[there], alone.densities[e], 1e-9 * (alone.densities[e] + 1.0));
+    }
+  }
+  // Elements may lie in another order in their lanes: the same sums, in another order.
+  EXPECT_LT(largest_distance(force, whole.force), 1e-11 * unit);
+  EXPECT_LT(largest_distance(pressure_force, whole.pressure_force), 1e-11 * unit);
+  EXPECT_NEAR(energies.strain, whole.energies.strain, 1e-11 * energies.strain);
+  EXPECT_NEAR(energies.hourglass, whole.energies.hourglass, 1e-11 * energies.strain);
+}
+
+TYPED_TEST(MaterialsTest, bits_do_not_depend_on_threads) {
+  const Mesh mesh = box({0.1, 0.12, 0.2}, {6, 7, 12});
+  NodalField u;
+  for (const Vector& X : mesh.points) u.push_back({0.1 * X[2] * X[1], 0.0, 0.05 * std::sin(30.0 * X[0])});
+  const Materials materials = TestFixture::mixed(mesh.cells.size());
+  const typename TestFixture::Answer one(mesh, materials, u, 1), three(mesh, materials, u, 3);
+  EXPECT_EQ(one.force, three.force);
+  EXPECT_EQ(one.pressure_force, three.pressure_force);
+}
+
+/// Two layers pressed together, their sides held: each is strained uniformly, the stress across is the same.
+/// Every element represents that exactly; the strains follow from two numbers.
+TYPED_TEST(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
+  if (TestFixture::averages || is_linear<TypeParam>) GTEST_SKIP() << "another stress";
+  Case description = plain_case(NeoHookean{});
+  const NeoHookean stiff = sample_law<NeoHookean>(0.3, 9000.0);
+  const MooneyRivlin soft = sample_law<MooneyRivlin>(0.4);
+  description.materials = {{{stiff, 1000.0}, "lower"}, {{soft, 1000.0}, ""}};
+  description.element_sets = {{"lower", false, {std::nullopt, std::nullopt, Interval{0.0, 1.0}}, {}}};
+  const double low = 1.0, high = 2.0, pressed = 0.4;
+  const Mesh mesh = box({1.0, 1.0, low + high}, {2, 2, 6});
+  const auto at = [&](double z) {
+    return nodes_where(mesh.points, [=](const Vector& X) { return std::abs(X[2] - z) < 1e-9; });
+  };
+  const NodeSets sets{{"all", nodes_where(mesh.points, [](const Vector&) { return true; })},
+                      {"bottom", at(0.0)},
+                      {"top", at(3.0)}};
+  description.displacements = {{"all", {}, {true, true, false}},
+                               {"bottom", {}, {false, false, true}},
+                               {"top", {0.0, 0.0, -pressed}, {false, false, true}}};
+  description.relaxation.tolerance = 1e-10;
+  const auto stress = [](const auto& law, double e) {
+    Tensor<double> H{};
+    H(2, 2) = e;
+    return law.piola(H)(2, 2);
+  };
+  double from = -pressed / low, to = 0.0;  // the strain of the lower layer, by bisection
+  for (int k = 0; k < 60; ++k) {
+    const double e = 0.5 * (from + to);
+    (stress(stiff, e) > stress(soft, (-pressed - low * e) / high) ? to : from) = e;
+  }
+  const double e = 0.5 * (from + to);
+  EXPECT_LT(e, -0.02);
+  const Scene scene = make_scene(description, mesh, sets);
+  Recorder recorder;
+  const Relaxation found = relax(Model(scene, TestFixture::choice()), recorder);
+  ASSERT_TRUE(found.converged);
+  NodalField exact;
+  for (const Vector& X : mesh.points) {
+    const double rest = (-pressed - low * e) / high;
+    exact.push_back({0.0, 0.0, X[2] < low ? e * X[2] : e * low + rest * (X[2] - low)});
+  }
+  EXPECT_LT(largest_distance(recorder.frames.back().u, exact), 1e-8 * pressed);
+}
+
+/// The step of a body is that of its part with the shortest one: elements do not know of each other there.
+TYPED_TEST(MaterialsTest, the_stable_step_is_the_shortest_of_the_parts) {
+  if (is_condensed<TypeParam>) GTEST_SKIP() << "takes no steps";
+  const Mesh mesh = box({1.0, 1.0, 4.0}, {2, 2, 8});
+  const auto step = [&](const Materials& materials) {
+    Case description = plain_case(NeoHookean{});
+    description.displacements = {{"foot", {}}};
+    Scene scene = make_scene(description, mesh, {{"foot", {0}}});
+    scene.materials = materials;
+    return stable_step(Model(scene, TestFixture::choice()), NodalField(mesh.points.size())).step;
+  };
+  const Material light{sample_law<NeoHookean>(0.45, 9000.0), 400.0}, heavy{sample_law<Yeoh>(0.45), 3000.0};
+  Materials both{{light, heavy}};
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) both.of_element.push_back(e % 3 == 0 ? 0 : 1);
+  EXPECT_LT(step({{light}}), 0.5 * step({{heavy}}));
+  EXPECT_NEAR(step(both), step({{light}}), 1e-12 * step({{light}}));
+}
+
+const std::string two_materials = replaced(box_case("two", "[1.0, 1.0, 4.0]", "[1, 1, 4]"), R"([material]
+law = "neo-hookean"
+young_modulus = 3000.0
+poisson_ratio = 0.49
+density = 1000.0
+)",
+                                           R"([[materials]]
+elements = "foot"
+law = "neo-hookean"
+young_modulus = 6000.0
+poisson_ratio = 0.3
+density = 2000.0
+
+[[materials]]
+law = "yeoh"
+c1 = 500.0
+c2 = 10.0
+c3 = 1.0
+bulk_modulus = 50000.0
+density = 1000.0
+
+[element_sets]
+foot = { z = [0.0, 2.0] }
+
+[sets]
+bottom = { z = [0.0, 0.0] }
+
+[[displacement]]
+set = "bottom"
+value = [0.0, 0.0, 0.0]
+)");
+
+TEST(Materials, a_case_file_gives_each_element_its_own) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("two.toml", two_materials));
+  EXPECT_EQ(scene.materials.of_element, (std::vector<std::uint16_t>{0, 0, 1, 1}));
+  EXPECT_EQ(scene.materials.list[1].density, 1000.0);
+  const Model model(scene, {"tl-perturbation"});
+  EXPECT_DOUBLE_EQ(model.element_masses()[1], 2000.0);
+  EXPECT_DOUBLE_EQ(model.element_masses()[2], 1000.0);
+  const auto file = folder / "two.h5";
+  // A file of the mesh holds the set: a case that reads it needs no rule.
+  write_mesh_file(scene, file);
+  const MeshWithSets read = read_mesh_file(file);
+  EXPECT_EQ(read.element_sets.at("foot"), (std::vector<int>{0, 1}));
+  const std::string text =
+      replaced(replaced(two_materials, "foot = { z = [0.0, 2.0] }", ""),
+               "generator = \"box\"\nsize = [1.0, 1.0, 4.0]\nelements = [1, 1, 4]", "file = \"two.h5\"");
+  EXPECT_EQ(read_scene(folder.write("again.toml", text)).materials.of_element, scene.materials.of_element);
+}
+
+TEST(Materials, another_material_is_another_answer) {
+  const TemporaryFolder folder;
+  const auto hash_with = [&](const std::string& from, const std::string& to) {
+    return read_scene(folder.write("two.toml", replaced(two_materials, from, to))).case_hash;
+  };
+  const std::string hash = hash_with("c1 = 500.0", "c1 = 500.0");
+  EXPECT_NE(hash_with("c1 = 500.0", "c1 = 501.0"), hash);
+  EXPECT_NE(hash_with("young_modulus = 6000.0", "young_modulus = 6001.0"), hash);
+  EXPECT_NE(hash_with("[0.0, 2.0]", "[0.0, 3.0]"), hash);
+}
+
+TEST(Materials, wrong_input_is_refused) {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& from, const std::string& to) {
+    const auto path = folder.write("two.toml", replaced(two_materials, from, to));
+    return input_error([&] { read_scene(path); });
+  };
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect(said("elements = \"foot\"", "elements = \"food\""), "did you mean 'foot'?");
+  expect(said("elements = \"foot\"", ""), "leave out their elements 2 times");
+  expect(said("law = \"yeoh\"", "elements = \"foot\"\nlaw = \"yeoh\""),
+         "element 0 is in 'foot' and in 'foot'");
+  expect(said("law = \"yeoh\"", "elements = \"head\"\nlaw = \"yeoh\""), "'head' is not an element set");
+  expect(said("foot = { z = [0.0, 2.0] }", "foot = { z = [5.0, 6.0] }"), "has no element in the mesh");
+  expect(said("foot = {", "foot = { surface = true,"), "surface");
+  expect(said("[element_sets]", "[material]\nlaw = \"neo-hookean\"\n\n[element_sets]"), "one or the other");
+  expect(
+      said("foot = { z = [0.0, 2.0] }", "foot = { z = [0.0, 2.0] }\nhead = { z = [2.0, 3.0] }\n\n[case2]\n"),
+      "case2");
+  const std::string uncovered =
+      replaced(two_materials, "law = \"yeoh\"", "elements = \"head\"\nlaw = \"yeoh\"");
+  const auto path =
+      folder.write("two.toml", replaced(uncovered, "foot = {", "head = { z = [2.0, 3.0] }\nfoot = {"));
+  expect(input_error([&] { read_scene(path); }), "1 of the 4 elements have none, the first is element 3");
+}
+
+}  // namespace
+}  // namespace sandglass::verification
