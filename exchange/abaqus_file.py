@@ -18,7 +18,8 @@ BRICK = re.compile(r"C3D8[A-Z]*")
 
 
 def read(path):
-    """The ForeignMesh of an .inp file: sets of nodes and of elements become node sets.
+    """The ForeignMesh of an .inp file: sets of nodes and of elements become node sets, those of
+    elements element sets as well.
 
     As in Abaqus, names of sets are not case-sensitive; the first spelling is kept. Raises
     InputError naming the line.
@@ -149,7 +150,7 @@ class _Reader:
 
     def mesh(self, path):
         """The ForeignMesh. Raises InputError if a set names an element that does not exist."""
-        sets = {}
+        sets, element_sets = {}, {}
         known = np.concatenate([np.empty(0, dtype=np.int64), *(b.ids for b in self.blocks)])
         for key, members in self.elements.members.items():
             missing = np.setdiff1d(np.fromiter(members, dtype=np.int64), known)
@@ -158,12 +159,15 @@ class _Reader:
                 raise InputError(
                     f"{path}: set '{name}' names element {missing[0]}, which does not exist"
                 )
+            spelled = self.elements.spelled[key]
+            element_sets[spelled] = np.array(sorted(members), dtype=np.int64)
             if key not in self.nodes.members:  # a node set of the same name takes precedence
-                sets[self.elements.spelled[key]] = np.array(self._nodes_of(members), dtype=np.int64)
+                sets[spelled] = np.array(self._nodes_of(members), dtype=np.int64)
         for key, members in self.nodes.members.items():
             sets[self.nodes.spelled[key]] = np.array(sorted(members), dtype=np.int64)
         blocks, points = _joined(self.blocks), np.array(self.points).reshape(-1, 3)
-        return ForeignMesh(np.array(self.ids, dtype=np.int64), points, blocks, sets)
+        ids = np.array(self.ids, dtype=np.int64)
+        return ForeignMesh(ids, points, blocks, sets, element_sets=element_sets)
 
 
 def _joined(blocks):
@@ -238,7 +242,7 @@ def number(value):
 
 
 def mesh_lines(mesh, element="C3D8", element_set=None):
-    """The lines of *NODE, *ELEMENT and *NSET of a HexMesh; ids count from one.
+    """The lines of *NODE, *ELEMENT, *NSET and *ELSET of a HexMesh; ids count from one.
 
     element: an eight-node brick type. element_set: name of a set of all elements, or None.
     Raises InputError for a set name that the format does not allow.
@@ -248,8 +252,14 @@ def mesh_lines(mesh, element="C3D8", element_set=None):
     # VTK and Abaqus number the vertices of a brick in the same order.
     lines.append(f"*ELEMENT, TYPE={element}" + (f", ELSET={element_set}" if element_set else ""))
     lines += [f"{i}, " + ", ".join(map(str, cell)) for i, cell in enumerate(mesh.cells + 1, 1)]
-    spelled = {}
-    for name, nodes in mesh.sets.items():
+    lines += _set_lines("NSET", mesh.sets) + _set_lines("ELSET", mesh.element_sets)
+    return lines
+
+
+def _set_lines(keyword, sets):
+    """The lines of sets, which count from zero. Raises InputError for a name."""
+    lines, spelled = [], {}
+    for name, members in sets.items():
         if not name.isprintable() or '"' in name or len(name) > 80:
             raise InputError(
                 f"set {name!r}: names in .inp must be printable, without quotes, at most 80 "
@@ -259,7 +269,7 @@ def mesh_lines(mesh, element="C3D8", element_set=None):
         if other != name:
             raise InputError(f"sets '{other}' and '{name}': names in .inp are not case-sensitive")
         plain = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII)
-        lines.append(f"*NSET, NSET={name}" if plain else f'*NSET, NSET="{name}"')
-        ids = [str(node + 1) for node in nodes]
+        lines.append(f"*{keyword}, {keyword}=" + (name if plain else f'"{name}"'))
+        ids = [str(member + 1) for member in members]
         lines += [", ".join(ids[at : at + 16]) for at in range(0, len(ids), 16)]
     return lines

@@ -1,6 +1,6 @@
 """Converts between the files of other programs and Sandglass's own; the solver calls it.
 
-Usage: convert.py mesh FOREIGN MESH.h5                        read a mesh
+Usage: convert.py mesh FOREIGN MESH.h5 [--spacing X Y Z]      read a mesh
        convert.py write MESH.h5 FILE --format vtu|xdmf|inp [--deck --element C3D8]
        convert.py displacement FOREIGN MESH.h5 OUT.h5 --tolerance T [--field NAME]
 Exit codes: 0 done, 2 bad input, reported in one line on standard output, 3 the disk or the memory
@@ -14,12 +14,15 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path[0] = str(Path(__file__).resolve().parent.parent)
 
-PACKAGES = "python3-numpy, python3-h5py, python3-scipy and python3-meshio (ci/setup build)"
+PACKAGES = (
+    "python3-numpy, python3-h5py, python3-scipy and python3-meshio (ci/setup build), for NIfTI "
+    "python3-nibabel (ci/setup images)"
+)
 try:
     import numpy as np
 
     from common.errors import InputError
-    from exchange import abaqus_file, csv_file, frd_file, gmsh_file, hdf5_file, vtu_file
+    from exchange import abaqus_file, csv_file, frd_file, gmsh_file, hdf5_file, image_file, vtu_file
     from exchange.calculix_deck import deck
     from exchange.foreign_mesh import to_hexahedra
 except ImportError as error:
@@ -27,13 +30,28 @@ except ImportError as error:
     sys.exit(2)
 
 MESHES = {".msh": gmsh_file.read, ".inp": abaqus_file.read, ".vtu": vtu_file.read}
+# A segmentation: each voxel with a label is an element.
+IMAGES = {
+    ".npy": image_file.read_npy,
+    ".nii": image_file.read_nifti,
+    ".gz": image_file.read_nifti,
+}
 DISPLACEMENTS = (".h5", ".hdf5", ".vtu", ".csv", ".frd")
 
 
-def read_mesh(source, output):
-    """Reads a mesh of another program and writes it as HDF5. Raises InputError."""
-    read = MESHES[_ending(source, MESHES)]
-    mesh = to_hexahedra(read(source), source, lambda text: _warn(source, text))
+def read_mesh(source, output, spacing):
+    """Reads a mesh of another program, or a labelled image, and writes it as HDF5.
+
+    spacing: size (3,) of an image's voxels, m, or None. Raises InputError.
+    """
+    ending = _ending(source, MESHES | IMAGES)
+    if ending in IMAGES:
+        found = IMAGES[ending](source, spacing)
+    elif spacing is None:
+        found = MESHES[ending](source)
+    else:
+        raise InputError(f"{source}: mesh.spacing was given; it is for images alone")
+    mesh = to_hexahedra(found, source, lambda text: _warn(source, text))
     hdf5_file.write_mesh(output, mesh)
 
 
@@ -109,6 +127,7 @@ def main(arguments=None):
     command = commands.add_parser("mesh")
     command.add_argument("source", type=Path)
     command.add_argument("output", type=Path)
+    command.add_argument("--spacing", type=float, nargs=3)
     command = commands.add_parser("write")
     command.add_argument("source", type=Path)
     command.add_argument("output", type=Path)
@@ -124,7 +143,7 @@ def main(arguments=None):
     options = parser.parse_args(arguments)
     try:
         if options.command == "mesh":
-            read_mesh(options.source, options.output)
+            read_mesh(options.source, options.output, options.spacing)
         elif options.command == "write":
             write_mesh(options.source, options.output, options)
         else:

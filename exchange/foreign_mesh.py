@@ -27,7 +27,8 @@ class Block:
 class ForeignMesh:
     """Nodes (n,) with points (n, 3), blocks of elements, and node sets: name -> ids of nodes.
 
-    hint: how to make and save hexahedra with the program, for messages.
+    hint: how to make and save hexahedra with the program, for messages. element_sets: name -> ids
+    of elements; those of hexahedra count.
     """
 
     node_ids: np.ndarray
@@ -35,15 +36,20 @@ class ForeignMesh:
     blocks: list
     sets: dict = field(default_factory=dict)
     hint: str = ""
+    element_sets: dict = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class HexMesh:
-    """points (n, 3) in m, cells (m, 8) in VTK order, sets: name -> sorted nodes; from 0 on."""
+    """points (n, 3) in m, cells (m, 8) in VTK order, sets: name -> sorted nodes; from 0 on.
+
+    element_sets: name -> sorted elements.
+    """
 
     points: np.ndarray
     cells: np.ndarray
     sets: dict
+    element_sets: dict = field(default_factory=dict)
 
 
 def to_hexahedra(mesh, path, warn):
@@ -85,7 +91,12 @@ def to_hexahedra(mesh, path, warn):
             sets[plain] = np.searchsorted(used, nodes)
             if plain != name:
                 warn(f"set '{name}' is renamed '{plain}': names must not contain '/'")
-    return HexMesh(points, compact.reshape(cells.shape), sets)
+    element_sets = {}
+    for name, ids in mesh.element_sets.items():
+        members = np.flatnonzero(np.isin(block.ids, ids))
+        if members.size:
+            element_sets[name.replace("/", "_")] = members
+    return HexMesh(points, compact.reshape(cells.shape), sets, element_sets)
 
 
 def _checked_nodes(mesh, path):

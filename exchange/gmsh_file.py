@@ -1,4 +1,6 @@
-"""Reads Gmsh's .msh, versions 2.2 and 4.1, text and binary: physical groups become node sets.
+"""Reads Gmsh's .msh, versions 2.2 and 4.1, text and binary.
+
+Physical groups become node sets, those of volumes element sets as well.
 
 meshio is not used: it loses groups of surfaces that are named with a minus sign, groups of the same
 name and unnamed groups, and takes an unknown node for the last one.
@@ -146,10 +148,11 @@ def _names(path, section):
 
 
 class _Elements:
-    """Collects blocks of elements and the nodes of the groups that they belong to."""
+    """Collects blocks of elements, and the nodes and volumes of the groups that they belong to."""
 
     def __init__(self, names):
         self.names, self.blocks, self.groups = names, [], {name: [] for name in names.values()}
+        self.volumes = {}
 
     def add(self, kind, ids, nodes, groups):
         """Elements of one kind (of KINDS), all in the physical groups of these tags."""
@@ -158,12 +161,15 @@ class _Elements:
         for tag in {abs(int(tag)) for tag in groups} - {0}:
             group = self.names.get((dimension, tag), f"{DIMENSIONS[dimension]}-{tag}")
             self.groups.setdefault(group, []).append(nodes.ravel())
+            if dimension == 3:
+                self.volumes.setdefault(group, []).append(ids)
 
     def mesh(self, node_ids, points):
         """The ForeignMesh."""
         none = np.empty(0, dtype=np.int64)
         sets = {name: np.unique(np.concatenate([none, *n])) for name, n in self.groups.items()}
-        return ForeignMesh(node_ids.astype(np.int64), points, self.blocks, sets, HINT)
+        volumes = {name: np.unique(np.concatenate(ids)) for name, ids in self.volumes.items()}
+        return ForeignMesh(node_ids.astype(np.int64), points, self.blocks, sets, HINT, volumes)
 
 
 def _read_2(numbers, names):

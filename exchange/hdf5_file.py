@@ -13,7 +13,8 @@ def read_mesh(path):
     with h5py.File(path, "r") as file:
         mesh = file["mesh"]
         sets = {name: nodes[...] for name, nodes in mesh.get("sets", {}).items()}
-        return HexMesh(mesh["points"][...], mesh["cells"][...], sets)
+        element_sets = {name: some[...] for name, some in mesh.get("element_sets", {}).items()}
+        return HexMesh(mesh["points"][...], mesh["cells"][...], sets, element_sets)
 
 
 def write_mesh(path, mesh):
@@ -23,6 +24,8 @@ def write_mesh(path, mesh):
         file["mesh/cells"] = mesh.cells.astype(np.int64)
         for name, nodes in mesh.sets.items():
             file[f"mesh/sets/{name}"] = nodes.astype(np.int64)
+        for name, elements in mesh.element_sets.items():
+            file[f"mesh/element_sets/{name}"] = elements.astype(np.int64)
 
 
 def read_problem(path):

@@ -10,13 +10,18 @@ import numpy as np
 from common.errors import InputError
 from exchange.foreign_mesh import Block, ForeignMesh
 
+# An array with more values holds no labels, but numbers of elements or the like.
+MOST_LABELS = 1000
+
 DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
 
 
 def read(path):
     """The ForeignMesh of a .vtu file; ids count from 0. Raises InputError.
 
-    Integer point arrays with values 0 and 1 define node sets: 1 marks the nodes of the set.
+    Integer point arrays with values 0 and 1 define node sets: 1 marks the nodes of the set. So do
+    integer cell arrays define element sets; one with other values, labels, defines a set NAME-LABEL
+    for each of them.
     """
     grid = _read(path)
     ids, first = np.arange(len(grid.points)), 0
@@ -31,7 +36,23 @@ def read(path):
         for name, data in grid.point_data.items()
         if data.ndim == 1 and data.dtype.kind in "biu" and np.isin(data, (0, 1)).all()
     }
-    return ForeignMesh(ids, np.asarray(grid.points, dtype=float), blocks, sets)
+    element_sets = {}
+    for name, parts in grid.cell_data.items():
+        data = np.concatenate(parts)
+        if data.ndim == 1 and data.dtype.kind in "biu":
+            element_sets |= _labelled(name, data)
+    points = np.asarray(grid.points, dtype=float)
+    return ForeignMesh(ids, points, blocks, sets, element_sets=element_sets)
+
+
+def _labelled(name, data):
+    """The element sets of an integer cell array."""
+    labels = np.unique(data)
+    if np.isin(labels, (0, 1)).all():
+        return {name: np.flatnonzero(data)}
+    if len(labels) > MOST_LABELS:
+        return {}
+    return {f"{name}-{label}": np.flatnonzero(data == label) for label in labels}
 
 
 def read_displacement(path, field):
@@ -53,14 +74,19 @@ def read_displacement(path, field):
 
 
 def write(path, mesh, kind):
-    """Writes a HexMesh as "vtu" or "xdmf", each of its sets as a point array of 0 and 1."""
+    """Writes a HexMesh as "vtu" or "xdmf", each of its sets as an array of 0 and 1."""
     import meshio  # imported only where needed, as it is slow to load
 
     inside = {}
     for name, nodes in mesh.sets.items():
         inside[name] = np.zeros(len(mesh.points), dtype=np.int32)
         inside[name][nodes] = 1
-    grid = meshio.Mesh(mesh.points, [("hexahedron", mesh.cells)], point_data=inside)
+    marked = {}
+    for name, elements in mesh.element_sets.items():
+        marked[name] = [np.zeros(len(mesh.cells), dtype=np.int32)]
+        marked[name][0][elements] = 1
+    cells = [("hexahedron", mesh.cells)]
+    grid = meshio.Mesh(mesh.points, cells, point_data=inside, cell_data=marked)
     if kind == "vtu":
         meshio.vtu.write(path, grid)
     else:

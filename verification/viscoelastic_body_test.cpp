@@ -351,7 +351,8 @@ std::string with_parameters(const std::string& lines) {
 TEST(ViscoelasticCase, is_read_with_one_term_or_two) {
   const TemporaryFolder folder;
   const auto law_of = [&](const std::string& lines) {
-    return std::get<Law>(read_case_file(folder.write("hold.toml", with_parameters(lines))).materials.front().law);
+    return std::get<Law>(
+        read_case_file(folder.write("hold.toml", with_parameters(lines))).materials.front().law);
   };
   const Law one = law_of("relaxation_1 = 0.45\ntime_1 = 0.5");
   EXPECT_EQ(one.young_modulus, 2500.0);

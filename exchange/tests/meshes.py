@@ -66,9 +66,11 @@ def read(capsys, path):
         return file["mesh/points"][...], file["mesh/cells"][...], sets, warnings
 
 
-def write(path, points=POINTS, cells=CELLS, kind="hexahedron", point_data=None, **options):
+def write(
+    path, points=POINTS, cells=CELLS, kind="hexahedron", point_data=None, cell_data=None, **options
+):
     """Writes a .vtu file with one kind of cells."""
-    grid = meshio.Mesh(points, [(kind, np.array(cells))], point_data=point_data or {})
+    grid = meshio.Mesh(points, [(kind, np.array(cells))], point_data or {}, cell_data or {})
     with contextlib.redirect_stderr(io.StringIO()):  # it warns of files of text
         meshio.vtu.write(path, grid, **options)
     return path

@@ -145,7 +145,7 @@ def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
     refused(
         "run", case, told="own.geo: is not a complete HDF5 file (truncated, or of another kind); "
     )
-    refused("run", case, told="must end in .msh (Gmsh), .inp (Abaqus) or .vtu")
+    refused("run", case, told="must end in .msh (Gmsh), .inp (Abaqus), .vtu, .npy or .nii")
     case.write_text(case.read_text().replace("file =", "fiel ="))
     told = "mesh.generator is missing; this key or mesh.file must be given, but there is only fiel"
     refused("run", case, told=told)

@@ -30,7 +30,8 @@ VariantOf<List> read_listed(TableReader& table, const std::string& key) {
 void read_mesh(TableReader& reader, Case& description) {
   TableReader table = reader.required_table("mesh");
   if (const auto file = table.optional<std::string>("file")) {
-    description.mesh = MeshFile{description.file.parent_path() / *file};
+    description.mesh = MeshFile{description.file.parent_path() / *file,
+                                table.optional<Vector>("spacing", Range::positive())};
   } else {
     const auto keys = table.keys();
     if (std::find(keys.begin(), keys.end(), "generator") == keys.end()) {
@@ -210,13 +211,15 @@ void read_header(TableReader table, Case& description) {
 
 MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
   try {
-    return is_foreign_mesh(file.path) ? read_foreign_mesh(file.path) : read_mesh_file(file.path);
+    if (is_foreign_mesh(file.path)) return read_foreign_mesh(file);
+    if (file.spacing) throw InputError("mesh.spacing was given; it is for images alone");
+    return read_mesh_file(file.path);
   } catch (const InputError& error) {
     const std::string ending = file.path.extension().string();
     const bool ours = is_foreign_mesh(file.path) || ending == ".h5" || ending == ".hdf5";
-    throw InputError(
-        fmt::format("{}: mesh.file: {}{}", description.file.string(), error.what(),
-                    ours ? "" : "; what is no HDF5 file must end in .msh (Gmsh), .inp (Abaqus) or .vtu"));
+    throw InputError(fmt::format(
+        "{}: mesh.file: {}{}", description.file.string(), error.what(),
+        ours ? "" : "; what is no HDF5 file must end in .msh (Gmsh), .inp (Abaqus), .vtu, .npy or .nii"));
   }
 }
 

@@ -57,7 +57,8 @@ constexpr std::string_view mesh_file = R"(
 mesh.file = "FILE": instead of a generator, a mesh of hexahedra, in m: .h5 as `sandglass mesh` writes it,
   .msh of Gmsh (2.2, 4.1), .inp of Abaqus or CalculiX (C3D8...), .vtu. Its physical groups, its NSETs and
   ELSETs, its point arrays of 0 and 1 are node sets by their names; rules of [sets] add others, and replace
-  those of the same name
+  those of the same name. Or a labelled image, .npy with mesh.spacing = [x, y, z], the size of a voxel in m, or
+  .nii of NIfTI: an element for each voxel that is not 0, the element set label-N for each label N
 )";
 
 constexpr std::string_view several_materials = R"(

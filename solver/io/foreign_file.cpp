@@ -158,13 +158,19 @@ void write_problem(const Scene& scene, Hdf5File& file) {
 bool is_foreign_mesh(const fs::path& path) {
   std::string ending = path.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".msh" || ending == ".inp" || ending == ".vtu";
+  return ending == ".msh" || ending == ".inp" || ending == ".vtu" || ending == ".npy" || ending == ".nii" ||
+         ending == ".gz";
 }
 
-MeshWithSets read_foreign_mesh(const fs::path& path) {
+MeshWithSets read_foreign_mesh(const MeshFile& file) {
   const TemporaryFolder folder;
   const fs::path converted = folder / "mesh.h5";
-  convert({"mesh", argument(path), converted.string()}, path);
+  std::vector<std::string> arguments{"mesh", argument(file.path), converted.string()};
+  if (file.spacing) {
+    arguments.emplace_back("--spacing");
+    for (const double h : *file.spacing) arguments.push_back(fmt::to_string(h));
+  }
+  convert(std::move(arguments), file.path);
   return read_mesh_file(converted);
 }
 

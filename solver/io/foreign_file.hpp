@@ -11,12 +11,12 @@ namespace sandglass {
 // these formats are Python's. Its warnings go to standard error.
 
 /// Whether the ending of a mesh's file is that of another program: .msh (Gmsh), .inp (Abaqus, CalculiX),
-/// .vtu (VTK).
+/// .vtu (VTK), or of a labelled image: .npy (NumPy), .nii, .nii.gz (NIfTI).
 bool is_foreign_mesh(const std::filesystem::path& path);
 
-/// The mesh of such a file, its hexahedra numbered as VTK does it, with its node sets. Throws InputError when
-/// it is no mesh of hexahedra and where a package is missing.
-MeshWithSets read_foreign_mesh(const std::filesystem::path& path);
+/// The mesh of such a file, its hexahedra numbered as VTK does it, with its sets. Throws InputError when it
+/// is no mesh of hexahedra and where a package is missing.
+MeshWithSets read_foreign_mesh(const MeshFile& file);
 
 /// How a mesh is written for another program.
 struct ForeignFormat {

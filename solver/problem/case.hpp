@@ -15,9 +15,10 @@
 
 namespace sandglass {
 
-/// A mesh read from a file, as `sandglass mesh` writes it.
+/// A mesh read from a file: as `sandglass mesh` writes it, or another program's, or a labelled image.
 struct MeshFile {
   std::filesystem::path path;
+  std::optional<Vector> spacing = {};  ///< size of an image's voxels, m, where the image has none
 };
 
 /// A material and the elements that are made of it.

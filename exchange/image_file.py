@@ -1,0 +1,75 @@
+"""Reads labelled images as meshes: one hexahedron for each voxel that has a label."""
+
+import numpy as np
+
+from common.errors import InputError
+from common.hexahedron import CORNERS
+from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
+
+MOST_LABELS = 1000
+MILLIMETRES = 1e-3  # unit of NIfTI's coordinates in m, unless a file says otherwise
+
+
+def read_npy(path, spacing):
+    """The ForeignMesh of a NumPy array (nx, ny, nz) of labels, whole numbers; 0 is no material.
+
+    spacing: size of a voxel (3,) in m; the corner of the first voxel is the origin. Each label L
+    is the element set "label-L". Raises InputError.
+    """
+    if spacing is None:
+        raise InputError(f"{path}: mesh.spacing = [x, y, z], the size of a voxel in m, is missing")
+    try:
+        labels = np.load(path, allow_pickle=False)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: cannot be read as a NumPy array: {error}") from error
+    return _voxels(path, labels, np.diag(spacing), np.zeros(3))
+
+
+def read_nifti(path, spacing):
+    """The same of a NIfTI image, whose header has the size and the place of its voxels.
+
+    spacing: must be None.
+    """
+    if spacing is not None:
+        raise InputError(f"{path}: mesh.spacing was given, but the file's header has it")
+    import nibabel  # only where needed, as few install it
+
+    try:
+        image = nibabel.load(path)
+        labels, affine = np.asanyarray(image.dataobj), image.affine
+        unit = {"meter": 1.0, "micron": 1e-6}.get(image.header.get_xyzt_units()[0], MILLIMETRES)
+    except Exception as error:  # a library may fail in any way on a damaged file
+        raise InputError(f"{path}: cannot be read as NIfTI: {error}") from error
+    # The affine map places the middle of voxel (i, j, k) at (i, j, k).
+    map_, origin = unit * affine[:3, :3], unit * affine[:3, 3]
+    return _voxels(path, labels, map_, origin - map_ @ (0.5, 0.5, 0.5))
+
+
+def _voxels(path, labels, map_, origin):
+    """The ForeignMesh of labels (nx, ny, nz); map_ (3, 3) and origin (3,) place corners, in m."""
+    if labels.ndim == 4 and labels.shape[3] == 1:
+        labels = labels[..., 0]
+    if labels.ndim != 3:
+        raise InputError(f"{path}: has shape {labels.shape}; (nx, ny, nz) is required")
+    if not (np.isfinite(labels).all() and (labels == np.round(labels)).all()):
+        raise InputError(f"{path}: labels must be whole numbers")
+    places = np.argwhere(labels)
+    if not len(places):
+        raise InputError(f"{path}: has no label other than 0; no voxel would be an element")
+    values = labels[tuple(places.T)].astype(np.int64)
+    names = np.unique(values)
+    if len(names) > MOST_LABELS:
+        raise InputError(
+            f"{path}: has {len(names)} labels; allowed are {MOST_LABELS}: is it a grey image?"
+        )
+    corners = (CORNERS + 1) // 2
+    if np.linalg.det(map_) < 0:
+        corners = corners[[4, 5, 6, 7, 0, 1, 2, 3]]  # the map mirrors: bottom and top change places
+    shape = np.array(labels.shape) + 1
+    number = np.ravel_multi_index((places[:, None] + corners).reshape(-1, 3).T, shape)
+    nodes, cells = np.unique(number, return_inverse=True)
+    points = np.stack(np.unravel_index(nodes, shape), axis=1) @ map_.T + origin
+    ids = np.arange(len(places))
+    block = Block(HEXAHEDRON, 3, ids, cells.reshape(-1, 8))
+    sets = {f"label-{name}": np.flatnonzero(values == name) for name in names}
+    return ForeignMesh(np.arange(len(points)), points, [block], element_sets=sets)
