@@ -20,7 +20,7 @@ def prescribed_dofs(space, cell_nodes, conditions, load=1.0):
     """
     layout = space.dofmap.dof_layout
     cell_dofs = space.dofmap.list.array.reshape(len(cell_nodes), -1)
-    dofs, values = [], []
+    dofs, values = [np.empty(0, dtype=int)], [np.empty(0)]
     for condition in conditions:
         on_nodes = condition.at(load)
         for dim, entities in enumerate(basix.topology(basix.CellType.hexahedron)):

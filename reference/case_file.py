@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from common.errors import InputError, suggestion
 from common.files import read_toml
 from common.records import NUMBER, entries, entry
@@ -43,22 +45,49 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Pressure:
+    """A pressure (Pa) that pushes on the faces within a node set and follows them."""
+
+    set_name: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Support:
+    """Springs on the faces within a node set: stiffness in Pa/m, along the normal alone or not."""
+
+    set_name: str
+    stiffness: float
+    only_normal: bool
+
+
+@dataclass(frozen=True)
 class Material:
-    """A material: a name in LAWS, and the law's parameters (SI units), directions as tuples."""
+    """A material: a name in LAWS, the law's parameters (SI units), directions as tuples.
+
+    density: kg/m^3.
+    """
 
     law: str
     parameters: dict
+    density: float = 0.0
 
 
 @dataclass(frozen=True)
 class Case:
-    """A case: name, materials in the order of the file, imposed motions and forces."""
+    """A case: name, materials in the order of the file, imposed motions and loads.
+
+    gravity: (3,) m/s^2.
+    """
 
     name: str
     materials: tuple
     displacements: tuple
     forces: tuple = ()
     rotations: tuple = ()
+    pressures: tuple = ()
+    supports: tuple = ()
+    gravity: tuple = (0.0, 0.0, 0.0)
 
 
 def read_tables(path):
@@ -101,9 +130,11 @@ def read_case(path, name=None):
     displacements, rotations = read_all("displacement", _displacement), read_all(
         "rotation", _rotation
     )
-    if not (displacements or rotations):
+    supports = read_all("support", _support)
+    if not (displacements or rotations or supports):
         raise InputError(
-            f"{path}: has no [[displacement]] or [[rotation]]; at least one table is required"
+            f"{path}: has no [[displacement]], [[rotation]] or [[support]]; at least one table is "
+            "required"
         )
     if "materials" in tables:
         materials = read_all("materials", _material)
@@ -115,6 +146,9 @@ def read_case(path, name=None):
         displacements=displacements,
         forces=read_all("force", _force),
         rotations=rotations,
+        pressures=read_all("pressure", _pressure),
+        supports=supports,
+        gravity=tuple(map(sum, zip((0.0, 0.0, 0.0), *read_all("gravity", _gravity)))),
     )
 
 
@@ -141,7 +175,8 @@ def _material(where, table):
         for key, required in parameters(law).items()
         if required or key in table
     }
-    return Material(law, numbers)
+    density = entry(where, table, "density", NUMBER) if "density" in table else 0.0
+    return Material(law, numbers, float(density))
 
 
 def _material_number(where, table, key):
@@ -205,12 +240,43 @@ def _rotation(where, table):
 
 def _force(where, table):
     """A checked [[force]] table as a Force."""
-    _check_keys(where, table, ("set", "total", "moment"))
+    _check_keys(where, table, ("set", "total", "moment", "times", "factors"))
+    factor = _final_factor(where, table)
     total, moment = (
-        _vector(where, table, key) if key in table else (0.0, 0.0, 0.0)
+        tuple(factor * v for v in _vector(where, table, key)) if key in table else (0.0, 0.0, 0.0)
         for key in ("total", "moment")
     )
     return Force(entry(where, table, "set", str), total, moment)
+
+
+def _pressure(where, table):
+    """A checked [[pressure]] table as a Pressure."""
+    _check_keys(where, table, ("set", "value", "times", "factors"))
+    value = _final_factor(where, table) * float(entry(where, table, "value", NUMBER))
+    return Pressure(entry(where, table, "set", str), value)
+
+
+def _gravity(where, table):
+    """The acceleration of a checked [[gravity]] table."""
+    _check_keys(where, table, ("value", "times", "factors"))
+    factor = _final_factor(where, table)
+    return tuple(factor * v for v in _vector(where, table, "value"))
+
+
+def _support(where, table):
+    """A checked [[support]] table as a Support; its damping plays no part at rest."""
+    _check_keys(where, table, ("set", "stiffness", "damping", "only_normal"))
+    stiffness = entry(where, table, "stiffness", NUMBER) if "stiffness" in table else 0.0
+    only_normal = entry(where, table, "only_normal", bool) if "only_normal" in table else False
+    return Support(entry(where, table, "set", str), float(stiffness), only_normal)
+
+
+def _final_factor(where, table):
+    """The factor of a load at the end of a quasi-static answer, whose time is 1."""
+    if "times" not in table and "factors" not in table:
+        return 1.0
+    times, factors = (entry(where, table, key, list) for key in ("times", "factors"))
+    return float(np.interp(1.0, times, factors))
 
 
 def _vector(where, table, key):

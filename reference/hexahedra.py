@@ -68,12 +68,27 @@ class Traction:
 
 
 @dataclass(frozen=True)
+class Surface:
+    """A pressure that follows the boundary faces within a set of nodes, and springs on them.
+
+    nodes: (n,) bool, as of a Traction. pressure: Pa at full load, pushing. stiffness: Pa/m, of
+    springs to the undeformed place; only_normal: along the undeformed normal alone.
+    """
+
+    nodes: np.ndarray
+    pressure: float = 0.0
+    stiffness: float = 0.0
+    only_normal: bool = False
+
+
+@dataclass(frozen=True)
 class HexMesh:
     """Trilinear hexahedra, the displacements imposed on their nodes, the tractions on faces.
 
     points: (n, 3) undeformed coordinates, m. cells: (m, 8) node numbers in VTK order.
     conditions: tuple of Condition. tractions: tuple of Traction. materials: (m,) the number of
-    each element's material, or None if there is only one.
+    each element's material, or None if there is only one. surfaces: tuple of Surface. gravity:
+    (3,) m/s^2 at full load.
     """
 
     points: np.ndarray
@@ -81,6 +96,8 @@ class HexMesh:
     conditions: tuple
     tractions: tuple = ()
     materials: np.ndarray | None = None
+    surfaces: tuple = ()
+    gravity: tuple = (0.0, 0.0, 0.0)
 
     def imposed(self, load=1.0):
         """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""
@@ -206,4 +223,6 @@ def refine(mesh):
     tractions = tuple(dataclasses.replace(t, nodes=extend(t.nodes, np.all)) for t in mesh.tractions)
     cells = np.stack(children, axis=1).reshape(-1, 8)
     materials = None if mesh.materials is None else np.repeat(mesh.materials, 8)
-    return HexMesh(extend(mesh.points, np.mean), cells, conditions, tractions, materials)
+    surfaces = tuple(dataclasses.replace(s, nodes=extend(s.nodes, np.all)) for s in mesh.surfaces)
+    points = extend(mesh.points, np.mean)
+    return HexMesh(points, cells, conditions, tractions, materials, surfaces, mesh.gravity)

@@ -10,7 +10,8 @@ import numpy as np
 from common.errors import InputError, suggestion
 from common.program import ROOT, binary, output_of
 from common.result_file import text_of
-from hexahedra import Condition, HexMesh, traction, turn_about
+from common.hexahedron import boundary_faces
+from hexahedra import Condition, HexMesh, Surface, traction, turn_about
 
 
 @dataclass(frozen=True)
@@ -122,9 +123,32 @@ def load_case_mesh(case, mesh_path):
                 f"{mesh_path}: force.set = {entry.set_name!r}: no boundary face has all its "
                 "vertices in this set; a force needs at least one"
             )
-    if not (mesh.largest_imposed() or tractions):
+    surfaces = tuple(
+        Surface(_loaded(mesh_path, file, "pressure", one.set_name), pressure=one.value)
+        for one in case.pressures
+    ) + tuple(
+        Surface(
+            _loaded(mesh_path, file, "support", one.set_name),
+            stiffness=one.stiffness,
+            only_normal=one.only_normal,
+        )
+        for one in case.supports
+    )
+    if not (mesh.largest_imposed() or tractions or case.pressures or any(case.gravity)):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
-    return dataclasses.replace(mesh, tractions=tuple(tractions)), file
+    loads = {"tractions": tuple(tractions), "surfaces": surfaces, "gravity": case.gravity}
+    return dataclasses.replace(mesh, **loads), file
+
+
+def _loaded(mesh_path, file, table, set_name):
+    """(n,) bool of the nodes of a set. Raises InputError if it has no boundary face."""
+    nodes = _mask(file, _members(mesh_path, file, table, set_name))
+    if not nodes[boundary_faces(file.cells)].all(axis=1).any():
+        raise InputError(
+            f"{mesh_path}: {table}.set = {set_name!r}: no boundary face has all its vertices in this "
+            "set; one is needed at least"
+        )
+    return nodes
 
 
 def _with_condition(mesh_path, mesh, condition, where):

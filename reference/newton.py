@@ -89,7 +89,7 @@ def _equilibrate(problem, load, scale, tolerance):
         right = -(residual + tangent @ du)[problem.free]
         free_tangent = tangent[problem.free][:, problem.free]
         del tangent  # the factors need the memory
-        du[problem.free] = _direct_solve(free_tangent, right)
+        du[problem.free] = _direct_solve(free_tangent, right, problem.symmetric)
         dp = recover(du)
         fraction = _advance(problem, du, dp, fixed)
         correction = np.abs(du).max() / (scale or np.abs(u).max())
@@ -98,7 +98,7 @@ def _equilibrate(problem, load, scale, tolerance):
         if correction < tolerance and fraction == 1:
             forces, _ = problem.mixed_residual()
             unbalanced, reactions = (forces[dofs] for dofs in (problem.free, problem.fixed))
-            relative = np.linalg.norm(unbalanced) / np.linalg.norm(reactions)
+            relative = np.linalg.norm(unbalanced) / (np.linalg.norm(reactions) or 1.0)
             return True, count, relative, correction
     return False, count, np.nan, correction
 
@@ -124,17 +124,17 @@ def _advance(problem, du, dp, fixed):
     return 0.0
 
 
-def _direct_solve(matrix, right):
-    """Solve a sparse symmetric system with MUMPS (L D L^T): matrix (n, n), right (n,)."""
+def _direct_solve(matrix, right, symmetric):
+    """Solve a sparse system with MUMPS, L D L^T or L U: matrix (n, n), right (n,)."""
     matrix.sort_indices()
     size = matrix.shape
     a = PETSc.Mat().createAIJ(size, csr=(matrix.indptr, matrix.indices, matrix.data))
-    a.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+    a.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
     ksp = PETSc.KSP().create(PETSc.COMM_SELF)
     ksp.setOperators(a)
     ksp.setType(PETSc.KSP.Type.PREONLY)
     pc = ksp.getPC()
-    pc.setType(PETSc.PC.Type.CHOLESKY)
+    pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
     pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
     b = PETSc.Vec().createWithArray(right, comm=PETSc.COMM_SELF)
     x = PETSc.Vec().createWithArray(np.empty(size[0]), comm=PETSc.COMM_SELF)

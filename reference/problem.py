@@ -18,6 +18,7 @@ from mpi4py import MPI
 from boundary import prescribed_dofs
 from common.hexahedron import LEXICOGRAPHIC
 from laws import LAWS
+from loads import JIT_OPTIONS, Loads
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class MixedProblem:
     have the numbers.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
     dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
-    (the other dofs), load (the current factor of the tractions, 0 to 1).
+    (the other dofs), load (the current factor of the loads, 0 to 1), symmetric (whether tangents are).
     """
 
     def __init__(self, mesh, pair, materials):
@@ -86,14 +87,14 @@ class MixedProblem:
         self._vertex_block[cell_nodes] = cell_dofs[:, vertex_dofs]
         self._prescribed = partial(prescribed_dofs, space, cell_nodes, mesh.conditions)
         self.fixed, self.values = self._prescribed()
-        self.scale = max(np.abs(self.values).max(), mesh.largest_turn().max())
+        self.scale = max(np.abs(self.values).max(initial=0.0), mesh.largest_turn().max())
         self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
         self.load = 1.0
-        self._external = np.zeros(self.displacement.x.array.size)
-        for traction in mesh.tractions:
-            self._external += _traction_forces(
-                traction, space, cell_nodes, 2 * pair.gauss_points - 1
-            )
+        of_cells = np.zeros(n_cells, dtype=int) if of_cell is None else of_cell
+        densities = np.array([material.density for material in materials])[of_cells]
+        degree = 2 * pair.gauss_points - 1
+        self._loads = Loads(mesh, self.displacement, cell_nodes, densities, degree)
+        self.symmetric = self._loads.symmetric
 
     def start_from(self, coarse):
         """Interpolate displacement and pressure from a problem on the mesh before refine().
@@ -144,7 +145,7 @@ class MixedProblem:
         inverse = _invert_blocks(self._assemble_matrix("pp"), self._pressures_per_cell())
         force, dilatation = self.mixed_residual()
         condensed = coupling @ inverse
-        tangent = (stiffness - condensed @ coupling.T).tocsr()
+        tangent = (stiffness - condensed @ coupling.T + self._loads.tangent(self.load)).tocsr()
         residual = force - condensed @ dilatation
 
         def recover(increment):
@@ -155,9 +156,10 @@ class MixedProblem:
     def mixed_residual(self):
         """Both rows of the mixed system: forces (N,) in N, and (M,) in m^3, one per pressure.
 
-        The forces are the internal forces minus the tractions at the current load.
+        The forces are the internal forces minus the loads at the current factor.
         """
-        return self._assemble_vector("u") - self.load * self._external, self._assemble_vector("p")
+        forces = self._assemble_vector("u") + self._loads.forces(self.load)
+        return forces, self._assemble_vector("p")
 
     def _pressures_per_cell(self):
         return self.pressure.function_space.dofmap.dof_layout.num_dofs
@@ -203,40 +205,10 @@ def _compile_forms(u, p, pair, laws, of_cell):
             "pp": ufl.derivative(by_p, p, dp),
         },
     }
-    # Another process may be compiling the same form: wait for it rather than fail.
-    options = {"timeout": 600, "cffi_extra_compile_args": ["-O3", "-g0"]}
     return {
-        kind: {name: fem.form(form, jit_params=options) for name, form in group.items()}
+        kind: {name: fem.form(form, jit_params=JIT_OPTIONS) for name, form in group.items()}
         for kind, group in forms.items()
     }
-
-
-def _traction_forces(traction, space, cell_nodes, degree):
-    """Nodal forces (N,) in N, over all displacement dofs, of a Traction at full load.
-
-    space: the displacement's. cell_nodes: (m, 8) node numbers in the space's order of cells and
-    vertices. degree: quadrature degree.
-    """
-    domain = space.mesh
-    domain.topology.create_connectivity(2, 3)
-    domain.topology.create_connectivity(3, 2)
-    facets = []
-    for facet in dolfinx.mesh.exterior_facet_indices(domain.topology):
-        (cell,) = domain.topology.connectivity(2, 3).links(facet)
-        local = list(domain.topology.connectivity(3, 2).links(cell)).index(facet)
-        vertices = basix.topology(basix.CellType.hexahedron)[2][local]
-        if traction.nodes[cell_nodes[cell, vertices]].all():
-            facets.append(facet)
-    facets = np.sort(np.array(facets, dtype=np.int32))
-    tags = dolfinx.mesh.meshtags(domain, 2, facets, np.ones_like(facets))
-    data = {"quadrature_rule": "default", "quadrature_degree": degree}
-    measure = ufl.Measure("ds", domain=domain, subdomain_data=tags, metadata=data)
-    mean, turn, centre = (
-        fem.Constant(domain, vector) for vector in (traction.mean, traction.turn, traction.centre)
-    )
-    t = mean + ufl.cross(turn, ufl.SpatialCoordinate(domain) - centre)
-    form = fem.form(ufl.inner(t, ufl.TestFunction(space)) * measure(1))
-    return fem.assemble_vector(form).array.copy()
 
 
 def _invert_blocks(matrix, size):

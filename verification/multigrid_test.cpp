@@ -24,7 +24,7 @@ struct HeldBar {
     for (std::size_t row = 0; row < layout.nodes; ++row) {
       if (mesh.points[index(layout.node_of_row[row])][2] > 1.5 / n) free[row] = {{1.0f, 1.0f, 1.0f, 0.0f}};
     }
-    multigrid = std::make_unique<SaddleMultigrid>(mesh, layout, free, 1);
+    multigrid = std::make_unique<SaddleMultigrid>(mesh, layout, free, Rows<float>{}, 1);
     const NeoHookean law{.young_modulus = 3.0, .poisson_ratio = poisson_ratio};
     multigrid->update(Rows<float>(layout.rows()), {{lame_lambda(law), law.shear_modulus(), 1.0 / 3.0}});
   }

@@ -143,6 +143,53 @@ ImposedRotation read_rotation(TableReader table) {
   return turned;
 }
 
+/// The curve of a load: its keys times and factors.
+LoadCurve read_curve(TableReader& table) {
+  LoadCurve curve;
+  const auto times = table.optional<std::vector<double>>("times", Range::at_least(0.0));
+  const auto factors = table.optional<std::vector<double>>("factors", Range::any());
+  if (!times && !factors) return curve;
+  if (!times || !factors || times->empty() || times->size() != factors->size()) {
+    table.fail(times ? "times" : "factors", "needs times and factors, equally many");
+  }
+  for (std::size_t k = 1; k < times->size(); ++k) {
+    if (!((*times)[k] > (*times)[k - 1])) {
+      table.fail("times", fmt::format("= ..., {}, {}, ... must increase", (*times)[k - 1], (*times)[k]));
+    }
+  }
+  return {*times, *factors};
+}
+
+ImposedPressure read_pressure(TableReader table) {
+  ImposedPressure pressure;
+  pressure.set = table.required<std::string>("set");
+  pressure.value = table.required<double>("value", Range::any());
+  pressure.curve = read_curve(table);
+  table.finish();
+  return pressure;
+}
+
+Gravity read_gravity(TableReader table) {
+  Gravity gravity;
+  gravity.value = table.required<Vector>("value", Range::any());
+  gravity.curve = read_curve(table);
+  table.finish();
+  return gravity;
+}
+
+Support read_support(TableReader table) {
+  Support support;
+  support.set = table.required<std::string>("set");
+  support.stiffness = table.optional<double>("stiffness", Range::at_least(0.0)).value_or(0.0);
+  support.damping = table.optional<double>("damping", Range::at_least(0.0)).value_or(0.0);
+  if (!(support.stiffness > 0.0 || support.damping > 0.0)) {
+    table.fail("stiffness", "or damping must be given and positive, or both");
+  }
+  support.only_normal = table.optional<bool>("only_normal").value_or(false);
+  table.finish();
+  return support;
+}
+
 ImposedForce read_force(TableReader table) {
   ImposedForce force;
   force.set = table.required<std::string>("set");
@@ -151,6 +198,7 @@ ImposedForce read_force(TableReader table) {
   if (!total && !moment) table.fail("total", "or moment must be given, or both");
   force.total = total.value_or(Vector{});
   force.moment = moment.value_or(Vector{});
+  force.curve = read_curve(table);
   table.finish();
   return force;
 }
@@ -247,6 +295,9 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
     description.displacements.push_back(read_displacement(table));
   for (const auto& table : reader.tables("rotation")) description.rotations.push_back(read_rotation(table));
   for (const auto& table : reader.tables("force")) description.forces.push_back(read_force(table));
+  for (const auto& table : reader.tables("pressure")) description.pressures.push_back(read_pressure(table));
+  for (const auto& table : reader.tables("gravity")) description.gravity.push_back(read_gravity(table));
+  for (const auto& table : reader.tables("support")) description.supports.push_back(read_support(table));
   if (auto relaxation = reader.table("relaxation")) {
     relaxation->parameters(description.relaxation);
     relaxation->finish();
@@ -261,9 +312,13 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   if (auto method = reader.table("method")) description.method = read_method(*method);
   for (const auto& name : tables_not_read) reader.leave(name);
   reader.finish();
-  if (description.quasi_static && description.displacements.empty() && description.rotations.empty()) {
-    reader.fail("displacement",
-                "is missing; a quasi-static case needs at least one [[displacement]] or [[rotation]]");
+  const bool supported = std::any_of(description.supports.begin(), description.supports.end(),
+                                     [](const Support& support) { return support.stiffness > 0.0; });
+  if (description.quasi_static && description.displacements.empty() && description.rotations.empty() &&
+      !supported) {
+    reader.fail(
+        "displacement",
+        "is missing; a quasi-static case needs at least one [[displacement]], [[rotation]] or [[support]]");
   }
   return description;
 }

@@ -79,6 +79,12 @@ constexpr std::string_view sets_and_loads = R"(
   (default: the mean of the set's nodes), displacement = [x, y, z] in m, added (default: none)
 [[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the faces:
   a dead load on the boundary faces within the set
+[[pressure]] set = NAME, value in Pa: pushes on the boundary faces within the set, and follows them
+[[gravity]] value = [x, y, z] in m/s^2: the weight of the body
+[[support]] set = NAME, stiffness in Pa/m, damping in Pa s/m, only_normal (default: false): springs and
+  dashpots per area between the boundary faces within the set and where they were
+  force, pressure and gravity: times = [t, ...] in s, increasing, and factors = [f, ...], linear in between,
+  instead of the loading curve of the case; in a quasi-static answer time is the share of the load, 0 to 1
 [[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in rad/s about
   the set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the set,
   value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several add up

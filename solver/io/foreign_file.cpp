@@ -135,8 +135,10 @@ void write_problem(const Scene& scene, Hdf5File& file) {
                    {static_cast<double>(constraint.node), static_cast<double>(constraint.component),
                     final_value(scene, constraint)});
   }
-  for (const auto& [node, force] : scene.loads) {
-    forces.insert(forces.end(), {static_cast<double>(node), force[0], force[1], force[2]});
+  for (const auto& [node, force, curve] : scene.loads) {
+    const double factor = scene.curves[curve].at(1.0, 1.0);
+    forces.insert(forces.end(),
+                  {static_cast<double>(node), factor * force[0], factor * force[1], factor * force[2]});
   }
   write_rows("/problem/imposed", 3, imposed);
   write_rows("/problem/forces", 4, forces);
@@ -177,6 +179,10 @@ MeshWithSets read_foreign_mesh(const MeshFile& file) {
 void write_foreign_mesh(const Scene& scene, const fs::path& path, const ForeignFormat& format) {
   if (format.deck && !scene.description.quasi_static) {
     throw InputError(fmt::format("{}: a dynamic case has no deck", scene.description.file.string()));
+  }
+  if (format.deck && !(scene.pressures.empty() && scene.supports.empty())) {
+    throw InputError(fmt::format("{}: pressures and supports have no deck; allowed are forces and gravity",
+                                 scene.description.file.string()));
   }
   if (format.deck && scene.materials.list.size() > 1) {
     throw InputError(fmt::format("{}: a case of {} materials has no deck; allowed is one material",

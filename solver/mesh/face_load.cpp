@@ -7,20 +7,19 @@ namespace sandglass {
 
 namespace {
 
-/// A Gauss point of a face: the shape functions of its four nodes, its place (m), and its share of the area
-/// (m^2).
-struct FacePoint {
-  std::array<double, 4> N;
-  Triple<double> X;
-  double area;
-};
-
 Triple<double> triple(const Vector& v) {
   return {{v[0], v[1], v[2]}};
 }
 
-/// The 2x2 Gauss points of a bilinear face.
-std::array<FacePoint, 4> gauss_points_of(const NodalField& points, const Quadrilateral& face) {
+}  // namespace
+
+std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& face) {
+  std::array<Vector, 4> corners;
+  for (std::size_t I = 0; I < 4; ++I) corners[I] = points[static_cast<std::size_t>(face[I])];
+  return corners;
+}
+
+std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
   constexpr std::array<std::array<double, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   const double a = 1.0 / std::sqrt(3.0);
   std::array<FacePoint, 4> result;
@@ -29,7 +28,7 @@ std::array<FacePoint, 4> gauss_points_of(const NodalField& points, const Quadril
     Triple<double> X{}, along_xi{}, along_eta{};
     for (std::size_t I = 0; I < 4; ++I) {
       const auto [s, t] = signs[I];
-      const Triple<double> X_I = triple(points[static_cast<std::size_t>(face[I])]);
+      const Triple<double> X_I = triple(corners[I]);
       result[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
       X += result[q].N[I] * X_I;
       along_xi += (s * (1.0 + t * eta) / 4.0) * X_I;
@@ -37,12 +36,21 @@ std::array<FacePoint, 4> gauss_points_of(const NodalField& points, const Quadril
     }
     const Triple<double> normal = cross(along_xi, along_eta);
     result[q].X = X;
+    result[q].normal = normal;
     result[q].area = std::sqrt(double_dot(normal, normal));
   }
   return result;
 }
 
-}  // namespace
+std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x) {
+  std::array<Vector, 4> forces{};
+  for (const auto& point : gauss_points_of(x)) {
+    for (std::size_t I = 0; I < 4; ++I) {
+      for (std::size_t i = 0; i < 3; ++i) forces[I][i] -= point.N[I] * point.normal.entries[i];
+    }
+  }
+  return forces;
+}
 
 std::vector<Quadrilateral> faces_within(const Mesh& mesh, const std::vector<int>& nodes) {
   const auto inside = [&](int node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
@@ -57,7 +65,7 @@ std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vec
   double area = 0.0;
   Triple<double> c{};
   for (const auto& face : faces) {
-    for (const auto& point : gauss_points_of(points, face)) {
+    for (const auto& point : gauss_points_of(corners_of(points, face))) {
       area += point.area;
       c += point.area * point.X;
     }
@@ -65,7 +73,7 @@ std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vec
   c = (1.0 / area) * c;
   Tensor<double> inertia{};  // of the area: moment = inertia b
   for (const auto& face : faces) {
-    for (const auto& point : gauss_points_of(points, face)) {
+    for (const auto& point : gauss_points_of(corners_of(points, face))) {
       const Triple<double> r = point.X - c;
       inertia += point.area * (double_dot(r, r) * identity<double>() - r * transpose(r));
     }
@@ -74,7 +82,7 @@ std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vec
   const Triple<double> b = inverse(inertia) * triple(moment);
   std::map<int, Vector> forces;
   for (const auto& face : faces) {
-    for (const auto& point : gauss_points_of(points, face)) {
+    for (const auto& point : gauss_points_of(corners_of(points, face))) {
       const Triple<double> t = a + cross(b, point.X - c);
       for (std::size_t I = 0; I < 4; ++I) {
         Vector& force = forces[face[I]];
@@ -84,7 +92,7 @@ std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vec
   }
   std::vector<NodalLoad> loads;
   loads.reserve(forces.size());
-  for (const auto& [node, force] : forces) loads.push_back({node, force});
+  for (const auto& [node, force] : forces) loads.push_back({.node = node, .force = force});
   return loads;
 }
 

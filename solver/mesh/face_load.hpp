@@ -8,7 +8,27 @@ namespace sandglass {
 struct NodalLoad {
   int node;
   Vector force;
+  std::size_t curve = 0;  ///< which of the load curves of a scene it follows
 };
+
+/// Nodal forces (N) of a pressure of 1 Pa on a bilinear face with corners x (m): minus the integral of N_I n
+/// da, exact.
+std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x);
+
+/// A Gauss point of a face: the shape functions of its four nodes, its place (m), and its share of the area
+/// (m^2).
+struct FacePoint {
+  std::array<double, 4> N;
+  Triple<double> X;
+  double area;
+  Triple<double> normal;  ///< times the area
+};
+
+/// The 2x2 Gauss points of a bilinear face with these corners, m.
+std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners);
+
+/// The corners of a face, m.
+std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& face);
 
 /// The boundary faces whose four nodes all belong to a set of nodes (sorted), in the order of the cells.
 std::vector<Quadrilateral> faces_within(const Mesh& mesh, const std::vector<int>& nodes);

@@ -32,7 +32,8 @@ class Elements final : public ElementLevel {
   };
 
  public:
-  Elements(const Mesh& mesh, const Layout& layout, const Rows<float>& free, int threads)
+  Elements(const Mesh& mesh, const Layout& layout, const Rows<float>& free, const Rows<float>& springs,
+           int threads)
       : ElementLevel(threads, pressure_steps),
         layout_(layout),
         coordinates_(centred_coordinates<float>(mesh.points, layout)),
@@ -40,6 +41,7 @@ class Elements final : public ElementLevel {
         blocks_(layout.ranks()) {
     resize(layout.rows(), layout.elements.size());
     free_ = free;
+    springs_ = springs;
     stiffness_.resize(layout.rows());
     tangents_.resize(layout.elements.size());
     cells_.resize(mesh.cells.size());
@@ -57,12 +59,18 @@ class Elements final : public ElementLevel {
                 [&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c], moduli); });
     sum_over_chunks(layout_, threads_, numbers_of(stiffness_),
                     [&](std::size_t c) { add_diagonals(layout_.chunks[c]); });
+    for (std::size_t row = 0; row < springs_.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) stiffness_[row][i] += springs_[row][i];
+    }
     set_smoother(stiffness_, *std::max_element(bounds.begin(), bounds.end()));
   }
 
   void apply(const MixedVector& x, MixedVector& y) const override {
     sum_over_chunks(layout_, threads_, numbers_of(y.u),
                     [&](std::size_t c) { apply_to(layout_.chunks[c], x, y); });
+    for (std::size_t row = 0; row < springs_.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) y.u[row][i] += springs_[row][i] * x.u[row][i];
+    }
   }
 
   void divergence(const Rows<float>& u, std::vector<float>& g) const override {
@@ -321,18 +329,19 @@ class Elements final : public ElementLevel {
 }  // namespace
 
 std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Layout& layout,
-                                                 const Rows<float>& free, int threads) {
+                                                 const Rows<float>& free, const Rows<float>& springs,
+                                                 int threads) {
   switch (layout.width) {
     case 1:
-      return std::make_unique<Elements<1>>(mesh, layout, free, threads);
+      return std::make_unique<Elements<1>>(mesh, layout, free, springs, threads);
     case 2:
-      return std::make_unique<Elements<2>>(mesh, layout, free, threads);
+      return std::make_unique<Elements<2>>(mesh, layout, free, springs, threads);
     case 4:
-      return std::make_unique<Elements<4>>(mesh, layout, free, threads);
+      return std::make_unique<Elements<4>>(mesh, layout, free, springs, threads);
     case 8:
-      return std::make_unique<Elements<8>>(mesh, layout, free, threads);
+      return std::make_unique<Elements<8>>(mesh, layout, free, springs, threads);
     default:
-      return std::make_unique<Elements<16>>(mesh, layout, free, threads);
+      return std::make_unique<Elements<16>>(mesh, layout, free, springs, threads);
   }
 }
 

@@ -42,17 +42,23 @@ class ElementLevel : public SaddleLevel {
   /// The tangents of the elements by cell.
   const std::vector<ElementTangent>& tangents() const { return tangents_; }
 
+  /// The stiffness of springs that hold the rows, N/m; empty without any.
+  const Rows<float>& springs() const { return springs_; }
+
   /// The diagonal of A on constrained components too, N/m.
   const Rows<float>& stiffness() const { return stiffness_; }
 
  protected:
   std::vector<std::size_t> cells_;
   std::vector<ElementTangent> tangents_;
+  Rows<float> springs_;
   Rows<float> stiffness_;
 };
 
-/// For the rows and the lanes of a layout. `free` is 1, or 0 on constrained components and spare rows.
+/// For the rows and the lanes of a layout. `free` is 1, or 0 on constrained components and spare rows;
+/// `springs` as in ElementLevel.
 std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Layout& layout,
-                                                 const Rows<float>& free, int threads);
+                                                 const Rows<float>& free, const Rows<float>& springs,
+                                                 int threads);
 
 }  // namespace sandglass

@@ -133,9 +133,12 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
   }
   for (const std::uint32_t row : contents.rows) {
     for (std::size_t i = 0; i < 3; ++i) {
-      if (elements_.free()[row][i] != 0.0f) continue;
+      const bool held = elements_.free()[row][i] == 0.0f;
+      const float k = held                           ? spring * elements_.stiffness()[row][i]
+                      : !elements_.springs().empty() ? elements_.springs()[row][i]
+                                                     : 0.0f;
+      if (k == 0.0f) continue;
       const auto w = weights(places_[row].local);
-      const float k = spring * elements_.stiffness()[row][i];
       for (std::size_t a = 0; a < 8; ++a) {
         for (std::size_t b = 0; b < 8; ++b) problem.A[24 * (3 * a + i) + 3 * b + i] += k * w[a] * w[b];
       }

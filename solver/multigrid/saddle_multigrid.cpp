@@ -21,8 +21,9 @@ void smooth_after(SaddleLevel& level, const MixedVector& b, MixedVector& x) {
 
 }  // namespace
 
-SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Layout& layout, const Rows<float>& free, int threads)
-    : elements_(make_element_level(mesh, layout, free, threads)), residual_(elements_->zero()) {
+SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Layout& layout, const Rows<float>& free,
+                                 const Rows<float>& springs, int threads)
+    : elements_(make_element_level(mesh, layout, free, springs, threads)), residual_(elements_->zero()) {
   const auto add = [&](const Grid& grid) {
     auto level = std::make_unique<GridLevel>(grid, threads);
     const MixedVector zero = level->zero();

@@ -10,8 +10,10 @@ namespace sandglass {
 /// the elements of the mesh, whatever its shape, and grids of boxes around it, ever coarser.
 class SaddleMultigrid {
  public:
-  /// `free` is 1, or 0 on constrained components and spare rows; `update` must follow.
-  SaddleMultigrid(const Mesh& mesh, const Layout& layout, const Rows<float>& free, int threads);
+  /// `free` is 1, or 0 on constrained components and spare rows; `springs` (N/m) hold rows, empty without
+  /// any; `update` must follow.
+  SaddleMultigrid(const Mesh& mesh, const Layout& layout, const Rows<float>& free, const Rows<float>& springs,
+                  int threads);
 
   /// Takes the configuration with displacements u, rows of the layout (m), in which no element may be
   /// inverted, and the moduli of each material.

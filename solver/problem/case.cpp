@@ -33,6 +33,10 @@ std::string described(const NodeSetRule& rule) {
   return text + ")";
 }
 
+std::string described(const LoadCurve& curve) {
+  return curve.times.empty() ? "" : fmt::format("curve({}:{})", curve.times, curve.factors);
+}
+
 }  // namespace
 
 std::string case_hash(const Case& description) {
@@ -57,7 +61,17 @@ std::string case_hash(const Case& description) {
     text += fmt::format(":{})", turned.displacement);
   }
   for (const auto& force : description.forces) {
-    text += fmt::format("force({}:{}:{})", force.set, force.total, force.moment);
+    text += fmt::format("force({}:{}:{})", force.set, force.total, force.moment) + described(force.curve);
+  }
+  for (const auto& pressure : description.pressures) {
+    text += fmt::format("pressure({}:{})", pressure.set, pressure.value) + described(pressure.curve);
+  }
+  for (const auto& gravity : description.gravity) {
+    text += fmt::format("gravity({})", gravity.value) + described(gravity.curve);
+    for (const auto& material : description.materials) text += fmt::format("density({})", material.density);
+  }
+  for (const auto& support : description.supports) {
+    text += fmt::format("support({}:{}:{})", support.set, support.stiffness, support.only_normal);
   }
   return hash_of(text);
 }
@@ -73,6 +87,10 @@ void scale_load(Case& description, double factor) {
   for (auto& force : description.forces) {
     for (double& f : force.total) f *= factor;
     for (double& m : force.moment) m *= factor;
+  }
+  for (auto& pressure : description.pressures) pressure.value *= factor;
+  for (auto& gravity : description.gravity) {
+    for (double& g : gravity.value) g *= factor;
   }
 }
 

@@ -11,6 +11,7 @@
 #include "material/materials.hpp"
 #include "mesh/generators.hpp"
 #include "mesh/node_set.hpp"
+#include "problem/load_curve.hpp"
 #include "problem/settings.hpp"
 
 namespace sandglass {
@@ -43,11 +44,35 @@ struct ImposedRotation {
   Vector displacement{};         ///< final displacement in addition to the rotation, m
 };
 
-/// A dead load on the boundary faces within a node set; it follows the loading curve.
+/// A dead load on the boundary faces within a node set.
 struct ImposedForce {
   std::string set;
-  Vector total{};   ///< final sum, N
-  Vector moment{};  ///< final moment about the centroid of the faces, N m
+  Vector total{};   ///< sum at the factor one, N
+  Vector moment{};  ///< moment about the centroid of the faces, N m
+  LoadCurve curve = {};
+};
+
+/// A pressure on the boundary faces within a node set: it pushes on them and follows them as they turn and
+/// stretch.
+struct ImposedPressure {
+  std::string set;
+  double value = 0.0;  ///< at the factor one, Pa
+  LoadCurve curve = {};
+};
+
+/// The weight of the body.
+struct Gravity {
+  Vector value{};  ///< acceleration at the factor one, m/s^2
+  LoadCurve curve = {};
+};
+
+/// Springs and dashpots between the boundary faces within a node set and the undeformed place (Robin's
+/// condition).
+struct Support {
+  std::string set;
+  double stiffness = 0.0;    ///< Pa/m, per area
+  double damping = 0.0;      ///< Pa s/m, per area; plays no part in a quasi-static answer
+  bool only_normal = false;  ///< they resist motion along the normal of the undeformed face alone
 };
 
 /// Velocities in which nodes start; what several say of one node adds up.
@@ -74,6 +99,9 @@ struct Case {
   std::vector<ImposedDisplacement> displacements;
   std::vector<ImposedRotation> rotations;
   std::vector<ImposedForce> forces;
+  std::vector<ImposedPressure> pressures;
+  std::vector<Gravity> gravity;
+  std::vector<Support> supports;
   std::vector<InitialVelocity> velocities;
   RelaxationSettings relaxation;
   DynamicsSettings dynamics;
@@ -84,7 +112,7 @@ struct Case {
 /// forces. Method, settings and words do not enter.
 std::string case_hash(const Case& description);
 
-/// Multiplies imposed displacements, angles, forces and moments by `factor`.
+/// Multiplies imposed displacements, angles, forces, moments, pressures and gravity by `factor`.
 void scale_load(Case& description, double factor);
 
 }  // namespace sandglass

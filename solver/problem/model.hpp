@@ -22,12 +22,22 @@ class Model {
   /// Mass of each element, kg.
   const std::vector<double>& element_masses() const { return element_masses_; }
 
+  /// Upper bounds of what loads add to the frequencies of an element.
+  struct LoadRates {
+    double square = 0.0;   ///< of the frequency, by springs and pressures, 1/s^2
+    double damping = 0.0;  ///< by dashpots, 1/s
+  };
+
+  /// Of each element; empty if no load adds any.
+  const std::vector<LoadRates>& load_rates() const { return load_rates_; }
+
  private:
   const Scene& scene_;
   MethodChoice choice_;
   AnyInternalForce internal_force_;
   std::vector<double> element_masses_;
   std::vector<double> masses_;
+  std::vector<LoadRates> load_rates_;
 };
 
 /// Internal nodal forces (N) of a model at displacements u (m), reached from rest in one step.

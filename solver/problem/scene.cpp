@@ -144,27 +144,58 @@ double largest_length(const Scene& scene, const Turning& turning) {
   return largest;
 }
 
-/// The sum of all imposed forces at each node.
-std::vector<NodalLoad> make_loads(const Case& description, const Mesh& mesh, const NodeSets& sets) {
-  std::map<int, Vector> sums;
-  for (const auto& [name, total, moment] : description.forces) {
-    const auto& nodes = node_set(description, sets, "force.set", name);
-    const auto faces = faces_within(mesh, nodes);
-    if (faces.empty()) {
-      throw InputError(
-          fmt::format("{}: force.set = '{}' has no boundary face among its {} nodes; a force acts on faces "
-                      "of the boundary "
-                      "whose four nodes all lie in its set",
-                      description.file.string(), name, nodes.size()));
-    }
-    for (const auto& [node, force] : consistent_loads(mesh.points, faces, total, moment)) {
-      for (std::size_t i = 0; i < 3; ++i) sums[node][i] += force[i];
+/// The boundary faces within the set that a load names. Throws InputError if there are none.
+std::vector<Quadrilateral> loaded_faces(const Scene& scene, const std::string& key, const std::string& name) {
+  const auto& nodes = node_set(scene.description, scene.sets, key, name);
+  auto faces = faces_within(scene.mesh, nodes);
+  if (faces.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} = '{}' has no boundary face among its {} nodes; a {} acts on faces of the boundary "
+        "whose four nodes all lie in its set",
+        scene.description.file.string(), key, name, nodes.size(), key.substr(0, key.find('.'))));
+  }
+  return faces;
+}
+
+/// The number of a curve among those of a scene, to which it is added if it is new.
+std::size_t number_of(const LoadCurve& curve, std::vector<LoadCurve>& curves) {
+  const auto known = std::find(curves.begin(), curves.end(), curve);
+  const auto number = static_cast<std::size_t>(known - curves.begin());
+  if (known == curves.end()) curves.push_back(curve);
+  return number;
+}
+
+/// Sets the dead loads, the sums of all imposed forces and weights at each node, pressures and supports.
+void make_loads(Scene& scene) {
+  const Case& description = scene.description;
+  std::map<std::pair<std::size_t, int>, Vector> sums;
+  const auto add = [&](std::size_t curve, int node, const Vector& force, double factor) {
+    Vector& sum = sums[{curve, node}];
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += factor * force[i];
+  };
+  for (const auto& [name, total, moment, curve] : description.forces) {
+    const auto faces = loaded_faces(scene, "force.set", name);
+    const std::size_t number = number_of(curve, scene.curves);
+    for (const auto& load : consistent_loads(scene.mesh.points, faces, total, moment))
+      add(number, load.node, load.force, 1.0);
+  }
+  if (!description.gravity.empty()) {
+    const auto masses = lumped_masses(scene.mesh, element_masses(scene.mesh, scene.materials));
+    for (const auto& [g, curve] : description.gravity) {
+      const std::size_t number = number_of(curve, scene.curves);
+      for (std::size_t n = 0; n < masses.size(); ++n) add(number, static_cast<int>(n), g, masses[n]);
     }
   }
-  std::vector<NodalLoad> loads;
-  loads.reserve(sums.size());
-  for (const auto& [node, force] : sums) loads.push_back({node, force});
-  return loads;
+  for (const auto& [key, force] : sums) scene.loads.push_back({key.second, force, key.first});
+  for (const auto& [name, value, curve] : description.pressures) {
+    const std::size_t number = number_of(curve, scene.curves);
+    for (const auto& face : loaded_faces(scene, "pressure.set", name))
+      scene.pressures.push_back({face, value, number});
+  }
+  for (const auto& [name, stiffness, damping, only_normal] : description.supports) {
+    for (const auto& face : loaded_faces(scene, "support.set", name))
+      scene.supports.push_back({face, stiffness, damping, only_normal});
+  }
 }
 
 /// The elements of a set that a material names. Throws InputError if there is no such set or no element in
@@ -288,7 +319,10 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
               .materials = {},
               .constraints = {},
               .angles = {0.0},
+              .curves = {LoadCurve{}},
               .loads = {},
+              .pressures = {},
+              .supports = {},
               .initial_velocities = {},
               .case_hash = {},
               .mesh_hash = {}};
@@ -313,7 +347,7 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
   }
   scene.materials = make_materials(scene);
   scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
-  scene.loads = make_loads(scene.description, scene.mesh, scene.sets);
+  make_loads(scene);
   scene.initial_velocities =
       make_initial_velocities(scene.description, scene.mesh, scene.sets, scene.materials);
   scene.case_hash = case_hash(scene.description);

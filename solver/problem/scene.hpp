@@ -16,6 +16,21 @@ struct Constraint {
   ImposedPath path;
 };
 
+/// A pressure on a face, which follows it.
+struct FacePressure {
+  Quadrilateral face;
+  double pressure;  ///< at the factor one, Pa
+  std::size_t curve;
+};
+
+/// Springs and dashpots on a face.
+struct FaceSupport {
+  Quadrilateral face;
+  double stiffness;  ///< Pa/m
+  double damping;    ///< Pa s/m
+  bool only_normal;
+};
+
 /// The mesh of a case with its sets and materials; shared by all methods.
 struct Scene {
   Case description;
@@ -25,15 +40,18 @@ struct Scene {
   Materials materials;
   std::vector<Constraint> constraints;  ///< sorted by node, then component
   std::vector<double> angles;           ///< rad, of paths; the first is zero, for those that do not turn
-  std::vector<NodalLoad> loads;         ///< final forces, sorted by node
-  NodalField initial_velocities;        ///< m/s; empty: at rest. Imposed components do not obey them
+  std::vector<LoadCurve> curves;        ///< of loads; the first is that of the case
+  std::vector<NodalLoad> loads;         ///< dead forces at the factor one, sorted by curve and node
+  std::vector<FacePressure> pressures;
+  std::vector<FaceSupport> supports;
+  NodalField initial_velocities;  ///< m/s; empty: at rest. Imposed components do not obey them
   std::string case_hash;
   std::string mesh_hash;
 };
 
 /// Sets by their rules, materials of the elements, constraints from the imposed displacements and rotations,
 /// loads from the imposed forces, initial velocities. Throws InputError for an inverted element, an empty
-/// set, an element that has no material or two, a node to which two different paths are imposed, a force on a
+/// set, an element that has no material or two, a node to which two different paths are imposed, a load on a
 /// set without boundary faces, and a wave along an axis on which its set has no extent.
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {},
                  ElementSets element_sets_of_file = {});

@@ -163,7 +163,7 @@ class Simulation<Real>::Parts {
     reached.u.swap(body.state().u);
     body.state() = std::move(reached);
     elements().set_levels(body.state(), observer.levels);
-    body.impose(to_, factor_to_);
+    body.impose(to_, factor_to_, leapfrog_.time());
     body.evaluate_forces();
     std::fill(body.state().increment.begin(), body.state().increment.end(), Row<Real>{});
     arrive();
@@ -196,8 +196,16 @@ class Simulation<Real>::Parts {
     present.description.rotations.clear();
     present.description.displacements.clear();
     for (const auto& [node, d] : displacements) present.description.displacements.push_back({"driven", d});
+    const auto factor = [&](std::size_t curve) {
+      return present.curves[curve].at(leapfrog_.time(), factor_to_);
+    };
     for (auto& load : present.loads) {
-      for (double& f : load.force) f *= factor_to_;
+      for (double& f : load.force) f *= factor(load.curve);
+      load.curve = 0;
+    }
+    for (auto& pressure : present.pressures) {
+      pressure.pressure *= factor(pressure.curve);
+      pressure.curve = 0;
     }
     return present;
   }
@@ -215,7 +223,7 @@ class Simulation<Real>::Parts {
     }
     const std::span<const double> imposed = rest > 0.0 ? imposed_ : to_;
     const double factor = share * factor_to_ + rest * factor_from_;
-    leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed, factor); });
+    leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed, factor, leapfrog_.time()); });
     if (leapfrog_.step() % scene().description.dynamics.check_interval == 0) check();
   }
 

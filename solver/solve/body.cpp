@@ -23,6 +23,7 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
       threads_(model.choice().threads),
       angles_(model.scene().angles),
       terms_(angles_.size()),
+      loads_(model.scene(), elements.layout()),
       state_(elements.undeformed()),
       force_(state_.u.size()),
       reactions_(model.scene().constraints.size(), 0.0),
@@ -32,20 +33,12 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
     constraints_.push_back({static_cast<std::size_t>(row), static_cast<std::size_t>(component),
                             rounded<Real>(path.share), path.angle});
   }
-  for (const auto& [node, force] : model.scene().loads) {
-    const int row = elements.layout().row_of_node[static_cast<std::size_t>(node)];
-    loads_.push_back({static_cast<std::size_t>(row), rounded<Real>(force)});
-    load_square_ += force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
-  }
 }
 
 template <class Real>
 void Body<Real>::evaluate_forces() {
   elements_.evaluate(state_, force_);
-  const auto factor = static_cast<Real>(load_factor_);
-  for (const auto& [row, load] : loads_) {
-    for (std::size_t i = 0; i < 3; ++i) force_[row][i] -= factor * load[i];
-  }
+  loads_.subtract(state_, force_);
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     Real& component = force_[constraints_[k].row][constraints_[k].component];
     reactions_[k] = static_cast<double>(component);
@@ -65,13 +58,14 @@ double Body<Real>::residual(double free_square) const {
   double carried_square = 0.0;
 #pragma omp simd reduction(+ : carried_square)
   for (std::size_t k = 0; k < reactions_.size(); ++k) carried_square += reactions_[k] * reactions_[k];
-  const double carried = std::sqrt(carried_square + load_factor_ * load_factor_ * load_square_);
+  const double carried = std::sqrt(carried_square + loads_.square());
   return carried > 0.0 ? unbalanced / carried : unbalanced;
 }
 
 template <class Real>
-void Body<Real>::impose(double factor) {
+void Body<Real>::impose(double factor, double time) {
   load_factor_ = factor;
+  loads_.set(time, factor);
   for (std::size_t m = 0; m < terms_.size(); ++m) terms_[m] = rounded<Real>(path_terms(angles_[m], factor));
   for (const auto& constraint : constraints_) {
     const std::array<Real, 3>&share = constraint.share, &terms = terms_[constraint.angle];
@@ -80,30 +74,19 @@ void Body<Real>::impose(double factor) {
 }
 
 template <class Real>
-void Body<Real>::impose(std::span<const double> displacements, double factor) {
+void Body<Real>::impose(std::span<const double> displacements, double factor, double time) {
   load_factor_ = factor;
+  loads_.set(time, factor);
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     impose(constraints_[k], static_cast<Real>(displacements[k]));
   }
 }
 
 template <class Real>
-Rows<Real> Body<Real>::loads(double factor) const {
-  Rows<Real> rows(force_.size());
-  for (const auto& [row, load] : loads_) {
-    for (std::size_t i = 0; i < 3; ++i) rows[row][i] = static_cast<Real>(factor) * load[i];
-  }
+Rows<Real> Body<Real>::change_of_loads(double factor) const {
+  Rows<Real> rows = loads_.change_to(factor, factor, state_.u);
   for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
   return rows;
-}
-
-template <class Real>
-double Body<Real>::load_path() const {
-  double path = 0.0;
-  for (const auto& [row, load] : loads_) {
-    for (std::size_t i = 0; i < 3; ++i) path += static_cast<double>(load[i] * state_.u[row][i]);
-  }
-  return path;
 }
 
 template <class Real>

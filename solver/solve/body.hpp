@@ -4,6 +4,7 @@
 
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
+#include "solve/loads.hpp"
 
 namespace sandglass {
 
@@ -40,22 +41,27 @@ class Body {
   void move_to(const Rows<Real>& target);
 
   /// Sets constrained components to their paths at a load factor, and their increments to the change; from
-  /// now on loads are `factor` times their final value.
-  void impose(double factor);
+  /// now on loads are those of this factor and `time` (s).
+  void impose(double factor, double time);
+
+  /// The same in a quasi-static answer, whose time is the load factor.
+  void impose(double factor) { impose(factor, factor); }
 
   /// Sets constrained components, in the order of the scene's constraints, to `displacements` (m) and their
-  /// increments to the change; from now on loads are `factor` times their final value.
-  void impose(std::span<const double> displacements, double factor);
+  /// increments to the change; from now on loads are those of this factor and `time` (s).
+  void impose(std::span<const double> displacements, double factor, double time);
 
-  /// The loads (N) of a factor, by row; zero on constrained components.
-  Rows<Real> loads(double factor) const;
-
-  /// The present factor of the loads.
+  /// The present factor of the load.
   double load_factor() const { return load_factor_; }
 
-  /// The sum over the nodes of final load times displacement, J. The work of the loads is their factor times
-  /// the change of this sum.
-  double load_path() const;
+  /// The change of the loads (N) from now to another factor, by row; zero on constrained components.
+  Rows<Real> change_of_loads(double factor) const;
+
+  /// See Loads::potential, J.
+  double load_potential() const { return loads_.potential(state_.u); }
+
+  /// The work (J) of the loads since the last call.
+  double work_of_loads() { return loads_.work(state_.u); }
 
   /// Nodal values as rows, zero on constrained components and in spare rows: with inverse masses only free
   /// components move, without a branch.
@@ -102,6 +108,7 @@ class Body {
     archive("free force", force_);
     archive("body reaction", reactions_);
     archive("load factor", load_factor_);
+    loads_.keep(archive);
   }
 
  private:
@@ -110,11 +117,6 @@ class Body {
     std::size_t component;
     std::array<Real, 3> share;  // of the terms of its path, m
     std::size_t angle;
-  };
-
-  struct RowLoad {
-    std::size_t row;
-    std::array<Real, 3> force;  // final, N
   };
 
   void impose(const RowConstraint& constraint, Real displacement) {
@@ -128,8 +130,7 @@ class Body {
   const std::vector<double>& angles_;       // of paths, rad
   std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the present factor
   std::vector<RowConstraint> constraints_;
-  std::vector<RowLoad> loads_;
-  double load_square_ = 0.0;  // of the norm of the final loads, N^2
+  Loads<Real> loads_;
   double load_factor_ = 0.0;
   State<Real> state_;
   Rows<Real> force_;

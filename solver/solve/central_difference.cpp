@@ -43,7 +43,6 @@ class CentralDifference {
     leapfrog_.keep(archive);
     archive("reaction", reactions_);
     archive("next step", next_step_);
-    archive("load path", load_path_);
     archive("work", work_);
     archive("adaption energy", adaption_energy_);
   }
@@ -68,7 +67,7 @@ class CentralDifference {
   /// Takes the next step. The last one is shortened so that the run ends at its duration.
   void advance() {
     next_step_ = std::min(next_step_, settings_.duration - time());
-    leapfrog_.advance(next_step_, [this](Body<Real>& body) { body.impose(loading(time())); });
+    leapfrog_.advance(next_step_, [this](Body<Real>& body) { body.impose(loading(time()), time()); });
   }
 
   /// Work of imposed displacements and forces over the last step, from the mean of the forces at its ends.
@@ -84,9 +83,7 @@ class CentralDifference {
       }
       reactions_[k] = force;
     }
-    const double path = body_.load_path();
-    work_ += 0.5 * (before + now) * (path - load_path_);
-    load_path_ = path;
+    work_ += body_.work_of_loads();
   }
 
   /// Promotes elements and evaluates their new forces. The increase of stored energy at the same
@@ -165,7 +162,6 @@ class CentralDifference {
   std::vector<double> reactions_;
   std::vector<PathTerms> moved_, accelerations_;  // of paths of each angle
   double next_step_ = 0.0;
-  double load_path_ = 0.0;
   double work_ = 0.0;
   double adaption_energy_ = 0.0;
 };
@@ -217,6 +213,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     scheme.choose_step();
     motion.smallest_step = settings.duration;
     body.evaluate_forces();
+    body.work_of_loads();  // from here on
     scheme.set_initial_velocities();
     report();
     observer.resumable(checkpoint);

@@ -36,12 +36,19 @@ NodalField forces_of_rotations(const Model& model, const Handles& handles) {
 template <class Real>
 std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
+  if (!(scene.pressures.empty() && scene.supports.empty())) {
+    throw InputError(
+        fmt::format("{}: method '{}' superposes answers to displacements and dead forces; a case "
+                    "with pressures or supports needs another method",
+                    scene.description.file.string(), model.choice().method));
+  }
   const Handles handles = handles_of_sets(scene);
   std::vector<NodalField> loads;
   if (!scene.loads.empty() || !scene.description.rotations.empty()) {
     loads.push_back(forces_of_rotations(model, handles));
-    for (const auto& [node, force] : scene.loads) {
-      for (std::size_t i = 0; i < 3; ++i) loads[0][static_cast<std::size_t>(node)][i] += force[i];
+    for (const auto& [node, force, curve] : scene.loads) {
+      const double factor = scene.curves[curve].at(1.0, 1.0);
+      for (std::size_t i = 0; i < 3; ++i) loads[0][static_cast<std::size_t>(node)][i] += factor * force[i];
     }
   }
   const CondensedResponse<Real> response(model, handles, all_nodes(scene), loads);
@@ -101,7 +108,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
     result.interrupted = !observer.proceed(1, 1.0, result.residual);
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,
-                    work_of(scene, body.reactions()) + 0.5 * body.load_path(), result.residual, 1.0});
+                    work_of(scene, body.reactions()) - 0.5 * body.load_potential(), result.residual, 1.0});
   observer.frame(body.frame(1.0, no_velocity));
   return result;
 }

@@ -215,6 +215,7 @@ double Equilibrium<Real>::extend(double load, double most) {
   const Rows<Real> before = body().state().u;
   const double load_before = body().load_factor();
   begin();
+  const Rows<Real> change = body().change_of_loads(load);
   body().impose(load);
   const MixedVector zero = mixed_.multigrid().elements().zero();
   MixedVector x = zero, forces = zero;
@@ -223,7 +224,7 @@ double Equilibrium<Real>::extend(double load, double most) {
       x.u[row][i] = static_cast<float>(body().state().u[row][i] - before[row][i]);
   }
   MixedVector loads = zero;
-  loads.u = rounded_rows<float>(body().loads(load - load_before));
+  loads.u = rounded_rows<float>(change);
   // The linear problem, by accelerated cycles.
   const auto evaluate = [&] {
     mixed_.multigrid().elements().apply(x, forces);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "element/one_point.hpp"
@@ -27,8 +28,16 @@ inline double first_load(const Model& model) {
   const std::vector<double> moduli = shear_moduli(scene.materials);
   const double mu = *std::min_element(moduli.begin(), moduli.end());
   double F = 0.0;
-  for (const auto& [set, total, moment] : scene.description.forces) {
-    F += std::hypot(total[0], total[1], total[2]) + std::hypot(moment[0], moment[1], moment[2]) / l;
+  for (const auto& force : scene.description.forces) F += length(force.total) + length(force.moment) / l;
+  for (const auto& gravity : scene.description.gravity) {
+    const auto& masses = model.element_masses();
+    F += length(gravity.value) * std::accumulate(masses.begin(), masses.end(), 0.0);
+  }
+  for (const auto& pressure : scene.pressures) {
+    std::array<Vector, 4> corners;
+    for (std::size_t I = 0; I < 4; ++I)
+      corners[I] = scene.mesh.points[static_cast<std::size_t>(pressure.face[I])];
+    for (const Vector& force : pressure_forces(corners)) F += std::abs(pressure.pressure) * length(force);
   }
   const double turn = F * l * l * 6.0 / (mu * h * h * h * h);
   return std::min({1.0, 0.01 * h / fastest_imposed(scene), 0.01 / turn});

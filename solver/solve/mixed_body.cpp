@@ -36,6 +36,25 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
                      [&](const Material& material) { return std::visit(moduli, material.law); });
 }
 
+/// What holds the rows of a scene with springs, each node with its share of the area, N/m; empty without.
+Rows<float> springs_of(const Scene& scene, const Layout& layout) {
+  if (scene.supports.empty()) return {};
+  Rows<float> springs(layout.rows());
+  for (const auto& support : scene.supports) {
+    for (const auto& point : gauss_points_of(corners_of(scene.mesh.points, support.face))) {
+      for (std::size_t I = 0; I < 4; ++I) {
+        const int row = layout.row_of_node[static_cast<std::size_t>(support.face[I])];
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double n = point.normal.entries[i] / point.area, share = support.only_normal ? n * n : 1.0;
+          springs[static_cast<std::size_t>(row)][i] +=
+              static_cast<float>(support.stiffness * share * point.N[I] * point.area);
+        }
+      }
+    }
+  }
+  return springs;
+}
+
 }  // namespace
 
 template <class Real>
@@ -48,7 +67,8 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       linear_(method_named(model.choice().method).is_linear),
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
-      multigrid_(model.scene().mesh, elements.layout(), rounded_rows<float>(free_), model.choice().threads),
+      multigrid_(model.scene().mesh, elements.layout(), rounded_rows<float>(free_),
+                 springs_of(model.scene(), elements.layout()), model.choice().threads),
       linearized_at_(free_.size()),
       p_(model.scene().mesh.cells.size()),
       defect_(p_.size()),
@@ -208,7 +228,7 @@ void MixedBody<Real>::evaluate(const Multipliers* multipliers, Rows<Real>& f) {
 template <class Real>
 double MixedBody<Real>::potential(const Multipliers* multipliers) const {
   const StrainEnergies energies = body_.energies();
-  double sum = energies.strain + energies.hourglass - body_.load_factor() * body_.load_path();
+  double sum = energies.strain + energies.hourglass + body_.load_potential();
   if (multipliers == nullptr) return sum;
   for (std::size_t e = 0; e < p_.size(); ++e) {
     const auto m = static_cast<double>(multipliers->pressures[e]);

@@ -98,7 +98,6 @@ class Search {
     load_levels_.keep(archive, body());
     archive("next check", next_check_);
     archive("reaction", reactions_);
-    archive("load path", load_path_);
     archive("work", work_);
   }
 
@@ -218,9 +217,7 @@ class Search {
       }
       reactions_[k] = force;
     }
-    const double path = body().load_path();
-    work_ += (load_levels_.load() - 0.5 * load_levels_.increment()) * (path - load_path_);
-    load_path_ = path;
+    work_ += body().work_of_loads();
   }
 
   void report() {
@@ -240,7 +237,6 @@ class Search {
   NodalField no_velocity_;
   Relaxation result_;
   std::vector<double> reactions_;
-  double load_path_ = 0.0;
   double work_ = 0.0;
   long first_evaluation_ = 0;  // of this load level
   long next_check_;            // evaluations

@@ -36,6 +36,9 @@ std::vector<int> pushed_nodes(const Scene& scene) {
     }
   }
   for (const auto& load : scene.loads) nodes.push_back(load.node);
+  for (const auto& pressure : scene.pressures) {
+    nodes.insert(nodes.end(), pressure.face.begin(), pressure.face.end());
+  }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
@@ -50,7 +53,10 @@ Scene scene_of(const Scene& whole, const MeshPart& part) {
                  .materials = {whole.materials.list},
                  .constraints = {},
                  .angles = whole.angles,
+                 .curves = whole.curves,
                  .loads = {},
+                 .pressures = {},
+                 .supports = {},
                  .initial_velocities = {},
                  .case_hash = whole.case_hash,
                  .mesh_hash = whole.mesh_hash};
@@ -75,7 +81,19 @@ Scene scene_of(const Scene& whole, const MeshPart& part) {
   });
   for (const auto& load : whole.loads) {
     const int node = part.part_of[at(load.node)];
-    if (node >= 0) scene.loads.push_back({node, load.force});
+    if (node >= 0) scene.loads.push_back({node, load.force, load.curve});
+  }
+  const auto in_part = [&](Quadrilateral face) {
+    for (int& node : face) node = part.part_of[at(node)];
+    return *std::min_element(face.begin(), face.end()) >= 0 ? std::optional(face) : std::nullopt;
+  };
+  for (const auto& pressure : whole.pressures) {
+    const auto face = in_part(pressure.face);
+    if (face) scene.pressures.push_back({*face, pressure.pressure, pressure.curve});
+  }
+  for (const auto& support : whole.supports) {
+    const auto face = in_part(support.face);
+    if (face) scene.supports.push_back({*face, support.stiffness, support.damping, support.only_normal});
   }
   return scene;
 }

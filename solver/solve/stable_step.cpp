@@ -8,8 +8,12 @@ namespace sandglass {
 
 namespace {
 
-double step_of(double stiffness, double mass) {
-  return 2.0 / std::sqrt(stiffness / (mass / 8.0));
+double step_of(const Model& model, std::size_t element, double stiffness) {
+  const double square = stiffness / (model.element_masses()[element] / 8.0);
+  if (model.load_rates().empty()) return 2.0 / std::sqrt(square);
+  const auto& [added, a] = model.load_rates()[element];
+  const double sum = square + added;
+  return (std::sqrt(a * a + 4.0 * sum) - a) / sum;
 }
 
 std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
@@ -29,7 +33,7 @@ std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
 
 std::vector<double> stable_steps(const Model& model, const NodalField& u) {
   std::vector<double> steps = stiffness_bounds(model, u);
-  for (std::size_t e = 0; e < steps.size(); ++e) steps[e] = step_of(steps[e], model.element_masses()[e]);
+  for (std::size_t e = 0; e < steps.size(); ++e) steps[e] = step_of(model, e, steps[e]);
   return steps;
 }
 
@@ -40,7 +44,7 @@ StableStep stable_step(const Model& model, const NodalField& u) {
 StableStep stable_step(const Model& model, std::span<const double> bounds) {
   StableStep smallest{std::numeric_limits<double>::infinity(), -1};
   for (std::size_t e = 0; e < bounds.size(); ++e) {
-    const double step = step_of(bounds[e], model.element_masses()[e]);
+    const double step = step_of(model, e, bounds[e]);
     if (!(step >= smallest.step)) smallest = {step, static_cast<int>(e)};
   }
   return smallest;

@@ -1,0 +1,118 @@
+"""Loads on the mixed problem in FEniCSx: dead tractions, pressures that follow, springs, weight."""
+
+import basix
+import dolfinx
+import numpy as np
+import scipy.sparse
+import ufl
+from dolfinx import fem
+
+# Another process may be compiling the same form: wait for it rather than fail.
+JIT_OPTIONS = {"timeout": 600, "cffi_extra_compile_args": ["-O3", "-g0"]}
+
+
+class Loads:
+    """The loads of a HexMesh on the displacement dofs (N,) of a function.
+
+    mesh: HexMesh. displacement: dolfinx function, m. cell_nodes: (m, 8) node numbers in the space's
+    order of cells and vertices. densities: (m,) of the cells in the order of the space, kg/m^3.
+    degree: of the quadrature.
+    """
+
+    def __init__(self, mesh, displacement, cell_nodes, densities, degree):
+        space = displacement.function_space
+        domain, test = space.mesh, ufl.TestFunction(space)
+        self._dead = np.zeros(displacement.x.array.size)
+        for traction in mesh.tractions:
+            measure = _measure(domain, traction.nodes, cell_nodes, degree)
+            self._dead += _traction_forces(traction, test, measure)
+        if any(mesh.gravity):
+            self._dead += _weight(mesh.gravity, densities, space, test, degree)
+        self._factor = fem.Constant(domain, 1.0)
+        F = ufl.Identity(3) + ufl.grad(displacement)
+        normal = ufl.FacetNormal(domain)
+        forms = []
+        for surface in mesh.surfaces:
+            measure = _measure(domain, surface.nodes, cell_nodes, degree)
+            if surface.pressure:
+                turned = ufl.cofac(F) * normal  # Nanson: n da, of an undeformed unit area
+                value = self._factor * fem.Constant(domain, surface.pressure)
+                forms.append(value * ufl.inner(turned, test) * measure)
+            if surface.stiffness:
+                moved = displacement
+                if surface.only_normal:
+                    moved = ufl.inner(displacement, normal) * normal
+                forms.append(
+                    fem.Constant(domain, surface.stiffness) * ufl.inner(moved, test) * measure
+                )
+        self.symmetric = not any(surface.pressure for surface in mesh.surfaces)
+        # Each with a measure of its own, which one form cannot have.
+        trial = ufl.TrialFunction(space)
+        self._forms = [
+            [
+                fem.form(form, jit_params=JIT_OPTIONS)
+                for form in (vector, ufl.derivative(vector, displacement, trial))
+            ]
+            for vector in forms
+        ]
+
+    def forces(self, load):
+        """Minus the loads (N,) in N at a load factor, in the present configuration."""
+        self._factor.value = load
+        return sum(
+            (fem.assemble_vector(vector).array for vector, _ in self._forms), -load * self._dead
+        )
+
+    def tangent(self, load):
+        """The derivative (N, N) of forces() with respect to the displacement, N/m; 0 if constant."""
+        self._factor.value = load
+        return sum((_assembled(matrix) for _, matrix in self._forms), 0)
+
+
+def _assembled(form):
+    """The sparse matrix of a form."""
+    matrix = fem.petsc.assemble_matrix(form)
+    matrix.assemble()
+    indptr, indices, data = matrix.getValuesCSR()
+    size = matrix.getSize()
+    matrix.destroy()
+    return scipy.sparse.csr_matrix((data, indices, indptr), shape=size)
+
+
+def _measure(domain, nodes, cell_nodes, degree):
+    """The measure on the boundary faces whose vertices all lie in a set. nodes: (n,) bool."""
+    domain.topology.create_connectivity(2, 3)
+    domain.topology.create_connectivity(3, 2)
+    facets = []
+    for facet in dolfinx.mesh.exterior_facet_indices(domain.topology):
+        (cell,) = domain.topology.connectivity(2, 3).links(facet)
+        local = list(domain.topology.connectivity(3, 2).links(cell)).index(facet)
+        vertices = basix.topology(basix.CellType.hexahedron)[2][local]
+        if nodes[cell_nodes[cell, vertices]].all():
+            facets.append(facet)
+    facets = np.sort(np.array(facets, dtype=np.int32))
+    tags = dolfinx.mesh.meshtags(domain, 2, facets, np.ones_like(facets))
+    data = {"quadrature_rule": "default", "quadrature_degree": degree}
+    return ufl.Measure("ds", domain=domain, subdomain_data=tags, metadata=data)(1)
+
+
+def _traction_forces(traction, test, measure):
+    """Nodal forces (N,) in N of a Traction at full load."""
+    domain = measure.ufl_domain()
+    mean, turn, centre = (
+        fem.Constant(domain, vector) for vector in (traction.mean, traction.turn, traction.centre)
+    )
+    t = mean + ufl.cross(turn, ufl.SpatialCoordinate(domain) - centre)
+    return fem.assemble_vector(fem.form(ufl.inner(t, test) * measure)).array.copy()
+
+
+def _weight(gravity, densities, space, test, degree):
+    """Nodal forces (N,) in N of an acceleration (3,) in m/s^2."""
+    domain = space.mesh
+    density = fem.Function(fem.FunctionSpace(domain, ("DG", 0)))
+    density.x.array[:] = densities
+    data = {"quadrature_rule": "default", "quadrature_degree": degree}
+    measure = ufl.Measure("dx", domain=domain, metadata=data)
+    g = fem.Constant(domain, np.asarray(gravity, dtype=float))
+    form = fem.form(density * ufl.inner(g, test) * measure, jit_params=JIT_OPTIONS)
+    return fem.assemble_vector(form).array.copy()
