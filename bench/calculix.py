@@ -42,7 +42,9 @@ def material_of(case):
     if len(case.materials) > 1:
         raise InputError(f"{case.name}: has several materials; decks here have one")
     if case.materials[0].law not in calculix_deck.LAWS:
-        raise InputError(f"{case.name}: CalculiX has no law {case.materials[0].law!r}")
+        raise InputError(
+            f"{case.name}: material.law = {case.materials[0].law!r}: CalculiX has no such law"
+        )
     return case.materials[0]
 
 

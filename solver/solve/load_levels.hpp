@@ -149,10 +149,10 @@ class LoadLevels {
   /// Proceeds to the next load level from a solved one.
   void solved(Equilibrium<Real>& search) {
     const Body<Real>& body = search.body();
-    if (!equal_) {
+    if (equal_ && last_.load == 0.0) {
+      increment_ = longest_ = choose_increment(body.field(body.state().u));
+    } else {
       increment_ = std::min(2.0 * std::abs(increment()), longest_);
-    } else if (last_.load == 0.0) {
-      increment_ = choose_increment(body.field(body.state().u));
     }
     in_a_row_ = 0;
     before_ = {last_.load, std::move(last_.state.u), std::move(last_.pressures)};
@@ -183,6 +183,7 @@ class LoadLevels {
     archive("way before the leg", before_leg_);
     archive("load", load_);
     archive("load increment", increment_);
+    archive("longest load increment", longest_);
     archive("load before", before_.load);
     archive("displacement before", before_.u);
     archive("pressure before", before_.pressures);

@@ -15,9 +15,9 @@ namespace {
 constexpr double hardly_changed = 0.1;
 
 /// The grids do not see a stiffness of hourglass modes: a model with all of a strong control converges more
-/// slowly than one with some of it. The same holds where volume changes are resisted at several points of an
-/// element. In shares of E/9.
-constexpr double strongest_control = 2.0, strongest_resistance = 16.0;
+/// slowly than one with the E/9 that lets cubes bend as they should. Where volume changes are resisted at
+/// several points of an element, some more of it helps, in shares of E/9.
+constexpr double strongest_resistance = 16.0;
 
 /// Of the undeformed laws and of the method's control.
 std::vector<ModelModuli> moduli_of(const Model& model) {
@@ -28,7 +28,7 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
     settings = {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
   const auto moduli = [&](const auto& law) {
     const double lambda = lame_lambda(law), unit = young_modulus(law) / 9.0;
-    const double control = std::min(PerturbationStiffness::modulus(law, settings), strongest_control * unit);
+    const double control = std::min(PerturbationStiffness::modulus(law, settings), unit);
     const double resistance = std::min(unit + lambda / 9.0, strongest_resistance * unit);
     return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control};
   };
