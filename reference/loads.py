@@ -64,7 +64,7 @@ class Loads:
         )
 
     def tangent(self, load):
-        """The derivative (N, N) of forces() with respect to the displacement, N/m; 0 if constant."""
+        """The derivative (N, N) of forces() by the displacement, N/m; 0 if they are constant."""
         self._factor.value = load
         return sum((_assembled(matrix) for _, matrix in self._forms), 0)
 

@@ -145,8 +145,8 @@ def _loaded(mesh_path, file, table, set_name):
     nodes = _mask(file, _members(mesh_path, file, table, set_name))
     if not nodes[boundary_faces(file.cells)].all(axis=1).any():
         raise InputError(
-            f"{mesh_path}: {table}.set = {set_name!r}: no boundary face has all its vertices in this "
-            "set; one is needed at least"
+            f"{mesh_path}: {table}.set = {set_name!r}: no boundary face has all its vertices in "
+            "this set; one is needed at least"
         )
     return nodes
 

@@ -50,7 +50,8 @@ class MixedProblem:
     have the numbers.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
     dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
-    (the other dofs), load (the current factor of the loads, 0 to 1), symmetric (whether tangents are).
+    (the other dofs), load (the current factor of the loads, 0 to 1),
+    symmetric (whether tangents are).
     """
 
     def __init__(self, mesh, pair, materials):

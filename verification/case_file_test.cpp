@@ -215,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"unknown_key",
                 with("tolerance = 1e-7", "tolerence = 1e-7"),
                 {"bad.toml:35: relaxation.tolerence", "did you mean 'tolerance'?"}},
-        BadCase{"unknown_table", good + "[gravity]\ng = 9.81\n", {"gravity is not a key"}},
+        BadCase{"unknown_table", good + "[wind]\ng = 9.81\n", {"wind is not a key"}},
         BadCase{"misspelt_required_key",
                 with("young_modulus = ", "young_moduls = "),
                 {"material.young_moduls", "did you mean 'young_modulus'?"}},

@@ -55,7 +55,7 @@ TEST(FaceLoad, trapezoid_is_shared_out_exactly) {
   const double area = h * (a + b) / 2;
   const auto loads = consistent_loads(points, {{0, 1, 2, 3}}, {0.0, area, -2.0 * area}, {});
   ASSERT_EQ(loads.size(), 4U);
-  for (const auto& [node, force] : loads) {
+  for (const auto& [node, force, curve] : loads) {
     const double share = node < 2 ? h * (2 * a + b) / 12 : h * (a + 2 * b) / 12;
     expect_near(force, {0.0, share, -2.0 * share}, 1e-15 * area);
   }
@@ -66,10 +66,10 @@ TEST(FaceLoad, trapezoid_is_shared_out_exactly) {
 TEST(FaceLoad, moments_act_like_twisting_and_bending_stresses) {
   const double c = 0.5, M = 1.7;
   const NodalField points{{3, -c, -c}, {3, c, -c}, {3, c, c}, {3, -c, c}};
-  for (const auto& [node, force] : consistent_loads(points, {{0, 1, 2, 3}}, {}, {0.0, M, 0.0})) {
+  for (const auto& [node, force, curve] : consistent_loads(points, {{0, 1, 2, 3}}, {}, {0.0, M, 0.0})) {
     expect_near(force, {points[index(node)][2] / c * M / (4 * c), 0.0, 0.0}, 1e-14);
   }
-  for (const auto& [node, force] : consistent_loads(points, {{0, 1, 2, 3}}, {}, {M, 0.0, 0.0})) {
+  for (const auto& [node, force, curve] : consistent_loads(points, {{0, 1, 2, 3}}, {}, {M, 0.0, 0.0})) {
     const auto& X = points[index(node)];
     // By symmetry (0, -z, y) s; 4 corners at distance c sqrt(2): M = 8 c^2 s.
     const double s = M / (8 * c * c);

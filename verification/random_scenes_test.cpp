@@ -105,7 +105,7 @@ TEST(RandomScenes, come_to_rest) {
       std::vector<double> u;
       for (const Vector& row : found.u) u.insert(u.end(), row.begin(), row.end());
       std::vector<double> forces = balance.forces(u), loads(forces.size());
-      for (const auto& [node, load] : scene.loads) {
+      for (const auto& [node, load, curve] : scene.loads) {
         for (std::size_t i = 0; i < 3; ++i) loads[3 * index(node) + i] = load[i];
       }
       double all = 0.0, carried = 0.0, free = 0.0;

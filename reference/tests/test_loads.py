@@ -80,14 +80,14 @@ def test_springs_carry_the_weight(pair, only_normal):
     foot = _at(points, 2, 0.0)
     surfaces = (Surface(foot, stiffness=1e6, only_normal=only_normal),)
     held = _held(points, [0, 1]) if only_normal else ()
-    mesh = HexMesh(points, cells, held, surfaces=surfaces, gravity=(0.0, 0.0, -9.81))
+    mesh = HexMesh(points, cells, held, surfaces=surfaces, gravity=(0.0, 0.0, -0.05))
     problem = MixedProblem(mesh, pair, [STIFF])
     solve(problem, 1, 1e-10)
     u = problem.nodal_displacement()
     if pair is GOLDEN:  # of a quadratic face the corners alone say little
         on_edge = sum(_at(points, axis, end).astype(int) for axis in (0, 1) for end in (0.0, 1.0))
         share = 0.5 ** on_edge[foot] / (len(cells) ** (1 / 3)) ** 2
-        assert abs((share * u[foot, 2]).sum() * 1e6 / (-9.81 * 2000.0) - 1) < 1e-9
+        assert abs((share * u[foot, 2]).sum() * 1e6 / (-0.05 * 2000.0) - 1) < 1e-9
     assert (u[:, 2] < 0).all()
 
 

@@ -37,10 +37,10 @@ template <class Real>
 std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
   if (!(scene.pressures.empty() && scene.supports.empty())) {
-    throw InputError(
-        fmt::format("{}: method '{}' superposes answers to displacements and dead forces; a case "
-                    "with pressures or supports needs another method",
-                    scene.description.file.string(), model.choice().method));
+    throw ComputationError(
+        fmt::format("method '{}' superposes answers to displacements and dead forces, to which pressures and "
+                    "supports do not belong; choose another method",
+                    model.choice().method));
   }
   const Handles handles = handles_of_sets(scene);
   std::vector<NodalField> loads;
