@@ -42,6 +42,7 @@ class Inputs:
     evidence: object  # Evidence
     pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not recomputed
     growth: plates.Plate | None = None
+    second: object = None  # SecondGolden
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,7 @@ def write_report(inputs, page):
             sections=sections,
             bending=bent,
             growth=inputs.growth,
+            second=inputs.second,
             evidence=inputs.evidence,
             anchors=ANCHORS,
         )

@@ -1,0 +1,209 @@
+"""The golden's problem by a second program: SfePy's own Total Lagrangian mixed terms on our mesh.
+
+Only Newton's method and the linear solver are those of the golden; they decide how fast an answer is
+found, not which. Pressures have the opposite sign here, which is SfePy's.
+"""
+
+import contextlib
+import io
+
+import numpy as np
+import scipy.sparse
+
+with contextlib.redirect_stdout(io.StringIO()):
+    import sfepy.discrete as discrete  # first: other orders of import fail
+    from sfepy import __version__ as VERSION  # noqa: F401 (for those who import this module)
+    from sfepy.base.base import output
+    from sfepy.discrete.fem import FEDomain, Field, Mesh
+    from sfepy.terms import Term
+
+from common.errors import InputError
+from common.hexahedron import boundary_faces
+
+output.set_output(quiet=True)
+
+# Of 2x2x2 Gauss points, as the golden has them.
+ORDER = 3
+LAWS = ("neo-hookean",)
+
+
+class _Unknown:
+    """An array under the name that Newton's method looks for."""
+
+    def __init__(self, size):
+        self.x = self
+        self.array = np.zeros(size)
+
+
+class SfepyProblem:
+    """Equilibrium of a HexMesh, Q1 displacements and P0 pressures, with the terms of SfePy.
+
+    mesh: HexMesh. materials: list of Material. Raises InputError for what SfePy has no term for.
+    It has the functions and attributes of MixedProblem that newton.solve() needs.
+    """
+
+    def __init__(self, mesh, materials):
+        for material in materials:
+            if material.law not in LAWS:
+                raise InputError(f"SfePy has no term for the law {material.law!r}")
+        self._mesh = mesh
+        n_nodes, n_cells = len(mesh.points), len(mesh.cells)
+        with contextlib.redirect_stdout(io.StringIO()):
+            self._set_up(mesh, materials)
+        self.displacement, self.pressure = _Unknown(3 * n_nodes), _Unknown(n_cells)
+        prescribed, _ = mesh.imposed()
+        self.fixed = np.flatnonzero(prescribed)
+        self.free = np.setdiff1d(np.arange(3 * n_nodes), self.fixed)
+        values = self.values_at(1.0)
+        self.scale = max(np.abs(values).max(initial=0.0), mesh.largest_turn().max())
+        self.load, self.symmetric = 1.0, not any(s.pressure for s in mesh.surfaces)
+
+    def _set_up(self, mesh, materials):
+        of_cell = np.zeros(len(mesh.cells), int) if mesh.materials is None else mesh.materials
+        plain = Mesh.from_data(
+            "body",
+            mesh.points.copy(),
+            None,
+            [mesh.cells.astype(np.int32)],
+            [np.zeros(len(of_cell), dtype=np.int32)],
+            ["3_8"],
+        )
+        domain = FEDomain("domain", plain)
+        body = domain.create_region("Omega", "all")
+        fields = [
+            Field.from_args("displacement", np.float64, "vector", body, approx_order=1),
+            Field.from_args("pressure", np.float64, "scalar", body, approx_order=0),
+        ]
+        variable = discrete.FieldVariable
+        u = variable("u", "unknown", fields[0])
+        v = variable("v", "test", fields[0], primary_var_name="u")
+        p = variable("p", "unknown", fields[1])
+        q = variable("q", "test", fields[1], primary_var_name="p")
+        volume = discrete.Integral("volume", order=ORDER)
+        known = {"u": u, "v": v, "p": p, "q": q}
+
+        def term(text):
+            return Term.new(text, volume, body, **known)
+
+        def of_material(value):
+            """A number, or a vector, of each material at all points, cell by cell."""
+            values = np.array([value(m) for m in materials]).reshape(len(materials), -1, 1)
+            return lambda coors: np.repeat(values[of_cell], len(coors) // len(of_cell), axis=0)
+
+        def bulk(m):
+            return m.parameters["young_modulus"] / 3 / (1 - 2 * m.parameters["poisson_ratio"])
+
+        def shear(m):
+            return m.parameters["young_modulus"] / 2 / (1 + m.parameters["poisson_ratio"])
+
+        self._factor = [1.0]  # of the loads
+        known |= {
+            "shear": self._material("shear", of_material(shear), scaled=False),
+            "compliance": self._material(
+                "compliance", of_material(lambda m: 1 / bulk(m)), scaled=False
+            ),
+            "weight": self._material(
+                "weight", of_material(lambda m: m.density * np.array(mesh.gravity))
+            ),
+        }
+        balance = term("dw_tl_he_neohook(shear.val, v, u)") + term("dw_tl_bulk_pressure(v, u, p)")
+        if any(mesh.gravity):
+            balance = balance - term("dw_volume_lvf(weight.val, v)")
+        # The integrals of q J, q and q p / K.
+        dilatation = term("dw_tl_volume(q, u)") - term("dw_integrate(q)")
+        dilatation = dilatation + term("dw_dot(compliance.val, q, p)")
+        for number, load in enumerate((*mesh.tractions, *mesh.surfaces)):
+            region = self._faces(f"face{number}", load.nodes, domain)
+            balance = balance + self._load(load, region, known)
+        equations = discrete.Equations(
+            [discrete.Equation("balance", balance), discrete.Equation("dilatation", dilatation)]
+        )
+        problem = discrete.Problem("golden", equations=equations)
+        problem.time_update()
+        problem.update_materials()
+        self._evaluator = problem.get_evaluator()
+        self._problem = problem
+
+    def _faces(self, name, nodes, domain):
+        """The region of the boundary faces within a set. nodes: (n,) bool."""
+        numbers = ", ".join(map(str, np.flatnonzero(nodes)))
+        region = domain.create_region(name, f"vertex {numbers}", "facet")
+        faces = boundary_faces(self._mesh.cells)
+        if len(region.entities[2]) != nodes[faces].all(axis=1).sum():
+            raise InputError(f"{name}: SfePy finds other faces in its set of nodes")
+        return region
+
+    def _load(self, load, region, known):
+        """The term of a Traction, or of a Surface with a pressure or with springs, on its faces."""
+        name = "of_" + region.name
+        text, scaled = f"dw_surface_ltr({name}.val, v)", True
+        if hasattr(load, "mean"):
+
+            def value(coors):
+                t = load.mean + np.cross(load.turn, coors - load.centre)
+                return -t[:, :, None]
+
+        elif load.only_normal:
+            raise InputError("springs along the normal are not set up for SfePy here")
+        elif load.pressure:
+            text = f"dw_tl_surface_traction({name}.val, v, u)"
+
+            def value(coors):
+                return np.tile(load.pressure * np.eye(3), (len(coors), 1, 1))
+
+        else:
+            text, scaled = f"dw_dot({name}.val, v, u)", False
+
+            def value(coors):
+                return np.full((len(coors), 1, 1), load.stiffness)
+
+        material = self._material(name, value, scaled)
+        surface = discrete.Integral("surface", order=ORDER)
+        return Term.new(text, surface, region, v=known["v"], u=known["u"], **{name: material})
+
+    def _material(self, name, value, scaled=True):
+        """SfePy's Material whose `val` is value(coordinates), times the load factor if scaled."""
+
+        def at_points(_, coors, mode=None, **__):
+            factor = self._factor[0] if scaled else 1.0
+            return {"val": factor * value(coors)} if mode == "qp" else None
+
+        return discrete.Material(name, function=discrete.Function(name, at_points))
+
+    def values_at(self, load):
+        """Values (in m) of the prescribed dofs at a load factor."""
+        return self._mesh.imposed(load)[1].ravel()[self.fixed]
+
+    def nodal_displacement(self):
+        """Displacement (n, 3) in m at the nodes of the HexMesh."""
+        return self.displacement.array.reshape(-1, 3)
+
+    def mixed_residual(self):
+        """Both rows of the mixed system: forces (N,) in N and (M,) in m^3; NaN where inverted."""
+        if self._factor[0] != self.load:
+            self._factor[0] = self.load
+            self._problem.update_materials()
+        both = np.concatenate([self.displacement.array, self.pressure.array])
+        n = len(self.displacement.array)
+        try:
+            residual = self._evaluator.eval_residual(both)
+        except ValueError:  # an element is inverted, of which SfePy tells on standard error
+            residual = np.full(len(both), np.nan)
+        return residual[:n], residual[n:]
+
+    def linearize(self):
+        """See MixedProblem.linearize."""
+        force, dilatation = self.mixed_residual()
+        both = np.concatenate([self.displacement.array, self.pressure.array])
+        n = len(self.displacement.array)
+        matrix = self._evaluator.eval_tangent_matrix(both).tocsr()
+        stiffness, up, pu, pp = matrix[:n, :n], matrix[:n, n:], matrix[n:, :n], matrix[n:, n:]
+        diagonal = pp.diagonal()
+        assert abs(pp - scipy.sparse.diags(diagonal)).max() == 0, "pressure is not local"
+        condensed = up @ scipy.sparse.diags(1 / diagonal)
+        tangent = (stiffness - condensed @ pu).tocsr()
+
+        def recover(increment):
+            return -(dilatation + pu @ increment) / diagonal
+
+        return tangent, force - condensed @ dilatation, recover
