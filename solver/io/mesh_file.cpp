@@ -24,7 +24,7 @@ void write_sets(const std::map<std::string, std::vector<int>>& sets, const std::
                 Hdf5File& file) {
   for (const auto& [name, members] : sets) {
     const std::vector<std::int64_t> ids(members.begin(), members.end());
-    file.write(group + "/" + name, {ids.size()}, std::span<const std::int64_t>(ids));
+    file.write(fmt::format("{}/{}", group, name), {ids.size()}, std::span<const std::int64_t>(ids));
   }
 }
 
@@ -33,7 +33,7 @@ std::map<std::string, std::vector<int>> read_sets(const Hdf5File& file, const st
                                                   std::string_view what, std::size_t count) {
   std::map<std::string, std::vector<int>> sets;
   for (const auto& name : file.names_in(group)) {
-    const std::string dataset = group + "/" + name;
+    const std::string dataset = fmt::format("{}/{}", group, name);
     const auto members = file.read_integers(dataset).entries;
     if (members.size() > count) {
       throw InputError(fmt::format("{}: {} has {} {}s; allowed are the {} of the mesh, each once",

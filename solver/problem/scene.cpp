@@ -231,8 +231,9 @@ Materials make_materials(const Scene& scene) {
   std::uint16_t other = none;
   auto& of_element = materials.of_element;
   of_element.assign(scene.mesh.cells.size(), none);
-  for (std::uint16_t m = 0; m < regions.size(); ++m) {
-    const std::string& name = regions[m].elements;
+  for (std::size_t n = 0; n < regions.size(); ++n) {
+    const auto m = static_cast<std::uint16_t>(n);
+    const std::string& name = regions[n].elements;
     if (name.empty()) {
       other = m;
       continue;
