@@ -191,13 +191,17 @@ def _imposed(tables):
 
 
 def _unit(tables, references):
-    """The largest imposed displacement, m; if sets rotate, the one stored in the references."""
-    if "rotation" in tables:
+    """The largest imposed displacement, m.
+
+    If sets rotate, or loads alone move the body, it is the one stored in the references.
+    """
+    values = [displacement["value"] for displacement in tables.get("displacement", [])]
+    largest = max((float(np.linalg.norm(value)) for value in values), default=0.0)
+    if "rotation" in tables or not largest:
         for reference in references.values():
             if reference is not None:
                 return float(reference.attributes["largest_imposed"])
-    values = [displacement["value"] for displacement in tables.get("displacement", [])]
-    return max((float(np.linalg.norm(value)) for value in values), default=0.0)
+    return largest
 
 
 def _read_reference(path, name, hashes, points):
