@@ -102,7 +102,7 @@ def _error_panel(name, subject, lines, reference):
         for line in lines:
             if line.name == reference or reference == "truth" and _is_golden(line, subject):
                 continue
-            errors = relative_distances(line.u, stored.displacement, subject.unit)[nodes]
+            errors = relative_distances(line.u, stored.displacement, subject.unit_of(stored))[nodes]
             (curves if errors.max() > style.FLOOR else nil).append((line, errors))
         peak = max((errors.max() for _, errors in curves), default=1.0)
         seen = [error for _, errors in curves for error in errors if error > style.FLOOR]
@@ -138,7 +138,9 @@ def _is_golden(line, subject):
     """Whether an answer other than the golden cannot be told from it by eye."""
     if line.name in ("golden", "truth") or subject.golden is None:
         return False
-    distances = relative_distances(line.u, subject.golden.displacement, subject.unit)
+    distances = relative_distances(
+        line.u, subject.golden.displacement, subject.unit_of(subject.golden)
+    )
     return distances.max() < style.FLOOR
 
 

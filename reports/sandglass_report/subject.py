@@ -31,7 +31,7 @@ class Subject:
 
     name: str
     requirement: str
-    unit: float  # largest imposed displacement, m
+    unit: float  # largest imposed displacement, m; 0 if loads alone move the body
     imposed: tuple  # (set name, value in m; of a rotation its axis times the angle in degrees)
     profile_set: str | None
     profile_order: str | None
@@ -59,12 +59,19 @@ class Subject:
             return None
         return ordered_profile(self.points, self.sets[self.profile_set], self.profile_order)
 
+    def unit_of(self, reference):
+        """The unit of errors against a Reference, m: the largest imposed displacement or, if loads
+        alone move the body, the largest of the reference."""
+        return self.unit or float(np.linalg.norm(reference.displacement, axis=1).max())
+
     def golden_to_truth(self):
         """Accuracy of the golden relative to the truth, or None if one is missing."""
         if self.golden is None or self.truth is None:
             return None
         nodes = self.sets.get(self.profile_set)
-        return accuracy(self.golden.displacement, self.truth.displacement, self.unit, nodes)
+        return accuracy(
+            self.golden.displacement, self.truth.displacement, self.unit_of(self.truth), nodes
+        )
 
 
 def read_subjects(verdicts, cases, references, results, files=()):
@@ -191,17 +198,13 @@ def _imposed(tables):
 
 
 def _unit(tables, references):
-    """The largest imposed displacement, m.
-
-    If sets rotate, or loads alone move the body, it is the one stored in the references.
-    """
-    values = [displacement["value"] for displacement in tables.get("displacement", [])]
-    largest = max((float(np.linalg.norm(value)) for value in values), default=0.0)
-    if "rotation" in tables or not largest:
+    """The largest imposed displacement, m; if sets rotate, the one stored in the references."""
+    if "rotation" in tables:
         for reference in references.values():
             if reference is not None:
                 return float(reference.attributes["largest_imposed"])
-    return largest
+    values = [displacement["value"] for displacement in tables.get("displacement", [])]
+    return max((float(np.linalg.norm(value)) for value in values), default=0.0)
 
 
 def _read_reference(path, name, hashes, points):
@@ -236,7 +239,7 @@ def _require_same_runs(subject, files):
             reference, told = getattr(subject, kind), getattr(run, kind)
             if reference is None or told is None:
                 continue
-            found = accuracy(u, reference.displacement, subject.unit, profile)
+            found = accuracy(u, reference.displacement, subject.unit_of(reference), profile)
             if abs(found.max - told.max) > AGREEMENT * max(1.0, told.max):
                 raise InputError(
                     f"{path}: its largest error against the {kind} is {found.max:.6g}, but the "

@@ -88,7 +88,7 @@ def _fields(subject, name, u, at_rest):
     found = {"volume": volumes(subject.points + u, subject.cells) / at_rest}
     if subject.golden is not None:
         golden = subject.golden.displacement
-        found["error"] = relative_distances(u, golden, subject.unit)
+        found["error"] = relative_distances(u, golden, subject.unit_of(subject.golden))
     if (name, None) in subject.hourglass:
         found["hourglass"] = subject.hourglass[name, None]
     return found
