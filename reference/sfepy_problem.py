@@ -1,7 +1,7 @@
 """The golden's problem by a second program: SfePy's own Total Lagrangian mixed terms on our mesh.
 
-Only Newton's method and the linear solver are those of the golden; they decide how fast an answer is
-found, not which. Pressures have the opposite sign here, which is SfePy's.
+Only Newton's method and the linear solver are those of the golden; they decide how fast an answer
+is found, not which. Pressures have the opposite sign here, which is SfePy's.
 """
 
 import contextlib

@@ -1,4 +1,4 @@
-"""The golden's problem with the terms of another program; loads and materials as FEniCSx has them."""
+"""The golden's problem with the terms of another program; loads and materials as in FEniCSx."""
 
 import dataclasses
 import json
