@@ -35,7 +35,7 @@ PACKAGE = "python3-sfepy (ci/setup test)"
 def distance(name, change=None):
     """How far SfePy's answer is from the stored golden: a record, as in second_golden.json.
 
-    name: of a case with a golden. change: a function from the Case's materials to others, for tests.
+    name: of a case with a golden. change: from the Case's materials to others, for tests.
     What SfePy cannot say is a reason instead of a distance. Raises InputError or ComputationError.
     """
     try:
