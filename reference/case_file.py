@@ -8,7 +8,14 @@ import numpy as np
 from common.errors import InputError, suggestion
 from common.files import read_toml
 from common.records import NUMBER, entries, entry
-from laws import LAWS, parameters
+from laws import LAWS, VOLUMES, parameters
+
+
+KEYS_OF_ANY_LAW = ("law", "density", "elements", "volumetric") + (
+    "fibre_direction",  # the solver checks these and writes the axes that follow from them
+    "sheet_direction",
+    "fibres",
+)
 
 
 @dataclass(frozen=True)
@@ -65,12 +72,13 @@ class Support:
 class Material:
     """A material: a name in LAWS, the law's parameters (SI units), directions as tuples.
 
-    density: kg/m^3.
+    density: kg/m^3. volumetric: a name in VOLUMES. Its fibres are in the mesh file, as axes.
     """
 
     law: str
     parameters: dict
     density: float = 0.0
+    volumetric: str = "quadratic"
 
 
 @dataclass(frozen=True)
@@ -169,14 +177,19 @@ def _material(where, table):
     law = entry(where, table, "law", str)
     if law not in LAWS:
         raise InputError(f"{where}.law = {law!r} is not known; {suggestion(law, LAWS)}")
-    _check_keys(where, table, ("law", "density", "elements", *parameters(law)))
+    _check_keys(where, table, (*KEYS_OF_ANY_LAW, *parameters(law)))
     numbers = {
         key: _material_number(where, table, key)
         for key, required in parameters(law).items()
         if required or key in table
     }
     density = entry(where, table, "density", NUMBER) if "density" in table else 0.0
-    return Material(law, numbers, float(density))
+    volumetric = entry(where, table, "volumetric", str) if "volumetric" in table else "quadratic"
+    if volumetric not in VOLUMES:
+        raise InputError(
+            f"{where}.volumetric = {volumetric!r} is not known; {suggestion(volumetric, VOLUMES)}"
+        )
+    return Material(law, numbers, float(density), volumetric)
 
 
 def _material_number(where, table, key):

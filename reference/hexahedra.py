@@ -88,7 +88,7 @@ class HexMesh:
     points: (n, 3) undeformed coordinates, m. cells: (m, 8) node numbers in VTK order.
     conditions: tuple of Condition. tractions: tuple of Traction. materials: (m,) the number of
     each element's material, or None if there is only one. surfaces: tuple of Surface. gravity:
-    (3,) m/s^2 at full load.
+    (3,) m/s^2 at full load. axes: (m, 3, 3) material axes of each element by rows, or None.
     """
 
     points: np.ndarray
@@ -98,6 +98,7 @@ class HexMesh:
     materials: np.ndarray | None = None
     surfaces: tuple = ()
     gravity: tuple = (0.0, 0.0, 0.0)
+    axes: np.ndarray | None = None
 
     def imposed(self, load=1.0):
         """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""
@@ -222,7 +223,10 @@ def refine(mesh):
     )
     tractions = tuple(dataclasses.replace(t, nodes=extend(t.nodes, np.all)) for t in mesh.tractions)
     cells = np.stack(children, axis=1).reshape(-1, 8)
-    materials = None if mesh.materials is None else np.repeat(mesh.materials, 8)
+    materials, axes = (
+        None if of_cells is None else np.repeat(of_cells, 8, axis=0)
+        for of_cells in (mesh.materials, mesh.axes)
+    )
     surfaces = tuple(dataclasses.replace(s, nodes=extend(s.nodes, np.all)) for s in mesh.surfaces)
     points = extend(mesh.points, np.mean)
-    return HexMesh(points, cells, conditions, tractions, materials, surfaces, mesh.gravity)
+    return HexMesh(points, cells, conditions, tractions, materials, surfaces, mesh.gravity, axes)

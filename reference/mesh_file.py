@@ -18,7 +18,8 @@ from hexahedra import Condition, HexMesh, Surface, traction, turn_about
 class MeshFile:
     """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, where it came from.
 
-    materials: (m,) the number of each element's material; None without several.
+    materials: (m,) the number of each element's material; None without several. axes: (m, 3, 3)
+    material axes of each element by rows; None without fibres.
     """
 
     points: np.ndarray
@@ -28,6 +29,7 @@ class MeshFile:
     case_hash: str
     mesh_hash: str
     materials: np.ndarray | None = None
+    axes: np.ndarray | None = None
 
 
 def make_mesh(case_path, output, name=None):
@@ -59,6 +61,7 @@ def read_mesh(path):
             materials = None
             if "/mesh/materials" in file:
                 materials = _dataset(path, file, "/mesh/materials", np.int64, None)
+            axes = file["/mesh/axes"][...] if "/mesh/axes" in file else None
             attributes = {}
             for name in ("case", "case_hash", "mesh_hash"):
                 if name not in file.attrs:
@@ -74,12 +77,16 @@ def read_mesh(path):
                 f"{path}: /mesh/{name}: node numbers {nodes.min()}..{nodes.max()} must be in "
                 f"0..{len(points) - 1}"
             )
+    if axes is not None and axes.shape != (len(cells), 3, 3):
+        raise InputError(
+            f"{path}: /mesh/axes has shape {axes.shape}; it must be ({len(cells)}, 3, 3)"
+        )
     if materials is not None and len(materials) != len(cells):
         raise InputError(
             f"{path}: /mesh/materials has {len(materials)} numbers; it must have one for each of "
             f"the {len(cells)} elements"
         )
-    return MeshFile(points=points, cells=cells, sets=sets, materials=materials, **attributes)
+    return MeshFile(points, cells, sets, materials=materials, axes=axes, **attributes)
 
 
 def load_case_mesh(case, mesh_path):
@@ -102,7 +109,7 @@ def load_case_mesh(case, mesh_path):
             f"{mesh_path}: /mesh/materials must have a number below {len(case.materials)} for each "
             "element: the case has so many materials"
         )
-    mesh = HexMesh(file.points, file.cells, (), materials=file.materials)
+    mesh = HexMesh(file.points, file.cells, (), materials=file.materials, axes=file.axes)
     for entry in case.displacements:
         nodes = _mask(file, _members(mesh_path, file, "displacement", entry.set_name))
         condition = Condition(nodes, entry.components, np.tile(entry.value, (len(nodes), 1)))

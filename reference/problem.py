@@ -17,7 +17,7 @@ from mpi4py import MPI
 
 from boundary import prescribed_dofs
 from common.hexahedron import LEXICOGRAPHIC
-from laws import LAWS
+from laws import energy
 from loads import JIT_OPTIONS, Loads
 
 
@@ -66,13 +66,22 @@ class MixedProblem:
         self.pressure = fem.Function(fem.FunctionSpace(domain, pressures))
         # Constants rather than literals, so that one compiled form serves every case.
         laws = [
-            partial(LAWS[m.law], **{k: fem.Constant(domain, v) for k, v in m.parameters.items()})
+            partial(
+                energy,
+                m.law,
+                m.volumetric,
+                **{k: fem.Constant(domain, v) for k, v in m.parameters.items()},
+            )
             for m in materials
         ]
         of_cell = None
         if len(laws) > 1:
             of_cell = mesh.materials[np.asarray(domain.topology.original_cell_index)]
-        self._forms = _compile_forms(self.displacement, self.pressure, pair, laws, of_cell)
+        axes = None
+        if mesh.axes is not None:
+            axes = fem.Function(fem.FunctionSpace(domain, ufl.TensorElement("DG", "hexahedron", 0)))
+            axes.x.array[:] = mesh.axes[np.asarray(domain.topology.original_cell_index)].ravel()
+        self._forms = _compile_forms(self.displacement, self.pressure, pair, laws, of_cell, axes)
         self._matrices = {
             name: fem.petsc.create_matrix(form) for name, form in self._forms["matrices"].items()
         }
@@ -177,11 +186,11 @@ class MixedProblem:
         return fem.assemble_vector(self._forms["vectors"][name]).array
 
 
-def _compile_forms(u, p, pair, laws, of_cell):
+def _compile_forms(u, p, pair, laws, of_cell, axes):
     """First and second derivatives of the energy with respect to displacement and pressure.
 
     laws: list of functions (F, p) -> energy density. of_cell: the number of the law of each cell,
-    if there are several.
+    if there are several. axes: material axes by rows, in which laws take F, or None.
     """
     degree = 2 * pair.gauss_points - 1
     points, _ = basix.make_quadrature(basix.CellType.hexahedron, degree)
@@ -194,10 +203,12 @@ def _compile_forms(u, p, pair, laws, of_cell):
         tags = dolfinx.mesh.meshtags(domain, 3, cells, of_cell.astype(np.int32))
         parts = [measure(number, subdomain_data=tags) for number in range(len(laws))]
     F = ufl.Identity(3) + ufl.grad(u)
-    energy = sum(law(F, p) * part for law, part in zip(laws, parts, strict=True))
+    if axes is not None:
+        F = axes * F * axes.T
+    total = sum(law(F, p) * part for law, part in zip(laws, parts, strict=True))
     v, du = ufl.TestFunction(u.function_space), ufl.TrialFunction(u.function_space)
     q, dp = ufl.TestFunction(p.function_space), ufl.TrialFunction(p.function_space)
-    by_u, by_p = ufl.derivative(energy, u, v), ufl.derivative(energy, p, q)
+    by_u, by_p = ufl.derivative(total, u, v), ufl.derivative(total, p, q)
     forms = {
         "vectors": {"u": by_u, "p": by_p},
         "matrices": {

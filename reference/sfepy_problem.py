@@ -46,6 +46,8 @@ class SfepyProblem:
         for material in materials:
             if material.law not in LAWS:
                 raise InputError(f"SfePy has no term for the law {material.law!r}")
+            if material.volumetric != "quadratic":
+                raise InputError(f"SfePy has no {material.volumetric} volumetric term")
         self._mesh = mesh
         n_nodes, n_cells = len(mesh.points), len(mesh.cells)
         with contextlib.redirect_stdout(io.StringIO()):

@@ -76,7 +76,7 @@ def _half(mesh, axis):
                 return None
     if not all(_has_mirror(t, mesh, axis, side, image) for t in mesh.tractions):
         return None
-    if mesh.surfaces or any(mesh.gravity):
+    if mesh.surfaces or any(mesh.gravity) or mesh.axes is not None:
         return None  # what these ask of a mirror plane is not looked at
     if mesh.materials is not None and not _same_materials(mesh, image):
         return None

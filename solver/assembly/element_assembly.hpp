@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "assembly/levelled_elements.hpp"
+#include "material/material_axes.hpp"
 #include "material/memory.hpp"
 
 namespace sandglass {
@@ -52,8 +53,8 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const auto laws = laws_at(state.step);
     this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at,
                                                   const auto& for_each_lane) {
-      const auto energy =
-          KernelOf<Method>::energy(motion, element, history<Method>(state, at.block), laws[at.material]);
+      const auto energy = KernelOf<Method>::energy(motion, element, history<Method>(state, at.block),
+                                                   with_axes(laws[at.material], at.axes));
       for_each_lane([&](std::size_t /*e*/, int lane) {
         sum.strain += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
         sum.hourglass += static_cast<double>(Lanes<Number>::get(energy.hourglass, lane));
@@ -64,22 +65,23 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const override {
     const auto laws = laws_at(state.step);
-    this->per_element(state, densities,
-                      [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
-                        using Kernel = KernelOf<Method>;
-                        const auto remembered = history<Method>(state, at.block);
-                        return Kernel::energy(motion, element, remembered, laws[at.material]).hourglass /
-                               Kernel::volume(motion, element);
-                      });
+    this->per_element(
+        state, densities, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
+          using Kernel = KernelOf<Method>;
+          const auto remembered = history<Method>(state, at.block);
+          return Kernel::energy(motion, element, remembered, with_axes(laws[at.material], at.axes))
+                     .hourglass /
+                 Kernel::volume(motion, element);
+        });
   }
 
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
     const auto laws = laws_at(state.step);
-    this->per_element(state, bounds,
-                      [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
-                        return KernelOf<Method>::stiffness_bound(
-                            motion, element, history<Method>(state, at.block), laws[at.material]);
-                      });
+    this->per_element(
+        state, bounds, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
+          return KernelOf<Method>::stiffness_bound(motion, element, history<Method>(state, at.block),
+                                                   with_axes(laws[at.material], at.axes));
+        });
   }
 
   Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
@@ -178,7 +180,9 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const auto& group = layout_->groups[g];
       for (std::size_t k = 0; k < group.ranks; ++k) {
-        const auto squares = squared_defects(u, mobility, group.first_face + k, group.material);
+        const auto axes = this->axes_of(layout_->elements.data() + (group.first_rank + k) * width);
+        const auto squares =
+            squared_defects(u, mobility, group.first_face + k, group.material, axes ? &*axes : nullptr);
         for (int lane = 0; lane < width; ++lane) {
           const int e = layout_->elements[(group.first_rank + k) * width + static_cast<std::size_t>(lane)];
           if (e < 0) continue;
@@ -193,7 +197,8 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   /// The squares (m^2) of the defects of the elements between a face of the layout and the next one.
   [[gnu::flatten]] std::array<Number, top> squared_defects(const Rows<Real>& u, const Rows<Real>& mobility,
-                                                           std::size_t face, std::size_t material) const {
+                                                           std::size_t face, std::size_t material,
+                                                           const MaterialAxes<Number>* axes) const {
     const auto modes = [&](const Rows<Real>& rows) {
       return modes_between(gather_face_modes<Number>(rows, *layout_, face),
                            gather_face_modes<Number>(rows, *layout_, face + 1));
@@ -204,7 +209,8 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const NodalVectors<Number> mobilities =
         nodes_of(gather_face_vectors<Number>(mobility, *layout_, face),
                  gather_face_vectors<Number>(mobility, *layout_, face + 1));
-    const std::array<Modes<Number>, top + 1> forces{force_at<KernelOf<Methods>>(motion, x, material)...};
+    const std::array<Modes<Number>, top + 1> forces{
+        force_at<KernelOf<Methods>>(motion, x, material, axes)...};
     std::array<Number, top> squares;
     for (std::size_t level = 0; level < top; ++level) {
       const NodalVectors<Number> difference = from_modes(forces[level] - forces[top]);
@@ -222,12 +228,12 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   }
 
   template <class Kernel>
-  Modes<Number> force_at(const ElementMotion<Number>& motion, const Modes<Number>& x,
-                         std::size_t material) const {
+  Modes<Number> force_at(const ElementMotion<Number>& motion, const Modes<Number>& x, std::size_t material,
+                         const MaterialAxes<Number>* axes) const {
     const Law& law = laws_[material];
     const auto element = Kernel::template constants<Number>(x, law, this->setups_[material].settings);
     typename Kernel::template History<Number> none;
-    return Kernel::force(Kernel::deformation(motion, element), element, none, law);
+    return Kernel::force(Kernel::deformation(motion, element), element, none, with_axes(law, axes));
   }
 };
 
@@ -293,7 +299,7 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
         if (timeless) remembered.law = {};  // irrelevant here, and possibly left by a failed trial
         const Modes<Number> f = Kernel::force(
             Kernel::deformation(Base::template between<Method>(lower, upper, inverse_step), element), element,
-            remembered, law);
+            remembered, with_axes(law, part.axes_at(block)));
         this->template keep_history<Method>(remembered, state, block);
         scatter_face_modes(carried + lower_face(f), force, groups, group.first_face + k);
         carried = upper_face(f);

@@ -32,11 +32,12 @@ void require_accepted(const NodalVectors<double>& X) {
 }  // namespace detail
 
 /// The constants of the elements between a face of the groups and the next one, one element per lane,
-/// computed in double precision and rounded.
-template <class Kernel, class Number, class Law>
+/// computed in double precision and rounded. law_of(lane) is the law of an element.
+template <class Kernel, class Number, class LawOf>
 typename Kernel::template Element<Number> element_block(const Mesh& mesh, const ElementGroups& groups,
                                                         const std::vector<int>& node_of_row, std::size_t face,
-                                                        const Law& law, const HourglassSettings& settings) {
+                                                        const LawOf& law_of,
+                                                        const HourglassSettings& settings) {
   using Element = typename Kernel::template Element<double>;
   using Block = typename Kernel::template Element<Number>;
   constexpr std::size_t numbers = sizeof(Element) / sizeof(double);
@@ -52,7 +53,8 @@ typename Kernel::template Element<Number> element_block(const Mesh& mesh, const 
       for (int i = 0; i < 3; ++i) X(I, i) = point[static_cast<std::size_t>(i)];
     }
     detail::require_accepted<Kernel>(X);
-    const auto constants = std::bit_cast<std::array<double, numbers>>(Kernel::precompute(X, law, settings));
+    const auto constants =
+        std::bit_cast<std::array<double, numbers>>(Kernel::precompute(X, law_of(lane), settings));
     for (std::size_t n = 0; n < numbers; ++n) {
       Lanes<Number>::set(block[n], lane, static_cast<typename Lanes<Number>::Scalar>(constants[n]));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -58,6 +59,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     std::size_t last = 0;
     std::size_t first_block = 0;  // index of the first group's first block among those of `groups`
     std::vector<Element> blocks;
+    std::vector<MaterialAxes<Number>> axes;  // of the blocks; empty: those of space
+
+    const MaterialAxes<Number>* axes_at(std::size_t block) const {
+      return axes.empty() ? nullptr : &axes[block - first_block];
+    }
   };
 
   /// What the constants of an element depend on besides its shape.
@@ -80,9 +86,10 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
                    int threads)
       : layout_(std::make_shared<Layout>(make_layout(
             mesh, width, adapts ? SpareRows::everywhere : SpareRows::where_needed, materials.of_element))),
+        axes_(materials.axes),
         threads_(threads) {
     for (const Material& material : materials.list) {
-      setups_.push_back({elastic_law(kernel_law(material.law)), settings});
+      setups_.push_back({elastic_law(kernel_law(material)), settings});
       setups_.back().settings.density = material.density;
     }
     if constexpr (uses_coordinates || adapts) {
@@ -222,10 +229,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  /// A block of elements: its index among those of its groups, and its material.
+  /// A block of elements: its index among those of its groups, its material, and the axes of its elements.
   struct BlockPlace {
     std::size_t block;
     std::size_t material;
+    const MaterialAxes<Number>* axes;
   };
 
   /// Calls visit.operator()<Method>(motion, element, place, for_each_lane) for every block of elements, where
@@ -248,7 +256,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
               gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
           visit.template operator()<Method>(
               between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block],
-              BlockPlace{block, group.material}, [&](const auto& use) {
+              BlockPlace{block, group.material, part.axes_at(block)}, [&](const auto& use) {
                 for (int lane = 0; lane < width; ++lane) {
                   const int e = part.groups->elements[block * width + static_cast<std::size_t>(lane)];
                   if (e >= 0) use(static_cast<std::size_t>(e), lane);
@@ -274,8 +282,23 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  std::shared_ptr<const Layout> layout_;  // of all elements
-  std::vector<Setup> setups_;             // of each material
+  /// The axes of the elements in the lanes of a block, spare ones those of space; without axes none.
+  std::optional<MaterialAxes<Number>> axes_of(const int* elements) const {
+    if (axes_.empty()) return std::nullopt;
+    MaterialAxes<Number> axes;
+    for (int lane = 0; lane < width; ++lane) {
+      const auto own =
+          elements[lane] < 0 ? identity<double>() : axes_[static_cast<std::size_t>(elements[lane])];
+      for (std::size_t n = 0; n < 9; ++n) {
+        Lanes<Number>::set(axes.entries[n], lane, static_cast<Real>(own.entries[n]));
+      }
+    }
+    return axes;
+  }
+
+  std::shared_ptr<const Layout> layout_;    // of all elements
+  std::vector<MaterialAxes<double>> axes_;  // of each element; empty: those of space
+  std::vector<Setup> setups_;               // of each material
   int threads_;
   Rows<Real> coordinates_;  // only if kernels need them, or adaptive methods
   bool streams_ = false;    // whether constants do not remain in the cache from step to step
@@ -342,8 +365,14 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       const auto& group = part.groups->groups[g];
       const Setup& setup = setups_[group.material];
       for (std::size_t k = 0; k < group.ranks; ++k) {
+        const int* elements = part.groups->elements.data() + (group.first_rank + k) * width;
+        const auto law_of = [&](int lane) {
+          const bool own = !axes_.empty() && elements[lane] >= 0;
+          return setup.law.with_axes(own ? &axes_[static_cast<std::size_t>(elements[lane])] : nullptr);
+        };
         part.blocks.push_back(element_block<KernelOf<Method>, Number>(
-            mesh, *part.groups, layout_->node_of_row, group.first_face + k, setup.law, setup.settings));
+            mesh, *part.groups, layout_->node_of_row, group.first_face + k, law_of, setup.settings));
+        if (const auto axes = axes_of(elements)) part.axes.push_back(*axes);
       }
     }
   }

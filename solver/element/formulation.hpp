@@ -70,8 +70,9 @@ struct Formulation {
     return std::string_view{};
   }();
 
-  /// The constants of an element with reference coordinates X (m).
-  static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
+  /// The constants of an element with reference coordinates X (m), whose law may have axes of its own.
+  template <class SetupLaw>
+  static Element<double> precompute(const NodalVectors<double>& X, const SetupLaw& law,
                                     const HourglassSettings& settings) {
     return {Kinematics::precompute(X), Hourglass::precompute(X, law, settings)};
   }

@@ -61,6 +61,18 @@ mesh.file = "FILE": instead of a generator, a mesh of hexahedra, in m: .h5 as `s
   .nii of NIfTI: an element for each voxel that is not 0, the element set label-N for each label N
 )";
 
+constexpr std::string_view parts_of_a_material = R"(
+material.volumetric: the volumetric energy, of K the initial bulk modulus: "quadratic", K/2 (J - 1)^2 (default),
+  "logarithmic", K/2 (ln J)^2, or "quadratic-logarithmic", K/4 (J^2 - 1 - 2 ln J)
+material.fibre_direction, sheet_direction = [x, y, z], of any length: for laws with fibres, the same directions
+  everywhere; the second may be left out for laws without sheets. Or
+material.fibres = { axis = "x", "y" or "z", center = [x, y, z] in m (default: the origin), radii = [r0, r1] in m,
+  angles = [a0, a1] in degrees }: fibres that wind around an axis, at an angle to the circle that is linear
+  between two radii; sheets are radial. Or
+material.fibres = { file = "FILE" }: a line of text for each element, three numbers for its fibres, or six with
+  its sheets
+)";
+
 constexpr std::string_view several_materials = R"(
 [[materials]] instead of [material], several times, with the same keys and elements = NAME, an element set; one
   of them may leave it out and is the material of all other elements
@@ -102,6 +114,7 @@ std::string describe_case_keys() {
   text += mesh_file;
   text += described_list(Laws{}, "material", "law");
   text += key_line("material.density", "kg/m^3", Range::positive(), "required", "mass density at rest");
+  text += parts_of_a_material;
   text += several_materials;
   text += sets_and_loads;
   text += "\n[relaxation]: how a quasi-static answer is found\n";

@@ -66,6 +66,11 @@ void write_mesh(const Scene& scene, Hdf5File& file) {
                                               scene.materials.of_element.end());
     file.write("/mesh/materials", {materials.size()}, std::span<const std::int64_t>(materials));
   }
+  if (!scene.materials.axes.empty()) {
+    const auto& axes = scene.materials.axes;
+    file.write("/mesh/axes", {axes.size(), 3, 3},
+               std::span<const double>(axes.front().entries.data(), 9 * axes.size()));
+  }
   file.write_attribute("/", "case", scene.description.name);
   file.write_attribute("/", "case_hash", scene.case_hash);
   file.write_attribute("/", "mesh_hash", scene.mesh_hash);

@@ -21,6 +21,8 @@ class TableReader {
   /// `prefix` is the table's name in messages, such as "material".
   TableReader(const toml::table& table, std::filesystem::path file, std::string prefix);
 
+  const std::filesystem::path& file() const { return file_; }
+
   /// The value of a key; none when the key is absent. T: double, int, bool, std::string, a std::array or
   /// std::vector of double or int.
   template <class T>

@@ -21,9 +21,37 @@ template <class Law, class T>
 }
 
 template <class Law, class T>
+[[gnu::flatten, gnu::noinline]] void weighted_piola(const Law& shared, std::size_t count,
+                                                    const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP,
+                                                    const MaterialAxes<T>& axes) {
+  const Law law = shared;
+  for (std::size_t q = 0; q < count; ++q) {
+    VP[q] = in_space(axes, law.weighted_piola(at[q].V, in_material(axes, H[q]), at[q].change, at[q].p));
+  }
+}
+
+template <class Law, class T>
 [[gnu::flatten, gnu::noinline]] void weighted_kirchhoff(const Law& law, const PointLoad<T>* at,
                                                         const Tensor<T>* H, Tensor<T>* V_tau) {
   *V_tau = law.weighted_kirchhoff(at->V, *H, at->change, at->p);
+}
+
+/// A displacement gradient or a strain in the axes of a law.
+template <class Law, class T>
+Tensor<T> in_axes_of(const Law& /*law*/, const Tensor<T>& H, const MaterialAxes<T>* axes) {
+  if constexpr (!is_isotropic<Law>) {
+    if (axes != nullptr) return in_material(*axes, H);
+  }
+  return H;
+}
+
+/// A stress in the axes of a law as one in space.
+template <class Law, class T>
+Tensor<T> from_axes_of(const Law& /*law*/, const Tensor<T>& stress, const MaterialAxes<T>* axes) {
+  if constexpr (!is_isotropic<Law>) {
+    if (axes != nullptr) return in_space(*axes, stress);
+  }
+  return stress;
 }
 
 }  // namespace detail
@@ -38,37 +66,63 @@ decltype(auto) CalledLaw::visit(const Visit& visit) const {
 }
 
 template <class T>
-T CalledLaw::isochoric_energy(const Tensor<T>& H) const {
-  return visit<0>([&](const auto& law) { return law.isochoric_energy(H); });
+CalledLaw::Volume<T> CalledLaw::called_volume(const T& x) const {
+  const T K(bulk_modulus_);
+  return std::visit(
+      [&]<class Part>(const Part&) {
+        return Volume<T>{K * Part::energy(x), K * Part::slope(x), K * Part::curvature(x)};
+      },
+      volume_);
 }
 
 template <class T>
-void CalledLaw::weighted_piola(std::size_t count, const PointLoad<T>* at, const Tensor<T>* H,
-                               Tensor<T>* VP) const {
-  visit<0>([=](const auto& law) { detail::weighted_piola(law, count, at, H, VP); });
+T CalledLaw::isochoric_energy(const Tensor<T>& H, const MaterialAxes<T>* axes) const {
+  return visit<0>([&](const auto& law) { return law.isochoric_energy(detail::in_axes_of(law, H, axes)); });
 }
 
 template <class T>
-void CalledLaw::weighted_kirchhoff(const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* V_tau) const {
-  visit<0>([=](const auto& law) { detail::weighted_kirchhoff(law, at, H, V_tau); });
+void CalledLaw::weighted_piola(std::size_t count, const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP,
+                               const MaterialAxes<T>* axes) const {
+  visit<0>([=]<class Law>(const Law& law) {
+    if constexpr (!is_isotropic<Law>) {
+      if (axes != nullptr) return detail::weighted_piola(law, count, at, H, VP, *axes);
+    }
+    detail::weighted_piola(law, count, at, H, VP);
+  });
 }
 
 template <class T>
-TangentBound<T> CalledLaw::tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                         const T& bulk) const {
-  return visit<0>([&](const auto& law) { return sandglass::tangent_bound(law, H, J_minus_one, p, bulk); });
+void CalledLaw::weighted_kirchhoff(const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* V_tau,
+                                   const MaterialAxes<T>* axes) const {
+  visit<0>([=](const auto& law) {
+    const Tensor<T> own = detail::in_axes_of(law, *H, axes);
+    detail::weighted_kirchhoff(law, at, &own, V_tau);
+    *V_tau = detail::from_axes_of(law, *V_tau, axes);
+  });
+}
+
+template <class T>
+TangentBound<T> CalledLaw::tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk,
+                                         const MaterialAxes<T>* axes) const {
+  return visit<0>([&](const auto& law) {
+    return sandglass::tangent_bound(law, detail::in_axes_of(law, H, axes), J_minus_one, p, bulk);
+  });
 }
 
 template <class T>
 TangentBound<T> CalledLaw::viscoelastic_tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p,
-                                                      const T& bulk) const {
-  return visit<0>(
-      [&](const auto& law) { return sandglass::viscoelastic_tangent_bound(law, H, J_minus_one, p, bulk); });
+                                                      const T& bulk, const MaterialAxes<T>* axes) const {
+  return visit<0>([&](const auto& law) {
+    return sandglass::viscoelastic_tangent_bound(law, detail::in_axes_of(law, H, axes), J_minus_one, p, bulk);
+  });
 }
 
 template <class T>
-Tensor<T> CalledLaw::small_strain_stress(const Tensor<T>& strain) const {
-  return visit<0>([&](const auto& law) { return sandglass::small_strain_stress(law, strain); });
+Tensor<T> CalledLaw::small_strain_stress(const Tensor<T>& strain, const MaterialAxes<T>* axes) const {
+  return visit<0>([&](const auto& law) {
+    return detail::from_axes_of(
+        law, sandglass::small_strain_stress(law, detail::in_axes_of(law, strain, axes)), axes);
+  });
 }
 
 }  // namespace sandglass

@@ -2,6 +2,8 @@
 
 #include "base/type_list.hpp"
 #include "material/fibre_neo_hookean.hpp"
+#include "material/guccione.hpp"
+#include "material/holzapfel_ogden.hpp"
 #include "material/mooney_rivlin.hpp"
 #include "material/neo_hookean.hpp"
 #include "material/ogden.hpp"
@@ -18,6 +20,7 @@ namespace sandglass {
 /// piola, isochoric_tangent_bound, and for the kernels weighted_piola and weighted_kirchhoff. QuadraticVolume
 /// has what they share. A law that is not isotropic also has small_strain_stress, one with rules between its
 /// parameters broken_rule.
-using ElasticLaws = TypeList<NeoHookean, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, FibreNeoHookean>;
+using ElasticLaws = TypeList<NeoHookean, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, FibreNeoHookean,
+                             Guccione, HolzapfelOgden>;
 
 }  // namespace sandglass

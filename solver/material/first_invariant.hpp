@@ -69,32 +69,25 @@ Tensor<T> first_invariant_kirchhoff(const T& V_mu, const T& V_p, const Tensor<T>
   return tau;
 }
 
-/// Bound of mu/2 d^2 I1bar for a modulus mu >= 0 (Pa); see TangentBound. With b = F F^T and m = mu J^(-2/3)
-/// it is m [tr(L b L^T) - 4/3 tr L tr(L b) + 2/9 tr b (tr L)^2 + 1/3 tr b tr(L L)]; b is split into its mean
-/// and deviator, and the mixed term is halved between (tr L)^2 and |L|^2.
+/// Bound of mu/2 d^2 I1bar for a modulus mu >= 0 (Pa); see TangentBound. Its stress is that of b = F F^T,
+/// m = mu J^(-2/3).
 template <class T>
 TangentBound<T> first_invariant_tangent_bound(const T& mu, const Tensor<T>& H) {
   const Tensor<T> e = left_cauchy_green_minus_identity(H);
-  const Tensor<T> d = deviator(e);
-  const T deviation = sqrt(double_dot(d, d));
-  const T trace_b = T(3) + trace(e);
   const T root = inverse_cube_root(T(1) + jacobian_minus_one(H));
   const T m = mu * root * root;
-  return {.volumetric = m * (T(2.0 / 3.0) * deviation - T(2.0 / 9.0) * trace_b),
-          .gradient = m * (T(2.0 / 3.0) * trace_b + T(std::sqrt(2.0 / 3.0) + 2.0 / 3.0) * deviation)};
+  return isochoric_stress_bound(m * (T(1) + T(1.0 / 3.0) * trace(e)), m * deviator(e));
 }
 
 /// The same for w(I1bar) with a modulus mu = 2 w' and a second derivative w'' (Pa):
-/// d^2 w = w' d^2 x + w'' (dx)^2, and dx = 2 J^(-2/3) dev b : L involves only the deviator of L, with
-/// |dev L|^2 = |L|^2 - (tr L)^2 / 3.
+/// d^2 w = w' d^2 x + w'' (dx)^2, and dx = 2 J^(-2/3) dev b : L involves only the deviator of L.
 template <class T>
 TangentBound<T> first_invariant_tangent_bound(const T& mu, const T& second_derivative, const Tensor<T>& H) {
   const Tensor<T> d = deviator(left_cauchy_green_minus_identity(H));
   const T r = volume_change(H).inverse_root;
   const T r2 = r * r;
   const T steepening = max(second_derivative, T(0)) * (T(4) * r2 * r2 * double_dot(d, d));
-  return first_invariant_tangent_bound(mu, H) +
-         TangentBound<T>{.volumetric = T(-1.0 / 3.0) * steepening, .gradient = steepening};
+  return first_invariant_tangent_bound(mu, H) + change_of_shape_bound(steepening);
 }
 
 /// The common base of laws with such an energy. A law derives from FirstInvariant of itself and defines

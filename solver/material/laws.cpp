@@ -5,22 +5,23 @@ namespace sandglass {
 namespace {
 
 template <class Law>
-KernelLaw to_kernel_law(const Law& law) {
-  return CalledLaw(law);
+KernelLaw to_kernel_law(const Law& law, VolumetricPart volume) {
+  return CalledLaw(law, volume);
 }
-KernelLaw to_kernel_law(const NeoHookean& law) {
-  return law;
+KernelLaw to_kernel_law(const NeoHookean& law, VolumetricPart volume) {
+  if (std::holds_alternative<QuadraticPart>(volume)) return law;
+  return CalledLaw(law, volume);
 }
 template <class Law>
-KernelLaw to_kernel_law(const Viscoelastic<Law>& law) {
-  return Viscoelastic<CalledLaw>{CalledLaw(static_cast<const Law&>(law)), law.relaxation_1, law.time_1,
-                                 law.relaxation_2, law.time_2};
+KernelLaw to_kernel_law(const Viscoelastic<Law>& law, VolumetricPart volume) {
+  return Viscoelastic<CalledLaw>{CalledLaw(static_cast<const Law&>(law), volume), law.relaxation_1,
+                                 law.time_1, law.relaxation_2, law.time_2};
 }
 
 }  // namespace
 
-KernelLaw kernel_law(const AnyLaw& any_law) {
-  return std::visit([](const auto& law) { return to_kernel_law(law); }, any_law);
+KernelLaw kernel_law(const AnyLaw& any_law, VolumetricPart volume) {
+  return std::visit([=](const auto& law) { return to_kernel_law(law, volume); }, any_law);
 }
 
 CalledLaw elastic_law(const KernelLaw& kernel_law) {

@@ -3,6 +3,7 @@
 #include "base/type_list.hpp"
 #include "material/called_law.hpp"
 #include "material/elastic_laws.hpp"
+#include "material/small_strain.hpp"
 #include "material/viscoelastic.hpp"
 
 namespace sandglass {
@@ -16,8 +17,8 @@ using AnyLaw = VariantOf<Laws>;
 /// The laws that kernels are compiled for: the neo-Hookean one, and the others behind calls.
 using KernelLaw = std::variant<NeoHookean, CalledLaw, Viscoelastic<CalledLaw>>;
 
-/// The law as kernels take it.
-KernelLaw kernel_law(const AnyLaw& law);
+/// The law as kernels take it, with a volumetric part of its own or another.
+KernelLaw kernel_law(const AnyLaw& law, VolumetricPart volume = {});
 
 /// The elastic law, or the instantaneous response of a viscoelastic one, behind calls.
 CalledLaw elastic_law(const KernelLaw& law);
@@ -25,6 +26,16 @@ CalledLaw elastic_law(const KernelLaw& law);
 /// Whether a law has a memory.
 inline bool is_viscoelastic(const AnyLaw& law) {
   return std::holds_alternative<Viscoelastic<CalledLaw>>(kernel_law(law));
+}
+
+/// Whether a law chosen at run time has directions of its own.
+inline bool has_fibres(const AnyLaw& any_law) {
+  return std::visit([]<class Law>(const Law&) { return !is_isotropic<Law>; }, any_law);
+}
+
+/// Whether its energy is a function of J^(-1/3) F plus one of J.
+inline bool splits_volume(const AnyLaw& any_law) {
+  return std::visit([]<class Law>(const Law&) { return Law::splits_volume; }, any_law);
 }
 
 /// The name of a law chosen at run time.

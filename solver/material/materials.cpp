@@ -17,9 +17,19 @@ bool holds(const KernelLaw& law) {
 
 }  // namespace
 
+Materials materials_of(const Materials& whole, std::span<const int> elements) {
+  Materials part{whole.list};
+  for (const int e : elements) {
+    const auto n = static_cast<std::size_t>(e);
+    if (!whole.of_element.empty()) part.of_element.push_back(whole.of_element[n]);
+    if (!whole.axes.empty()) part.axes.push_back(whole.axes[n]);
+  }
+  return part;
+}
+
 KernelLaws kernel_laws(const Materials& materials) {
   const std::vector<KernelLaw> laws =
-      by_material(materials, [](const Material& material) { return kernel_law(material.law); });
+      by_material(materials, [](const Material& material) { return kernel_law(material); });
   const auto converted = [&](const auto& convert) {
     std::vector<std::decay_t<decltype(convert(laws.front()))>> list;
     for (const KernelLaw& law : laws) list.push_back(convert(law));

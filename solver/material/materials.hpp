@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "material/laws.hpp"
 
@@ -9,17 +11,27 @@ namespace sandglass {
 /// What a body or a part of it is made of.
 struct Material {
   AnyLaw law;
-  double density = 0.0;  ///< kg/m^3
+  double density = 0.0;        ///< kg/m^3
+  VolumetricPart volume = {};  ///< in place of that of the law
 };
+
+/// The law of a material as kernels take it.
+inline KernelLaw kernel_law(const Material& material) {
+  return kernel_law(material.law, material.volume);
+}
 
 /// The materials of a body.
 struct Materials {
   std::vector<Material> list;
-  std::vector<std::uint16_t> of_element = {};  ///< the material of each element; empty: all have the first
+  std::vector<std::uint16_t> of_element = {};   ///< the material of each element; empty: all have the first
+  std::vector<MaterialAxes<double>> axes = {};  ///< of each element; empty: those of space
 
   /// The number of an element's material.
   std::size_t of(std::size_t element) const { return of_element.empty() ? 0 : of_element[element]; }
 };
+
+/// The materials of some elements of a body.
+Materials materials_of(const Materials& whole, std::span<const int> elements);
 
 /// A property of each material, law or density; `property(material)` returns it.
 template <class Property>

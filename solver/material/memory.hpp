@@ -64,14 +64,13 @@ constexpr auto at_step(const Law& law, double seconds) {
 
 /// A law at a step with the memories of an element of several points.
 template <class LawAtStep, class Memories>
-class RecallingLaw : public QuadraticVolume<RecallingLaw<LawAtStep, Memories>> {
+class RecallingLaw : public VolumeOfElastic<RecallingLaw<LawAtStep, Memories>> {
   static constexpr std::size_t points = std::tuple_size_v<decltype(Memories::point)>;
 
  public:
   RecallingLaw(const LawAtStep& law, Memories& memories) : law_(law), memories_(memories) {}
 
-  double shear_modulus() const { return law_.elastic().shear_modulus(); }
-  double bulk_modulus() const { return law_.elastic().bulk_modulus(); }
+  const auto& elastic() const { return law_.elastic(); }
 
   /// The law at integration point q.
   auto at_point(std::size_t q) const { return law_.recalling(memories_.point[q]); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "math/matrix.hpp"
 #include "math/strain.hpp"
 
@@ -24,6 +26,22 @@ struct TangentBound {
 template <class T>
 TangentBound<T> volumetric_tangent_bound(const T& J, const T& p, const T& bulk) {
   return {.volumetric = bulk * J * J + p * J, .gradient = abs(p * J)};
+}
+
+/// The bound of S : d^2 E for E = (J^(-2/3) F^T F - I)/2 and a stress S. With tau = J^(-2/3) F S F^T it is
+/// tr(L tau L^T) - 4/3 tr L tr(L tau) + (2/9 (tr L)^2 + tr(L L)/3) tr tau. The mean t of tau contributes
+/// 2 t |dev sym L|^2; the mixed term of its deviator d (Pa) is halved between (tr L)^2 and |L|^2.
+template <class T>
+TangentBound<T> isochoric_stress_bound(const T& t, const Tensor<T>& d) {
+  const T mean = max(t, T(0)), deviation = sqrt(double_dot(d, d));
+  return {.volumetric = T(2.0 / 3.0) * (deviation - mean),
+          .gradient = T(2) * mean + T(std::sqrt(2.0 / 3.0) + 2.0 / 3.0) * deviation};
+}
+
+/// The bound of `curvature` |dev L|^2, |dev L|^2 = |L|^2 - (tr L)^2 / 3.
+template <class T>
+TangentBound<T> change_of_shape_bound(const T& curvature) {
+  return {.volumetric = T(-1.0 / 3.0) * curvature, .gradient = curvature};
 }
 
 /// The bound of a law whose volumetric part is replaced by one of slope p and curvature `bulk` (Pa), as in

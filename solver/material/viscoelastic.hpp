@@ -8,6 +8,7 @@
 
 #include "base/joined_text.hpp"
 #include "base/parameter.hpp"
+#include "material/material_axes.hpp"
 #include "material/memory.hpp"
 #include "material/quadratic_volume.hpp"
 #include "material/tangent_bound.hpp"
@@ -59,15 +60,14 @@ struct ViscousMemory {
 /// A viscoelastic law at one point, with the interface of an elastic law. Stresses advance the memory by one
 /// step; energies and bounds do not, and take a const `Memory`.
 template <class Law, class Memory>
-class ViscoelasticPoint : public QuadraticVolume<ViscoelasticPoint<Law, Memory>> {
+class ViscoelasticPoint : public VolumeOfElastic<ViscoelasticPoint<Law, Memory>> {
  public:
   static constexpr bool splits_volume = Law::splits_volume;
 
   ViscoelasticPoint(const Law& elastic, const std::array<ViscousStep, 2>& terms, Memory& memory)
       : elastic_(elastic), terms_(terms), memory_(memory) {}
 
-  double shear_modulus() const { return elastic_.shear_modulus(); }
-  double bulk_modulus() const { return elastic_.bulk_modulus(); }
+  const Law& elastic() const { return elastic_; }
 
   /// V P (J) as for an elastic law, after one step in time: P = F (S_iso - sum_i Q_i) + p cof F.
   template <class T>
@@ -188,6 +188,13 @@ class ViscoelasticStep {
 
   /// The instantaneous response.
   const Law& elastic() const { return elastic_; }
+
+  /// The law in elements with these axes.
+  template <class T>
+  auto with_axes(const MaterialAxes<T>* axes) const {
+    return ViscoelasticStep<std::decay_t<decltype(sandglass::with_axes(elastic_, axes))>>(
+        sandglass::with_axes(elastic_, axes), terms_);
+  }
 
   /// The law at a point with this memory, const or not.
   template <class Memory>

@@ -54,6 +54,15 @@ inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& ce
   return rows;
 }
 
+/// The centre of an element: the mean of its nodes.
+inline Vector centre_of(const Mesh& mesh, const Hexahedron& cell) {
+  Vector centre{};
+  for (const int node : cell) {
+    for (std::size_t i = 0; i < 3; ++i) centre[i] += mesh.points[static_cast<std::size_t>(node)][i] / 8.0;
+  }
+  return centre;
+}
+
 /// The largest distance between the vectors of two nodal fields; NaN if one of them contains NaN.
 double largest_distance(const NodalField& a, const NodalField& b);
 

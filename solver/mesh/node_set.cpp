@@ -38,11 +38,7 @@ std::vector<int> select_elements(const Mesh& mesh, const NodeSetRule& rule) {
   const double tolerance = 1e-9 * diagonal(mesh.points);
   std::vector<int> elements;
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
-    Vector centre{};
-    for (const int node : mesh.cells[e]) {
-      for (std::size_t i = 0; i < 3; ++i) centre[i] += mesh.points[static_cast<std::size_t>(node)][i] / 8.0;
-    }
-    if (selects(rule, centre, tolerance)) elements.push_back(static_cast<int>(e));
+    if (selects(rule, centre_of(mesh, mesh.cells[e]), tolerance)) elements.push_back(static_cast<int>(e));
   }
   return elements;
 }

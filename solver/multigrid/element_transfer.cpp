@@ -17,14 +17,6 @@ constexpr float spring = 10.0f;
 /// would miss that stiffness.
 constexpr double wide = 0.6;
 
-Vector centre(const Mesh& mesh, const Hexahedron& cell) {
-  Vector sum{};
-  for (const int n : cell) {
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += mesh.points[static_cast<std::size_t>(n)][i] / 8.0;
-  }
-  return sum;
-}
-
 bool is_wide(const Vector& extent, const Vector& box) {
   return extent[0] > wide * box[0] || extent[1] > wide * box[1] || extent[2] > wide * box[2];
 }
@@ -77,7 +69,7 @@ ElementTransfer::ElementTransfer(const Mesh& mesh, const Layout& layout, const E
 void ElementTransfer::sample(const Mesh& mesh, std::size_t element) {
   const Grid& grid = grid_.grid();
   const auto cell = static_cast<std::uint32_t>(elements_.cells()[element]);
-  const Vector middle = centre(mesh, mesh.cells[element]);
+  const Vector middle = centre_of(mesh, mesh.cells[element]);
   const Grid::Location place = grid.locate(middle);
   boxes_[cell] = place.box;
   contents_[place.box].cells.push_back(cell);

@@ -33,6 +33,27 @@ std::string described(const NodeSetRule& rule) {
   return text + ")";
 }
 
+/// Nothing for the volumetric part of the law itself.
+std::string described(const VolumetricPart& volume) {
+  if (std::holds_alternative<QuadraticPart>(volume)) return "";
+  return std::visit([]<class Part>(const Part&) { return fmt::format("volumetric({})", Part::name); },
+                    volume);
+}
+
+/// Nothing for an isotropic material.
+std::string described(const FibreRule& rule) {
+  if (const auto* uniform = std::get_if<UniformFibres>(&rule)) {
+    return fmt::format("fibres({}:{})", uniform->fibre, uniform->sheet.value_or(Vector{}));
+  }
+  if (const auto* helix = std::get_if<HelicalFibres>(&rule)) {
+    return fmt::format("helix({}:{}:{}:{})", helix->axis, helix->center, helix->radii, helix->angles);
+  }
+  if (const auto* listed = std::get_if<ListedFibres>(&rule)) {
+    return fmt::format("fibres({}:{})", listed->fibres, listed->sheets);
+  }
+  return "";
+}
+
 std::string described(const LoadCurve& curve) {
   return curve.times.empty() ? "" : fmt::format("curve({}:{})", curve.times, curve.factors);
 }
@@ -48,6 +69,7 @@ std::string case_hash(const Case& description) {
   }
   for (const auto& material : description.materials) {
     text += std::visit([](const auto& law) { return described(law); }, material.law);
+    text += described(material.volume) + described(material.fibres);
     if (description.materials.size() > 1) text += fmt::format("of({})", material.elements);
   }
   for (const auto& rule : description.sets) text += described(rule);

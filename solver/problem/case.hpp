@@ -11,6 +11,7 @@
 #include "material/materials.hpp"
 #include "mesh/generators.hpp"
 #include "mesh/node_set.hpp"
+#include "problem/fibres.hpp"
 #include "problem/load_curve.hpp"
 #include "problem/settings.hpp"
 
@@ -22,8 +23,9 @@ struct MeshFile {
   std::optional<Vector> spacing = {};  ///< size of an image's voxels, m, where the image has none
 };
 
-/// A material and the elements that are made of it.
+/// A material, its fibres, and the elements that are made of it.
 struct CaseMaterial : Material {
+  FibreRule fibres = {};
   std::string elements = {};  ///< an element set; empty: all elements that no other material names
 };
 

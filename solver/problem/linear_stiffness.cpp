@@ -31,15 +31,11 @@ void for_each_stiffness(const Model& model,
       const Materials& materials = model.scene().materials;
       for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
         const Hexahedron& cell = mesh.cells[e];
-        std::visit(
-            [&]<class Law>(const Law& law) {
-              if constexpr (knows_law<Method, Law>) {  // others were refused when the model was made
-                using Kernel = NodalForm<FormulationOf<Method, Law>>;
-                const auto element = Kernel::precompute(gather(mesh.points, cell), law, settings);
-                visit(cell, stiffness_of<Kernel>(element, law));
-              }
-            },
-            materials.list[materials.of(e)].law);
+        using Kernel = NodalForm<FormulationOf<Method, CalledLaw>>;
+        const CalledLaw called = elastic_law(kernel_law(materials.list[materials.of(e)]));
+        const auto law = called.with_axes(materials.axes.empty() ? nullptr : &materials.axes[e]);
+        const auto element = Kernel::precompute(gather(mesh.points, cell), law, settings);
+        visit(cell, stiffness_of<Kernel>(element, law));
       }
     } else {
       throw InputError(fmt::format("method '{}' has no constant stiffness; allowed: the linear methods, '{}'",

@@ -221,8 +221,8 @@ const std::vector<int>& element_set(const Scene& scene, const std::string& name)
   return found->second;
 }
 
-/// The materials of a case, each element with one.
-Materials make_materials(const Scene& scene) {
+/// The material of each element. Throws InputError for an element that has none or two.
+Materials assigned_materials(const Scene& scene) {
   const auto& regions = scene.description.materials;
   Materials materials;
   for (const auto& region : regions) materials.list.push_back(region);
@@ -256,6 +256,32 @@ Materials make_materials(const Scene& scene) {
                     std::find(of_element.begin(), of_element.end(), none) - of_element.begin()));
   }
   std::replace(of_element.begin(), of_element.end(), none, other);
+  return materials;
+}
+
+/// The materials of a case, each element with one, and their axes.
+Materials make_materials(const Scene& scene) {
+  Materials materials = assigned_materials(scene);
+  const auto& regions = scene.description.materials;
+  const auto plain = [](const CaseMaterial& region) {
+    return std::holds_alternative<std::monostate>(region.fibres);
+  };
+  if (std::all_of(regions.begin(), regions.end(), plain)) return materials;
+  const std::size_t elements = scene.mesh.cells.size();
+  for (const auto& region : regions) {
+    const auto* listed = std::get_if<ListedFibres>(&region.fibres);
+    if (listed == nullptr || listed->fibres.size() == elements) continue;
+    throw InputError(fmt::format("{}: fibres.file has {} rows; it must have one for each of the {} elements",
+                                 scene.description.file.string(), listed->fibres.size(), elements));
+  }
+  for (std::size_t e = 0; e < elements; ++e) {
+    try {
+      materials.axes.push_back(axes_by(regions[materials.of(e)].fibres, scene.mesh, e));
+    } catch (const InputError& error) {
+      throw InputError(
+          fmt::format("{}: fibres: element {}: {}", scene.description.file.string(), e, error.what()));
+    }
+  }
   return materials;
 }
 

@@ -50,7 +50,7 @@ Scene scene_of(const Scene& whole, const MeshPart& part) {
                  .mesh = part.mesh,
                  .sets = {},
                  .element_sets = {},
-                 .materials = {whole.materials.list},
+                 .materials = materials_of(whole.materials, part.element_of),
                  .constraints = {},
                  .angles = whole.angles,
                  .curves = whole.curves,
@@ -60,11 +60,6 @@ Scene scene_of(const Scene& whole, const MeshPart& part) {
                  .initial_velocities = {},
                  .case_hash = whole.case_hash,
                  .mesh_hash = whole.mesh_hash};
-  if (!whole.materials.of_element.empty()) {
-    for (const int e : part.element_of) {
-      scene.materials.of_element.push_back(whole.materials.of_element[at(e)]);
-    }
-  }
   for (const auto& constraint : whole.constraints) {
     const int node = part.part_of[at(constraint.node)];
     if (node >= 0 && !part.on_the_rim[at(node)]) {

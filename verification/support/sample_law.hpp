@@ -36,6 +36,16 @@ inline double sample_value(std::string_view name, std::string_view unit, const R
   if (name == "mu2") return 0.6 * mu;
   if (name == "alpha1") return -4.7;
   if (name == "alpha2") return 5.0;
+  // Guccione: a tenth of heart muscle's exponents (Land et al. 2015), since tests stretch to five times the length,
+  // where exp(Q) would be no number any more.
+  if (name == "b_fibre") return 0.8;
+  if (name == "b_transverse") return 0.2;
+  if (name == "b_shear") return 0.4;
+  // Holzapfel and Ogden: matrix, fibres, sheets and their shear, each with a stiffness of its own.
+  if (name == "a") return mu / 2.0;
+  if (name == "a_f") return mu;
+  if (name == "a_s") return mu / 2.0;
+  if (name == "a_fs") return mu / 4.0;
   // Brain tissue: Miller and Chinzei 2002, J. Biomech. 35:483.
   if (name == "relaxation_1") return 0.450;
   if (name == "time_1") return 0.50;

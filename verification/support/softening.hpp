@@ -21,6 +21,17 @@ constexpr double smallest_stiff_stretch(double smallest) {
   }
 }
 
+/// A small displacement gradient under which nothing that resists stretch alone is slack: drawn from `sample`
+/// until fibres and sheets are stretched, if the law has such ones.
+template <class Law, class Sample>
+Tensor<double> taut(const Sample& sample) {
+  Tensor<double> H = sample();
+  if constexpr (requires { Law::slackens; }) {
+    while (!(deviator(H)(0, 0) > 0.0 && deviator(H)(1, 1) > 0.0)) H = sample();
+  }
+  return H;
+}
+
 /// What a test of large motions multiplies its loads with: a law that gives way is one for small strains, of
 /// a few percent where its pressure is averaged (nu = .45).
 template <class Law>
