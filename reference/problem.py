@@ -143,6 +143,10 @@ class MixedProblem:
         space = self.displacement.function_space
         return space.tabulate_dof_coordinates()[self._vertex_block]
 
+    def energy(self):
+        """The strain energy at the current displacement and pressure, J."""
+        return fem.assemble_scalar(self._forms["scalars"]["energy"])
+
     def linearize(self):
         """Residual and tangent at the current displacement and pressure, pressure eliminated.
 
@@ -210,6 +214,7 @@ def _compile_forms(u, p, pair, laws, of_cell, axes):
     q, dp = ufl.TestFunction(p.function_space), ufl.TrialFunction(p.function_space)
     by_u, by_p = ufl.derivative(total, u, v), ufl.derivative(total, p, q)
     forms = {
+        "scalars": {"energy": total},
         "vectors": {"u": by_u, "p": by_p},
         "matrices": {
             "uu": ufl.derivative(by_u, u, du),

@@ -176,6 +176,13 @@ TEST(CaseFile, hash_follows_what_decides_the_answer_and_nothing_else) {
                      "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibre_direction = " + direction));
   };
   EXPECT_NE(with_fibres("[0, 0, 1]"), with_fibres("[0, 1, 1]"));
+  EXPECT_NE(with_fibres("[0, 0, 1]"), with_fibres("[0, 0, 1]\nsheet_direction = [0, 1, 0]"));
+  const auto with_volume = [&](const std::string& part) {
+    return hash(with("density = 1000.0", "density = 1000.0\nvolumetric = \"" + part + "\""));
+  };
+  EXPECT_EQ(with_volume("quadratic"), once);
+  EXPECT_NE(with_volume("logarithmic"), once);
+  EXPECT_NE(with_volume("logarithmic"), with_volume("quadratic-logarithmic"));
   EXPECT_NE(hash(with("value = [0.5, 0.0, 0.3]", "value = [0.5, 0.0, 0.31]")), once);
   EXPECT_NE(hash(with("components = \"xz\"", "components = \"xyz\"")), once);
   EXPECT_NE(hash(with("top = { z = [3.0, 3.0] }", "top = { z = [2.0, 3.0] }")), once);
@@ -239,7 +246,33 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"fibres_without_a_direction",
                 with("law = \"neo-hookean\"",
                      "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibre_direction = [0, 0.0, 0]"),
-                {"bad.toml:14: material.fibre_direction = [0, 0, 0]", "must have a length other than zero"}},
+                {"bad.toml:15: material.fibre_direction", "[0, 0, 0]", "length must not be zero"}},
+        BadCase{"fibres_missing",
+                with("law = \"neo-hookean\"", "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0"),
+                {"material.fibre_direction or fibres must be given", "fibre-neo-hookean"}},
+        BadCase{"fibres_of_an_isotropic_law",
+                with("law = \"neo-hookean\"", "law = \"neo-hookean\"\nfibre_direction = [0, 0, 1]"),
+                {"material.fibre_direction was given", "neo-hookean", "isotropic"}},
+        BadCase{"sheets_along_fibres",
+                with("law = \"neo-hookean\"",
+                     "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibre_direction = [0, 0, 1]\n"
+                     "sheet_direction = [0, 0, -2]"),
+                {"material.fibre_direction", "sheets is that of the fibres"}},
+        BadCase{"radii_that_decrease",
+                with("law = \"neo-hookean\"",
+                     "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\n"
+                     "fibres = { axis = \"z\", radii = [0.2, 0.1], angles = [60, -60] }"),
+                {"material.fibres.radii = [0.2, 0.1] must increase"}},
+        BadCase{"file_of_fibres_missing",
+                with("law = \"neo-hookean\"",
+                     "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibres = { file = \"none.txt\" }"),
+                {"none.txt: cannot be read"}},
+        BadCase{"volumetric_part_unknown",
+                with("density = 1000.0", "density = 1000.0\nvolumetric = \"cubic\""),
+                {"material.volumetric = 'cubic'", "logarithmic"}},
+        BadCase{"volumetric_part_of_a_law_that_has_none",
+                with("law = \"neo-hookean\"", "law = \"st-venant-kirchhoff\"\nvolumetric = \"logarithmic\""),
+                {"material.volumetric must be left out", "st-venant-kirchhoff"}},
         BadCase{"rule_between_parameters",
                 with("law = \"neo-hookean\"\nyoung_modulus = 3000.0\npoisson_ratio = 0.49",
                      "law = \"yeoh\"\nc1 = 100.0\nc2 = -30.0\nc3 = 2.0\nbulk_modulus = 1e4"),

@@ -97,8 +97,8 @@ Tensor<Real> textbook_piola(const Guccione& law, const Tensor<Real>& F) {
       T(i, j) = exponent * E(i, j);
     }
   }
-  const Tensor<Real> S = (static_cast<Real>(law.stiffness) * std::exp(Q) * r2) *
-                         (T - (double_dot(T, C) / 3) * inverse(C));
+  const Tensor<Real> S =
+      (static_cast<Real>(law.stiffness) * std::exp(Q) * r2) * (T - (double_dot(T, C) / 3) * inverse(C));
   return F * S + piola_of(hydrostatic(law, F), F);
 }
 

@@ -34,15 +34,21 @@ struct MaterialsTest : ::testing::Test {
     return {.method = std::string(Method::name), .threads = threads};
   }
 
-  /// Three materials, in no order: laws that the compiler inlines, others, and one with a memory where the
-  /// method knows it.
+  /// Materials in no order: laws that the compiler inlines, others, one with another volumetric part, those
+  /// with fibres that are different in every element, and two with a memory where the method knows it.
   static Materials mixed(std::size_t elements) {
     Materials materials{{{sample_law<NeoHookean>(0.45, 30000.0), 2000.0},
                          {sample_law<Yeoh>(0.3), 1000.0},
+                         {sample_law<MooneyRivlin>(0.3), 1000.0, LogarithmicPart{}},
+                         {sample_law<FibreNeoHookean>(0.4), 1000.0},
                          {sample_law<NeoHookean>(0.49), 500.0}}};
-    if (remembers) materials.list.push_back({sample_law<Viscoelastic<Ogden>>(0.4), 1500.0});
+    if (remembers) {
+      materials.list.push_back({sample_law<Viscoelastic<Ogden>>(0.4), 1500.0});
+      materials.list.push_back({sample_law<Viscoelastic<Guccione>>(0.4), 1500.0});
+    }
     RandomGeometry random(11);
     for (std::size_t e = 0; e < elements; ++e) {
+      materials.axes.push_back(random.rotation());
       materials.of_element.push_back(static_cast<std::uint16_t>(random.uniform(0.0, 0.999) *
                                                                 static_cast<double>(materials.list.size())));
     }
@@ -94,7 +100,8 @@ TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
     const MeshPart part = part_of_mesh(mesh, marked);
     NodalField u_part;
     for (const int node : part.node_of) u_part.push_back(u[index(node)]);
-    const typename TestFixture::Answer alone(part.mesh, {{materials.list[m]}}, u_part);
+    const Materials own{{materials.list[m]}, {}, materials_of(materials, part.element_of).axes};
+    const typename TestFixture::Answer alone(part.mesh, own, u_part);
     for (std::size_t n = 0; n < u_part.size(); ++n) {
       for (std::size_t i = 0; i < 3; ++i) {
         force[index(part.node_of[n])][i] += alone.force[n][i];
@@ -114,6 +121,44 @@ TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
   EXPECT_LT(largest_distance(pressure_force, whole.pressure_force), 1e-11 * unit);
   EXPECT_NEAR(energies.strain, whole.energies.strain, 1e-11 * energies.strain);
   EXPECT_NEAR(energies.hourglass, whole.energies.hourglass, 1e-11 * energies.strain);
+}
+
+/// A body that is turned with its fibres is the same body: its forces turn along, and its elements have the
+/// same energies and bounds, and the same levels. Fibres that stay behind make it another one.
+TYPED_TEST(MaterialsTest, fibres_turn_with_the_body) {
+  if (TestFixture::Method::Kinematics::needs_coordinates || is_linear<typename TestFixture::Method>) {
+    GTEST_SKIP() << "the method is not objective";
+  }
+  const Mesh mesh = box({0.1, 0.12, 0.2}, {3, 4, 5});
+  RandomGeometry random(5);
+  const Tensor<double> Q = random.rotation();
+  const auto turned = [&](const Vector& v) {
+    const Triple<double> w = Q * Triple<double>{{v[0], v[1], v[2]}};
+    return Vector{w(0, 0), w(1, 0), w(2, 0)};
+  };
+  Mesh other = mesh;
+  for (Vector& X : other.points) X = turned(X);
+  NodalField u(mesh.points.size()), u_other;
+  for (auto& row : u) {
+    for (double& x : row) x = 0.002 * random.uniform(-1.0, 1.0);
+    u_other.push_back(turned(row));
+  }
+  Materials materials{{{sample_law<Guccione>(0.4)}}}, along = materials;
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    materials.axes.push_back(random.rotation());
+    along.axes.push_back(materials.axes.back() * transpose(Q));
+  }
+  const typename TestFixture::Answer here(mesh, materials, u), there(other, along, u_other),
+      left_behind(other, materials, u_other);
+  const double unit = largest_distance(here.force, NodalField(u.size()));
+  NodalField expected;
+  for (const Vector& f : here.force) expected.push_back(turned(f));
+  EXPECT_LT(largest_distance(there.force, expected), 1e-10 * unit);
+  EXPECT_GT(largest_distance(left_behind.force, expected), 1e-3 * unit);
+  EXPECT_NEAR(there.energies.strain, here.energies.strain, 1e-10 * here.energies.strain);
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    EXPECT_NEAR(there.bounds[e], here.bounds[e], 1e-9 * here.bounds[e]);
+  }
 }
 
 TYPED_TEST(MaterialsTest, bits_do_not_depend_on_threads) {

@@ -6,6 +6,7 @@
 #include "element/element_work.hpp"
 #include "element/formulation.hpp"
 #include "element/hourglass_none.hpp"
+#include "material/material_axes.hpp"
 #include "material/memory.hpp"
 #include "material/small_strain.hpp"
 #include "math/rows.hpp"
@@ -137,9 +138,11 @@ OperationCount count_operations(const Law& law) {
     history = detail::counted<typename Kernel::template History<Counted>>(tally, 1e-2);
     count.bytes += static_cast<long>(2 * sizeof(typename Kernel::template History<double>));
   }
+  const auto axes = detail::counted<MaterialAxes<Counted>>(tally, 1.0);
   const auto law_at_step = at_step(law, 1e-3);
+  const auto oriented = with_axes(law_at_step, &axes);
   detail::CallRecord record{tally};
-  const detail::ObservedLaw observed(recalling(law_at_step, history.law), record);
+  const detail::ObservedLaw observed(recalling(oriented, history.law), record);
   const auto now = Kernel::deformation(motion, element);
   const auto f = Kinematics::template force<Hourglass>(now, element.body, element.hourglass,
                                                        history.hourglass, observed);

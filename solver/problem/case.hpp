@@ -25,8 +25,8 @@ struct MeshFile {
 
 /// A material, its fibres, and the elements that are made of it.
 struct CaseMaterial : Material {
-  FibreRule fibres = {};
   std::string elements = {};  ///< an element set; empty: all elements that no other material names
+  FibreRule fibres = {};
 };
 
 /// Displacements imposed on a node set; they follow the loading curve.

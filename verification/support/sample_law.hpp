@@ -36,8 +36,8 @@ inline double sample_value(std::string_view name, std::string_view unit, const R
   if (name == "mu2") return 0.6 * mu;
   if (name == "alpha1") return -4.7;
   if (name == "alpha2") return 5.0;
-  // Guccione: a tenth of heart muscle's exponents (Land et al. 2015), since tests stretch to five times the length,
-  // where exp(Q) would be no number any more.
+  // Guccione: a tenth of heart muscle's exponents (Land et al. 2015), since tests stretch to five times the
+  // length, where exp(Q) would be no number any more.
   if (name == "b_fibre") return 0.8;
   if (name == "b_transverse") return 0.2;
   if (name == "b_shear") return 0.4;
