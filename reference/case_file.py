@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import formula
 from common.errors import InputError, suggestion
 from common.files import read_toml
 from common.records import NUMBER, entries, entry
@@ -16,6 +17,9 @@ KEYS_OF_ANY_LAW = ("law", "density", "elements", "volumetric") + (
     "sheet_direction",
     "fibres",
 )
+
+# The keys of a load's curve.
+CURVE = ("times", "factors", "formula")
 
 
 @dataclass(frozen=True)
@@ -253,7 +257,7 @@ def _rotation(where, table):
 
 def _force(where, table):
     """A checked [[force]] table as a Force."""
-    _check_keys(where, table, ("set", "total", "moment", "times", "factors"))
+    _check_keys(where, table, ("set", "total", "moment", *CURVE))
     factor = _final_factor(where, table)
     total, moment = (
         tuple(factor * v for v in _vector(where, table, key)) if key in table else (0.0, 0.0, 0.0)
@@ -264,14 +268,14 @@ def _force(where, table):
 
 def _pressure(where, table):
     """A checked [[pressure]] table as a Pressure."""
-    _check_keys(where, table, ("set", "value", "times", "factors"))
+    _check_keys(where, table, ("set", "value", *CURVE))
     value = _final_factor(where, table) * float(entry(where, table, "value", NUMBER))
     return Pressure(entry(where, table, "set", str), value)
 
 
 def _gravity(where, table):
     """The acceleration of a checked [[gravity]] table."""
-    _check_keys(where, table, ("value", "times", "factors"))
+    _check_keys(where, table, ("value", *CURVE))
     factor = _final_factor(where, table)
     return tuple(factor * v for v in _vector(where, table, "value"))
 
@@ -286,6 +290,11 @@ def _support(where, table):
 
 def _final_factor(where, table):
     """The factor of a load at the end of a quasi-static answer, whose time is 1."""
+    if "formula" in table:
+        try:
+            return formula.evaluate(entry(where, table, "formula", str), 1.0)
+        except InputError as error:
+            raise InputError(f"{where}.formula: {error}") from error
     if "times" not in table and "factors" not in table:
         return 1.0
     times, factors = (entry(where, table, key, list) for key in ("times", "factors"))

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "io/case_variants.hpp"
 #include "io/foreign_file.hpp"
+#include "io/formula.hpp"
 #include "io/mesh_file.hpp"
 #include "io/table_reader.hpp"
 
@@ -238,12 +239,21 @@ ImposedRotation read_rotation(TableReader table) {
   return turned;
 }
 
-/// The curve of a load: its keys times and factors.
+/// The curve of a load: its key formula, or times and factors.
 LoadCurve read_curve(TableReader& table) {
-  LoadCurve curve;
+  const auto formula = table.optional<std::string>("formula");
   const auto times = table.optional<std::vector<double>>("times", Range::at_least(0.0));
   const auto factors = table.optional<std::vector<double>>("factors", Range::any());
-  if (!times && !factors) return curve;
+  if (formula) {
+    if (times || factors)
+      table.fail("formula", "was given with times or factors; a load follows one of them");
+    try {
+      return {.formula = *formula, .evaluate = parse_formula(*formula)};
+    } catch (const InputError& error) {
+      table.fail("formula", fmt::format("= '{}': {}", *formula, error.what()));
+    }
+  }
+  if (!times && !factors) return {};
   if (!times || !factors || times->empty() || times->size() != factors->size()) {
     table.fail(times ? "times" : "factors", "needs times and factors, equally many");
   }
@@ -252,7 +262,7 @@ LoadCurve read_curve(TableReader& table) {
       table.fail("times", fmt::format("= ..., {}, {}, ... must increase", (*times)[k - 1], (*times)[k]));
     }
   }
-  return {*times, *factors};
+  return {.times = *times, .factors = *factors};
 }
 
 ImposedPressure read_pressure(TableReader table) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "io/formula.hpp"
 #include "mesh/generators.hpp"
 #include "problem/case.hpp"
 
@@ -95,8 +96,9 @@ constexpr std::string_view sets_and_loads = R"(
 [[gravity]] value = [x, y, z] in m/s^2: the weight of the body
 [[support]] set = NAME, stiffness in Pa/m, damping in Pa s/m, only_normal (default: false): springs and
   dashpots per area between the boundary faces within the set and where they were
-  force, pressure and gravity: times = [t, ...] in s, increasing, and factors = [f, ...], linear in between,
-  instead of the loading curve of the case; in a quasi-static answer time is the share of the load, 0 to 1
+  force, pressure and gravity: times = [t, ...] in s, increasing, and factors = [f, ...], linear in between, or
+  formula = "sin(2*pi*t) * t", a factor of the time t in s, instead of the loading curve of the case; in a
+  quasi-static answer time is the share of the load, 0 to 1
 [[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in rad/s about
   the set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the set,
   value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several add up
@@ -117,6 +119,7 @@ std::string describe_case_keys() {
   text += parts_of_a_material;
   text += several_materials;
   text += sets_and_loads;
+  text += fmt::format("\nformula: {}\n", formula_language());
   text += "\n[relaxation]: how a quasi-static answer is found\n";
   text += described<RelaxationSettings>("relaxation");
   text += "\n[dynamics]: how a dynamic answer is found\n";

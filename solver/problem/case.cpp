@@ -55,6 +55,7 @@ std::string described(const FibreRule& rule) {
 }
 
 std::string described(const LoadCurve& curve) {
+  if (!curve.formula.empty()) return fmt::format("curve({})", curve.formula);
   return curve.times.empty() ? "" : fmt::format("curve({}:{})", curve.times, curve.factors);
 }
 

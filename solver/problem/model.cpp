@@ -18,8 +18,10 @@ namespace {
 std::vector<Model::LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& masses) {
   if (scene.pressures.empty() && scene.supports.empty()) return {};
   std::vector<Model::LoadRates> at_nodes(masses.size());
+  const double end = scene.description.quasi_static ? 1.0 : scene.description.dynamics.duration;
   for (const FacePressure& pressure : scene.pressures) {
     const Quadrilateral& face = pressure.face;
+    const double most = std::abs(pressure.pressure) * scene.curves[pressure.curve].largest(end);
     double edges = 0.0;
     for (std::size_t I = 0; I < 2; ++I) {
       const auto edge = [&](std::size_t a, std::size_t b) {
@@ -30,8 +32,7 @@ std::vector<Model::LoadRates> load_rates_of(const Scene& scene, const std::vecto
     }
     for (const int node : face) {
       const auto n = static_cast<std::size_t>(node);
-      at_nodes[n].square +=
-          0.5 * edges * std::abs(pressure.pressure) * scene.curves[pressure.curve].largest() / masses[n];
+      at_nodes[n].square += 0.5 * edges * most / masses[n];
     }
   }
   for (const auto& support : scene.supports) {

@@ -17,8 +17,8 @@ namespace {
 
 }  // namespace
 
-AnyInternalForce make_internal_force(const Mesh& /*mesh*/, const AnyLaw& /*law*/,
-                                     const MethodChoice& /*choice*/, double /*density*/) {
+AnyInternalForce make_internal_force(const Mesh& /*mesh*/, const Materials& /*materials*/,
+                                     const MethodChoice& /*choice*/) {
   refuse();
 }
 

@@ -9,8 +9,8 @@ bool is_foreign_mesh(const std::filesystem::path& /*path*/) {
   return false;
 }
 
-MeshWithSets read_foreign_mesh(const std::filesystem::path& path) {
-  throw InputError(path.string());
+MeshWithSets read_foreign_mesh(const MeshFile& file) {
+  throw InputError(file.path.string());
 }
 
 }  // namespace sandglass

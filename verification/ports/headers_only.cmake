@@ -2,7 +2,8 @@
 # GoogleTest is compiled from its packaged sources.
 set(HEADERS ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${HEADERS})
-foreach(NAME fmt eigen3 toml++ nlohmann CLI xxhash.h sundials arkode kinsol nvector sunmatrix sunlinsol sunnonlinsol)
+file(GLOB MUPARSER RELATIVE /usr/include /usr/include/muParser*)
+foreach(NAME ${MUPARSER} fmt eigen3 toml++ nlohmann CLI xxhash.h sundials arkode kinsol nvector sunmatrix sunlinsol sunnonlinsol)
   file(CREATE_LINK /usr/include/${NAME} ${HEADERS}/${NAME} SYMBOLIC)
 endforeach()
 
@@ -14,7 +15,7 @@ function(headers_only name)
 endfunction()
 
 macro(provide_headers method name)
-  if(${name} MATCHES "^(fmt|Eigen3|HDF5|OpenMP|Threads|SUNDIALS|GTest)$")
+  if(${name} MATCHES "^(fmt|Eigen3|HDF5|muparser|OpenMP|Threads|SUNDIALS|GTest)$")
     set(${name}_FOUND TRUE)  # others are looked for as usual
   endif()
   if(${name} STREQUAL fmt)
@@ -26,6 +27,8 @@ macro(provide_headers method name)
     headers_only(hdf5::hdf5 /usr/include/hdf5/serial)
     headers_only(xxhash)
     target_compile_definitions(xxhash INTERFACE XXH_INLINE_ALL)
+  elseif(${name} STREQUAL muparser)
+    headers_only(muparser::muparser)
   elseif(${name} STREQUAL OpenMP)
     headers_only(OpenMP::OpenMP_CXX)
     target_compile_options(OpenMP::OpenMP_CXX INTERFACE -fopenmp)
