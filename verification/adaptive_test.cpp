@@ -246,14 +246,14 @@ double distance(const Scene& scene, const NodalField& a, const NodalField& b) {
   return largest_distance(a, b) / largest_imposed(scene);
 }
 
-/// What is asked for is what comes out. That it is met twice over is no promise, only what was ever seen;
-/// little asked for gives the lowest level, very much the highest. Balances are told to 1e-8 of the forces.
+/// What is asked for is what comes out. Little asked for gives the lowest level, very much the highest.
+/// Balances are told to 1e-8 of the forces.
 TEST(Adaptive, answers_are_as_near_as_asked_for) {
   const Scene scene = pressed_block(0.02);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
   for (const double accuracy : {0.05, 0.01, 0.003, 0.001}) {
     const NodalField u = at_rest(scene, {.method = "tl-adaptive", .accuracy = accuracy});
-    EXPECT_LT(distance(scene, u, exact), 2.0 * accuracy) << accuracy;
+    EXPECT_LT(distance(scene, u, exact), accuracy) << accuracy;
   }
   const NodalField low = at_rest(scene, {"tl-modal-sampling"});
   EXPECT_GT(distance(scene, low, exact), 0.005) << "the scene asks for nothing";
@@ -343,7 +343,7 @@ TEST(Adaptive, floats_settle_too) {
     choice.precision = Precision::single_precision;
     const Relaxation answer = relax(Model(scene, choice), in_float);
     EXPECT_TRUE(in_equilibrium(answer, choice.precision));
-    EXPECT_LT(distance(scene, answer.u, exact), 2.0 * accuracy) << accuracy;
+    EXPECT_LT(distance(scene, answer.u, exact), accuracy) << accuracy;
     int lower = 0;
     const auto &a = in_double.frames.back().levels, &b = in_float.frames.back().levels;
     for (std::size_t e = 0; e < a.size(); ++e) lower += b[e] < a[e] ? 1 : 0;
@@ -351,8 +351,7 @@ TEST(Adaptive, floats_settle_too) {
   }
 }
 
-/// Imposed by forces alone, the largest displacement there is stands for the imposed one. Nothing holds the
-/// body in place then, and defects add up to a little more: 2.4 times the accuracy here.
+/// Imposed by forces alone, the largest displacement there is stands for the imposed one.
 TEST(Adaptive, forces_alone_wake_elements_too) {
   Scene scene = pressed_block(0.0);
   Case description = scene.description;
@@ -362,8 +361,34 @@ TEST(Adaptive, forces_alone_wake_elements_too) {
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
   const double unit = displacement_unit(scene, exact);
   const NodalField u = at_rest(scene, {.method = "tl-adaptive", .accuracy = 0.002});
-  EXPECT_LT(largest_distance(u, exact), 3.0 * 0.002 * unit);
+  EXPECT_LT(largest_distance(u, exact), 0.002 * unit);
   EXPECT_GT(largest_distance(at_rest(scene, {"tl-modal-sampling"}), exact), 3.0 * 0.002 * unit);
+}
+
+/// Along a beam that a pressure bends the errors of elements add up to several times what each may make: its
+/// answer is as near as asked for, at more levels than elements by themselves need.
+TEST(Adaptive, errors_that_add_up_count_as_a_whole) {
+  Case description = plain_case(level_law());
+  const Mesh mesh = box({0.02, 0.02, 0.1}, {4, 4, 20});
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"side", nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0; })}};
+  description.displacements = {{"foot", {}}};
+  description.pressures = {{"side", 3.0}};
+  const Scene scene = make_scene(description, mesh, sets);
+  const NodalField exact = at_rest(scene, {"tl-mean-dilatation"});
+  const double unit = displacement_unit(scene, exact);
+  const MethodChoice choice{.method = "tl-adaptive", .accuracy = 0.003};
+  const Model model(scene, choice);
+  FrameRecorder told;
+  const Relaxation answer = relax(model, told);
+  EXPECT_TRUE(answer.converged);
+  EXPECT_LT(largest_distance(answer.u, exact), choice.accuracy * unit);
+  const auto& elements = elements_of(model);
+  Body<double> body(model, elements);
+  body.state() = state_at(elements, answer.u);
+  elements.set_levels(body.state(), told.frames.back().levels);
+  EXPECT_GT(Adaption<double>(model, body).apply(body, Demotion::where_enough).demoted,
+            mesh.cells.size() / 20);
 }
 
 /// The estimate is the error of whatever method, but for the hundredth of the forces that is left.

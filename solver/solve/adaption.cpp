@@ -46,8 +46,7 @@ template <class Real>
 Adaptation Adaption<Real>::apply(Body<Real>& body, Demotion demotion) {
   if (!active_) return {};
   const auto start = std::chrono::steady_clock::now();
-  const double unit = imposed_ > 0.0 ? imposed_ : largest_displacement(body);
-  const double length = 0.5 * accuracy_ * unit;
+  const double length = share_ * asked(body);
   const double share = demotion == Demotion::never ? 0.0 : demotion == Demotion::reluctant ? 0.5 : 1.0;
   const Adaptation changes = body.adapt(mobility_, length, share * length);
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -55,12 +54,22 @@ Adaptation Adaption<Real>::apply(Body<Real>& body, Demotion demotion) {
 }
 
 template <class Real>
-double Adaption<Real>::largest_displacement(const Body<Real>& body) const {
-  double largest = 0.0;
-  for (const auto& u : body.state().u) {
-    largest = std::max(largest, length(Vector{u[0], u[1], u[2]}));
+bool Adaption<Real>::tighten(const Body<Real>& body, double error) {
+  // Not by less than this, so that it ends, nor by more, as the largest errors weigh most.
+  constexpr double least = 0.8, most = 0.25;
+  const double excess = error / asked(body);
+  if (excess > 1.0) share_ *= std::clamp(1.0 / excess, most, least);
+  return excess > 1.0;
+}
+
+/// The accuracy as a length, m.
+template <class Real>
+double Adaption<Real>::asked(const Body<Real>& body) const {
+  double unit = imposed_;
+  if (!(imposed_ > 0.0)) {
+    for (const auto& u : body.state().u) unit = std::max(unit, length(Vector{u[0], u[1], u[2]}));
   }
-  return largest;
+  return accuracy_ * unit;
 }
 
 template class Adaption<double>;

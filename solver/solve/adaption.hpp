@@ -44,8 +44,8 @@ class AdaptionSchedule {
 /// Chooses the levels of the elements of an adaptive method: the error of an element's force may displace its
 /// nodes by at most half the requested accuracy. The displacement of a node is estimated with its neighbours
 /// fixed, as the force over mu times the integral of |grad N|^2; errors of neighbouring elements and the
-/// motion of the rest of the body about double it, in all cases tried (adaptive_test.cpp), hence the half.
-/// Does nothing for other methods.
+/// motion of the rest of the body about double it in most bodies, hence the half. Where they add up to more,
+/// as along a beam, `tighten` makes it less. Does nothing for other methods.
 template <class Real>
 class Adaption {
  public:
@@ -59,15 +59,20 @@ class Adaption {
   /// the previous levels until they are evaluated again.
   Adaptation apply(Body<Real>& body, Demotion demotion);
 
+  /// Takes a measured error (m) of an answer at the present levels: elements are henceforth allowed the less,
+  /// the more it exceeds the accuracy. Whether it does.
+  bool tighten(const Body<Real>& body, double error);
+
   /// The time spent on it so far, s.
   double seconds() const { return seconds_; }
 
  private:
-  double largest_displacement(const Body<Real>& body) const;
+  double asked(const Body<Real>& body) const;
 
   bool active_;
   double accuracy_;
   double imposed_;       // m, largest
+  double share_ = 0.5;   // of the accuracy, that an element may use
   Rows<Real> mobility_;  // m/N, zero on constrained components
   double seconds_ = 0.0;
 };

@@ -11,6 +11,7 @@
 #include "solve/adaption.hpp"
 #include "solve/condensed_answer.hpp"
 #include "solve/equilibrium.hpp"
+#include "solve/error_estimate.hpp"
 #include "solve/load_levels.hpp"
 #include "solve/stagnation.hpp"
 
@@ -58,7 +59,7 @@ class Search {
     }
     result_.u = body().field(body().state().u);
     result_.energies = body().energies();
-    result_.steps = equilibrium_.evaluations();
+    result_.steps = equilibrium_.evaluations() + evaluations_of_estimates_;
     result_.residual = equilibrium_.residual();
     result_.adaption_seconds = adaption_.seconds();
     observer_.frame(body().frame(time(), no_velocity_));
@@ -69,6 +70,9 @@ class Search {
   /// The residual at which elements first choose their levels at the full load; levels that would still
   /// change at smaller residuals are corrected at the end.
   static constexpr double tolerance_for_adaption = 1e-3;
+
+  /// What an error may be over its estimate, which is a little low in slender bodies.
+  static constexpr double largest_over_estimate = 1.1;
 
   /// Elements without stiffness against hourglass modes have no stable equilibrium, but on coarse meshes; the
   /// search for one ends after so many evaluations.
@@ -145,17 +149,40 @@ class Search {
 
   /// Lets elements choose their levels at the present displacements; whether the search must continue. At the
   /// full load this is repeated until levels no longer change, first at a moderate residual, then at the
-  /// tolerance. Elements are demoted only the first time; repeated promotions must end.
+  /// tolerance, and the error of the whole is as asked. Elements are demoted only the first time; repeated
+  /// promotions must end.
   bool settle() {
     if (!load_levels_.full()) {
       adaption_.apply(body(), Demotion::reluctant);
       return false;
     }
-    const Adaptation changes = adaption_.apply(body(), lowered_ ? Demotion::never : Demotion::where_enough);
+    Adaptation changes = adaption_.apply(body(), lowered_ ? Demotion::never : Demotion::where_enough);
     lowered_ = true;
-    if (changes.promoted + changes.demoted == 0) return !std::exchange(settled_, true) && adaption_.active();
+    if (changes.promoted + changes.demoted == 0) {
+      if (!adaption_.active() || !std::exchange(settled_, true)) return adaption_.active();
+      if (!promote_for_the_whole()) return false;
+    }
     equilibrium_.start(load_levels_.effort());
     return true;
+  }
+
+  /// Promotes elements until fewer may err, where together they err by more than is asked for. Whether it
+  /// did.
+  bool promote_for_the_whole() {
+    double error = 0.0;
+    try {
+      const ErrorEstimate estimate = estimate_error(model_, body().field(body().state().u));
+      error = largest_over_estimate * estimate.largest;
+      evaluations_of_estimates_ += estimate.evaluations;
+    } catch (const ComputationError&) {
+      return false;  // nothing to compare with
+    }
+    constexpr int most_rounds = 10;
+    for (int round = 0; round < most_rounds && adaption_.tighten(body(), error); ++round) {
+      if (adaption_.apply(body(), Demotion::never).promoted > 0) return true;
+      error *= 1.5;  // no element was near its limit
+    }
+    return false;  // as near as is needed, or all that can be done is done
   }
 
   void finish_load_level() {
@@ -239,9 +266,10 @@ class Search {
   std::vector<double> reactions_;
   double work_ = 0.0;
   long first_evaluation_ = 0;  // of this load level
-  long next_check_;            // evaluations
-  bool lowered_ = false;       // whether elements had the opportunity to be demoted at the full load
-  bool settled_ = false;       // whether levels no longer changed at a moderate residual
+  long evaluations_of_estimates_ = 0;
+  long next_check_;       // evaluations
+  bool lowered_ = false;  // whether elements had the opportunity to be demoted at the full load
+  bool settled_ = false;  // whether levels no longer changed at a moderate residual
   bool ended_ = false;
 };
 
