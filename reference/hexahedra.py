@@ -166,7 +166,7 @@ def turn_about(points, axis, center, angle):
     return Turn(angle, -arm, np.cross(axis, arm))
 
 
-def _split_nodes(cells, n_nodes):
+def split_nodes(cells, n_nodes):
     """The nodes of split cells: ((m, 27), and for edges, faces and cells the parents (k, 2|4|8)).
 
     cells: (m, 8), lexicographic. n_nodes: of their mesh; new nodes are numbered from there on.
@@ -201,7 +201,7 @@ def refine(mesh):
     mesh: HexMesh. Returns a HexMesh with 8 m cells of the same trilinear geometry; the children of
     cell c are the cells 8 c to 8 c + 7.
     """
-    local_to_global, parents_of_new = _split_nodes(mesh.cells[:, LEXICOGRAPHIC], len(mesh.points))
+    local_to_global, parents_of_new = split_nodes(mesh.cells[:, LEXICOGRAPHIC], len(mesh.points))
 
     def extend(of_nodes, reduce):
         return np.concatenate([of_nodes] + [reduce(of_nodes[e], axis=1) for e in parents_of_new])

@@ -33,6 +33,14 @@ class Outcome:
     last_correction: float
 
 
+class Unknown:
+    """An array under the name that solve() looks for, for problems of other programs."""
+
+    def __init__(self, size):
+        self.x = self
+        self.array = np.zeros(size)
+
+
 def solve(problem, load_steps, tolerance, guessed=False):
     """Bring a MixedProblem to its prescribed displacement and load, in place.
 

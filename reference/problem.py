@@ -156,7 +156,7 @@ class MixedProblem:
         """
         stiffness = self._assemble_matrix("uu")
         coupling = self._assemble_matrix("up")
-        inverse = _invert_blocks(self._assemble_matrix("pp"), self._pressures_per_cell())
+        inverse = invert_blocks(self._assemble_matrix("pp"), self._pressures_per_cell())
         force, dilatation = self.mixed_residual()
         condensed = coupling @ inverse
         tangent = (stiffness - condensed @ coupling.T + self._loads.tangent(self.load)).tocsr()
@@ -228,13 +228,14 @@ def _compile_forms(u, p, pair, laws, of_cell, axes):
     }
 
 
-def _invert_blocks(matrix, size):
+def invert_blocks(matrix, size):
     """Inverse of a sparse block-diagonal matrix of contiguous (size x size) blocks."""
     n_blocks = matrix.shape[0] // size
-    columns = matrix.indices.reshape(n_blocks, size, size)
-    assert (columns // size == np.arange(n_blocks)[:, None, None]).all(), "pressure is not local"
-    order = np.argsort(columns, axis=2)
-    blocks = np.take_along_axis(matrix.data.reshape(n_blocks, size, size), order, axis=2)
+    entries = matrix.tocoo()
+    rows, columns = entries.row // size, entries.col // size
+    assert (rows == columns).all(), "pressure is not local"
+    blocks = np.zeros((n_blocks, size, size))
+    blocks[rows, entries.row % size, entries.col % size] = entries.data
     inverse = scipy.sparse.bsr_matrix(
         (np.linalg.inv(blocks), np.arange(n_blocks), np.arange(n_blocks + 1)), shape=matrix.shape
     )

@@ -12,13 +12,15 @@ import scipy.sparse
 
 with contextlib.redirect_stdout(io.StringIO()):
     import sfepy.discrete as discrete  # first: other orders of import fail
-    from sfepy import __version__ as VERSION  # noqa: F401 (for those who import this module)
+    from sfepy import __version__ as VERSION
     from sfepy.base.base import output
     from sfepy.discrete.fem import FEDomain, Field, Mesh
     from sfepy.terms import Term
 
 from common.errors import InputError
 from common.hexahedron import boundary_faces
+from newton import Unknown
+from problem import GOLDEN
 
 output.set_output(quiet=True)
 
@@ -27,22 +29,19 @@ ORDER = 3
 LAWS = ("neo-hookean",)
 
 
-class _Unknown:
-    """An array under the name that Newton's method looks for."""
-
-    def __init__(self, size):
-        self.x = self
-        self.array = np.zeros(size)
-
-
 class SfepyProblem:
     """Equilibrium of a HexMesh, Q1 displacements and P0 pressures, with the terms of SfePy.
 
-    mesh: HexMesh. materials: list of Material. Raises InputError for what SfePy has no term for.
-    It has the functions and attributes of MixedProblem that newton.solve() needs.
+    mesh: HexMesh. pair: ElementPair. materials: list of Material. Raises InputError for what SfePy
+    has no element or term for. It has the functions and attributes of MixedProblem that
+    newton.solve() needs.
     """
 
-    def __init__(self, mesh, materials):
+    program = f"SfePy {VERSION}"
+
+    def __init__(self, mesh, pair, materials):
+        if pair != GOLDEN:
+            raise InputError(f"SfePy has no discontinuous linear pressure, as {pair.name} needs it")
         for material in materials:
             if material.law not in LAWS:
                 raise InputError(f"SfePy has no term for the law {material.law!r}")
@@ -52,7 +51,7 @@ class SfepyProblem:
         n_nodes, n_cells = len(mesh.points), len(mesh.cells)
         with contextlib.redirect_stdout(io.StringIO()):
             self._set_up(mesh, materials)
-        self.displacement, self.pressure = _Unknown(3 * n_nodes), _Unknown(n_cells)
+        self.displacement, self.pressure = Unknown(3 * n_nodes), Unknown(n_cells)
         prescribed, _ = mesh.imposed()
         self.fixed = np.flatnonzero(prescribed)
         self.free = np.setdiff1d(np.arange(3 * n_nodes), self.fixed)

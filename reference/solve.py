@@ -28,7 +28,7 @@ from hexahedra import refine
 from mesh_file import load_case_mesh
 from problem import GOLDEN, TRUTH, MixedProblem
 from reference_file import NOT_ESTIMATED, write_reference
-from symmetry import halve
+from symmetry import expand, halve
 
 PAIRS = {"golden": GOLDEN, "truth": TRUTH}
 # A step that fails is halved, so these affect only the speed. One step cannot turn a body far.
@@ -38,11 +38,12 @@ NEWTON_TOLERANCE = 1e-10
 BOUNDARY_RULE = "trace of Q1: every vertex, edge and face whose vertices are all prescribed"
 
 
-def solve_case(kind, case, mesh, refinements, load_steps, pair=None):
+def solve_case(kind, case, mesh, refinements, load_steps, pair=None, make=MixedProblem):
     """Solve a case on its mesh and on that mesh split once, twice, ... `refinements` times.
 
     kind: "golden" or "truth". case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh.
-    pair: ElementPair, by default that of the kind.
+    pair: ElementPair, by default that of the kind. make: from HexMesh, ElementPair and materials to
+    a problem for newton.solve().
     Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
     the last mesh; axes of the mirror planes used, as text). Raises ComputationError.
     """
@@ -52,17 +53,14 @@ def solve_case(kind, case, mesh, refinements, load_steps, pair=None):
     displacements, coarse = [], None
     for level in range(refinements + 1):
         part = refine(part) if level else part
-        problem = MixedProblem(part, pair or PAIRS[kind], case.materials)
+        problem = make(part, pair or PAIRS[kind], case.materials)
         if coarse:
             problem.start_from(coarse)
         try:
             outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE, guessed=bool(coarse))
         except ComputationError as error:
             raise ComputationError(f"{case.name}: {error}") from error
-        whole = problem.nodal_displacement()[:n_nodes]
-        for half in reversed(halves):
-            whole = half.expand(whole)
-        displacements.append(whole)
+        displacements.append(expand(halves, problem.nodal_displacement()[:n_nodes]))
         coarse = problem
     return displacements, outcome, "".join("xyz"[half.axis] for half in halves)
 

@@ -39,8 +39,7 @@ class Half:
 def halve(mesh):
     """Halve a HexMesh at every mirror plane normal to x, y or z through its middle.
 
-    Returns (the smallest HexMesh, list of Half in the order of cutting). To expand a displacement
-    from the smallest mesh, apply the halves' expand() from the last to the first.
+    Returns (the smallest HexMesh, list of Half in the order of cutting), for expand().
     """
     halves = []
     for axis in range(3):
@@ -49,6 +48,13 @@ def halve(mesh):
             halves.append(half)
             mesh = half.mesh
     return mesh, halves
+
+
+def expand(halves, displacement):
+    """Displacement (n, 3) on the whole mesh from that on the smallest one of halve()."""
+    for half in reversed(halves):
+        displacement = half.expand(displacement)
+    return displacement
 
 
 def _half(mesh, axis):

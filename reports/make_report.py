@@ -20,7 +20,7 @@ from sandglass_report.growth import growth_plate, read_growth
 from sandglass_report.verdicts import read_verdicts
 from sandglass_report.measured import read_measured
 from sandglass_report.page import Inputs, write_report
-from sandglass_report.second import read_second_golden
+from sandglass_report.second import read_second_program
 from sandglass_report.subject import read_subjects
 
 
@@ -36,8 +36,8 @@ def make(options):
     evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
     pictures = tuple(sorted(options.pictures.glob("stability.*.png")))
     growth = growth_plate(read_growth(options.growth)) if options.growth.exists() else None
-    second_path = options.reference / "second_golden.json"
-    second = read_second_golden(second_path) if second_path.exists() else None
+    second_path = options.reference / "second_program.json"
+    second = read_second_program(second_path) if second_path.exists() else {}
     inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures, growth, second)
     size = write_report(inputs, options.output)
     seconds = time.monotonic() - start

@@ -1,7 +1,7 @@
 """The page: collects the data of the templates, and writes the page and its figures."""
 
 import base64
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import jinja2
@@ -42,7 +42,7 @@ class Inputs:
     evidence: object  # Evidence
     pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not recomputed
     growth: plates.Plate | None = None
-    second: object = None  # SecondGolden
+    second: dict = field(default_factory=dict)  # kind -> SecondProgram
 
 
 @dataclass(frozen=True)

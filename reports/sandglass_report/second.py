@@ -1,4 +1,4 @@
-"""The goldens by a second program: in how many cases, to how many digits."""
+"""Goldens and truths by a second program: in how many cases, to how many digits."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from common.records import NUMBER, entries, entry
 
 
 @dataclass(frozen=True)
-class SecondGolden:
+class SecondProgram:
     """programs: their names. cases: how many were compared. largest: of the distances."""
 
     programs: str
@@ -16,15 +16,20 @@ class SecondGolden:
     largest: float
 
 
-def read_second_golden(path):
-    """The SecondGolden of `reference/second_golden.py`'s file. Raises InputError."""
-    found, programs = [], set()
-    command = "reference/second_golden.py"
+def read_second_program(path):
+    """kind ("golden", "truth") -> SecondProgram, of `reference/second_program.py`'s file.
+
+    Raises InputError.
+    """
+    distances, programs = {}, {}
+    command = "reference/second_program.py"
     for where, record in entries(path, read_json(path, command), "records"):
-        if "reason" in record:
-            continue
-        found.append(entry(where, record, "distance", NUMBER))
-        programs.add(entry(where, record, "program", str))
-    if not found:
+        kind = entry(where, record, "kind", str)
+        distances.setdefault(kind, []).append(entry(where, record, "distance", NUMBER))
+        programs.setdefault(kind, set()).add(entry(where, record, "program", str))
+    if not distances:
         raise InputError(f"{path}: has no distance; run {command}")
-    return SecondGolden(", ".join(sorted(programs)), len(found), max(found))
+    return {
+        kind: SecondProgram(" and ".join(sorted(programs[kind])), len(found), max(found))
+        for kind, found in distances.items()
+    }

@@ -1,4 +1,4 @@
-"""What the page says of the goldens by a second program; broken files are rejected."""
+"""What the page says of references by a second program; broken files are rejected."""
 
 import json
 
@@ -6,7 +6,7 @@ import pytest
 
 from common.errors import InputError
 from common.program import ROOT
-from sandglass_report.second import SecondGolden, read_second_golden
+from sandglass_report.second import SecondProgram, read_second_program
 
 
 def write(tmp_path, *records):
@@ -16,19 +16,31 @@ def write(tmp_path, *records):
 
 
 def test_the_largest_distance_of_all_cases_that_were_compared(tmp_path):
-    one = {"case": "a", "program": "SfePy 1", "distance": 1e-13}
-    path = write(tmp_path, one, one | {"distance": 2e-12}, {"case": "b", "reason": "no term"})
-    assert read_second_golden(path) == SecondGolden("SfePy 1", 2, 2e-12)
+    one = {"kind": "golden", "case": "a", "program": "SfePy 1", "distance": 1e-13}
+    truth = one | {"kind": "truth", "program": "GetFEM"}
+    path = write(tmp_path, one, one | {"distance": 2e-12}, one | {"program": "GetFEM"}, truth)
+    assert read_second_program(path) == {
+        "golden": SecondProgram("GetFEM and SfePy 1", 3, 2e-12),
+        "truth": SecondProgram("GetFEM", 1, 1e-13),
+    }
 
 
 @pytest.mark.parametrize(
-    "record", [{"distance": "1", "program": "a"}, {"distance": 1.0}, {"reason": "none"}]
+    "records",
+    [
+        [{"kind": "truth", "distance": "1", "program": "a"}],
+        [{"kind": "truth", "distance": 1.0}],
+        [{"distance": 1.0, "program": "a"}],
+        [],
+    ],
 )
-def test_a_broken_file_is_rejected(tmp_path, record):
+def test_a_broken_file_is_rejected(tmp_path, records):
     with pytest.raises(InputError, match="second.json"):
-        read_second_golden(write(tmp_path, record))
+        read_second_program(write(tmp_path, *records))
 
 
 def test_the_stored_file_is_good():
-    found = read_second_golden(ROOT / "reference" / "second_golden.json")
-    assert found.cases > 10 and found.largest < 1e-9
+    found = read_second_program(ROOT / "reference" / "second_program.json")
+    assert found.keys() == {"golden", "truth"}
+    for one in found.values():
+        assert one.cases > 10 and one.largest < 1e-9

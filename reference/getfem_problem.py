@@ -1,0 +1,205 @@
+"""Golden and truth by a second program: GetFEM, with weak forms in its own language.
+
+Elements, quadrature and the symbolic derivatives of the weak form are GetFEM's; its stresses are
+derived by hand, where FEniCSx derives them from the energy. Only Newton's method and the linear
+solver are those of the reference; they decide how fast an answer is found, not which.
+"""
+
+import getfem
+import numpy as np
+import scipy.sparse
+
+from common.errors import InputError
+from common.hexahedron import CORNERS, LEXICOGRAPHIC
+from hexahedra import refine, split_nodes
+from newton import Unknown
+from problem import invert_blocks
+
+getfem.util_trace_level(0)
+
+# The derivative of the isochoric energy by x = I1bar - 3, and the bulk modulus.
+LAWS = {
+    "neo-hookean": (
+        "young_modulus / 4 / (1 + poisson_ratio)",
+        "young_modulus / 3 / (1 - 2 * poisson_ratio)",
+    ),
+    "yeoh": ("c1 + 2 * c2 * x + 3 * c3 * sqr(x)", "bulk_modulus"),
+}
+# The corners of the reference element, and those of its faces, both in GetFEM's order.
+REFERENCE = CORNERS[LEXICOGRAPHIC]
+HALF = np.array([0.0, 0.5, 1.0])
+FACES = [np.flatnonzero(REFERENCE[:, axis] == side) for axis in range(3) for side in (1, -1)]
+# The three quadratic functions of a line, at the nodes of its lower and of its upper half.
+QUADRATIC = {
+    side: np.array([((s - 1) * s / 2, 1 - s**2, (s + 1) * s / 2) for s in (side - 1) / 2 + HALF])
+    for side in (-1, 1)
+}
+# The weak form of balance, of the first Piola-Kirchhoff stress, and of p = K (J - 1).
+FORM = """
+Def F := (Id(3) + Grad_u);
+Def J := Det(F);
+Def x := (pow(J, -2/3) * Norm_sqr(F) - 3);
+Def p := (pressure . basis);
+(2 * ({slope}) * pow(J, -2/3) * (F - Norm_sqr(F) / 3 * Inv(F)') + p * J * Inv(F)') : Grad_Test_u
++ (J - 1 - p / ({bulk})) * (Test_pressure . basis)
+"""
+
+
+class GetfemProblem:
+    """Equilibrium of a HexMesh with the elements of an ElementPair, assembled by GetFEM.
+
+    mesh: HexMesh. materials: list of Material. Raises InputError for a law that is not in LAWS.
+    It has the functions and attributes of MixedProblem that newton.solve() needs.
+    """
+
+    program = "GetFEM"
+
+    def __init__(self, mesh, pair, materials):
+        corners = mesh.cells[:, LEXICOGRAPHIC]
+        quadratic = pair.displacement_order == 2
+        # The nodes of the quadratic element are those of the split mesh, conditions included.
+        self._nodes = refine(mesh) if quadratic else mesh
+        of_cells = split_nodes(corners, len(mesh.points))[0] if quadratic else corners
+        self._n_points = len(mesh.points)
+        body = getfem.Mesh("empty", 3)
+        body.add_convex(getfem.GeoTrans("GT_QK(3,1)"), mesh.points[corners].transpose(2, 1, 0))
+        rule = f"IM_GAUSS_PARALLELEPIPED(3,{2 * pair.gauss_points - 1})"
+        self._points = getfem.MeshIm(body, getfem.Integ(rule))
+        displacements = _field(body, 3, f"FEM_QK(3,{pair.displacement_order})")
+        self._of_cells = displacements.basic_dof_from_cvid()[0].reshape(len(corners), -1, 3)
+        self._dofs = np.empty((len(self._nodes.points), 3), dtype=np.int64)
+        self._dofs[of_cells] = self._of_cells
+        self._n_pressures = (1, 4)[pair.pressure_order]
+        self._model = model = getfem.Model("real")
+        model.add_fem_variable("u", displacements)
+        model.add_fem_variable("pressure", _field(body, self._n_pressures, "FEM_QK(3,0)"))
+        # A function that is linear in the coordinates of the reference element.
+        of_corner = np.column_stack([np.ones(8), REFERENCE])[:, : self._n_pressures]
+        corner_values = _field(body, self._n_pressures, "FEM_QK_DISCONTINUOUS(3,1)")
+        model.add_initialized_fem_data(
+            "basis", corner_values, np.tile(of_corner, (len(corners), 1)).ravel()
+        )
+        model.add_initialized_data("load", 1.0)
+        intervals = (model.interval_of_variable(name) for name in ("u", "pressure"))
+        self._rows = [slice(first, first + size) for first, size in intervals]
+        self._body, self._mesh, self._region = body, mesh, 0
+        self._add_materials(materials)
+        self._add_loads()
+        self.displacement = Unknown(self._dofs.size)
+        self.pressure = Unknown(len(corners) * self._n_pressures)
+        prescribed, _ = self._nodes.imposed()
+        self.fixed = np.sort(self._dofs[prescribed])
+        self.free = np.setdiff1d(np.arange(self._dofs.size), self.fixed)
+        self.scale = max(np.abs(self.values_at(1.0)).max(initial=0.0), mesh.largest_turn().max())
+        self.load, self.symmetric = 1.0, not any(s.pressure for s in mesh.surfaces)
+
+    def _add_materials(self, materials):
+        of_cell = self._mesh.materials
+        for number, material in enumerate(materials):
+            if material.law not in LAWS:
+                raise InputError(f"the law {material.law!r} is not written for GetFEM here")
+            of_material = (
+                np.full(len(self._mesh.cells), True) if of_cell is None else of_cell == number
+            )
+            cells = np.flatnonzero(of_material)
+            slope, bulk = LAWS[material.law]
+            values = "".join(f"Def {k} := {v!r}; " for k, v in material.parameters.items())
+            where = np.stack([cells, np.full_like(cells, -1)])
+            self._add(values + FORM.format(slope=slope, bulk=bulk).replace("\n", " "), where)
+            if any(self._mesh.gravity):
+                weight = material.density * np.array(self._mesh.gravity)
+                self._add(f"-load * {_text(weight)} . Test_u", where)
+
+    def _add_loads(self):
+        for traction in self._mesh.tractions:
+            x, y, z = traction.turn
+            turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+            mean = traction.mean - turn @ traction.centre
+            force = f"({_text(mean)} + {_text(turn.T)} * X)"
+            self._add(f"-load * {force} . Test_u", self._faces(traction.nodes))
+        for surface in self._mesh.surfaces:
+            faces = self._faces(surface.nodes)
+            if surface.pressure:
+                turned = "(Det(Id(3) + Grad_u) * Inv(Id(3) + Grad_u') * Normal)"  # Nanson
+                self._add(f"load * {surface.pressure!r} * {turned} . Test_u", faces)
+            if surface.stiffness:
+                moved = "((u . Normal) * Normal)" if surface.only_normal else "u"
+                self._add(f"{surface.stiffness!r} * {moved} . Test_u", faces)
+
+    def _add(self, expression, where):
+        """A term of the weak form on cells or faces (2, k), as GetFEM has them."""
+        self._region += 1
+        self._body.set_region(self._region, where)
+        self._model.add_nonlinear_term(self._points, expression, self._region)
+
+    def _faces(self, nodes):
+        """(2, k) of the boundary faces within a set: cells, local faces. nodes: (n,) bool."""
+        cells, faces = self._body.outer_faces()
+        inside = nodes[self._mesh.cells[:, LEXICOGRAPHIC]]
+        loaded = np.stack([inside[:, slots].all(axis=1) for slots in FACES], axis=1)
+        kept = loaded[cells, faces]
+        return np.stack([cells[kept], faces[kept]])
+
+    def start_from(self, coarse):
+        """See MixedProblem.start_from; for quadratic displacements and linear pressures."""
+        values = coarse.displacement.array[coarse._of_cells].reshape(-1, 3, 3, 3, 3)
+        pressures = coarse.pressure.array.reshape(-1, 4)
+        finer = self.pressure.array.reshape(-1, 4)
+        for child, sides in enumerate(REFERENCE):
+            x, y, z = (QUADRATIC[side] for side in sides)
+            moved = np.einsum("ax, by, cz, ezyxi -> ecbai", x, y, z, values)
+            self.displacement.array[self._of_cells[child::8]] = moved.reshape(-1, 27, 3)
+            finer[child::8, 0] = pressures[:, 0] + pressures[:, 1:] @ sides / 2
+            finer[child::8, 1:] = pressures[:, 1:] / 2
+
+    def values_at(self, load):
+        """Values (in m) of the prescribed dofs at a load factor."""
+        prescribed, values = self._nodes.imposed(load)
+        return values[prescribed][np.argsort(self._dofs[prescribed])]
+
+    def nodal_displacement(self):
+        """Displacement (n, 3) in m at the nodes of the HexMesh."""
+        return self.displacement.array[self._dofs[: self._n_points]]
+
+    def _assemble(self, what):
+        model = self._model
+        model.set_variable("u", self.displacement.array)
+        model.set_variable("pressure", self.pressure.array)
+        model.set_variable("load", self.load)
+        model.assembly(what)
+
+    def mixed_residual(self):
+        """Both rows of the mixed system: forces (N,) in N and (M,) in m^3; NaN where inverted."""
+        self._assemble("build_rhs")
+        return self._residual()
+
+    def _residual(self):
+        return tuple(-self._model.rhs()[rows] for rows in self._rows)
+
+    def linearize(self):
+        """See MixedProblem.linearize."""
+        self._assemble("build_all")
+        force, dilatation = self._residual()
+        matrix = self._model.tangent_matrix()
+        starts, rows = matrix.csc_ind()
+        matrix = scipy.sparse.csc_matrix((matrix.csc_val(), rows, starts)).tocsr()
+        (stiffness, up), (pu, pp) = ([matrix[rows, cs] for cs in self._rows] for rows in self._rows)
+        inverse = invert_blocks(pp, self._n_pressures)
+        condensed = up @ inverse
+
+        def recover(increment):
+            return -(inverse @ (dilatation + pu @ increment))
+
+        return (stiffness - condensed @ pu).tocsr(), force - condensed @ dilatation, recover
+
+
+def _field(mesh, size, element):
+    """The finite element space of vectors of a size on a mesh."""
+    field = getfem.MeshFem(mesh, size)
+    field.set_fem(getfem.Fem(element))
+    return field
+
+
+def _text(values):
+    """Numbers, a vector or a matrix in GetFEM's language."""
+    return str(np.asarray(values).tolist()).replace("], [", "],[")

@@ -1,0 +1,117 @@
+"""Golden and truth with the elements of other programs; loads and materials as in FEniCSx."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+import second_program
+from blocks import MATERIALS, distorted_block, pressed_block
+from case_file import Material
+from common.errors import InputError
+from hexahedra import Condition, HexMesh, Surface, traction
+from newton import solve
+from problem import GOLDEN, TRUTH, MixedProblem
+
+SfepyProblem = pytest.importorskip("sfepy_problem").SfepyProblem
+GetfemProblem = pytest.importorskip("getfem_problem").GetfemProblem
+
+# Both solve the same equations to a residual near rounding; conditions of a few thousand remain.
+SAME = 1e-11
+YEOH = Material("yeoh", {"c1": 500.0, "c2": 200.0, "c3": 50.0, "bulk_modulus": 4e4}, 1500.0)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("golden", "bending-1-nu0.49"), ("truth", "block-compression")]
+)
+def test_a_reference_is_found_again(kind, name):
+    record = second_program.distance(kind, name)
+    assert record["distance"] < second_program.LIMIT and record["elements"] > 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("golden", "bending-1-nu0.49"), ("truth", "block-compression")]
+)
+def test_another_poisson_ratio_is_noticed(kind, name):
+    def changed(materials):
+        ratio = materials[0].parameters["poisson_ratio"] - 0.001
+        parameters = materials[0].parameters | {"poisson_ratio": ratio}
+        return (dataclasses.replace(materials[0], parameters=parameters),)
+
+    assert second_program.distance(kind, name, changed)["distance"] > 1e-5
+
+
+def test_references_are_compared():
+    """All goldens, and all truths but two that take a quarter of an hour."""
+    records = json.loads(second_program.STORE.read_text())["records"]
+    for kind, most_left in (("golden", 0), ("truth", 2)):
+        compared = [record["case"] for record in records if record["kind"] == kind]
+        stored = second_program.stored(kind)
+        assert compared == [case for case in stored if case in compared]
+        assert len(stored) - len(compared) <= most_left
+    assert all(record["distance"] < second_program.LIMIT for record in records)
+
+
+def loaded_block(stiff, only_normal):
+    """Two materials, weight, a pressure that follows, springs, a dead traction: all at once."""
+    points, cells, _ = distorted_block(n=2)
+    foot, top, side = points[:, 2] < 1e-9, points[:, 2] > 1 - 1e-9, points[:, 0] < 1e-9
+    soft = dataclasses.replace(MATERIALS[0], density=1000.0)
+    mesh = HexMesh(
+        points,
+        cells,
+        (Condition(foot & side, (0, 1, 2), np.zeros_like(points)),),
+        (traction(points, cells, top, (10.0, 20.0, 30.0), (5.0, 0.0, 1.0)),),
+        (points[cells].mean(axis=1)[:, 0] > 0.5).astype(int),
+        (Surface(side, pressure=200.0), Surface(foot, stiffness=5e4, only_normal=only_normal)),
+        (0.01, 0.02, -0.03),
+    )
+    return mesh, [soft, stiff]
+
+
+STIFF = Material("neo-hookean", {"young_modulus": 30000.0, "poisson_ratio": 0.3}, 2000.0)
+
+
+@pytest.mark.parametrize(
+    ("program", "pair", "stiff", "only_normal"),
+    [
+        (SfepyProblem, GOLDEN, STIFF, False),
+        (GetfemProblem, GOLDEN, STIFF, True),
+        (GetfemProblem, TRUTH, YEOH, False),
+    ],
+)
+def test_materials_and_loads(program, pair, stiff, only_normal):
+    mesh, materials = loaded_block(stiff, only_normal)
+    answers = []
+    for problem in (program(mesh, pair, materials), MixedProblem(mesh, pair, materials)):
+        solve(problem, 2, 1e-12)
+        answers.append(problem.nodal_displacement())
+    assert np.abs(answers[0]).max() > 0.01
+    assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
+
+
+def test_quadratic_boundary_conditions():
+    """Conditions on a part of a face, of a distorted mesh whose nodes have no natural order."""
+    mesh = pressed_block(distortion=0.1)
+    answers = []
+    for problem in (GetfemProblem(mesh, TRUTH, MATERIALS), MixedProblem(mesh, TRUTH, MATERIALS)):
+        solve(problem, 1, 1e-12)
+        answers.append(problem.nodal_displacement())
+    assert np.abs(answers[0] - answers[1]).max() < SAME * np.abs(answers[1]).max()
+
+
+def test_what_cannot_be_said_is_refused(capsys):
+    points, cells, boundary = distorted_block(n=2)
+    held = (Condition(boundary, (0, 1, 2), np.zeros_like(points)),)
+    with pytest.raises(InputError, match="no term for the law 'yeoh'"):
+        SfepyProblem(HexMesh(points, cells, held), GOLDEN, [YEOH])
+    with pytest.raises(InputError, match="no discontinuous linear pressure"):
+        SfepyProblem(HexMesh(points, cells, held), TRUTH, MATERIALS)
+    springs = (Surface(boundary, stiffness=1.0, only_normal=True),)
+    with pytest.raises(InputError, match="springs along the normal"):
+        SfepyProblem(HexMesh(points, cells, held, surfaces=springs), GOLDEN, MATERIALS)
+    with pytest.raises(InputError, match="the law 'ogden' is not written for GetFEM"):
+        second_program.second_problem(HexMesh(points, cells, held), TRUTH, [Material("ogden", {})])
+    assert second_program.main(["colum"]) == 2
+    assert "did you mean 'column'?" in capsys.readouterr().err
