@@ -96,8 +96,9 @@ class GetfemProblem:
     def _add_materials(self, materials):
         of_cell = self._mesh.materials
         for number, material in enumerate(materials):
-            if material.law not in LAWS:
-                raise InputError(f"the law {material.law!r} is not written for GetFEM here")
+            for known, name in (LAWS, material.law), (("quadratic",), material.volumetric):
+                if name not in known:
+                    raise InputError(f"the law {name!r} is not written for GetFEM here")
             of_material = (
                 np.full(len(self._mesh.cells), True) if of_cell is None else of_cell == number
             )
