@@ -21,7 +21,6 @@ from common.files import write_whole
 from reference_file import FOLDER, MOTION, path_of, read_reference, stored, write_reference
 
 
-
 def golden_error(golden_path, truth_path):
     """Distance of a golden from the truth of the same case and mesh: (max, rms), fractions.
 

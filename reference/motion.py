@@ -22,7 +22,7 @@ TOLERANCE = 1e-6
 FIRST_STEPS = 4
 
 # Steps are halved until that changes the extrapolated motion by less than this share of the unit.
-HALVING_LIMIT = 5e-5
+HALVING_LIMIT = 1e-4
 MOST_HALVINGS = 8
 
 

@@ -13,7 +13,7 @@ from blocks import distorted_block, write_mesh
 from case_file import Material, Motion, read_case
 from common.errors import InputError
 from common.program import ROOT, binary
-from hexahedra import Condition, HexMesh
+from hexahedra import Condition, HexMesh, traction
 from mesh_file import initial_velocity, load_case_mesh, make_mesh
 from motion import integrate, solve_motion
 from reference_file import MOTION_ATTRIBUTES, read_reference
@@ -24,7 +24,7 @@ BAR = Material("neo-hookean", {"young_modulus": 3.0, "poisson_ratio": 0.0}, 2.0)
 SMALL = """
 [case]
 name = "small"
-requirement = "A small block is pushed and let go."
+requirement = "A small block is pulled and swings."
 answer = "dynamic"
 
 [mesh]
@@ -49,11 +49,10 @@ value = [0.0, 0.0, 0.0]
 [[force]]
 set = "head"
 total = [0.03, 0.0, 0.1]
-times = [0.0, 0.02, 0.04, 0.08]
-factors = [0.0, 0.7, 1.0, 0.0]
 
 [dynamics]
 duration = 0.12
+ramp_time = 0.06
 damping = 5.0
 frames = 6
 time_step = TIME_STEP
@@ -110,7 +109,7 @@ def test_extrapolated_motion_is_as_near_as_it_says():
     errors = np.abs(golden.displacement - exact[:, None, None] * velocity).max() / golden.unit
     # A scheme of fourth order: the last halving left a fifteenth of what it changed.
     assert errors < 0.2 * golden.halving[0] + 1e-5
-    assert golden.halving[0] < 5e-5
+    assert golden.halving[0] < 1e-4
 
 
 def test_imposed_displacement_and_masses():
@@ -120,6 +119,20 @@ def test_imposed_displacement_and_masses():
     found, _ = integrate(HexMesh(points, cells, (moved,)), [BAR], motion, 0 * points, 1)
     # Eq. 15 at a half of the ramp is a half; from its end on, one.
     assert np.abs(found[:, :, 2] - 0.1 * np.array([0.5, 1, 1, 1])[:, None]).max() < 1e-15
+
+
+def test_a_pulse_leaves_its_impulse():
+    """A free bar that is pushed along its curve, 0, 1, 0 at 0, 1, 2 s, flies on with 1 N s."""
+    mesh, _ = _bar()
+    push = 1e-9
+    load = traction(mesh.points, mesh.cells, mesh.points[:, 2] == LENGTH, (0, 0, push), (0, 0, 0))
+    mesh = replace(mesh, tractions=(replace(load, curve=((0, 1, 2), (0, 1, 0))),))
+    motion = Motion(4.0, 1.0, 0.0, 4)
+    found, _ = integrate(mesh, [BAR], motion, np.zeros_like(mesh.points), 8)
+    masses = np.repeat([0.5, *[1] * (ELEMENTS - 1), 0.5], 4) / ELEMENTS / 4
+    # The rule integrates what is linear in time exactly; round-off of forces of 1e-9 beside 3 Pa.
+    flown = masses @ (found[3] - found[2])[:, 2]
+    assert flown * 2.0 * 0.01 * LENGTH == pytest.approx(push, rel=1e-5)
 
 
 @pytest.fixture(scope="module")
@@ -164,7 +177,7 @@ def test_golden_has_its_times_and_figures(plain):
     points, displacement, attributes = read_reference(plain / "golden.h5")
     assert np.allclose(attributes["times"], 0.02 * np.arange(1, 7), rtol=1e-15)
     assert displacement.shape == (6, *points.shape) and attributes["kind"] == "motion"
-    assert all(attributes[name] < 5e-5 for name in MOTION_ATTRIBUTES)
+    assert all(attributes[name] < 1e-4 for name in MOTION_ATTRIBUTES)
     largest = np.linalg.norm(displacement, axis=2).max()
     assert attributes["largest_imposed"] == pytest.approx(largest, rel=1e-12)
 
@@ -176,7 +189,7 @@ def test_solver_nears_the_golden_with_the_square_of_its_step(small, plain):
         assert code == 0, text
         errors.append(error)
     # The largest error over time is at the same place for all steps; the next power of the step
-    # and the golden's own error, below 5e-5 / 15, change the ratio of 4 by a tenth at most.
+    # and the golden's own error, below 1e-4 / 15, change the ratio of 4 by a tenth at most.
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.1)
     assert errors[1] / errors[2] == pytest.approx(4, rel=0.15)
 
@@ -222,6 +235,7 @@ def test_initial_velocity_and_curves_of_a_case(tmp_path):
     text = SMALL.replace("TIME_STEP", "0").replace("BELOW", "1")
     text += "[[velocity]]\nvalue = [0.0, 0.0, 2.0]\nhalf_waves = [0, 0, 1]\n"
     text += '[[velocity]]\nset = "head"\nvalue = [1.0, 0.0, 0.0]\n'
+    text += '[[force]]\nset = "head"\ntimes = [0.0, 0.1]\nfactors = [0.0, 2.0]\n'
     path = tmp_path / "small.toml"
     path.write_text(text)
     case = read_case(path)
@@ -232,8 +246,8 @@ def test_initial_velocity_and_curves_of_a_case(tmp_path):
     assert np.abs(velocity[:, 2] - 2 * np.cos(np.pi * points[:, 2])).max() < 1e-15
     assert (velocity[:, 0] == (points[:, 2] == 1)).all()
     mesh, _ = load_case_mesh(case, tmp_path / "mesh.h5")
-    assert mesh.tractions[0].curve == ((0.0, 0.02, 0.04, 0.08), (0.0, 0.7, 1.0, 0.0))
-    assert replace(case.motion, velocities=()) == Motion(0.12, 0.12, 5.0, 6)
+    assert [load.curve for load in mesh.tractions] == [None, ((0.0, 0.1), (0.0, 2.0))]
+    assert replace(case.motion, velocities=()) == Motion(0.12, 0.06, 5.0, 6)
     for wrong in ('[[support]]\nset = "foot"\ndamping = 2.0\n', "[[velocity]]\nspin = [0, 0, 1]\n"):
         path.write_text(SMALL.replace("TIME_STEP", "0").replace("BELOW", "1") + wrong)
         with pytest.raises(InputError, match="support|velocity"):
