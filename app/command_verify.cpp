@@ -148,7 +148,8 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
   const auto in_tables = [](const Verdict& v) { return !v.published.empty(); };
   if (std::all_of(verdicts.begin(), verdicts.end(), in_tables)) return;
   fmt::print(
-      "errors in % of the imposed displacement, in motion the largest over time: max over all nodes, max over "
+      "errors in % of the imposed displacement, in motion the largest over time: max over all nodes, max "
+      "over "
       "the profile, rms;\nstable step at rest; operations and time per element and evaluation, other runs "
       "beside; finding: good means at most 1 %, or\nthe golden's own distance from the truth\n");
   const std::string* case_name = nullptr;

@@ -79,7 +79,7 @@ def table():
 def motion_table():
     """The Markdown table of all stored goldens of motion, as a string."""
     lines = [
-        "| case | nodes | simulated, s | steps | halving them changes, max | rms | computed in, s |",
+        "| case | nodes | simulated, s | steps | changed by halving, max | rms | computed in, s |",
         "|---|---|---|---|---|---|---|",
     ]
     for name in stored(MOTION):

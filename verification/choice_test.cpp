@@ -215,7 +215,8 @@ TEST(Choose, takes_motions) {
     if (rung.mesh->coarser) continue;
     const Displacements u = compute_answer(scene_of_case(description), rung.choice, silent).u;
     double error = 0.0;
-    for (std::size_t t = 0; t < 5; ++t) error = std::max(error, largest_distance(u[t], choice.reference.u[t]));
+    for (std::size_t t = 0; t < 5; ++t)
+      error = std::max(error, largest_distance(u[t], choice.reference.u[t]));
     EXPECT_DOUBLE_EQ(*evaluation.error, error / 0.1) << name_of(rung);
     EXPECT_EQ(error == 0.0, rung.choice.method == "tl-mean-dilatation" &&
                                 rung.choice.precision == Precision::double_precision);

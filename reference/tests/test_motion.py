@@ -1,4 +1,4 @@
-"""Goldens of motion: the integrator against exact motions, and the solver against a small golden."""
+"""Goldens of motion: exact motions for the integrator, and a small golden for the solver."""
 
 import json
 import subprocess

@@ -27,9 +27,9 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
 /// The error of a rung's answer, and why it is rejected, if it is.
 struct Evaluation {
   std::optional<double> error = {};  ///< max over all nodes of the user's mesh and times, over the unit
-  std::optional<double> smallest_jacobian = {};  ///< det F, at the answer
+  std::optional<double> smallest_jacobian = {};     ///< det F, at the answer
   std::optional<double> per_simulated_second = {};  ///< wall time that the run itself took, s; of a motion
-  std::string reason = {};                       ///< why it is rejected; empty: good enough
+  std::string reason = {};                          ///< why it is rejected; empty: good enough
 };
 
 /// Compares rungs of one scene with one reference.

@@ -29,8 +29,7 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
     for (const MethodEntry& method : methods()) {
       if (!asked(method.name)) continue;
       MethodChoice plain{.method = std::string(method.name), .threads = plan.threads};
-      if (const std::string_view why = unfit(method, mesh.scene.description.quasi_static);
-          !why.empty()) {
+      if (const std::string_view why = unfit(method, mesh.scene.description.quasi_static); !why.empty()) {
         if (!mesh.coarser) rungs.push_back({plain, &mesh, std::string(why)});
         continue;
       }

@@ -40,8 +40,8 @@ struct LadderPlan {
 
 /// All rungs of some meshes, not yet in order: every method of the list in double and in float. A method
 /// whose kappa affects the static answer appears with auto, half and twice that; an adaptive one with several
-/// accuracies around the user's tolerance. A method that has no such answer, at rest or in motion, or does not
-/// control hourglass modes, appears once, as unfit.
+/// accuracies around the user's tolerance. A method that has no such answer, at rest or in motion, or does
+/// not control hourglass modes, appears once, as unfit.
 std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan);
 
 /// The name of a rung: "tl-perturbation kappa 0.00325 float".

@@ -55,8 +55,8 @@ HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u);
 Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const NodalField& golden,
                   double unit);
 
-/// The same of an answer at several times: at the worst of them. In motion the energy is that of another state
-/// than the golden's, so that locking is not told.
+/// The same of an answer at several times: at the worst of them. In motion the energy is that of another
+/// state than the golden's, so that locking is not told.
 Symptoms symptoms(const Scene& scene, const Displacements& u, double energy, const Displacements& golden,
                   double unit);
 

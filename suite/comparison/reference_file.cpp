@@ -30,10 +30,11 @@ void require_times(const Hdf5File& file, const std::vector<double>& expected, co
   const auto found = file.read_doubles("/times");
   const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-12 * b; };
   if (std::equal(found.entries.begin(), found.entries.end(), expected.begin(), expected.end(), same)) return;
-  throw InputError(fmt::format("{}: has {} times, which are not the ends of the {} frames of {}: make it anew: "
-                               "reference/regenerate {}",
-                               file.path().string(), found.entries.size(), expected.size(),
-                               scene.description.file.string(), scene.description.name));
+  throw InputError(
+      fmt::format("{}: has {} times, which are not the ends of the {} frames of {}: make it anew: "
+                  "reference/regenerate {}",
+                  file.path().string(), found.entries.size(), expected.size(),
+                  scene.description.file.string(), scene.description.name));
 }
 
 }  // namespace

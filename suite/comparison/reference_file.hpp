@@ -9,9 +9,9 @@
 
 namespace sandglass {
 
-/// Displacements (m) of a stored golden or truth at the nodes of the scene and the times of its answer. Throws
-/// InputError when the file is missing or broken, and when its hashes or times are not those of the scene; the
-/// text names the command that makes it again.
+/// Displacements (m) of a stored golden or truth at the nodes of the scene and the times of its answer.
+/// Throws InputError when the file is missing or broken, and when its hashes or times are not those of the
+/// scene; the text names the command that makes it again.
 Displacements read_reference(const std::filesystem::path& path, const Scene& scene);
 
 /// What a stored answer says of its own error.
