@@ -118,7 +118,8 @@ std::vector<MethodChoice> rest_variants(BenchOptions options) {
 
 int run_rest(const BenchOptions& options) {
   const auto variants = rest_variants(options);
-  auto scenes = read_static_scenes(options.names, "rest to come to");
+  auto scenes = read_scenes(
+      options.names, [](const Case& description) { return description.quasi_static; }, "rest to come to");
   if (options.names.empty()) {  // small cases with published values are made for accuracy, not for time
     std::erase_if(scenes,
                   [](const Scene& scene) { return !read_comparison(scene.description).published.empty(); });

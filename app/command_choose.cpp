@@ -52,8 +52,10 @@ std::string cost_columns(const std::optional<Cost>& cost) {
 }
 
 std::string answer_columns(const Evaluation& evaluation) {
-  const auto& [error, smallest_jacobian, reason] = evaluation;
-  return fmt::format("{:>9}{:>8}", error ? fmt::format("{:.3g}", 100.0 * *error) : "-",
+  const auto& [error, smallest_jacobian, per_simulated_second, reason] = evaluation;
+  return fmt::format("{:>9}{:>9}{:>8}",
+                     per_simulated_second ? fmt::format("{:.3g}", *per_simulated_second) : "-",
+                     error ? fmt::format("{:.3g}", 100.0 * *error) : "-",
                      smallest_jacobian ? fmt::format("{:.2g}", *smallest_jacobian) : "-");
 }
 
@@ -73,8 +75,8 @@ void print_coarser(const Scene& scene, const Choice& choice) {
 /// The rows that say something: what was tried, and what can never be taken. Rungs of a method that were
 /// refused before any figure was found, for the same reason, are one row.
 void print_attempts(const Choice& choice) {
-  fmt::print("{:<46}{:<34}{:>10}{:>10}{:>11}{:>9}{:>8}  {}\n", "method and numbers", "mesh", "us/step",
-             "step ms", "s/sim. s", "error %", "det F", "outcome");
+  fmt::print("{:<46}{:<34}{:>10}{:>10}{:>11}{:>9}{:>9}{:>8}  {}\n", "method and numbers", "mesh", "us/step",
+             "step ms", "s/sim. s", "run", "error %", "det F", "outcome");
   long not_tried = 0;
   std::string last;
   for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
@@ -103,7 +105,7 @@ void print_choice(const Scene& scene, const Choice& choice, const std::string& o
       "us/step: median of a step, or of a condensed answer, on this machine with {} thread{}; s/sim. s: wall "
       "time of a simulated\nsecond at the longest safe step, or of {:.0f} condensed answers: what a "
       "real-time "
-      "loop pays, and the order of the rows\n",
+      "loop pays, and the order of the rows; run: what the run of a motion took\n",
       demand.threads, demand.threads == 1 ? "" : "s", answers_per_second);
   print_coarser(scene, choice);
   print_attempts(choice);
@@ -167,7 +169,7 @@ void add_choose_command(CLI::App& app, int& exit_code) {
       "choose",
       "the cheapest method, precision and mesh that is accurate enough for a case on this machine.\n"
       "Tries them from the cheapest on and tells why each was refused; exit code 1 when nothing suffices");
-  command->add_option("CASE", options->name, "name or file of a quasi-static case")->required();
+  command->add_option("CASE", options->name, "name or file of a case")->required();
   command
       ->add_option("--tolerance", options->tolerance,
                    "largest error at any node, of the largest imposed displacement: 1% or 0.01")

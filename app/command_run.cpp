@@ -125,8 +125,8 @@ References references_to_show(const Scene& scene) {
 
 void print_accuracy(const Scene& scene, const NodalField& u) {
   const References references = references_to_show(scene);
-  const auto print = [&](const char* name, const std::optional<NodalField>& reference) {
-    const auto figures = accuracy_of(scene, references.comparison, u, reference);
+  const auto print = [&](const char* name, const std::optional<Displacements>& reference) {
+    const auto figures = accuracy_of(scene, references.comparison, {u}, reference);
     if (!figures) return;
     fmt::print("against the {}: max {:.4g} %, rms {:.4g} % of the imposed displacement\n", name,
                100.0 * figures->max_relative_error, 100.0 * figures->rms_relative_error);

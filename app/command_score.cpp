@@ -39,9 +39,9 @@ struct ScoreOptions {
 
 /// The answer of the golden's explicit twin, for cases that have no stored one. Throws ComputationError when
 /// it finds none.
-NodalField twin_of(const Scene& scene) {
+Displacements twin_of(const Scene& scene) {
   Observer silent;
-  Answer answer = equilibrium_answer(scene, {.method = std::string(golden_method)}, silent);
+  Answer answer = compute_answer(scene, {.method = std::string(golden_method)}, silent);
   if (answer.refused || answer.failure) {
     throw ComputationError(fmt::format("{}: {} finds no answer to compare with: {}", scene.description.name,
                                        golden_method, answer.status));
@@ -50,7 +50,7 @@ NodalField twin_of(const Scene& scene) {
 }
 
 /// What displacements alone tell: how much work they took is not known, so that locking is not told.
-Finding finding_of(const Scene& scene, const References& references, const NodalField& u) {
+Finding finding_of(const Scene& scene, const References& references, const Displacements& u) {
   const double unit = displacement_unit(scene, *references.golden);
   Symptoms found = symptoms(scene, u, 0.0, *references.golden, unit);
   found.stiffness_ratio = 1.0;
@@ -61,23 +61,24 @@ Finding finding_of(const Scene& scene, const References& references, const Nodal
 Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
   const References references = read_references(scene);
   u = read_foreign_displacement(options.file, scene, options.matching);
+  const Displacements answer{u};
   const auto work = static_cast<double>(options.steps) * static_cast<double>(scene.mesh.cells.size());
   Verdict verdict{
       .case_name = scene.description.name,
       .method = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name,
       .precision = "double",
       .status = "ok",
-      .golden = accuracy_of(scene, references.comparison, u, references.golden),
-      .truth = accuracy_of(scene, references.comparison, u, references.truth),
+      .golden = accuracy_of(scene, references.comparison, answer, references.golden),
+      .truth = accuracy_of(scene, references.comparison, answer, references.truth),
       .steps = options.steps,
       .ns_per_element_step = options.steps > 0 ? 1e9 * options.seconds / work : 0.0,
       .wall_seconds = options.seconds,
       .family = scene.description.family,
       .variants = scene.description.variants};
   if (references.golden) {
-    verdict.finding = finding_of(scene, references, u);
+    verdict.finding = finding_of(scene, references, answer);
   } else {
-    verdict.twin = accuracy_of(scene, references.comparison, u, twin_of(scene));
+    verdict.twin = accuracy_of(scene, references.comparison, answer, twin_of(scene));
   }
   return verdict;
 }

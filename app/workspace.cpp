@@ -83,7 +83,8 @@ Case find_case(const std::string& name_or_path) {
   return std::move(cases.front());
 }
 
-std::deque<Scene> read_static_scenes(const std::vector<std::string>& names, const std::string& has_not) {
+std::deque<Scene> read_scenes(const std::vector<std::string>& names,
+                              const std::function<bool(const Case&)>& fit, const std::string& has_not) {
   std::vector<Case> cases;
   const auto add = [&](std::vector<Case> found) {
     for (auto& scene : found) cases.push_back(std::move(scene));
@@ -94,7 +95,7 @@ std::deque<Scene> read_static_scenes(const std::vector<std::string>& names, cons
   }
   std::deque<Scene> scenes;
   for (auto& scene : cases) {
-    if (scene.quasi_static) {
+    if (fit(scene)) {
       scenes.push_back(read_scene(std::move(scene)));
     } else if (!names.empty()) {
       throw InputError(fmt::format("{}: a dynamic case has no {}", scene.file.string(), has_not));

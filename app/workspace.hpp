@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,10 @@ std::vector<Case> find_cases(const std::string& name_or_path);
 /// more.
 Case find_case(const std::string& name_or_path);
 
-/// The scenes of the quasi-static cases named, by path or by name, or of all canonical ones when there are no
-/// names. Throws InputError that tells what a dynamic case has not, when one is named.
-std::deque<Scene> read_static_scenes(const std::vector<std::string>& names, const std::string& has_not);
+/// The scenes of those cases that `fit`, among the cases named, by path or by name, or all canonical ones
+/// when there are no names. Throws InputError that tells what a dynamic case has not, when one is named that
+/// does not fit.
+std::deque<Scene> read_scenes(const std::vector<std::string>& names,
+                              const std::function<bool(const Case&)>& fit, const std::string& has_not);
 
 }  // namespace sandglass

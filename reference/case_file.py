@@ -1,6 +1,7 @@
-"""Reads the parts of a case file (TOML) that the reference needs: material and displacements."""
+"""Reads the parts of a case file (TOML) that the reference needs: material, loads, motion."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,19 +49,27 @@ class Rotation:
 
 @dataclass(frozen=True)
 class Force:
-    """A dead load on the faces within a node set: total (3,) in N, moment (3,) in N m."""
+    """A dead load on the faces within a node set: total (3,) in N, moment (3,) in N m.
+
+    curve: in motion a function from time (s) to factor, or None where it follows the load factor.
+    """
 
     set_name: str
     total: tuple
     moment: tuple
+    curve: Callable | None = None
 
 
 @dataclass(frozen=True)
 class Pressure:
-    """A pressure (Pa) that pushes on the faces within a node set and follows them."""
+    """A pressure (Pa) that pushes on the faces within a node set and follows them.
+
+    curve: as of a Force.
+    """
 
     set_name: str
     value: float
+    curve: Callable | None = None
 
 
 @dataclass(frozen=True)
@@ -86,10 +95,45 @@ class Material:
 
 
 @dataclass(frozen=True)
+class InitialVelocity:
+    """A velocity at the start: node set (None: all nodes), value (3,) in m/s, half waves (3,).
+
+    With half waves on an axis it is value cos(pi half_waves (x - low) / (high - low)).
+    """
+
+    set_name: str | None
+    value: tuple
+    half_waves: tuple
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How a dynamic case moves: duration and ramp time (s), damping (1/s), frames, velocities.
+
+    frames: number of equal parts of the duration at whose ends displacements are stored.
+    """
+
+    duration: float
+    ramp_time: float
+    damping: float
+    frames: int
+    velocities: tuple = ()
+
+    def load_factor(self, time):
+        """The factor of all that has no curve of its own, at a time in s: the paper's eq. 15."""
+        t = min(max(time / self.ramp_time, 0.0), 1.0)
+        return t**3 * (10 - 15 * t + 6 * t**2)
+
+    def times(self):
+        """The times (frames,) in s at which displacements are stored."""
+        return self.duration * np.arange(1, self.frames + 1) / self.frames
+
+
+@dataclass(frozen=True)
 class Case:
     """A case: name, materials in the order of the file, imposed motions and loads.
 
-    gravity: (3,) m/s^2.
+    gravity: (3,) m/s^2. motion: a Motion, or None for an answer at rest.
     """
 
     name: str
@@ -100,6 +144,7 @@ class Case:
     pressures: tuple = ()
     supports: tuple = ()
     gravity: tuple = (0.0, 0.0, 0.0)
+    motion: Motion | None = None
 
 
 def read_tables(path):
@@ -136,14 +181,17 @@ def read_case(path, name=None):
     """
     name, tables = _chosen(path, read_tables(path), name)
 
-    def read_all(key, read):
-        return tuple(read(*one) for one in (entries(path, tables, key) if key in tables else ()))
+    moving = tables["case"].get("answer") == "dynamic"
+
+    def read_all(key, read, *how):
+        found = entries(path, tables, key) if key in tables else ()
+        return tuple(read(*one, *how) for one in found)
 
     displacements, rotations = read_all("displacement", _displacement), read_all(
         "rotation", _rotation
     )
     supports = read_all("support", _support)
-    if not (displacements or rotations or supports):
+    if not (displacements or rotations or supports or moving):
         raise InputError(
             f"{path}: has no [[displacement]], [[rotation]] or [[support]]; at least one table is "
             "required"
@@ -156,11 +204,40 @@ def read_case(path, name=None):
         name=name,
         materials=materials,
         displacements=displacements,
-        forces=read_all("force", _force),
+        forces=read_all("force", _force, moving),
         rotations=rotations,
-        pressures=read_all("pressure", _pressure),
+        pressures=read_all("pressure", _pressure, moving),
         supports=supports,
         gravity=tuple(map(sum, zip((0.0, 0.0, 0.0), *read_all("gravity", _gravity)))),
+        motion=_motion(path, tables, read_all("velocity", _velocity)) if moving else None,
+    )
+
+
+def _motion(path, tables, velocities):
+    """The Motion of a dynamic case. Raises InputError for what no golden of motion can say yet."""
+    for key, names in (("gravity", CURVE), ("support", ("damping",))):
+        for where, table in entries(path, tables, key) if key in tables else ():
+            if set(names) & set(table):
+                raise InputError(f"{where}: {' and '.join(names)}: not in a golden of motion")
+    where, table = f"{path}: dynamics", entry(path, tables, "dynamics", dict)
+    number = {
+        key: float(entry(where, table, key, NUMBER)) if key in table else 0.0
+        for key in ("duration", "ramp_time", "damping")
+    }
+    if not number["duration"] > 0:
+        raise InputError(f"{where}.duration = {number['duration']} must be positive (s)")
+    frames = entry(where, table, "frames", int) if "frames" in table else 20
+    number["ramp_time"] = number["ramp_time"] or number["duration"]
+    return Motion(**number, frames=frames, velocities=velocities)
+
+
+def _velocity(where, table):
+    """A checked [[velocity]] table as an InitialVelocity."""
+    _check_keys(where, table, ("set", "value", "half_waves"))
+    return InitialVelocity(
+        entry(where, table, "set", str) if "set" in table else None,
+        _vector(where, table, "value"),
+        _vector(where, table, "half_waves") if "half_waves" in table else (0.0, 0.0, 0.0),
     )
 
 
@@ -255,28 +332,29 @@ def _rotation(where, table):
     )
 
 
-def _force(where, table):
+def _force(where, table, moving):
     """A checked [[force]] table as a Force."""
     _check_keys(where, table, ("set", "total", "moment", *CURVE))
-    factor = _final_factor(where, table)
+    factor, curve = _factor_and_curve(where, table, moving)
     total, moment = (
         tuple(factor * v for v in _vector(where, table, key)) if key in table else (0.0, 0.0, 0.0)
         for key in ("total", "moment")
     )
-    return Force(entry(where, table, "set", str), total, moment)
+    return Force(entry(where, table, "set", str), total, moment, curve)
 
 
-def _pressure(where, table):
+def _pressure(where, table, moving):
     """A checked [[pressure]] table as a Pressure."""
     _check_keys(where, table, ("set", "value", *CURVE))
-    value = _final_factor(where, table) * float(entry(where, table, "value", NUMBER))
-    return Pressure(entry(where, table, "set", str), value)
+    factor, curve = _factor_and_curve(where, table, moving)
+    value = factor * float(entry(where, table, "value", NUMBER))
+    return Pressure(entry(where, table, "set", str), value, curve)
 
 
 def _gravity(where, table):
     """The acceleration of a checked [[gravity]] table."""
     _check_keys(where, table, ("value", *CURVE))
-    factor = _final_factor(where, table)
+    factor, _ = _factor_and_curve(where, table, moving=False)
     return tuple(factor * v for v in _vector(where, table, "value"))
 
 
@@ -288,17 +366,33 @@ def _support(where, table):
     return Support(entry(where, table, "set", str), float(stiffness), only_normal)
 
 
-def _final_factor(where, table):
-    """The factor of a load at the end of a quasi-static answer, whose time is 1."""
+def _factor_and_curve(where, table, moving):
+    """The constant factor of a load, and in motion its curve, if it has one.
+
+    At rest the factor is that of the end of the curve, where time is 1.
+    """
+    curve = _curve(where, table)
+    if curve is None:
+        return 1.0, None
+    return (1.0, curve) if moving else (curve(1.0), None)
+
+
+def _curve(where, table):
+    """The curve of a load as a function of the time in s, or None."""
     if "formula" in table:
-        try:
-            return formula.evaluate(entry(where, table, "formula", str), 1.0)
-        except InputError as error:
-            raise InputError(f"{where}.formula: {error}") from error
+        text = entry(where, table, "formula", str)
+
+        def factor(time):
+            try:
+                return formula.evaluate(text, time)
+            except InputError as error:
+                raise InputError(f"{where}.formula: {error}") from error
+
+        return factor
     if "times" not in table and "factors" not in table:
-        return 1.0
+        return None
     times, factors = (entry(where, table, key, list) for key in ("times", "factors"))
-    return float(np.interp(1.0, times, factors))
+    return lambda time: float(np.interp(time, times, factors))
 
 
 def _vector(where, table, key):

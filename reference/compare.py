@@ -1,4 +1,4 @@
-"""The distance between goldens and truths: the table in README.md.
+"""The distance between goldens and truths, and the goldens of motion: the tables in README.md.
 
 Usage: /usr/bin/python3 reference/compare.py [--update]
 Exit codes: 0 done, 2 damaged or contradictory files.
@@ -18,9 +18,7 @@ from common.accuracy import relative_errors
 from common.command import exit_code
 from common.errors import InputError
 from common.files import write_whole
-from reference_file import FOLDER, path_of, read_reference, stored, write_reference
-
-BEGIN, END = "<!-- table: begin -->", "<!-- table: end -->"
+from reference_file import FOLDER, MOTION, path_of, read_reference, stored, write_reference
 
 
 def golden_error(golden_path, truth_path):
@@ -78,15 +76,32 @@ def table():
     return "\n".join(lines)
 
 
+def motion_table():
+    """The Markdown table of all stored goldens of motion, as a string."""
+    lines = [
+        "| case | nodes | simulated, s | steps | changed by halving, max | rms | computed in, s |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for name in stored(MOTION):
+        points, _, golden = read_reference(path_of(MOTION, name))
+        halving = [f"{golden[key]:.1e}" for key in ("halving_max", "halving_rms")]
+        cells = [name, len(points), f"{golden['times'][-1]:g}", golden["load_steps"], *halving]
+        lines.append("| " + " | ".join(map(str, cells)) + f" | {golden['wall_seconds']:.0f} |")
+    return "\n".join(lines)
+
+
 def update_readme():
-    """Write the current table between the two marks in README.md. Raises InputError."""
+    """Write the current tables between their marks in README.md. Raises InputError."""
     readme = FOLDER / "README.md"
     text = readme.read_text(encoding="utf-8")
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not end:
-        raise InputError(f"{readme}: the marks {BEGIN} and {END} are missing")
-    write_whole(readme, f"{before}{begin}\n{table()}\n{end}{after}")
+    for mark, made in (("table", table()), ("motion", motion_table())):
+        marks = f"<!-- {mark}: begin -->", f"<!-- {mark}: end -->"
+        before, begin, rest = text.partition(marks[0])
+        _, end, after = rest.partition(marks[1])
+        if not end:
+            raise InputError(f"{readme}: the marks {' and '.join(marks)} are missing")
+        text = f"{before}{begin}\n{made}\n{end}{after}"
+    write_whole(readme, text)
 
 
 def _own_error(attributes):
@@ -105,8 +120,8 @@ def _percent(fraction):
 
 
 def run(options):
-    """Prints the table and, with --update, writes it into README.md. Raises InputError."""
-    print(table())
+    """Prints the tables and, with --update, writes them into README.md. Raises InputError."""
+    print(table(), motion_table(), sep="\n\n")
     if options.update:
         update_readme()
 
@@ -114,7 +129,7 @@ def run(options):
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(description="Print the distances of goldens from truths.")
-    parser.add_argument("--update", action="store_true", help="write the table into README.md")
+    parser.add_argument("--update", action="store_true", help="write the tables into README.md")
     return exit_code(run, parser.parse_args(arguments))
 
 

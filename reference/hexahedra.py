@@ -1,6 +1,7 @@
 """Meshes of trilinear hexahedra: vertex numbering, conditions, uniform subdivision. Only numpy."""
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,13 +59,14 @@ class Traction:
     """A dead traction mean + turn x (X - centre) on the boundary faces within a set of nodes.
 
     nodes: (n,) bool, True for the nodes of the set; it acts on faces with all vertices in it.
-    mean: (3,) Pa. turn: (3,) Pa/m. centre: (3,) m.
+    mean: (3,) Pa. turn: (3,) Pa/m. centre: (3,) m. curve: as of case_file.Force.
     """
 
     nodes: np.ndarray
     mean: np.ndarray
     turn: np.ndarray
     centre: np.ndarray
+    curve: Callable | None = None
 
 
 @dataclass(frozen=True)
@@ -72,13 +74,15 @@ class Surface:
     """A pressure that follows the boundary faces within a set of nodes, and springs on them.
 
     nodes: (n,) bool, as of a Traction. pressure: Pa at full load, pushing. stiffness: Pa/m, of
-    springs to the undeformed place; only_normal: along the undeformed normal alone.
+    springs to the undeformed place; only_normal: along the undeformed normal alone. curve: of the
+    pressure, as of case_file.Force.
     """
 
     nodes: np.ndarray
     pressure: float = 0.0
     stiffness: float = 0.0
     only_normal: bool = False
+    curve: Callable | None = None
 
 
 @dataclass(frozen=True)

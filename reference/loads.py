@@ -22,13 +22,13 @@ class Loads:
     def __init__(self, mesh, displacement, cell_nodes, densities, degree):
         space = displacement.function_space
         domain, test = space.mesh, ufl.TestFunction(space)
-        self._dead = np.zeros(displacement.x.array.size)
+        self._dead = []  # (forces (N,), curve)
         for traction in mesh.tractions:
             measure = _measure(domain, traction.nodes, cell_nodes, degree)
-            self._dead += _traction_forces(traction, test, measure)
+            self._dead.append((_traction_forces(traction, test, measure), traction.curve))
         if any(mesh.gravity):
-            self._dead += _weight(mesh.gravity, densities, space, test, degree)
-        self._factor = fem.Constant(domain, 1.0)
+            self._dead.append((_weight(mesh.gravity, densities, space, test, degree), None))
+        self._factors = []  # (constant, curve) of each pressure
         F = ufl.Identity(3) + ufl.grad(displacement)
         normal = ufl.FacetNormal(domain)
         forms = []
@@ -36,7 +36,9 @@ class Loads:
             measure = _measure(domain, surface.nodes, cell_nodes, degree)
             if surface.pressure:
                 turned = ufl.cofac(F) * normal  # Nanson: n da, of an undeformed unit area
-                value = self._factor * fem.Constant(domain, surface.pressure)
+                factor = fem.Constant(domain, 1.0)
+                self._factors.append((factor, surface.curve))
+                value = factor * fem.Constant(domain, surface.pressure)
                 forms.append(value * ufl.inner(turned, test) * measure)
             if surface.stiffness:
                 moved = displacement
@@ -56,17 +58,23 @@ class Loads:
             for vector in forms
         ]
 
-    def forces(self, load):
-        """Minus the loads (N,) in N at a load factor, in the present configuration."""
-        self._factor.value = load
-        return sum(
-            (fem.assemble_vector(vector).array for vector, _ in self._forms), -load * self._dead
-        )
+    def forces(self, factor_of):
+        """Minus the loads (N,) in N in the present configuration.
 
-    def tangent(self, load):
+        factor_of: function from a load's curve (None: that of the case) to its factor.
+        """
+        self._set(factor_of)
+        dead = sum((factor_of(curve) * forces for forces, curve in self._dead), 0.0)
+        return sum((fem.assemble_vector(vector).array for vector, _ in self._forms), -dead)
+
+    def tangent(self, factor_of):
         """The derivative (N, N) of forces() by the displacement, N/m; 0 if they are constant."""
-        self._factor.value = load
+        self._set(factor_of)
         return sum((_assembled(matrix) for _, matrix in self._forms), 0)
+
+    def _set(self, factor_of):
+        for factor, curve in self._factors:
+            factor.value = factor_of(curve)
 
 
 def _assembled(form):

@@ -124,14 +124,15 @@ def load_case_mesh(case, mesh_path):
     tractions = []
     for entry in case.forces:
         nodes = _mask(file, _members(mesh_path, file, "force", entry.set_name))
-        tractions.append(traction(file.points, file.cells, nodes, entry.total, entry.moment))
-        if tractions[-1] is None:
+        pull = traction(file.points, file.cells, nodes, entry.total, entry.moment)
+        if pull is None:
             raise InputError(
                 f"{mesh_path}: force.set = {entry.set_name!r}: no boundary face has all its "
                 "vertices in this set; a force needs at least one"
             )
+        tractions.append(dataclasses.replace(pull, curve=entry.curve))
     surfaces = tuple(
-        Surface(_loaded(mesh_path, file, "pressure", one.set_name), pressure=one.value)
+        Surface(_loaded(mesh_path, file, "pressure", one.set_name), one.value, curve=one.curve)
         for one in case.pressures
     ) + tuple(
         Surface(
@@ -141,10 +142,34 @@ def load_case_mesh(case, mesh_path):
         )
         for one in case.supports
     )
-    if not (mesh.largest_imposed() or tractions or case.pressures or any(case.gravity)):
+    started = case.motion and case.motion.velocities
+    if not (mesh.largest_imposed() or tractions or case.pressures or any(case.gravity) or started):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
     loads = {"tractions": tuple(tractions), "surfaces": surfaces, "gravity": case.gravity}
     return dataclasses.replace(mesh, **loads), file
+
+
+def initial_velocity(case, mesh_path):
+    """The velocity (n, 3) in m/s of all nodes at the start of a dynamic Case.
+
+    mesh_path: of its mesh file. Raises InputError if a set is missing or has no extent.
+    """
+    file = read_mesh(mesh_path)
+    total = np.zeros_like(file.points)
+    for start in case.motion.velocities:
+        nodes = np.arange(len(file.points))
+        if start.set_name is not None:
+            nodes = _members(mesh_path, file, "velocity", start.set_name)
+        x = file.points[nodes]
+        wave = np.ones(len(nodes))
+        for axis, half_waves in enumerate(start.half_waves):
+            low, extent = x[:, axis].min(), np.ptp(x[:, axis])
+            if half_waves and not extent:
+                raise InputError(f"{mesh_path}: velocity: no extent along {'xyz'[axis]} for a wave")
+            if half_waves:
+                wave *= np.cos(np.pi * half_waves * (x[:, axis] - low) / extent)
+        total[nodes] += wave[:, None] * start.value
+    return total
 
 
 def _loaded(mesh_path, file, table, set_name):

@@ -59,7 +59,7 @@ def solve(problem, load_steps, tolerance, guessed=False):
     while load < 1:
         target = 1.0 if load + step > 1 - 1e-9 else load + step
         started = time.perf_counter()
-        converged, count, residual, correction = _equilibrate(
+        converged, count, residual, correction = equilibrate(
             problem, target, scale, tolerance if target == 1 else STEP_TOLERANCE
         )
         iterations += count
@@ -80,8 +80,11 @@ def solve(problem, load_steps, tolerance, guessed=False):
     return Outcome(steps, iterations, residual, correction)
 
 
-def _equilibrate(problem, load, scale, tolerance):
-    """Newton's method at one load: (converged, iterations, residual, correction), both relative."""
+def equilibrate(problem, load, scale, tolerance):
+    """Newton's method at one load, or time: (converged, iterations, residual, correction).
+
+    residual, correction: as of an Outcome. problem: whose displacement and pressure are the guess.
+    """
     u = problem.displacement.x.array
     fixed = problem.values_at(load)
     problem.load = load
@@ -100,7 +103,7 @@ def _equilibrate(problem, load, scale, tolerance):
         du[problem.free] = _direct_solve(free_tangent, right, problem.symmetric)
         dp = recover(du)
         fraction = _advance(problem, du, dp, fixed)
-        correction = np.abs(du).max() / (scale or np.abs(u).max())
+        correction = np.abs(du).max() / (scale or np.abs(u).max() or 1.0)
         if not fraction or correction > LARGEST_CORRECTION:
             return False, count, np.nan, correction
         if correction < tolerance and fraction == 1:

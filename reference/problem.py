@@ -101,9 +101,9 @@ class MixedProblem:
         self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
         self.load = 1.0
         of_cells = np.zeros(n_cells, dtype=int) if of_cell is None else of_cell
-        densities = np.array([material.density for material in materials])[of_cells]
-        degree = 2 * pair.gauss_points - 1
-        self._loads = Loads(mesh, self.displacement, cell_nodes, densities, degree)
+        self._densities = np.array([material.density for material in materials])[of_cells]
+        self._degree = 2 * pair.gauss_points - 1
+        self._loads = Loads(mesh, self.displacement, cell_nodes, self._densities, self._degree)
         self.symmetric = self._loads.symmetric
 
     def start_from(self, coarse):
@@ -130,6 +130,28 @@ class MixedProblem:
     def values_at(self, load):
         """Values (in m) of the prescribed dofs at a load factor."""
         return self._prescribed(load)[1]
+
+    def factor_of(self, _curve):
+        """The present factor of a load: at rest no load has a curve of its own."""
+        return self.load
+
+    def lumped_masses(self):
+        """Masses (N,) of the displacement dofs, kg: each cell gives an eighth of its own to each
+        vertex, as solver/problem/masses.cpp does. For elements whose only nodes are vertices."""
+        space = self.displacement.function_space
+        test = ufl.TestFunction(fem.FunctionSpace(space.mesh, ("DG", 0)))
+        measure = ufl.dx(metadata={"quadrature_degree": self._degree})
+        volumes = fem.assemble_vector(fem.form(test * measure, jit_params=JIT_OPTIONS)).array
+        masses = np.zeros(len(self._vertex_block))
+        of_cells = (self._densities * volumes / 8)[:, None]
+        np.add.at(masses, space.dofmap.list.array.reshape(len(volumes), 8), of_cells)
+        return np.repeat(masses, 3)
+
+    def dofs_of(self, nodal):
+        """Values (n, 3) at the nodes of the HexMesh as those of the displacement dofs (N,)."""
+        dofs = np.zeros((self.displacement.x.array.size // 3, 3))
+        dofs[self._vertex_block] = nodal
+        return dofs.ravel()
 
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh, in its numbering."""
@@ -159,7 +181,7 @@ class MixedProblem:
         inverse = invert_blocks(self._assemble_matrix("pp"), self._pressures_per_cell())
         force, dilatation = self.mixed_residual()
         condensed = coupling @ inverse
-        tangent = (stiffness - condensed @ coupling.T + self._loads.tangent(self.load)).tocsr()
+        tangent = (stiffness - condensed @ coupling.T + self._loads.tangent(self.factor_of)).tocsr()
         residual = force - condensed @ dilatation
 
         def recover(increment):
@@ -172,7 +194,7 @@ class MixedProblem:
 
         The forces are the internal forces minus the loads at the current factor.
         """
-        forces = self._assemble_vector("u") + self._loads.forces(self.load)
+        forces = self._assemble_vector("u") + self._loads.forces(self.factor_of)
         return forces, self._assemble_vector("p")
 
     def _pressures_per_cell(self):

@@ -1,4 +1,4 @@
-"""Writes and reads goldens and truths (HDF5). A file is written completely or not at all."""
+"""Writes and reads goldens, truths and goldens of motion (HDF5), each completely or not at all."""
 
 import math
 import shutil
@@ -12,6 +12,7 @@ from common.files import new_file
 
 FOLDER = Path(__file__).resolve().parent
 KINDS = ("golden", "truth")
+MOTION = "motion"  # the kind of a golden of motion: a folder of its own, as it has many times
 
 # Every root attribute of such a file, with its type.
 ATTRIBUTES = {
@@ -26,7 +27,7 @@ ATTRIBUTES = {
     "mirror_planes": str,
     "boundary_rule": str,
     "largest_imposed": float,  # or, if nothing is imposed, the largest displacement
-    "load_steps": int,
+    "load_steps": int,  # in motion steps of time
     "newton_iterations": int,
     "residual": float,
     "newton_tolerance": float,
@@ -42,6 +43,10 @@ ATTRIBUTES = {
     "own_error_note": str,
 }
 
+# What the file of a motion has in addition: the change of the motion when its steps were last
+# halved, over largest_imposed, the largest of all times.
+MOTION_ATTRIBUTES = {"halving_max": float, "halving_rms": float}
+
 # Values of the own_error attributes in a new file.
 NOT_ESTIMATED = {
     "own_error_max": math.nan,
@@ -52,28 +57,37 @@ NOT_ESTIMATED = {
 
 
 def path_of(kind, name):
-    """The path of a case's golden or truth. kind: one of KINDS. name: the case's name."""
+    """The path of a case's stored answer. kind: one of KINDS, or MOTION. name: the case's name."""
     return FOLDER / kind / f"{name}.h5"
 
 
 def stored(kind):
-    """The names of the cases that have a golden or truth, sorted."""
+    """The names of the cases that have a stored answer of this kind, sorted."""
     return sorted(path.stem for path in (FOLDER / kind).glob("*.h5"))
 
 
-def write_reference(path, points, displacement, attributes):
-    """Writes a golden or truth.
+def write_reference(path, points, displacement, attributes, times=None):
+    """Writes a golden or truth; with times (t,), s, a golden of motion.
 
-    points, displacement: (n, 3) float64, m, in the numbering of the mesh file. attributes: dict
-    with exactly the keys of ATTRIBUTES. Raises InputError if the file cannot be written.
+    points, displacement: (n, 3) float64, m, in the numbering of the mesh file; in motion
+    displacement is (t, n, 3), stored as displacement/0001, ... attributes: dict with exactly the
+    keys of ATTRIBUTES, in motion also MOTION_ATTRIBUTES. Raises InputError if the file cannot be
+    written.
     """
-    assert set(attributes) == set(ATTRIBUTES), set(attributes) ^ set(ATTRIBUTES)
+    kinds = ATTRIBUTES if times is None else ATTRIBUTES | MOTION_ATTRIBUTES
+    assert set(attributes) == set(kinds), set(attributes) ^ set(kinds)
+    arrays = {"points": points}
+    if times is None:
+        arrays["displacement"] = displacement
+    else:
+        arrays["times"] = times
+        arrays |= {_frame(number): u for number, u in enumerate(displacement)}
     with new_file(path) as temporary, h5py.File(temporary, "w") as file:
-        for name, data in (("displacement", displacement), ("points", points)):
+        for name, data in arrays.items():
             file.create_dataset(
                 name, data=np.asarray(data, dtype=np.float64), shuffle=True, compression="gzip"
             )
-        for name, kind in ATTRIBUTES.items():
+        for name, kind in kinds.items():
             file.attrs[name] = kind(attributes[name])
 
 
@@ -93,14 +107,28 @@ def write_estimate(path, estimate):
 def read_reference(path):
     """Reads a golden or truth: (points (n, 3), displacement (n, 3), m, attributes dict).
 
+    Of a golden of motion displacement is (t, n, 3), and attributes has its times (t,), s, as well.
     Raises InputError if the file is missing, is damaged or lacks an attribute.
     """
     try:
         with h5py.File(path, "r") as file:
-            points, displacement = file["points"][...], file["displacement"][...]
-            attributes = {name: kind(file.attrs[name]) for name, kind in ATTRIBUTES.items()}
+            moving = "times" in file
+            kinds = ATTRIBUTES | MOTION_ATTRIBUTES if moving else ATTRIBUTES
+            attributes = {name: kind(file.attrs[name]) for name, kind in kinds.items()}
+            points = file["points"][...]
+            if moving:
+                attributes["times"] = file["times"][...]
+                frames = [file[_frame(n)][...] for n in range(len(attributes["times"]))]
+                displacement = np.array(frames)
+            else:
+                displacement = file["displacement"][...]
     except OSError as error:
         raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
     except KeyError as error:
         raise InputError(f"{path}: not a golden or truth: {error.args[0]}") from error
     return points, displacement, attributes
+
+
+def _frame(number):
+    """The dataset of a motion's displacements at one of its times, counted from 0."""
+    return f"displacement/{number + 1:04}"

@@ -1,7 +1,7 @@
 """Solve a case with mixed elements in FEniCSx: the golden (Q1-P0) or the truth (Q2-P1).
 
-Usage: /usr/bin/python3 reference/solve.py golden|truth CASE.toml --mesh mesh.h5 -o out.h5
-Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium found.
+Usage: /usr/bin/python3 reference/solve.py golden|truth|motion CASE.toml --mesh mesh.h5 -o out.h5
+Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found.
 """
 
 import argparse
@@ -18,19 +18,20 @@ import numpy as np
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
+import motion
 import newton
 from case_file import read_case
 from common.accuracy import relative_errors
 from common.command import exit_code, whole_number
-from common.errors import ComputationError
+from common.errors import ComputationError, InputError
 from common.files import require_writable
 from hexahedra import refine
-from mesh_file import load_case_mesh
+from mesh_file import initial_velocity, load_case_mesh
 from problem import GOLDEN, TRUTH, MixedProblem
-from reference_file import NOT_ESTIMATED, write_reference
+from reference_file import MOTION, NOT_ESTIMATED, write_reference
 from symmetry import expand, halve
 
-PAIRS = {"golden": GOLDEN, "truth": TRUTH}
+PAIRS = {"golden": GOLDEN, "truth": TRUTH, MOTION: GOLDEN}
 # A step that fails is halved, so these affect only the speed. One step cannot turn a body far.
 LOAD_STEPS = {"golden": 10, "truth": 1}
 LARGEST_TURN = math.radians(36)
@@ -76,13 +77,26 @@ def run(options):
     started = time.perf_counter()
     kind, refinements = options.kind, options.refine
     case = read_case(options.case, options.variant)
+    if (kind == MOTION) != bool(case.motion):
+        raise InputError(f"{options.case}: a dynamic case has a golden of motion and no other")
     mesh, file = load_case_mesh(case, options.mesh)
     require_writable(options.output)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     pair = replace(PAIRS[kind], gauss_points=options.gauss or PAIRS[kind].gauss_points)
-    load_steps = options.load_steps or load_steps_of(kind, case)
-    displacements, outcome, mirrors = solve_case(kind, case, mesh, refinements, load_steps, pair)
-    unit = mesh.largest_imposed() or np.linalg.norm(displacements[-1], axis=1).max()
+    if case.motion:
+        velocity = initial_velocity(case, options.mesh)
+        golden = motion.solve_motion(mesh, case.materials, case.motion, velocity)
+        displacement, unit, outcome, mirrors = golden.displacement, golden.unit, golden.outcome, ""
+        halving = {"halving_max": golden.halving[0], "halving_rms": golden.halving[1]}
+        facts = halving | discretisation_error([], unit)
+    else:
+        load_steps = options.load_steps or load_steps_of(kind, case)
+        displacements, outcome, mirrors = solve_case(
+            kind, case, mesh, refinements, load_steps, pair
+        )
+        displacement = displacements[-1]
+        unit = mesh.largest_imposed() or np.linalg.norm(displacement, axis=1).max()
+        facts = discretisation_error(displacements, unit)
     attributes = {
         "case": case.name,
         "case_hash": file.case_hash,
@@ -98,14 +112,15 @@ def run(options):
         "load_steps": outcome.load_steps,
         "newton_iterations": outcome.newton_iterations,
         "residual": outcome.residual,
-        "newton_tolerance": NEWTON_TOLERANCE,
+        "newton_tolerance": motion.TOLERANCE if case.motion else NEWTON_TOLERANCE,
         "last_correction": outcome.last_correction,
         "dolfinx_version": dolfinx.__version__,
         "wall_seconds": time.perf_counter() - started,
-        **discretisation_error(displacements, unit),
+        **facts,
         **NOT_ESTIMATED,
     }
-    write_reference(options.output, mesh.points, displacements[-1], attributes)
+    times = case.motion.times() if case.motion else None
+    write_reference(options.output, mesh.points, displacement, attributes, times)
 
 
 def discretisation_error(displacements, unit):
@@ -128,10 +143,10 @@ def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
         description="Solve a case with mixed elements in FEniCSx.",
-        epilog="exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium found",
+        epilog="exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found",
     )
     add = parser.add_argument
-    add("kind", choices=PAIRS, help="golden: Q1-P0; truth: Q2-P1")
+    add("kind", choices=PAIRS, help="golden: Q1-P0; truth: Q2-P1; motion: Q1-P0 of a dynamic case")
     add("case", metavar="CASE.toml", help="the case file")
     add("--variant", metavar="NAME", help="case of the file, where it has variants")
     add("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")

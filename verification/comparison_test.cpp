@@ -32,6 +32,21 @@ TEST(Accuracy, figures_of_a_field_made_by_hand) {
   EXPECT_FALSE(accuracy(u, reference, nullptr, 2.0).profile_relative_error.has_value());
 }
 
+/// Over time every figure is the largest of all times, be they different ones, and the worst is that of the
+/// largest distance.
+TEST(Accuracy, over_time_is_the_worst) {
+  const Displacements reference(3, NodalField(4));
+  Displacements u = reference;
+  u[1] = NodalField(4, Vector{0.0, 0.0, 3.0});
+  u[2][3] = {0.0, 4.0, 0.0};
+  const std::vector<int> profile{0};
+  const Accuracy figures = accuracy(u, reference, &profile, 2.0);
+  EXPECT_EQ(figures.max_relative_error, 2.0);
+  EXPECT_EQ(figures.rms_relative_error, 1.5);
+  EXPECT_EQ(figures.profile_relative_error, 1.5);
+  EXPECT_EQ(worst_time(u, reference), 2u);
+}
+
 /// A verdict of the case "test" with one figure against the golden.
 Verdict verdict(const std::string& method, std::optional<double> kappa, bool automatic, double figure,
                 const std::string& status = "ok") {
@@ -125,7 +140,7 @@ TEST(Verdict, failed_computation_becomes_a_status) {
   description.displacements = {{"foot", {}}, {"head", {0.0, 0.0, -0.15}}};
   const Scene scene = make_scene(description, mesh, sets);
   for (const auto& method : names_of(Methods{})) {
-    NodalField u;
+    Displacements u;
     const Verdict v = run_and_compare(scene, {}, {method, {}}, u);
     EXPECT_FALSE(v.ok());
     EXPECT_TRUE(contains(v.status, "failed: step "));
@@ -141,7 +156,7 @@ TEST(Golden, column) {
   const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "column.toml");
   const References references = read_references(scene);
   ASSERT_TRUE(references.golden.has_value());
-  NodalField u;
+  Displacements u;
   const Verdict same = run_and_compare(scene, references, {"tl-mean-dilatation", {}}, u);
   ASSERT_TRUE(same.ok()) << same.status;
   EXPECT_LT(same.golden->max_relative_error, 1e-6);

@@ -229,7 +229,7 @@ class ReferenceFileTest : public ::testing::Test {
 
 TEST_F(ReferenceFileTest, is_read_when_it_belongs_to_the_case) {
   write_reference(path, u, scene.case_hash, scene.mesh_hash);
-  EXPECT_EQ(read_reference(path, scene), u);
+  EXPECT_EQ(read_reference(path, scene), Displacements{u});
 }
 
 TEST_F(ReferenceFileTest, of_another_case_is_refused_with_the_command_that_helps) {

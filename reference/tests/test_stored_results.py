@@ -10,7 +10,7 @@ import solve
 from case_file import find_case, read_case
 from common.program import CASES
 from mesh_file import load_case_mesh, make_mesh
-from reference_file import FOLDER, KINDS, path_of, read_reference, stored
+from reference_file import FOLDER, KINDS, MOTION, path_of, read_reference, stored
 
 STORED = [(kind, name) for kind in KINDS for name in stored(kind)]
 
@@ -73,5 +73,22 @@ def test_golden_knows_its_distance_from_the_truth(name):
     assert errors[1] == pytest.approx(attributes["discretisation_error_rms"], rel=1e-12)
 
 
-def test_readme_shows_the_table_of_the_stored_results():
-    assert compare.table() in (FOLDER / "README.md").read_text()
+@pytest.mark.parametrize("name", stored(MOTION))
+def test_stored_motion_belongs_to_its_case(name, mesh_of):
+    points, displacement, attributes = read_reference(path_of(MOTION, name))
+    case = read_case(find_case(CASES, name), name)
+    mesh, file = load_case_mesh(case, mesh_of(name))
+    for attribute in ("case", "case_hash", "mesh_hash"):
+        assert attributes[attribute] == getattr(file, attribute), attribute
+    assert np.abs(points - file.points).max() < 1e-14 * np.abs(points).max()
+    assert np.allclose(attributes["times"], case.motion.times(), rtol=1e-12)
+    for time, u in zip(attributes["times"], displacement, strict=True):
+        prescribed, values = mesh.imposed(case.motion.load_factor(time))
+        assert np.abs(u[prescribed] - values[prescribed]).max() <= 1e-12 * np.abs(u).max()
+    assert attributes["halving_max"] < 1e-4  # what was asked of a golden of motion
+    assert attributes["last_correction"] < attributes["newton_tolerance"]
+
+
+def test_readme_shows_the_tables_of_the_stored_results():
+    readme = (FOLDER / "README.md").read_text()
+    assert compare.table() in readme and compare.motion_table() in readme

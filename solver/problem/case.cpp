@@ -59,6 +59,19 @@ std::string described(const LoadCurve& curve) {
   return curve.times.empty() ? "" : fmt::format("curve({}:{})", curve.times, curve.factors);
 }
 
+/// What decides a motion beside what decides the answer at rest: inertia, damping, times, the start.
+std::string described_motion(const Case& description) {
+  const DynamicsSettings& settings = description.dynamics;
+  std::string text = fmt::format("motion({}:{}:{})", settings.duration, settings.ramp_time, settings.damping);
+  for (const auto& material : description.materials) text += fmt::format("density({})", material.density);
+  for (const auto& support : description.supports) text += fmt::format("dashpot({})", support.damping);
+  for (const auto& start : description.velocities) {
+    text += fmt::format("velocity({}:{}:{}:{})", start.set.value_or("-"), start.value, start.half_waves,
+                        start.spin);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string case_hash(const Case& description) {
@@ -96,6 +109,7 @@ std::string case_hash(const Case& description) {
   for (const auto& support : description.supports) {
     text += fmt::format("support({}:{}:{})", support.set, support.stiffness, support.only_normal);
   }
+  if (!description.quasi_static) text += described_motion(description);
   return hash_of(text);
 }
 
@@ -114,6 +128,10 @@ void scale_load(Case& description, double factor) {
   for (auto& pressure : description.pressures) pressure.value *= factor;
   for (auto& gravity : description.gravity) {
     for (double& g : gravity.value) g *= factor;
+  }
+  for (auto& start : description.velocities) {
+    for (double& v : start.value) v *= factor;
+    for (double& w : start.spin) w *= factor;
   }
 }
 

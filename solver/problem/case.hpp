@@ -110,11 +110,13 @@ struct Case {
   std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
 };
 
-/// A hash of what decides the static answer: mesh recipe, laws, sets, imposed displacements, rotations and
-/// forces. Method, settings and words do not enter.
+/// A hash of what decides the answer: mesh recipe, laws, sets, imposed displacements, rotations and loads; in
+/// motion also density, damping, duration, ramp time and initial velocities. Method, other settings and words
+/// do not enter.
 std::string case_hash(const Case& description);
 
-/// Multiplies imposed displacements, angles, forces, moments, pressures and gravity by `factor`.
+/// Multiplies imposed displacements, angles, forces, moments, pressures, gravity and initial velocities by
+/// `factor`.
 void scale_load(Case& description, double factor);
 
 }  // namespace sandglass

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "mesh/mesh.hpp"
 #include "problem/checkpoint.hpp"
@@ -40,6 +41,12 @@ class Observer {
   virtual void frame(const Frame& /*frame*/) {}
 
   virtual void history(const HistoryRow& /*row*/) {}
+
+  /// The next time (s) at which a dynamic run is to tell its displacements; infinite: at none.
+  virtual double next_sample() const { return std::numeric_limits<double>::infinity(); }
+
+  /// The displacements (m) at `next_sample()`, whatever the steps: called when a step reaches it.
+  virtual void sample(const NodalField& /*u*/) {}
 
   /// Called at every point from which the run can be resumed, after all reports up to there. `checkpoint`
   /// copies the state; it may be called only during this call.

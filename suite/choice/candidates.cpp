@@ -2,8 +2,10 @@
 
 namespace sandglass {
 
-std::string_view unfit(const MethodEntry& method) {
-  if (method.damps_only) return "its hourglass control resists velocities alone: it has no answer at rest";
+std::string_view unfit(const MethodEntry& method, bool at_rest) {
+  if (method.is_condensed && !at_rest) return "it superposes static answers: it has no motion";
+  if (method.damps_only && at_rest)
+    return "its hourglass control resists velocities alone: it has no answer at rest";
   if (!method.controls_hourglass) {
     return "nothing resists its hourglass modes: a disturbance stays where it was put";
   }

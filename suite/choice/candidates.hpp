@@ -17,8 +17,8 @@ inline constexpr std::array other_strengths{0.5, 2.0};
 /// estimate of the error is to the error differs from scene to scene.
 inline constexpr std::array accuracy_shares{4.0, 2.0, 1.0, 0.5, 0.25};
 
-/// Why a method is no candidate; empty for one that is.
-std::string_view unfit(const MethodEntry& method);
+/// Why a method is no candidate for an answer at rest, or else for a motion; empty for one that is.
+std::string_view unfit(const MethodEntry& method, bool at_rest);
 
 /// The choices that a method contributes in the precision of `plain`.
 std::vector<MethodChoice> choices_of(const MethodEntry& method, const MethodChoice& plain, const AnyLaw& law,

@@ -20,13 +20,7 @@ namespace {
 /// Evaluations of the forces after which a rung is not at rest: answers that exist take some hundreds.
 constexpr int most_evaluations = 2000;
 
-void require_possible(const Scene& scene, const Demand& demand) {
-  if (!scene.description.quasi_static) {
-    throw InputError(
-        fmt::format("{}: choose compares answers at rest: case.answer = 'dynamic' must be 'quasi-static'; "
-                    "choose for the state of rest that the motion goes to",
-                    scene.description.file.string()));
-  }
+void require_methods(const Demand& demand) {
   for (const auto& name : demand.methods) method_named(name, "--methods");
 }
 
@@ -44,7 +38,7 @@ std::deque<LadderMesh> make_meshes(const Scene& scene, const Reference& referenc
     MeshAttempt attempt{coarser};
     try {
       Scene on_it = scene_on(coarser, meshes.front().scene.description);
-      NodalField there = interpolate(scene.mesh, reference.u, on_it.mesh.points);
+      Displacements there = interpolate(scene.mesh, reference.u, on_it.mesh.points);
       LadderMesh mesh{coarser, std::move(on_it), std::move(there)};
       attempt.evaluation = evaluator.evaluate_mesh(mesh);
       attempt.kept = attempt.evaluation.reason.empty();
@@ -167,7 +161,7 @@ std::string_view name_of(Outcome outcome) {
 }
 
 Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress) {
-  require_possible(scene, demand);
+  require_methods(demand);
   std::string stage = "reference";
   const Proceed proceed = [&](double share) { return progress(share, stage); };
   Choice choice{.demand = demand, .reference = make_reference(scene, demand.against, proceed), .meshes = {}};

@@ -56,9 +56,9 @@ using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 /// The cheapest way to compute a scene that is near enough to the reference at every node, within the limits
 /// of time on this machine, and with a reserve of load. Coarser meshes are looked at first, with the golden's
 /// own element: an answer that is nearer than its mesh allows is so by luck, and not taken. Then the rungs
-/// are timed, put in the order of their cost per simulated second, and climbed. Throws InputError for a
-/// dynamic case, an unknown method and a stored reference that is not there, ComputationError where the
-/// reference finds no answer or when told to end.
+/// are timed, put in the order of their cost per simulated second, and climbed. Throws InputError for an
+/// unknown method and a stored reference that is not there, ComputationError where the reference finds no
+/// answer or when told to end.
 Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress);
 
 /// Why nothing suffices, in sentences; or what is to be known of the choice.

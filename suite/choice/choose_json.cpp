@@ -29,6 +29,7 @@ Json to_record(const Attempt& attempt) {
       {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
       {"step_size", cost ? or_null(cost->step_size) : Json(nullptr)},
       {"seconds_per_simulated_second", cost ? Json(cost->per_simulated_second()) : Json(nullptr)},
+      {"run_seconds_per_simulated_second", or_null(evaluation.per_simulated_second)},
       {"error", or_null(evaluation.error)},
       {"smallest_jacobian", or_null(evaluation.smallest_jacobian)},
       {"outcome", name_of(outcome)},

@@ -48,7 +48,7 @@ Timed make_timed(const Rung& rung, std::size_t number, const Proceed& proceed) {
     return timed;
   };
   try {
-    return rehearsed(&rung.mesh->reference);
+    return rehearsed(&rung.mesh->farthest());
   } catch (const ComputationError&) {
     if (!proceed(0.0)) throw;
     return rehearsed(nullptr);

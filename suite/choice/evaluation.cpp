@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
@@ -17,7 +18,7 @@ namespace sandglass {
 
 namespace {
 
-/// Load over that of the case at which a rung must still come to rest.
+/// Load over that of the case at which a rung must still find an answer.
 constexpr double margin = 1.1;
 
 /// Asks whether to go on while an answer is searched.
@@ -37,7 +38,7 @@ class Asking final : public Observer {
 
 Answer find_answer(const Scene& scene, const MethodChoice& choice, const Proceed& proceed) {
   Asking observer(proceed);
-  Answer answer = equilibrium_answer(scene, choice, observer);
+  Answer answer = compute_answer(scene, choice, observer);
   if (observer.stopped()) throw ComputationError("choose: interrupted; nothing was written");
   return answer;
 }
@@ -54,20 +55,26 @@ Scene with_margin(const Scene& scene) {
   return make_scene(std::move(description), scene.mesh, scene.sets, scene.element_sets);
 }
 
-double smallest_jacobian(const Model& model, const NodalField& u) {
+double smallest_jacobian(const Model& model, const Displacements& history) {
+  double smallest = std::numeric_limits<double>::infinity();
   std::vector<double> jacobians(model.scene().mesh.cells.size());
-  std::visit([&](const auto& elements) { elements->smallest_jacobians(state_at(*elements, u), jacobians); },
-             model.internal_force());
-  return *std::min_element(jacobians.begin(), jacobians.end());
+  for (const NodalField& u : history) {
+    std::visit([&](const auto& elements) { elements->smallest_jacobians(state_at(*elements, u), jacobians); },
+               model.internal_force());
+    smallest = std::min(smallest, *std::min_element(jacobians.begin(), jacobians.end()));
+  }
+  return smallest;
 }
 
 /// The largest norm of the elements' mean displacement gradients: strain and rotation together.
-double largest_gradient(const Mesh& mesh, const NodalField& u) {
+double largest_gradient(const Mesh& mesh, const Displacements& history) {
   double largest = 0.0;
   for (const auto& cell : mesh.cells) {
-    const NodalVectors<double> X = gather(mesh.points, cell);
-    const Tensor<double> H = transpose(gather(u, cell)) * mean_gradient(X).h;
-    largest = std::max(largest, std::sqrt(double_dot(H, H)));
+    const auto h = mean_gradient(gather(mesh.points, cell)).h;
+    for (const NodalField& u : history) {
+      const Tensor<double> H = transpose(gather(u, cell)) * h;
+      largest = std::max(largest, std::sqrt(double_dot(H, H)));
+    }
   }
   return largest;
 }
@@ -156,13 +163,17 @@ Evaluation Evaluator::evaluate_answer(const Rung& rung) {
   if (answer.refused || answer.u.empty()) return {.reason = failure_reason(answer)};
   Evaluation found;
   found.smallest_jacobian = smallest_jacobian(Model(scene, rung.choice), answer.u);
-  const NodalField u = rung.mesh->coarser ? interpolate(scene.mesh, answer.u, scene_.mesh.points) : answer.u;
+  if (!scene.description.quasi_static)
+    found.per_simulated_second = answer.seconds / scene.description.dynamics.duration;
+  const Displacements u =
+      rung.mesh->coarser ? interpolate(scene.mesh, answer.u, scene_.mesh.points) : answer.u;
   found.error = accuracy(u, reference_.u, nullptr, reference_.unit).max_relative_error;
   if (answer.failure) {
     found.reason = failure_reason(answer);
   } else if (!(*found.error <= tolerance_)) {
     // On its own mesh a coarser one's nodes have the reference's displacements to be compared with.
-    const Symptoms told = symptoms(scene, answer.u, answer.energy, rung.mesh->reference, reference_.unit);
+    const Symptoms told = symptoms(scene, answer.u, answer.energies.strain + answer.energies.hourglass,
+                                   rung.mesh->reference, reference_.unit);
     found.reason =
         error_reason(rung, {*found.error, told.zigzag_share, told.bending_ratio, told.stiffness_ratio},
                      tolerance_, largest_gradient_);
@@ -182,12 +193,21 @@ std::string Evaluator::margin_reason(const Rung& rung) {
   return fmt::format("no reserve: with a tenth more load {}", failure_reason(beyond));
 }
 
+Displacements interpolate(const Mesh& mesh, const Displacements& history, const NodalField& points) {
+  Displacements there;
+  for (const NodalField& u : history) there.push_back(interpolate(mesh, u, points));
+  return there;
+}
+
 Scene scene_on(const AnyGenerator& mesh, Case description) {
   const auto used = [&](const NodeSetRule& rule) {
     const auto is = [&](const auto& imposed) { return imposed.set == rule.name; };
     return std::any_of(description.displacements.begin(), description.displacements.end(), is) ||
            std::any_of(description.rotations.begin(), description.rotations.end(), is) ||
-           std::any_of(description.forces.begin(), description.forces.end(), is);
+           std::any_of(description.forces.begin(), description.forces.end(), is) ||
+           std::any_of(description.pressures.begin(), description.pressures.end(), is) ||
+           std::any_of(description.supports.begin(), description.supports.end(), is) ||
+           std::any_of(description.velocities.begin(), description.velocities.end(), is);
   };
   std::erase_if(description.sets, [&](const NodeSetRule& rule) { return !used(rule); });
   description.mesh = mesh;

@@ -13,7 +13,7 @@ namespace sandglass {
 /// What the rungs are measured against.
 struct Reference {
   std::string name;  ///< "tl-mean-dilatation", "golden" or "truth"
-  NodalField u;      ///< m, at the nodes of the user's mesh
+  Displacements u;   ///< m, at the nodes of the user's mesh and the times of its answer
   double unit;       ///< of errors, m: the largest imposed displacement
   OwnError
       own;  ///< of the truth from what it stands for; of the others, from the answer of ever finer meshes
@@ -26,9 +26,10 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
 
 /// The error of a rung's answer, and why it is rejected, if it is.
 struct Evaluation {
-  std::optional<double> error = {};              ///< max over all nodes of the user's mesh, over the unit
-  std::optional<double> smallest_jacobian = {};  ///< det F, at the answer
-  std::string reason = {};                       ///< why it is rejected; empty: good enough
+  std::optional<double> error = {};  ///< max over all nodes of the user's mesh and times, over the unit
+  std::optional<double> smallest_jacobian = {};     ///< det F, at the answer
+  std::optional<double> per_simulated_second = {};  ///< wall time that the run itself took, s; of a motion
+  std::string reason = {};                          ///< why it is rejected; empty: good enough
 };
 
 /// Compares rungs of one scene with one reference.
@@ -38,7 +39,7 @@ class Evaluator {
   Evaluator(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed);
 
   /// Computes the rung's answer and its distance from the reference at all nodes of the user's mesh. One that
-  /// is near enough must also come to rest with a tenth more load where the golden's own element does.
+  /// is near enough must also find an answer with a tenth more load where the golden's own element does.
   /// Throws ComputationError when told to end.
   Evaluation evaluate(const Rung& rung);
 
@@ -56,6 +57,9 @@ class Evaluator {
   const Proceed& proceed_;
   double largest_gradient_;  // of displacements, in the reference's elements
 };
+
+/// Displacements (m) on a mesh at other points of the same body, at all times.
+Displacements interpolate(const Mesh& mesh, const Displacements& history, const NodalField& points);
 
 /// The scene of a coarser mesh of the same case. What only tables and pictures need is left out. Throws
 /// InputError where a set of the case finds no node on it.

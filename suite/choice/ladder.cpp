@@ -14,6 +14,11 @@ std::string LadderMesh::name() const {
   return coarser ? counts_text(*coarser) : "own mesh";
 }
 
+const NodalField& LadderMesh::farthest() const {
+  const Displacements at_rest(reference.size(), NodalField(scene.mesh.points.size()));
+  return reference[worst_time(reference, at_rest)];
+}
+
 std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan) {
   std::vector<Rung> rungs;
   const auto asked = [&](std::string_view method) {
@@ -24,7 +29,7 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
     for (const MethodEntry& method : methods()) {
       if (!asked(method.name)) continue;
       MethodChoice plain{.method = std::string(method.name), .threads = plan.threads};
-      if (const std::string_view why = unfit(method); !why.empty()) {
+      if (const std::string_view why = unfit(method, mesh.scene.description.quasi_static); !why.empty()) {
         if (!mesh.coarser) rungs.push_back({plain, &mesh, std::string(why)});
         continue;
       }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "comparison/accuracy.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
@@ -13,10 +14,13 @@ namespace sandglass {
 struct LadderMesh {
   std::optional<AnyGenerator> coarser = {};  ///< none: the user's own
   Scene scene;
-  NodalField reference;  ///< the reference's displacements at its nodes, m
+  Displacements reference;  ///< the reference's displacements at its nodes, m
 
   /// "own mesh", or the counts of elements of a coarser one.
   std::string name() const;
+
+  /// The reference where it is farthest from rest.
+  const NodalField& farthest() const;
 };
 
 /// A combination of method, precision and mesh: a rung of the ladder that `sandglass choose` climbs from the
@@ -36,8 +40,8 @@ struct LadderPlan {
 
 /// All rungs of some meshes, not yet in order: every method of the list in double and in float. A method
 /// whose kappa affects the static answer appears with auto, half and twice that; an adaptive one with several
-/// accuracies around the user's tolerance. A method that has no static answer, or does not control hourglass
-/// modes, appears once, as unfit.
+/// accuracies around the user's tolerance. A method that has no such answer, at rest or in motion, or does
+/// not control hourglass modes, appears once, as unfit.
 std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan);
 
 /// The name of a rung: "tl-perturbation kappa 0.00325 float".

@@ -14,9 +14,19 @@ struct Accuracy {
   double rms_relative_error = 0.0;               ///< root of the mean square over all nodes
 };
 
+/// Displacements (m) at the times of an answer: at rest one field, in motion several.
+using Displacements = std::vector<NodalField>;
+
 /// The accuracy figures of u against a reference on the same nodes; `unit` is the largest imposed
 /// displacement, m.
 Accuracy accuracy(const NodalField& u, const NodalField& reference, const std::vector<int>* profile,
                   double unit);
+
+/// The same over time: the largest of each figure.
+Accuracy accuracy(const Displacements& u, const Displacements& reference, const std::vector<int>* profile,
+                  double unit);
+
+/// The time at which u is farthest from a reference, as a place in both.
+std::size_t worst_time(const Displacements& u, const Displacements& reference);
 
 }  // namespace sandglass

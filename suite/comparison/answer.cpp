@@ -1,6 +1,9 @@
 #include "comparison/answer.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
+#include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 
 namespace sandglass {
@@ -11,21 +14,75 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-}  // namespace
+/// Keeps the displacements at some times and the last energies; asks another whether to go on.
+class Sampler final : public Observer {
+ public:
+  Sampler(std::vector<double> times, Observer& other) : times_(std::move(times)), other_(other) {}
 
-Answer equilibrium_answer(const Model& model, Observer& observer) {
+  double next_sample() const override {
+    return u.size() < times_.size() ? times_[u.size()] : Observer::next_sample();
+  }
+  void sample(const NodalField& now) override { u.push_back(now); }
+  void history(const HistoryRow& row) override { energies = {row.strain, row.hourglass}; }
+  bool proceed(long step, double share, double residual) override {
+    return other_.proceed(step, share, residual);
+  }
+
+  Displacements u;
+  StrainEnergies energies;
+
+ private:
+  std::vector<double> times_;
+  Observer& other_;
+};
+
+Answer moving_answer(const Model& model, Observer& observer) {
+  Sampler sampler(answer_times(model.scene().description), observer);
+  const Motion motion = integrate(model, sampler);
+  return {.u = std::move(sampler.u),
+          .energies = sampler.energies,
+          .steps = motion.steps,
+          .seconds = motion.seconds,
+          .step_seconds = motion.seconds / static_cast<double>(std::max(motion.steps, 1L))};
+}
+
+Answer resting_answer(const Model& model, Observer& observer) {
   Relaxation relaxation = relax(model, observer);
-  Answer answer{.u = std::move(relaxation.u),
-                .energy = relaxation.energies.strain + relaxation.energies.hourglass,
-                .steps = relaxation.steps};
+  Answer answer{.u = {std::move(relaxation.u)},
+                .energies = relaxation.energies,
+                .steps = relaxation.steps,
+                .residual = relaxation.residual,
+                .seconds = relaxation.seconds,
+                .step_seconds = relaxation.step_seconds};
   if (in_equilibrium(relaxation, model.choice().precision)) return answer;
   answer.failure = Finding::not_at_rest;
   answer.status = outcome(relaxation, model.choice().precision);
   return answer;
 }
 
-Answer equilibrium_answer(const Scene& scene, const MethodChoice& choice, Observer& observer) {
-  return answer_of([&] { return equilibrium_answer(Model(scene, choice), observer); });
+}  // namespace
+
+std::vector<double> answer_times(const Case& description) {
+  if (description.quasi_static) return {1.0};
+  const DynamicsSettings& settings = description.dynamics;
+  std::vector<double> times;
+  for (int n = 1; n <= settings.frames; ++n) times.push_back(settings.duration * n / settings.frames);
+  return times;
+}
+
+Answer compute_answer(const Model& model, Observer& observer) {
+  return model.scene().description.quasi_static ? resting_answer(model, observer)
+                                                : moving_answer(model, observer);
+}
+
+Answer compute_answer(const Scene& scene, const MethodChoice& choice, Observer& observer) {
+  return answer_of([&] { return compute_answer(Model(scene, choice), observer); });
+}
+
+double displacement_unit(const Scene& scene, const Displacements& reference) {
+  double unit = 0.0;
+  for (const NodalField& u : reference) unit = std::max(unit, displacement_unit(scene, u));
+  return unit;
 }
 
 Answer answer_of(const std::function<Answer()>& find) {

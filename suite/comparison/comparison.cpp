@@ -79,7 +79,8 @@ Comparison read_comparison(const Case& description) {
   const CaseTables tables = read_case_tables(description.file, description.variants);
   TableReader reader(tables.root, description.file, "");
   const fs::path folder = description.file.parent_path();
-  comparison.golden = folder / ".." / "reference" / "golden" / (description.name + ".h5");
+  const char* golden = description.quasi_static ? "golden" : "motion";
+  comparison.golden = folder / ".." / "reference" / golden / (description.name + ".h5");
   comparison.truth = folder / ".." / "reference" / "truth" / (description.name + ".h5");
   if (auto profile = reader.table("profile")) comparison.profile = read_profile(*profile);
   if (auto table = reader.table("comparison")) read_comparison_table(*table, folder, comparison);

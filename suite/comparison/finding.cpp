@@ -79,6 +79,14 @@ Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const 
           .stiffness_ratio = moved ? ratio(energy, energy_of_golden) : ratio(energy_of_golden, energy)};
 }
 
+Symptoms symptoms(const Scene& scene, const Displacements& u, double energy, const Displacements& golden,
+                  double unit) {
+  const std::size_t worst = worst_time(u, golden);
+  Symptoms told = symptoms(scene, u[worst], energy, golden[worst], unit);
+  if (!scene.description.quasi_static) told.stiffness_ratio = 1.0;
+  return told;
+}
+
 double good_limit(const std::optional<double>& golden_to_truth) {
   return std::max(0.01, golden_to_truth.value_or(0.0));
 }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "comparison/accuracy.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
@@ -52,6 +53,11 @@ HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u);
 /// The symptoms of displacements u (m) with strain and hourglass energy `energy` (J) compared with the
 /// golden; `unit` is the length that errors are fractions of.
 Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const NodalField& golden,
+                  double unit);
+
+/// The same of an answer at several times: at the worst of them. In motion the energy is that of another
+/// state than the golden's, so that locking is not told.
+Symptoms symptoms(const Scene& scene, const Displacements& u, double energy, const Displacements& golden,
                   double unit);
 
 /// Error up to which a run is good: 1 %, or the golden's own distance from the truth where that is more, for

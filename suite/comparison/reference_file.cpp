@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "comparison/answer.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/mesh_file.hpp"
 
@@ -23,6 +25,18 @@ void require_hash(const Hdf5File& file, const std::string& attribute, const std:
                   attribute == "mesh_hash" ? "mesh" : "case", scene.description.name));
 }
 
+/// Throws InputError unless the answers of a motion are told at the times of the scene's frames.
+void require_times(const Hdf5File& file, const std::vector<double>& expected, const Scene& scene) {
+  const auto found = file.read_doubles("/times");
+  const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-12 * b; };
+  if (std::equal(found.entries.begin(), found.entries.end(), expected.begin(), expected.end(), same)) return;
+  throw InputError(
+      fmt::format("{}: has {} times, which are not the ends of the {} frames of {}: make it anew: "
+                  "reference/regenerate {}",
+                  file.path().string(), found.entries.size(), expected.size(),
+                  scene.description.file.string(), scene.description.name));
+}
+
 }  // namespace
 
 OwnError read_own_error(const std::filesystem::path& path) {
@@ -33,11 +47,20 @@ OwnError read_own_error(const std::filesystem::path& path) {
           file.read_text_attribute("/", "own_error_note")};
 }
 
-NodalField read_reference(const std::filesystem::path& path, const Scene& scene) {
+Displacements read_reference(const std::filesystem::path& path, const Scene& scene) {
   const auto file = Hdf5File::open(path);
   require_hash(file, "case_hash", scene.case_hash, scene);
   require_hash(file, "mesh_hash", scene.mesh_hash, scene);
-  return read_nodal_field(file, "/displacement", scene.mesh.points.size());
+  if (scene.description.quasi_static) {
+    return {read_nodal_field(file, "/displacement", scene.mesh.points.size())};
+  }
+  const std::vector<double> times = answer_times(scene.description);
+  require_times(file, times, scene);
+  Displacements u;
+  for (std::size_t t = 0; t < times.size(); ++t) {
+    u.push_back(read_nodal_field(file, fmt::format("/displacement/{:04}", t + 1), scene.mesh.points.size()));
+  }
+  return u;
 }
 
 }  // namespace sandglass

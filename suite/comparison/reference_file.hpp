@@ -4,14 +4,15 @@
 #include <optional>
 #include <string>
 
+#include "comparison/accuracy.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
 
-/// Displacements (m) of a stored golden or truth at the nodes of the scene. Throws InputError when the file
-/// is missing or broken, and when its hashes are not those of the scene; the text names the command that
-/// makes it again.
-NodalField read_reference(const std::filesystem::path& path, const Scene& scene);
+/// Displacements (m) of a stored golden or truth at the nodes of the scene and the times of its answer.
+/// Throws InputError when the file is missing or broken, and when its hashes or times are not those of the
+/// scene; the text names the command that makes it again.
+Displacements read_reference(const std::filesystem::path& path, const Scene& scene);
 
 /// What a stored answer says of its own error.
 struct OwnError {

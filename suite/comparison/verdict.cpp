@@ -6,6 +6,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "comparison/answer.hpp"
 #include "comparison/reference_file.hpp"
 #include "solve/stable_step.hpp"
 
@@ -13,10 +14,15 @@ namespace sandglass {
 
 namespace {
 
-std::optional<NodalField> read_if_present(const std::filesystem::path& path, const Scene& scene) {
+std::optional<Displacements> read_if_present(const std::filesystem::path& path, const Scene& scene) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return std::nullopt;
   return read_reference(path, scene);
+}
+
+/// The displacements at the end of an answer, if there are any.
+std::optional<NodalField> last(const std::optional<Displacements>& u) {
+  return u ? std::optional(u->back()) : std::nullopt;
 }
 
 std::optional<double> figure_of(const Verdict& verdict, const Expectation& expected) {
@@ -35,25 +41,21 @@ bool concerns(const Expectation& expected, const Verdict& verdict) {
   return !verdict.kappa_is_auto && fmt::to_string(*verdict.kappa) == expected.kappa;
 }
 
-/// Brings the scene to rest: its displacements (m), what a verdict says of the way there, and the energy (J)
-/// in the body, which is returned. Throws ComputationError.
-double fill_static(const Scene& scene, const MethodChoice& choice, Verdict& verdict, NodalField& u) {
+/// Computes the answer of a scene and fills in what a verdict says of the way there. Throws ComputationError.
+Answer fill_answer(const Scene& scene, const MethodChoice& choice, Verdict& verdict) {
   const Model model(scene, choice);
   verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
   Observer silent;
-  Relaxation relaxation = relax(model, silent);
-  u = std::move(relaxation.u);
-  const StrainEnergies energies = relaxation.energies;
-  verdict.status = in_equilibrium(relaxation, choice.precision)
-                       ? "ok"
-                       : fmt::format("failed: {}, residual {:.1e}", outcome(relaxation, choice.precision),
-                                     relaxation.residual);
-  verdict.steps = relaxation.steps;
-  verdict.residual = relaxation.residual;
+  Answer answer = compute_answer(model, silent);
+  const StrainEnergies energies = answer.energies;
+  verdict.status =
+      answer.failure ? fmt::format("failed: {}, residual {:.1e}", answer.status, answer.residual) : "ok";
+  verdict.steps = answer.steps;
+  verdict.residual = answer.residual;
   verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;
-  verdict.wall_seconds = relaxation.seconds;
-  verdict.ns_per_element_step = 1e9 * relaxation.step_seconds / static_cast<double>(scene.mesh.cells.size());
-  return energies.strain + energies.hourglass;
+  verdict.wall_seconds = answer.seconds;
+  verdict.ns_per_element_step = 1e9 * answer.step_seconds / static_cast<double>(scene.mesh.cells.size());
+  return answer;
 }
 
 }  // namespace
@@ -65,8 +67,8 @@ References read_references(const Scene& scene) {
   return references;
 }
 
-std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& comparison, const NodalField& u,
-                                    const std::optional<NodalField>& reference) {
+std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& comparison, const Displacements& u,
+                                    const std::optional<Displacements>& reference) {
   if (!reference) return std::nullopt;
   const auto* profile = comparison.profile ? &scene.sets.at(comparison.profile->set) : nullptr;
   return accuracy(u, *reference, profile, displacement_unit(scene, *reference));
@@ -79,7 +81,7 @@ std::optional<double> golden_to_truth(const Scene& scene, const References& refe
 }
 
 Verdict run_and_compare(const Scene& scene, const References& references, const MethodChoice& choice,
-                        NodalField& u) {
+                        Displacements& u) {
   const MethodEntry& method = method_named(choice.method);
   const KernelLaw law = kernel_law(scene.description.materials.front().law);
   Verdict verdict{
@@ -91,10 +93,12 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
       .operations = method.operations(law).total.total(),
       .family = scene.description.family,
       .variants = scene.description.variants,
-      .published = published_results(scene, references.comparison.published, references.truth)};
-  double energy = 0.0;
+      .published = published_results(scene, references.comparison.published, last(references.truth))};
+  StrainEnergies energies;
   try {
-    energy = fill_static(scene, choice, verdict, u);
+    Answer answer = fill_answer(scene, choice, verdict);
+    u = std::move(answer.u);
+    energies = answer.energies;
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
@@ -104,13 +108,13 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
   verdict.golden = accuracy_of(scene, references.comparison, u, references.golden);
   verdict.truth = accuracy_of(scene, references.comparison, u, references.truth);
   if (references.golden) {
-    const double unit = displacement_unit(scene, *references.golden);
-    verdict.symptoms = symptoms(scene, u, energy, *references.golden, unit);
+    verdict.symptoms = symptoms(scene, u, energies.strain + energies.hourglass, *references.golden,
+                                displacement_unit(scene, *references.golden));
     verdict.finding = verdict.ok()
                           ? diagnose(*verdict.symptoms, good_limit(golden_to_truth(scene, references)))
                           : Finding::not_at_rest;
   }
-  fill_computed(scene, u, verdict.published);
+  fill_computed(scene, u.back(), verdict.published);
   return verdict;
 }
 

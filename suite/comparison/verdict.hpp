@@ -9,24 +9,24 @@
 #include "comparison/finding.hpp"
 #include "comparison/published.hpp"
 #include "problem/model.hpp"
-#include "solve/relaxation.hpp"
 
 namespace sandglass {
 
 /// What a scene is compared with; stored answers are absent when the case has none.
 struct References {
   Comparison comparison;
-  std::optional<NodalField> golden;
-  std::optional<NodalField> truth;
+  std::optional<Displacements> golden;
+  std::optional<Displacements> truth;
 };
 
 /// Reads the comparison of a scene, and its golden and truth where they exist. Throws InputError when one
 /// exists but belongs to another case.
 References read_references(const Scene& scene);
 
-/// The accuracy figures of displacements u of a scene against one of its references, if there is one.
-std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& comparison, const NodalField& u,
-                                    const std::optional<NodalField>& reference);
+/// The accuracy figures of displacements u of a scene against one of its references, if there is one; of a
+/// motion the largest over time.
+std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& comparison, const Displacements& u,
+                                    const std::optional<Displacements>& reference);
 
 /// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
 std::optional<double> golden_to_truth(const Scene& scene, const References& references);
@@ -42,7 +42,7 @@ struct Verdict {
   std::optional<Accuracy> golden;
   std::optional<Accuracy> truth;
   std::optional<Accuracy> twin;      ///< where there is no golden: against its explicit twin, computed for it
-  std::optional<Finding> finding;    ///< none where there is no golden to tell by
+  std::optional<Finding> finding;    ///< none where there is no golden to tell by; of the worst time
   std::optional<Symptoms> symptoms;  ///< what it was found by; none for a computation that broke down
   double stable_step = 0.0;          ///< s, at rest; 0 where unknown
   long operations = 0;               ///< per element and step
@@ -58,10 +58,10 @@ struct Verdict {
   bool ok() const { return status == "ok"; }
 };
 
-/// Relaxes the scene with a method and compares. A failed computation becomes a status, not an exception.
+/// Computes the scene with a method and compares. A failed computation becomes a status, not an exception.
 /// `u` receives the displacements when there are any.
 Verdict run_and_compare(const Scene& scene, const References& references, const MethodChoice& choice,
-                        NodalField& u);
+                        Displacements& u);
 
 /// The outcome of one expectation of a case.
 struct LimitCheck {

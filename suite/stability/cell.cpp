@@ -34,7 +34,8 @@ Cell compute_cell(const Map& map, const Case& description, const std::string& me
   cell.golden_failed = golden->failure || golden->refused;
   if (cell.golden_failed && !cell.finding) cell.status = "the golden fails: " + golden->status;
   if (cell.golden_failed || own.u.empty()) return cell;
-  cell.symptoms = symptoms(scene, own.u, own.energy, golden->u, unit_of(trial, scene, golden->u));
+  cell.symptoms = symptoms(scene, own.u.back(), own.energies.strain + own.energies.hourglass,
+                           golden->u.back(), unit_of(trial, scene, golden->u));
   if (!cell.finding) cell.finding = diagnose(*cell.symptoms, good);
   return cell;
 }

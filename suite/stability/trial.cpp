@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "assembly/method_entry.hpp"
+#include "comparison/answer.hpp"
 #include "comparison/comparison.hpp"
 #include "mesh/variations.hpp"
 
@@ -52,6 +53,7 @@ Scene scene_of(const Trial& trial) {
   if (trial.noise) scale_load(description, 0.0);
   Scene scene = make_scene(std::move(description), std::move(mesh), std::move(sets), std::move(element_sets));
   if (!trial.is_dynamic()) return scene;
+  scene.description.quasi_static = false;
   const double crossing = crossing_time(scene);
   scene.description.dynamics = {.duration = (trial.noise ? 10.0 : 4.0) * crossing,
                                 .ramp_time = 2.0 * crossing,
@@ -65,7 +67,7 @@ Scene scene_of(const Trial& trial) {
   return scene;
 }
 
-double unit_of(const Trial& trial, const Scene& scene, const NodalField& golden) {
+double unit_of(const Trial& trial, const Scene& scene, const Displacements& golden) {
   if (trial.noise) return noise_velocity(trial) * scene.description.dynamics.duration;
   return displacement_unit(scene, golden);
 }

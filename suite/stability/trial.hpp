@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "comparison/accuracy.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
@@ -28,7 +29,7 @@ Scene scene_of(const Trial& trial);
 
 /// The length that errors of a trial are fractions of (m): the largest imposed displacement, or the golden's
 /// own; with noise what its velocity goes when nothing holds it.
-double unit_of(const Trial& trial, const Scene& scene, const NodalField& golden);
+double unit_of(const Trial& trial, const Scene& scene, const Displacements& golden);
 
 /// Error up to which a trial is good, where `limit` is that of the case at rest: with noise a tenth of the
 /// free way, for swinging is no error.

@@ -1,33 +1,13 @@
 #include "stability/trial_answer.hpp"
 
-#include "solve/central_difference.hpp"
-
 namespace sandglass {
-
-namespace {
-
-/// Keeps the energy of the last row.
-class EnergyObserver final : public Observer {
- public:
-  void history(const HistoryRow& row) override { energy = row.strain + row.hourglass; }
-
-  double energy = 0.0;
-};
-
-Answer moving_answer(const Model& model) {
-  EnergyObserver observer;
-  Motion motion = integrate(model, observer);
-  return {.u = std::move(motion.u), .energy = observer.energy, .steps = motion.steps};
-}
-
-}  // namespace
 
 Answer compute(const Trial& trial) {
   return answer_of([&] {
     const Scene scene = scene_of(trial);
     const Model model(scene, trial.choice);
     Observer silent;
-    return trial.is_dynamic() ? moving_answer(model) : equilibrium_answer(model, silent);
+    return compute_answer(model, silent);
   });
 }
 
