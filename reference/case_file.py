@@ -255,7 +255,9 @@ def _force(where, table):
     """A checked [[force]] table as a Force."""
     _check_keys(where, table, ("set", "total", "moment", "on", "times", "factors"))
     if table.get("on", "faces") != "faces":
-        raise InputError(f"{where}.on = {table['on']!r} must be 'faces': the reference knows no other")
+        raise InputError(
+            f"{where}.on = {table['on']!r} must be 'faces': the reference knows no other"
+        )
     factor = _final_factor(where, table)
     total, moment = (
         tuple(factor * v for v in _vector(where, table, key)) if key in table else (0.0, 0.0, 0.0)

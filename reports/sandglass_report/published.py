@@ -55,7 +55,10 @@ def _benchmark(title, methods, palette):
         _over_seconds(name, one, methods, palette),
     )
     legend = tuple((m, palette.colour(m), palette.mark(m)) for m in methods)
-    note = f"Published: {one.published:g} ({one.source}). Dotted: other programs."
+    note = (
+        f"Published: {one.published:g} ({one.source}). Dotted: other programs. Faint: not sound "
+        "here; values beyond the edges are drawn on them."
+    )
     return Benchmark(
         title,
         one.published,
@@ -85,27 +88,36 @@ def _over_meshes(name, one, methods, programs, palette):
     """The value over elements per side, of our methods and of other programs."""
     sign = 1 if one.published > 0 else -1
     top = 1.15 * abs(one.published)
+    sound = [
+        sign * tip.computed
+        for row in methods.values()
+        if not _why_failed(row)
+        for _, tip in _answers(row)
+    ]
+    bottom = max(min(sound, default=0) - 0.1 * abs(one.published), 0)
 
     def draw(axes):
         found = {mesh for _, row in (*methods.items(), *programs) for mesh in row} - {OTHER}
         axes.axhline(abs(one.published), color=MUTED, lw=0.9, ls="--")
         for method, row in methods.items():
-            points = [(mesh, min(sign * tip.computed, top)) for mesh, tip in _answers(row)]
-            _line(axes, points, "-", palette.colour(method), palette.mark(method))
+            points = [(m, _within(bottom, sign * t.computed, top)) for m, t in _answers(row)]
+            _line(axes, points, method, row, palette)
         labels = []
         for program, values in programs:
-            points = sorted((m, sign * v) for m, v in values.items() if m != OTHER)
+            known = sorted((m, sign * v) for m, v in values.items() if m != OTHER)
+            points = [(mesh, _within(bottom, value, top)) for mesh, value in known]
             if not points:
                 axes.axhline(sign * values[OTHER], color=TEXT, lw=0.7, ls=":")
                 points = [(max(found), sign * values[OTHER])]
-            _line(axes, points, ":", TEXT, "x")
+            axes.plot(*zip(*points), ":x", color=TEXT, lw=1.0, ms=4.5)
             labels.append((*points[len(points) // 2], program.program, TEXT))
         axes.set_xscale("log", base=2)
         ticks = [2**n for n in range(10) if min(found) <= 2**n <= max(found)]
         axes.xaxis.set_major_locator(FixedLocator(ticks))
         axes.xaxis.set_minor_locator(NullLocator())
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axes.set_ylim(0, top * 1.02)
+        margin = 0.02 * (top - bottom)
+        axes.set_ylim(bottom - margin, top + margin)
         axes.set_xlabel("elements per side")
         axes.set_ylabel(("" if sign > 0 else "−") + f"{one.component} of {one.set}")
         scales.label_points(axes, labels, size=7)
@@ -131,7 +143,7 @@ def _over_seconds(name, one, methods, palette):
 
     def draw(axes):
         for method, line in lines.items():
-            _line(axes, line, "-", palette.colour(method), palette.mark(method))
+            _line(axes, line, method, methods[method], palette)
         seconds, errors = zip(*points)
         scales.log_scale(axes.xaxis, (min(seconds) / 1.5, max(seconds) * 1.5))
         scales.percent_scale(axes.yaxis, (max(min(errors), 1e-4) / 1.5, max(errors) * 1.5))
@@ -143,6 +155,14 @@ def _over_seconds(name, one, methods, palette):
     return Panel(f"{name}.seconds", "Over seconds to rest", alt, draw, 420, 340, missing)
 
 
-def _line(axes, points, stroke, colour, mark):
+def _line(axes, points, method, row, palette):
+    """The line of a method, faint if it is not sound."""
+    faint = 0.35 if _why_failed(row) else 1.0
+    strokes = {"color": palette.colour(method), "marker": palette.mark(method), "alpha": faint}
     if points:
-        axes.plot(*zip(*points), stroke, color=colour, marker=mark, lw=1.0, ms=4.5, mew=0.8)
+        axes.plot(*zip(*points), **strokes, lw=1.0, ms=4.5, mew=0)
+
+
+def _within(low, value, high):
+    """A value, or the end of the interval that it lies beyond."""
+    return min(max(low, value), high)
