@@ -334,7 +334,11 @@ def _rotation(where, table):
 
 def _force(where, table, moving):
     """A checked [[force]] table as a Force."""
-    _check_keys(where, table, ("set", "total", "moment", *CURVE))
+    _check_keys(where, table, ("set", "total", "moment", "on", *CURVE))
+    if table.get("on", "faces") != "faces":
+        raise InputError(
+            f"{where}.on = {table['on']!r} must be 'faces': the reference knows no other"
+        )
     factor, curve = _factor_and_curve(where, table, moving)
     total, moment = (
         tuple(factor * v for v in _vector(where, table, key)) if key in table else (0.0, 0.0, 0.0)

@@ -190,9 +190,16 @@ TEST(CaseFile, hash_follows_what_decides_the_answer_and_nothing_else) {
   EXPECT_NE(forced, once);
   EXPECT_NE(hash(good + "[[force]]\nset = \"top\"\ntotal = [0.0, 0.0, 2.0]\n"), forced);
   EXPECT_NE(hash(good + "[[force]]\nset = \"top\"\nmoment = [0.0, 0.0, 1.0]\n"), forced);
+  const std::string on = "[[force]]\nset = \"top\"\ntotal = [0.0, 0.0, 1.0]\non = ";
+  EXPECT_EQ(hash(good + on + "\"faces\"\n"), forced);
+  EXPECT_NE(hash(good + on + "\"nodes\"\n"), forced);
   EXPECT_EQ(hash(good + "[[published]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n"),
             once);
 }
+
+const std::string published =
+    "[[published]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n";
+const std::string program = "[[published.programs]]\nprogram = \"b\"\nsource = \"c\"\n";
 
 struct BadCase {
   const char* name;
@@ -346,6 +353,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"infinite_force",
                 good + "[[force]]\nset = \"top\"\ntotal = [0.0, inf, 1.0]\n",
                 {"force.total = inf must be in (-inf, inf)"}},
+        BadCase{"force_on_edges",
+                good + "[[force]]\nset = \"top\"\ntotal = [0.0, 0.0, 1.0]\non = \"edges\"\n",
+                {"force.on = 'edges' is not known", "faces, nodes"}},
+        BadCase{"moment_on_nodes",
+                good + "[[force]]\nset = \"top\"\nmoment = [0.0, 0.0, 1.0]\non = \"nodes\"\n",
+                {"force.moment acts on faces"}},
         BadCase{"published_value_of_nothing",
                 good + "[[published]]\nset = \"tip\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n",
                 {"published.set = 'tip' is not a node set"}},
@@ -355,6 +368,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"published_component",
                 good + "[[published]]\nset = \"top\"\ncomponent = \"w\"\nvalue = 1.0\nsource = \"a\"\n",
                 {"published.component = 'w' is not known", "x, y, z, around-x"}},
+        BadCase{"program_without_a_source",
+                good + published + "[[published.programs]]\nprogram = \"b\"\nvalues = [1.0]\n",
+                {"published.programs.source is missing"}},
+        BadCase{"program_with_an_unknown_key",
+                good + published + program + "values = [1.0]\nmesh = [4]\n",
+                {"published.programs.mesh is not a key of this table"}},
+        BadCase{"program_with_a_value_too_few",
+                good + published + program + "elements = [4, 8]\nvalues = [1.0]\n",
+                {"published.programs.values has 1 numbers; 2 expected"}},
+        BadCase{"program_with_no_mesh_and_two_values",
+                good + published + program + "values = [1.0, 2.0]\n",
+                {"published.programs.values has 2 numbers; 1 expected"}},
         BadCase{"figure_of_another_reference",
                 with("reference = \"golden\"", "reference = \"published\""),
                 {"expect.figure = 'rms_relative_error' is not known", "relative_error"}},

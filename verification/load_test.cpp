@@ -288,6 +288,22 @@ TEST(Load, unit_of_errors_without_imposed_displacement_is_the_references_own) {
   EXPECT_EQ(displacement_unit(scene, reference), 0.02);
 }
 
+/// On nodes, a set needs no face, and its three nodes carry a third each; the edge of a face would carry a
+/// quarter, a half and a quarter.
+TEST(Load, force_on_nodes_is_shared_equally) {
+  Case description = plain_case(sample_law<NeoHookean>(0.3));
+  const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});
+  const NodeSets sets{
+      {"edge", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.1 && X[0] == 0.0; })}};
+  description.forces = {{.set = "edge", .total = {0.3, 0.0, -0.6}, .on_nodes = true}};
+  const auto loads = make_scene(description, mesh, sets).loads;
+  ASSERT_EQ(loads.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(loads[k].node, sets.at("edge")[k]);
+    expect_near(loads[k].force, {0.1, 0.0, -0.2}, 1e-16);
+  }
+}
+
 TEST(Load, set_without_faces_is_refused) {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "comparison/published_table.hpp"
 #include "comparison/verdict_json.hpp"
 #include "support/random_hexahedra.hpp"
@@ -119,6 +121,51 @@ TEST(Published, tables_have_a_row_for_each_method_and_a_column_for_each_value) {
   EXPECT_EQ(row("tl-full", "published"), (Words{"tl-full", "1.0000", "-1.2e+02", "0.2000", "0.5000"}));
   EXPECT_EQ(row("tl-none", "over truth"), (Words{"tl-none", "1.1250", "2.0000", "failed", "failed"}));
   EXPECT_EQ(text.find("ul-full"), std::string::npos);
+}
+
+/// A verdict of a beam with 4 elements, of which two other programs are known.
+Verdict beside_programs(const std::string& method, const std::string& elements, const Vector& move) {
+  Verdict v = verdict(method, "thin", move);
+  v.variants.push_back(elements);
+  v.published[1].published.programs = {{"Other, Q1", {2, 16}, {-0.15, -0.19}, "their manual"},
+                                       {"Third", {}, {-0.2001}, "a thesis"}};
+  return v;
+}
+
+/// A column for each mesh, in order of the elements, whoever has it; the value without programs has no such
+/// table.
+TEST(Published, values_of_other_programs_stand_in_rows_below_ours) {
+  const std::string text = published_tables(
+      {beside_programs("tl-full", "16", {0.5, 0, -0.18}), beside_programs("tl-full", "4", {0.5, 0, -0.17})});
+  const std::string title = "bar thin: z of top, published -0.2 (a book)\n";
+  ASSERT_TRUE(contains(text, title));
+  EXPECT_FALSE(contains(text, "x of top"));
+  std::istringstream lines(text.substr(text.find(title) + title.size()));
+  const auto words = [&] {
+    std::string line;
+    std::getline(lines, line);
+    std::istringstream stream(line);
+    return std::vector<std::string>(std::istream_iterator<std::string>(stream), {});
+  };
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(words(), (Words{"2", "4", "16", "other"}));
+  EXPECT_EQ(words(), (Words{"tl-full", "-0.17", "-0.18"}));
+  EXPECT_EQ(words(), (Words{"Other,", "Q1", "-0.15", "-0.19"}));
+  EXPECT_EQ(words(), (Words{"Third", "-0.2001"}));
+  EXPECT_EQ(words(), (Words{"Other,", "Q1:", "their", "manual"}));
+}
+
+TEST(Published, json_has_every_value_of_other_programs) {
+  const std::string text = to_json({}, {beside_programs("tl-full", "4", {0.5, 0, -0.17})}, {});
+  const auto document = nlohmann::json::parse(text);
+  const auto& values = document["published"][0]["values"];
+  EXPECT_EQ(values[0]["programs"], nlohmann::json::array());
+  const auto& first = values[1]["programs"][0];
+  EXPECT_EQ(first["program"], "Other, Q1");
+  EXPECT_EQ(first["elements"], (std::vector<int>{2, 16}));
+  EXPECT_EQ(first["values"], (std::vector<double>{-0.15, -0.19}));
+  EXPECT_EQ(first["source"], "their manual");
+  EXPECT_EQ(values[1]["programs"][1]["elements"], nlohmann::json::array());
 }
 
 TEST(Published, json_keeps_such_runs_apart_with_every_value) {

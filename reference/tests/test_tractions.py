@@ -147,6 +147,7 @@ def test_variants(tmp_path):
         ("moment = [1, 0, 0]", "moment = [1, 0]", "moment"),
         ("moment = [1, 0, 0]", "moments = [1, 0, 0]", "moments"),
         ('set = "tip", ', "", "set"),
+        ("moment = [1, 0, 0]", 'total = [1, 0, 0], on = "nodes"', "on = 'nodes' must be 'faces'"),
     ],
 )
 def test_wrong_force(tmp_path, old, new, words):

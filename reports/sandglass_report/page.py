@@ -9,7 +9,7 @@ import markupsafe
 
 from common.files import write_whole, writing
 from sandglass_report import bending, bodies, interactive, kappa, lines, maps, measured, paper
-from sandglass_report import plates, provenance, replication, speed, style, tips, viewer
+from sandglass_report import plates, provenance, published, replication, speed, style, tips, viewer
 from sandglass_report.points import make_points
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -21,6 +21,7 @@ ANCHORS = {"chart": "chart-head"} | {
         "paper",
         "shapes",
         "bending",
+        "published",
         "growth",
         "maps",
         "kappa",
@@ -66,6 +67,7 @@ def write_report(inputs, page):
     palette = style.Palette(inputs.verdicts.methods)
     sections = tuple(_paper_section(e, inputs.subjects, palette) for e in paper.EXPERIMENTS)
     bent = bending.bending_plates(inputs.verdicts.tips, palette)
+    others = published.benchmarks(inputs.verdicts.tips, palette)
     html = (
         _environment()
         .get_template("page.html.j2")
@@ -74,6 +76,7 @@ def write_report(inputs, page):
             **_of_measured(inputs, palette),
             sections=sections,
             bending=bent,
+            published=others,
             growth=inputs.growth,
             second=inputs.second,
             evidence=inputs.evidence,
@@ -83,8 +86,8 @@ def write_report(inputs, page):
     folder = page.parent / "figures"
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        grown = (inputs.growth,) if inputs.growth else ()
-        for plate in (*_static_plates(inputs, palette, sections), *bent, *grown):
+        more = [*bent, *(one.plate for one in others), *filter(None, [inputs.growth])]
+        for plate in (*_static_plates(inputs, palette, sections), *more):
             plates.save_plate(plate, folder)
     write_whole(page, html)
     return len(html.encode())

@@ -20,7 +20,11 @@ class TipTable:
 
 
 def tip_tables(tips):
-    """The tables of all families, in the order of the file; relative to the truth if available."""
+    """The tables of all families, in the order of the file; relative to the truth if available.
+
+    Families of which values of other programs are known have tables of their own (published.py).
+    """
+    tips = [tip for tip in tips if not tip.programs]
     tables = []
     for family in dict.fromkeys(tip.family for tip in tips):
         own = [tip for tip in tips if tip.family == family]

@@ -56,15 +56,31 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Program:
+    """What another program finds: a value for each number of elements per side, or one alone."""
+
+    program: str
+    elements: list
+    values: list
+    source: str
+
+
+@dataclass(frozen=True)
 class Tip:
     """One method on one variant of a case with a published value; ratios are None without one."""
 
     family: str
-    variant: str
+    variant: str  # the names on all axes, the last one is that of the mesh
     method: str
     ok: bool
     finding: str
     source: str
+    set: str
+    component: str
+    published: float
+    computed: float | None
+    programs: tuple
+    seconds: float  # to rest
     to_published: float | None = key("ratio")
     to_truth: float | None = key("ratio_to_truth")
 
@@ -128,8 +144,12 @@ def _tips(where, record):
         "ok": entry(where, record, "status", str) == "ok",
         "finding": entry(where, record, "finding", str, none_allowed=True) or "",
     }
-    values = [value for _, value in entries(where, record, "values")]
-    return [as_dataclass(Tip, where, record | value, **known) for value in values]
+    known["seconds"] = entry(where, record, "wall_seconds", NUMBER)
+    tips = []
+    for place, value in entries(where, record, "values"):
+        programs = tuple(as_dataclass(Program, *p) for p in entries(place, value, "programs"))
+        tips.append(as_dataclass(Tip, place, record | value, programs=programs, **known))
+    return tips
 
 
 def _limit(where, record):

@@ -135,10 +135,13 @@ class DataSet:
         }
 
     @staticmethod
-    def tip(method, ratio, variant="short", status="ok", to_truth=None):
-        """A record of a run with a published value."""
-        value = {"source": "a book", "ratio": ratio, "ratio_to_truth": to_truth}
+    def tip(method, ratio, variant="short", status="ok", to_truth=None, programs=()):
+        """A record of a run with a published value, -2, of which other programs may be known."""
+        value = {"source": "a book", "ratio": ratio, "ratio_to_truth": to_truth, "published": -2.0}
+        value |= {"set": "tip", "component": "z", "programs": list(programs)}
+        value["computed"] = None if ratio is None else -2.0 * ratio
         record = {"method": method, "kappa": None, "kappa_is_auto": False, "status": status}
+        record["wall_seconds"] = 0.5
         return record | {
             "finding": None,
             "family": "beam",

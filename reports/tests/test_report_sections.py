@@ -100,6 +100,54 @@ def test_a_failed_run_has_no_place_on_a_curve(data):
     assert "tl-none: 1.20 at 0.499" in data.make(figures=True)
 
 
+OTHERS = (
+    {"program": "Other, Q1", "elements": [2, 16], "values": [-1.5, -1.9], "source": "a manual"},
+    {"program": "Third", "elements": [], "values": [-2.01], "source": "a thesis"},
+)
+
+
+def published(data):
+    """Published records of two methods on two meshes, one of which locks, with other programs."""
+    ratios = {("tl-none", "4"): 0.9, ("tl-none", "16"): 0.99}
+    ratios |= {("tl-full", "4"): 0.25, ("tl-full", "16"): 0.5}
+    for (method, mesh), ratio in ratios.items():
+        data.published.append(data.tip(method, ratio, mesh, programs=OTHERS))
+    data.write_verdicts()
+
+
+def test_published_values_stand_beside_ours_in_order_of_the_meshes(data):
+    published(data)
+    page = section(data.make(figures=True), "published")
+    assert "beam: z of tip" in page and "published: -2, a book" in page
+    heads = re.findall(r'<th class="number">(.*?)</th>', page)
+    assert heads == ["2", "4", "16", "other"]
+    rows = re.findall(r"<tr><td>.*?</tr>", page, re.S)
+    texts = [re.sub(r"<.*?>", " ", row).replace("●", "").split() for row in rows]
+    assert texts[0] == ["Other,", "Q1", "-1.5", "-1.9"]
+    assert texts[1] == ["Third", "-2.01"]
+    assert texts[2][-3:] == ["tl-none", "-1.8", "-1.98"]
+    assert texts[3][-3:] == ["tl-full", "-0.5", "-1"]
+    assert "a manual" in page and "a thesis" in page
+    assert (data.page.parent / "figures/published.beam--z-of-tip.svg").exists()
+
+
+def test_a_published_benchmark_names_the_methods_that_fail(data):
+    published(data)
+    words = section(data.make(), "published")
+    unsound = re.search(r"Not sound here:.*?</p>", words, re.S)[0]
+    assert "tl-full" in unsound and "50 %" in unsound and "tl-none" not in unsound
+    assert "tl-full: -0.5 at 4, -1 at 16" in words
+    data.published[1] |= {"status": "failed: not at rest"}
+    data.write_verdicts()
+    unsound = re.search(r"Not sound here:.*?</p>", section(data.make(), "published"), re.S)[0]
+    assert "tl-none" in unsound and "no answer" in unsound
+
+
+def test_published_benchmarks_are_not_among_the_tips(data):
+    published(data)
+    assert "No run had a published value" in section(data.make(), "bending")
+
+
 def maps(finding="locking"):
     """A document of sandglass stability with one map of two cells."""
     axis = {"name": "load", "meaning": "what it is", "values": [1.0, 2.0]}

@@ -303,6 +303,9 @@ ImposedForce read_force(TableReader table) {
   if (!total && !moment) table.fail("total", "or moment must be given, or both");
   force.total = total.value_or(Vector{});
   force.moment = moment.value_or(Vector{});
+  force.on_nodes =
+      table.optional<std::string>("on") && table.required_choice("on", {"faces", "nodes"}) == "nodes";
+  if (force.on_nodes && moment) table.fail("moment", "acts on faces: it cannot be on = 'nodes'");
   force.curve = read_curve(table);
   table.finish();
   return force;

@@ -91,7 +91,8 @@ constexpr std::string_view sets_and_loads = R"(
   the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis
   (default: the mean of the set's nodes), displacement = [x, y, z] in m, added (default: none)
 [[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the faces:
-  a dead load on the boundary faces within the set
+  a dead load on the boundary faces within the set; on = "nodes" (default: "faces"): each node of the set has
+  an equal share of the total, without a moment
 [[pressure]] set = NAME, value in Pa: pushes on the boundary faces within the set, and follows them
 [[gravity]] value = [x, y, z] in m/s^2: the weight of the body
 [[support]] set = NAME, stiffness in Pa/m, damping in Pa s/m, only_normal (default: false): springs and

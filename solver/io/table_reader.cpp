@@ -126,6 +126,7 @@ template std::array<int, 3> TableReader::convert<std::array<int, 3>>(const toml:
                                                                      const std::string&) const;
 template std::vector<double> TableReader::convert<std::vector<double>>(const toml::node&,
                                                                        const std::string&) const;
+template std::vector<int> TableReader::convert<std::vector<int>>(const toml::node&, const std::string&) const;
 
 bool TableReader::holds_number(const std::string& key) {
   const toml::node* node = find(key);

@@ -6,13 +6,15 @@
 #include "mesh/curved_beam.hpp"
 #include "mesh/cylinder.hpp"
 #include "mesh/ellipsoid.hpp"
+#include "mesh/spherical_shell.hpp"
 #include "mesh/tapered_panel.hpp"
 
 namespace sandglass {
 
 /// The list of mesh generators. A new one is a header, its source and one entry here. Each has name, summary,
 /// parameters() and build(), which makes the mesh of its parameters.
-using Generators = TypeList<BoxMesh, EllipsoidMesh, CylinderMesh, BeamMesh, CurvedBeamMesh, TaperedPanelMesh>;
+using Generators = TypeList<BoxMesh, EllipsoidMesh, CylinderMesh, BeamMesh, CurvedBeamMesh, TaperedPanelMesh,
+                            SphericalShellMesh>;
 
 using AnyGenerator = VariantOf<Generators>;
 

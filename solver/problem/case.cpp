@@ -98,6 +98,7 @@ std::string case_hash(const Case& description) {
   }
   for (const auto& force : description.forces) {
     text += fmt::format("force({}:{}:{})", force.set, force.total, force.moment) + described(force.curve);
+    if (force.on_nodes) text += "on nodes";
   }
   for (const auto& pressure : description.pressures) {
     text += fmt::format("pressure({}:{})", pressure.set, pressure.value) + described(pressure.curve);

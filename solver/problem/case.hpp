@@ -46,11 +46,12 @@ struct ImposedRotation {
   Vector displacement{};         ///< final displacement in addition to the rotation, m
 };
 
-/// A dead load on the boundary faces within a node set.
+/// A dead load on the boundary faces within a node set, or on its nodes.
 struct ImposedForce {
   std::string set;
-  Vector total{};   ///< sum at the factor one, N
-  Vector moment{};  ///< moment about the centroid of the faces, N m
+  Vector total{};         ///< sum at the factor one, N
+  Vector moment{};        ///< moment about the centroid of the faces, N m
+  bool on_nodes = false;  ///< each node has an equal share of the total; else it is spread over the faces
   LoadCurve curve = {};
 };
 

@@ -173,7 +173,13 @@ void make_loads(Scene& scene) {
     Vector& sum = sums[{curve, node}];
     for (std::size_t i = 0; i < 3; ++i) sum[i] += factor * force[i];
   };
-  for (const auto& [name, total, moment, curve] : description.forces) {
+  for (const auto& [name, total, moment, on_nodes, curve] : description.forces) {
+    if (on_nodes) {
+      const auto& nodes = node_set(description, scene.sets, "force.set", name);
+      for (const int node : nodes)
+        add(number_of(curve, scene.curves), node, total, 1.0 / static_cast<double>(nodes.size()));
+      continue;
+    }
     const auto faces = loaded_faces(scene, "force.set", name);
     const std::size_t number = number_of(curve, scene.curves);
     for (const auto& load : consistent_loads(scene.mesh.points, faces, total, moment))

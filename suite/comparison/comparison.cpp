@@ -16,6 +16,22 @@ std::vector<std::string> directions() {
   return {"x", "y", "z", "around-x", "around-y", "around-z"};
 }
 
+ProgramValues read_program(TableReader table) {
+  ProgramValues found;
+  found.program = table.required<std::string>("program");
+  found.values = table.required<std::vector<double>>("values", Range::any());
+  if (const auto elements = table.optional<std::vector<int>>("elements", Range::at_least(1)))
+    found.elements = *elements;
+  const std::size_t expected = found.elements.empty() ? 1 : found.elements.size();
+  if (found.values.size() != expected) {
+    table.fail("values", fmt::format("has {} numbers; {} expected, one for each of `elements`, or one alone",
+                                     found.values.size(), expected));
+  }
+  found.source = table.required<std::string>("source");
+  table.finish();
+  return found;
+}
+
 PublishedValue read_published(TableReader table) {
   PublishedValue published;
   published.set = table.required<std::string>("set");
@@ -24,6 +40,7 @@ PublishedValue read_published(TableReader table) {
   if (published.value == 0.0)
     table.fail("value", "= 0 must not be zero: results are reported as shares of it");
   published.source = table.required<std::string>("source");
+  for (const auto& program : table.tables("programs")) published.programs.push_back(read_program(program));
   table.finish();
   return published;
 }
@@ -106,6 +123,8 @@ std::string describe_comparison_keys() {
 [comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
 [[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
   rotation of the set, source: a text
+[[published.programs]] program: its name and element, values = [numbers] of the same motion, elements = [per
+  side of the mesh of each, as variants are named] (left out: one value, converged or of a mesh that the source does not tell), source
 [[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth" or "published"),
   figure, below or above, reason
 )";

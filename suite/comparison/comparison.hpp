@@ -12,12 +12,21 @@ namespace sandglass {
 /// The method of the golden's element: eight points and one pressure. Every other method is compared with it.
 inline constexpr std::string_view golden_method = "tl-mean-dilatation";
 
+/// What another program finds, on one mesh or on several.
+struct ProgramValues {
+  std::string program;         ///< and its element
+  std::vector<int> elements;   ///< per side of the mesh of each value, as variants are named; empty: unknown
+  std::vector<double> values;  ///< m or rad
+  std::string source;
+};
+
 /// A published motion of a node set.
 struct PublishedValue {
   std::string set;
   std::string component;  ///< "x", "y", "z": mean displacement; "around-x", ...: mean rotation
   double value = 0.0;     ///< m or rad; not zero
   std::string source;     ///< where it was published
+  std::vector<ProgramValues> programs = {};
 };
 
 /// A line of nodes along which displacements are plotted and compared, as in the paper's figures 2 and 4.

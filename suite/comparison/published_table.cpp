@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "comparison/program_table.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -19,11 +21,6 @@ struct Column {
 };
 
 using Ratio = std::optional<double> (PublishedResult::*)() const;
-
-std::string label(const Verdict& verdict) {
-  if (!verdict.kappa || verdict.kappa_is_auto) return verdict.method;
-  return fmt::format("{} {:.4g}", verdict.method, *verdict.kappa);
-}
 
 std::vector<Column> columns_of(const std::vector<const Verdict*>& family) {
   std::vector<Column> columns;
@@ -71,14 +68,14 @@ std::string table(const std::vector<const Verdict*>& family, const std::string& 
   std::string text = fmt::format("\n{}\n{}", title, header(columns, width));
   std::vector<std::string> rows;
   for (const auto* verdict : family) {
-    const std::string name = label(*verdict);
+    const std::string name = row_label(*verdict);
     if (std::find(rows.begin(), rows.end(), name) == rows.end()) rows.push_back(name);
   }
   for (const auto& row : rows) {
     text += fmt::format("{:<{}}", row, first_width);
     for (const auto& column : columns) {
       const auto found = std::find_if(family.begin(), family.end(), [&](const Verdict* v) {
-        return v->case_name == column.verdict->case_name && label(*v) == row;
+        return v->case_name == column.verdict->case_name && row_label(*v) == row;
       });
       text += fmt::format("{:>{}}", found == family.end() ? "" : cell(**found, column.value, ratio), width);
     }
@@ -111,6 +108,7 @@ std::string published_tables(const std::vector<Verdict>& verdicts) {
     for (const auto& verdict : verdicts) {
       if (verdict.family == name && !verdict.published.empty()) family.push_back(&verdict);
     }
+    text += program_tables(family);
     text +=
         table(family, fmt::format("{}: computed over published ({})", name, sources_of(columns_of(family))),
               &PublishedResult::ratio);

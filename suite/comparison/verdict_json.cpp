@@ -54,8 +54,17 @@ Json to_record(const Verdict& verdict) {
   return record;
 }
 
+Json to_record(const ProgramValues& found) {
+  return {{"program", found.program},
+          {"elements", found.elements},
+          {"values", found.values},
+          {"source", found.source}};
+}
+
 Json to_record(const PublishedResult& result) {
   const auto& published = result.published;
+  Json programs = Json::array();
+  for (const auto& program : published.programs) programs.push_back(to_record(program));
   return {{"set", published.set},
           {"component", published.component},
           {"source", published.source},
@@ -63,7 +72,8 @@ Json to_record(const PublishedResult& result) {
           {"computed", or_null(result.computed)},
           {"ratio", or_null(result.ratio())},
           {"truth", or_null(result.truth)},
-          {"ratio_to_truth", or_null(result.ratio_to_truth())}};
+          {"ratio_to_truth", or_null(result.ratio_to_truth())},
+          {"programs", std::move(programs)}};
 }
 
 Json to_record(const LimitCheck& check) {
