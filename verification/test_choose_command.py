@@ -226,10 +226,18 @@ def test_does_not_write_over_the_case(block):
     assert block.read_text() == BLOCK
 
 
-def test_dynamic_cases_are_refused():
-    outcome = sandglass("choose", "bar-wave")
-    assert outcome.returncode == 2
-    assert "quasi-static" in outcome.stderr
+def test_a_motion_is_chosen_for_and_the_chosen_case_runs(tmp_path):
+    """Every rung that was tried has the time of its run beside the predicted one."""
+    case, chosen = copied("loaded-block", tmp_path), tmp_path / "chosen.toml"
+    names = ("tl-perturbation", "tl-stabilization-matrix", "linear-condensed")
+    outcome, document = choose(case, "--methods", *names, "-o", chosen)
+    assert outcome.returncode == 0, outcome.stderr
+    best = document["rungs"][document["chosen"]]
+    assert best["method"] == "tl-stabilization-matrix" and best["error"] < 0.01
+    for rung in document["rungs"]:
+        moved = rung["run_seconds_per_simulated_second"]
+        assert (moved is None) == (rung["outcome"] == "not tried" or "motion" in rung["reason"])
+    assert sandglass("run", chosen).returncode == 0
 
 
 @pytest.mark.parametrize(
