@@ -34,7 +34,7 @@ class ObservedLaw {
   template <class H> auto piola(const H& h) const { return observed([&] { return law_.piola(h); }); }
   template <class T, class H, class C> auto weighted_piola(const T& V, const H& h, const C& c, const T& p) const { return observed([&] { return law_.weighted_piola(V, h, c, p); }); }
   template <class T, class H, class C> auto weighted_kirchhoff(const T& V, const H& h, const C& c, const T& p) const { return observed([&] { return law_.weighted_kirchhoff(V, h, c, p); }); }
-  template <class T> auto small_strain_stress(const Tensor<T>& e) const { return observed([&] { return sandglass::small_strain_stress(law_, e); }); }
+  template <class T> Tensor<T> small_strain_stress(const Tensor<T>& e) const { return observed([&] { return sandglass::small_strain_stress(law_, e); }); }
   template <class T> requires TakesAllPoints<Law, T> void weighted_piola(std::size_t n, const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP) const { observed([&] { law_.weighted_piola(n, at, H, VP); return 0; }); }
   template <class T> auto pressure(const T& j) const { return observed([&] { return law_.pressure(j); }); }
   // clang-format on
