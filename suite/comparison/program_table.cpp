@@ -63,7 +63,9 @@ std::string mesh_of(const Verdict& verdict) {
 std::string subject_of(const Verdict& verdict) {
   const auto& variants = verdict.variants;
   const auto end = variants.empty() ? variants.end() : variants.end() - 1;
-  return fmt::format("{} {}", verdict.family, fmt::join(variants.begin(), end, " "));
+  std::vector<std::string> names{verdict.family};
+  names.insert(names.end(), variants.begin(), end);
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
 /// The table of the published value with number `n`, of verdicts that differ in mesh and method.
