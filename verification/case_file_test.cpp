@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"fibres_without_a_direction",
                 with("law = \"neo-hookean\"",
                      "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibre_direction = [0, 0.0, 0]"),
-                {"bad.toml:15: material.fibre_direction", "[0, 0, 0]", "length must not be zero"}},
+                {"bad.toml:14: material.fibre_direction", "[0, 0, 0]", "length must not be zero"}},
         BadCase{"fibres_missing",
                 with("law = \"neo-hookean\"", "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0"),
                 {"material.fibre_direction or fibres must be given", "fibre-neo-hookean"}},

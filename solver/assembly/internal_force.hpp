@@ -72,10 +72,11 @@ class InternalForce {
   /// The bits do not depend on the number of threads.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
-  /// Sets `force` to the nodal forces (N) of pressures p - lambda (J - 1) (Pa), one for each element in the
-  /// numbering of the mesh, J its volume ratio and lambda (Pa) that of its material, and `defect` to
-  /// V (J - 1 - p / lambda) (m^3). Added to the internal forces, they replace the part of each element's own
-  /// pressure that belongs to lambda by p.
+  /// Sets `force` to the nodal forces (N) of pressures p - q(J) (Pa), one for each element in the numbering
+  /// of the mesh, J its volume ratio, q the pressure of its material less (K - lambda) (J - 1), which is
+  /// lambda (J - 1) unless its volumetric part is another, and `defect` to V (q(J) - p) / lambda (m^3). Added
+  /// to the internal forces, they replace the part of each element's own pressure that belongs to lambda by
+  /// p.
   virtual void replace_pressures(const State<Real>& state, std::span<const Real> p,
                                  std::span<const double> lambdas, Rows<Real>& force,
                                  std::span<Real> defect) const = 0;

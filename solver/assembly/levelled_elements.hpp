@@ -435,12 +435,16 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
           dilatation = Kernel::Kinematics::dilatation(motion, body);
         }
         const Number V = Kernel::Kinematics::volume(motion, body);
-        const Number error = V * (dilatation - compliance * own);
+        Number beyond(Real(0));
+        if constexpr (!is_linear<Method>) {
+          beyond = setups_[group.material].law.pressure_beyond_quadratic(dilatation);
+        }
+        const Number error = V * (dilatation + compliance * (beyond - own));
         for (int lane = 0; lane < width; ++lane) {
           if (numbers[lane] >= 0)
             defect[static_cast<std::size_t>(numbers[lane])] = Lanes<Number>::get(error, lane);
         }
-        const GivenPressure<Number> law{own - stiffness * dilatation};
+        const GivenPressure<Number> law{(own - beyond) - stiffness * dilatation};
         Modes<Number> f;
         if constexpr (is_linear<Method>) {
           f = OnePoint::body_forces((V * law.p) * identity<Number>(), body);

@@ -115,7 +115,11 @@ FibreRule read_fibres(TableReader& table, const AnyLaw& law) {
   }
   FibreRule rule;
   if (const auto file = field->optional<std::string>("file")) {
-    rule = read_fibre_file(field->file().parent_path() / *file);
+    try {
+      rule = read_fibre_file(field->file().parent_path() / *file);
+    } catch (const InputError& error) {
+      field->fail("file", fmt::format("= '{}' is not usable: {}", *file, error.what()));
+    }
   } else {
     rule = read_helix(*field);
   }

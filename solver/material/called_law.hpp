@@ -47,6 +47,12 @@ class CalledLaw : public SumOfParts<CalledLaw> {
     if (quadratic()) return T(bulk_modulus_) * J_minus_one;
     return called_volume(J_minus_one).slope;
   }
+  /// What the pressure has beyond K (J - 1), Pa.
+  template <class T>
+  T pressure_beyond_quadratic(const T& J_minus_one) const {
+    if (quadratic()) return T(0);
+    return called_volume(J_minus_one).slope - T(bulk_modulus_) * J_minus_one;
+  }
   template <class T>
   T bulk_tangent(const T& J_minus_one) const {
     if (quadratic()) return T(bulk_modulus_);

@@ -45,7 +45,7 @@ double parent_distance(const Vector& xi) {
 /// outside. Positions are relative to X, so that a body far from the origin is not lost in roundoff.
 std::optional<Vector> parent_point(NodalVectors<double> nodes, const Vector& X) {
   constexpr int most_steps = 25;
-  constexpr double converged = 1e-13, far_away = 3.0;
+  constexpr double converged = 1e-13, far_away = 10.0;
   for (int I = 0; I < 8; ++I) {
     for (int i = 0; i < 3; ++i) nodes(I, i) -= X[static_cast<std::size_t>(i)];
   }

@@ -46,6 +46,7 @@ inline double sample_value(std::string_view name, std::string_view unit, const R
   if (name == "a_f") return mu;
   if (name == "a_s") return mu / 2.0;
   if (name == "a_fs") return mu / 4.0;
+  if (name == "b" || name == "b_f" || name == "b_s" || name == "b_fs") return 0.1;
   // Brain tissue: Miller and Chinzei 2002, J. Biomech. 35:483.
   if (name == "relaxation_1") return 0.450;
   if (name == "time_1") return 0.50;
