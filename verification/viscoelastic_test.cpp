@@ -154,7 +154,13 @@ TYPED_TEST(ViscoelasticTest, converges_with_second_order) {
     error[level] = largest_entry(P - p * cofactor(identity<double>() + H) - exact);
   }
   EXPECT_LT(error[0], 1e-2 * law.shear_modulus());
-  for (std::size_t level = 0; level < 2; ++level) EXPECT_NEAR(error[level] / error[level + 1], 4.0, 0.3);
+  // The path passes the place where fibres slacken: that step's error is dt^2 times a share that depends on
+  // where within the step the stress has its kink.
+  constexpr double width = requires {
+    TypeParam::slackens;
+  }
+  ? 1.0 : 0.3;
+  for (std::size_t level = 0; level < 2; ++level) EXPECT_NEAR(error[level] / error[level + 1], 4.0, width);
 }
 
 /// A body that turns, each step another way, while it deforms and relaxes: its stress turns with it.
