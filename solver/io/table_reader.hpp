@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parameter.hpp"
+#include "base/type_list.hpp"
 #include "io/toml.hpp"
 
 namespace sandglass {
@@ -69,6 +70,18 @@ class TableReader {
 
   /// All keys of this table; reading them counts as asking for them.
   std::vector<std::string> keys() const;
+
+  /// The entry of a list of types that a key names, with its parameters read, if it has any.
+  template <class List>
+  VariantOf<List> required_listed(const std::string& key) {
+    VariantOf<List> chosen;
+    with_named_type(List{}, required_choice(key, names_of(List{})), [&]<class Type>() {
+      Type value{};
+      if constexpr (requires { Type::parameters(); }) parameters(value);
+      chosen = value;
+    });
+    return chosen;
+  }
 
   /// Reads all declared parameters of an aggregate, each within its range, and asks the aggregate whether a
   /// rule between them is broken.

@@ -44,6 +44,13 @@ using NodeSets = std::map<std::string, std::vector<int>>;
 /// Named sets of elements, each sorted.
 using ElementSets = std::map<std::string, std::vector<int>>;
 
+/// The names of sets, in order.
+inline std::vector<std::string> names_in(const std::map<std::string, std::vector<int>>& sets) {
+  std::vector<std::string> names;
+  for (const auto& [name, members] : sets) names.push_back(name);
+  return names;
+}
+
 /// The rows of a nodal field at the nodes of one element.
 inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& cell) {
   NodalVectors<double> rows;

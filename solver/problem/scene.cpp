@@ -14,16 +14,11 @@
 #include "mesh/quality.hpp"
 #include "problem/initial_motion.hpp"
 #include "problem/masses.hpp"
+#include "problem/scene_materials.hpp"
 
 namespace sandglass {
 
 namespace {
-
-std::vector<std::string> names(const std::map<std::string, std::vector<int>>& sets) {
-  std::vector<std::string> known;
-  for (const auto& [name, members] : sets) known.push_back(name);
-  return known;
-}
 
 /// The mean position of some nodes, m.
 Vector mean_position(const NodalField& points, const std::vector<int>& nodes) {
@@ -204,93 +199,6 @@ void make_loads(Scene& scene) {
   }
 }
 
-/// The elements of a set that a material names. Throws InputError if there is no such set or no element in
-/// it.
-const std::vector<int>& element_set(const Scene& scene, const std::string& name) {
-  const std::string file = scene.description.file.string();
-  const auto found = scene.element_sets.find(name);
-  if (found == scene.element_sets.end()) {
-    const auto known = names(scene.element_sets);
-    throw InputError(fmt::format(
-        "{}: materials.elements = '{}' is not an element set of this case{}", file, name,
-        known.empty()
-            ? ", which has none: [element_sets] gives rules for them, a mesh from a file brings its "
-              "physical volumes (Gmsh), ELSETs (Abaqus) or cell arrays (VTK)"
-            : "; " + suggestion(name, known)));
-  }
-  if (found->second.empty()) {
-    throw InputError(
-        fmt::format("{}: materials.elements = '{}' has no element in the mesh; a material needs at "
-                    "least one",
-                    file, name));
-  }
-  return found->second;
-}
-
-/// The material of each element. Throws InputError for an element that has none or two.
-Materials assigned_materials(const Scene& scene) {
-  const auto& regions = scene.description.materials;
-  Materials materials;
-  for (const auto& region : regions) materials.list.push_back(region);
-  if (regions.size() == 1 && regions.front().elements.empty()) return materials;
-  constexpr std::uint16_t none = 0xffff;
-  std::uint16_t other = none;
-  auto& of_element = materials.of_element;
-  of_element.assign(scene.mesh.cells.size(), none);
-  for (std::size_t n = 0; n < regions.size(); ++n) {
-    const auto m = static_cast<std::uint16_t>(n);
-    const std::string& name = regions[n].elements;
-    if (name.empty()) {
-      other = m;
-      continue;
-    }
-    for (const int e : element_set(scene, name)) {
-      std::uint16_t& material = of_element[static_cast<std::size_t>(e)];
-      if (material != none) {
-        throw InputError(fmt::format("{}: element {} is in '{}' and in '{}'; an element has one material",
-                                     scene.description.file.string(), e, regions[material].elements, name));
-      }
-      material = m;
-    }
-  }
-  const auto left = std::count(of_element.begin(), of_element.end(), none);
-  if (left > 0 && other == none) {
-    throw InputError(
-        fmt::format("{}: materials: {} of the {} elements have none, the first is element {}; one "
-                    "of [[materials]] may leave out its elements and be that of all others",
-                    scene.description.file.string(), left, of_element.size(),
-                    std::find(of_element.begin(), of_element.end(), none) - of_element.begin()));
-  }
-  std::replace(of_element.begin(), of_element.end(), none, other);
-  return materials;
-}
-
-/// The materials of a case, each element with one, and their axes.
-Materials make_materials(const Scene& scene) {
-  Materials materials = assigned_materials(scene);
-  const auto& regions = scene.description.materials;
-  const auto plain = [](const CaseMaterial& region) {
-    return std::holds_alternative<std::monostate>(region.fibres);
-  };
-  if (std::all_of(regions.begin(), regions.end(), plain)) return materials;
-  const std::size_t elements = scene.mesh.cells.size();
-  for (const auto& region : regions) {
-    const auto* listed = std::get_if<ListedFibres>(&region.fibres);
-    if (listed == nullptr || listed->fibres.size() == elements) continue;
-    throw InputError(fmt::format("{}: fibres.file has {} rows; it must have one for each of the {} elements",
-                                 scene.description.file.string(), listed->fibres.size(), elements));
-  }
-  for (std::size_t e = 0; e < elements; ++e) {
-    try {
-      materials.axes.push_back(axes_by(regions[materials.of(e)].fibres, scene.mesh, e));
-    } catch (const InputError& error) {
-      throw InputError(
-          fmt::format("{}: fibres: element {}: {}", scene.description.file.string(), e, error.what()));
-    }
-  }
-  return materials;
-}
-
 /// The sum of all initial velocities at each node; empty where a case has none.
 NodalField make_initial_velocities(const Case& description, const Mesh& mesh, const NodeSets& sets,
                                    const Materials& materials) {
@@ -331,7 +239,7 @@ const std::vector<int>& node_set(const Case& description, const NodeSets& sets, 
   }
   if (found == sets.end()) {
     throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}",
-                                 description.file.string(), key, name, suggestion(name, names(sets))));
+                                 description.file.string(), key, name, suggestion(name, names_in(sets))));
   }
   if (found->second.empty()) {
     throw InputError(fmt::format("{}: {} = '{}' has no node in the mesh; a set needs at least one",
