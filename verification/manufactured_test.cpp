@@ -88,14 +88,17 @@ class ManufacturedTest : public ::testing::Test {
   ///
   /// Both norms hold what interpolation alone leaves, which is most of them. The nodes' own errors are a
   /// tenth of it; here locking (tl-full and t4 at nu = .45) and few elements show, so that order 2 is asked
-  /// for as more than half-way from order 1: what is 1.66 here, t4's, is 1.87 on meshes twice as fine.
+  /// for as more than half-way from order 1: what is 1.66 here, t4's, is 1.87 on meshes twice as fine. Where
+  /// fibres slacken, the body force of the exact solution jumps across a surface. Elements that it cuts, a
+  /// layer of width h, integrate the jump with an error of order 1: of the nodes no more than order 1 is
+  /// asked.
   void expect_orders(double share) {
     if (!has_one_answer<Method>()) GTEST_SKIP() << "no answer of its own";
     for (const double nu : ratios) {
       const FieldErrors found = orders(6, share, nu);
       EXPECT_NEAR(found.displacement, 2.0, 0.1) << "nu " << nu;
       EXPECT_NEAR(found.gradient, 1.0, 0.1) << "nu " << nu;
-      EXPECT_GT(found.nodal, 1.5) << "nu " << nu;
+      EXPECT_GT(found.nodal, slackens<Law> ? 1.0 : 1.5) << "nu " << nu;
     }
   }
 };

@@ -30,6 +30,14 @@ def test_without_optional_files_the_page_names_the_commands(data):
     assert "missing: its figures are left out" in section(page, "provenance")
 
 
+def test_a_case_shows_the_errors_of_its_run_where_the_golden_is_no_single_field(data):
+    """As in motion: the verdict has the errors, and the page reads no golden of motion."""
+    (data.folder / "reference/golden/column.h5").unlink()
+    cases = section(data.make(), "cases")
+    assert 'data-value="0.002"' in cases
+    assert "no golden" not in cases and "no truth stored yet" in cases
+
+
 def test_the_chart_has_the_points_of_runs_and_ladders(data):
     rungs = [data.rung("tl-perturbation", 3e-6, 0.01, mesh="elements = [1]", elements=3)]
     rungs += [data.rung("unknown-method", 3e-6, 0.01)]

@@ -49,8 +49,9 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
         Parameter{&Self::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
-  /// The initial shear modulus (Pa), as a mean over all changes of shape that stretch fibres and sheets.
-  constexpr double shear_modulus() const { return a + 0.1 * (8.0 / 3.0 * (a_f + a_s) + 2.0 * a_fs); }
+  /// The initial shear modulus (Pa), as a mean over all changes of shape: half of them stretch the fibres,
+  /// half the sheets.
+  constexpr double shear_modulus() const { return a + 0.1 * (4.0 / 3.0 * (a_f + a_s) + 2.0 * a_fs); }
   constexpr double bulk_modulus() const { return bulk; }
 
   template <class T>

@@ -21,12 +21,18 @@ constexpr double smallest_stiff_stretch(double smallest) {
   }
 }
 
+/// Whether a law has fibres that resist stretch alone: its stress has a kink where they slacken.
+template <class Law>
+inline constexpr bool slackens = requires {
+  Law::slackens;
+};
+
 /// A small displacement gradient under which nothing that resists stretch alone is slack: drawn from `sample`
 /// until fibres and sheets are stretched, if the law has such ones.
 template <class Law, class Sample>
 Tensor<double> taut(const Sample& sample) {
   Tensor<double> H = sample();
-  if constexpr (requires { Law::slackens; }) {
+  if constexpr (slackens<Law>) {
     while (!(deviator(H)(0, 0) > 0.0 && deviator(H)(1, 1) > 0.0)) H = sample();
   }
   return H;
