@@ -98,7 +98,7 @@ class GetfemProblem:
         for number, material in enumerate(materials):
             for known, name in (LAWS, material.law), (("quadratic",), material.volumetric):
                 if name not in known:
-                    raise InputError(f"the law {name!r} is not written for GetFEM here")
+                    raise InputError(f"there is no weak form of {name!r} for GetFEM")
             of_material = (
                 np.full(len(self._mesh.cells), True) if of_cell is None else of_cell == number
             )
