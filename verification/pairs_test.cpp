@@ -102,8 +102,9 @@ TEST(Pairs, every_control_runs_the_column_with_every_law) {
     for_each_type(Methods{}, [&]<class Method>() {
       if constexpr (knows_law<Method, Law>) {
         SCOPED_TRACE(std::string(Method::name) + " " + std::string(Law::name));
-        // Controls keep the stiffness of a body that has not relaxed: too stiff for one that has.
-        const double limit = law_remembers<Law> ? 0.05 : 0.02;
+        // Controls keep the stiffness of a body that has not relaxed: too stiff for one that has, more so
+        // where fibres are slack as well (errors are larger by a quarter, whichever the control).
+        const double limit = !law_remembers<Law> ? 0.02 : slackens<Law> ? 0.06 : 0.05;
         Finding found = Finding::not_at_rest;
         try {
           const Relaxation answer = relax(Model(scene, {std::string(Method::name)}), silent);
