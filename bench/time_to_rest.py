@@ -65,8 +65,8 @@ class Job:
     def __init__(self, options, folder):
         self.options, self.folder = options, Path(folder)
         self.path = case_path(options.case)
-        self.case = read_case(self.path)
         require_quasi_static(self.path)
+        self.case = read_case(self.path)
         self.mesh_path = self.folder / "mesh.h5"
         make_mesh(self.path, self.mesh_path)
         self.mesh, self.mesh_file = load_case_mesh(self.case, self.mesh_path)

@@ -111,7 +111,7 @@ def test_what_cannot_be_said_is_refused(capsys):
     springs = (Surface(boundary, stiffness=1.0, only_normal=True),)
     with pytest.raises(InputError, match="springs along the normal"):
         SfepyProblem(HexMesh(points, cells, held, surfaces=springs), GOLDEN, MATERIALS)
-    with pytest.raises(InputError, match="the law 'ogden' is not written for GetFEM"):
+    with pytest.raises(InputError, match="there is no weak form of 'ogden' for GetFEM"):
         second_program.second_problem(HexMesh(points, cells, held), TRUTH, [Material("ogden", {})])
     assert second_program.main(["colum"]) == 2
     assert "did you mean 'column'?" in capsys.readouterr().err
