@@ -132,5 +132,23 @@ TEST(Multigrid, slender_beams_take_no_more_than_others) {
   EXPECT_LE(found.steps, 200);
 }
 
+/// Where lambda is zero or less, pressures of elements carry a share of mu instead, which must not become a
+/// division by zero.
+TEST(Multigrid, poisson_ratios_of_zero_and_less_take_no_more_than_others) {
+  for (const double poisson_ratio : {0.1, 0.0, -0.01, -0.3}) {
+    Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = poisson_ratio});
+    const Mesh mesh = box({0.1, 0.1, 0.2}, {3, 3, 6});
+    const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                        {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.199; })}};
+    description.displacements = {{"foot", {}}, {"head", {0.02, 0.0, 0.03}}};
+    Observer silent;
+    for (const char* method : {"tl-mean-dilatation", "tl-perturbation", "tl-full"}) {
+      const Relaxation found = relax(Model(make_scene(description, mesh, sets), {method}), silent);
+      EXPECT_TRUE(found.converged) << method << ", " << poisson_ratio;
+      EXPECT_LE(found.steps, 60) << method << ", " << poisson_ratio;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sandglass::verification

@@ -19,6 +19,10 @@ constexpr double hardly_changed = 0.1;
 /// several points of an element, some more of it helps, in shares of E/9.
 constexpr double strongest_resistance = 16.0;
 
+/// The pressures carry lambda (J - 1), and at least this share of mu for lambda: where Poisson's ratio is
+/// zero or less, they would carry nothing, and 1 / lambda has no value. How much they carry is free.
+constexpr double least_lambda_over_mu = 0.1;
+
 /// Of the undeformed laws and of the method's control.
 std::vector<ModelModuli> moduli_of(const Model& model) {
   const MethodChoice& choice = model.choice();
@@ -27,7 +31,8 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
   if (method.kappa_affects_equilibrium)
     settings = {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
   const auto moduli = [&](const auto& law) {
-    const double lambda = lame_lambda(law), unit = young_modulus(law) / 9.0;
+    const double lambda = std::max(lame_lambda(law), least_lambda_over_mu * law.shear_modulus());
+    const double unit = young_modulus(law) / 9.0;
     const double control = std::min(PerturbationStiffness::modulus(law, settings), unit);
     const double resistance = std::min(unit + lambda / 9.0, strongest_resistance * unit);
     return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control};
@@ -63,7 +68,6 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       body_(model, elements),
       materials_(model.scene().materials),
       moduli_(moduli_of(model)),
-      lambdas_(lame_lambdas(materials_)),
       linear_(method_named(model.choice().method).is_linear),
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
@@ -75,7 +79,9 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       pressure_force_(free_.size()),
       weights_(multigrid_.elements().zero()),
       residuals_(weights_),
-      b_(weights_) {}
+      b_(weights_) {
+  for (const ModelModuli& moduli : moduli_) lambdas_.push_back(moduli.lambda);
+}
 
 template <class Real>
 void MixedBody<Real>::linearize(double penalty) {
