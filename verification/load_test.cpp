@@ -84,7 +84,8 @@ TEST(FaceLoad, sum_and_moment_are_exact_on_warped_faces) {
   for (auto& X : mesh.points) {
     for (double& x : X) x += random.uniform(-0.1, 0.1);
   }
-  const auto faces = faces_within(mesh, nodes_where(mesh.points, [](const Vector& X) { return X[2] > 2.6; }));
+  const auto faces = faces_within(boundary_faces(mesh.cells),
+                                  nodes_where(mesh.points, [](const Vector& X) { return X[2] > 2.6; }));
   ASSERT_EQ(faces.size(), 6U);
   const Vector F{0.3, -0.7, 0.2}, M{-0.4, 0.6, 0.9};
   const auto pulled = consistent_loads(mesh.points, faces, F, {});
@@ -102,11 +103,12 @@ TEST(FaceLoad, sum_and_moment_are_exact_on_warped_faces) {
 TEST(FaceLoad, only_boundary_faces_with_all_nodes_in_the_set_are_loaded) {
   const Mesh mesh = box({1.0, 1.0, 1.0}, {3, 3, 3});
   const auto all = nodes_where(mesh.points, [](const Vector&) { return true; });
-  EXPECT_EQ(faces_within(mesh, all).size(), 6U * 9);  // those inside have all their nodes in the set, too
+  EXPECT_EQ(faces_within(boundary_faces(mesh.cells), all).size(),
+            6U * 9);  // those inside have all their nodes in the set, too
   const auto strip = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 1.0 && X[0] < 0.4; });
-  EXPECT_EQ(faces_within(mesh, strip).size(), 3U);
+  EXPECT_EQ(faces_within(boundary_faces(mesh.cells), strip).size(), 3U);
   const auto edge = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 1.0 && X[0] == 0.0; });
-  EXPECT_TRUE(faces_within(mesh, edge).empty());
+  EXPECT_TRUE(faces_within(boundary_faces(mesh.cells), edge).empty());
 }
 
 /// A bar on three planes of symmetry, pulled along z by a force on its end.

@@ -140,6 +140,23 @@ ImposedPressure read_pressure(TableReader table) {
   return pressure;
 }
 
+Refinement read_refinement(TableReader table) {
+  Refinement refinement;
+  const auto around = table.optional<std::string>("around"),
+             elements = table.optional<std::string>("elements");
+  if (around.has_value() == elements.has_value()) {
+    table.fail("around",
+               "and elements: one of the two must be given, the name of a node set or of an element set");
+  }
+  refinement.around = around.value_or("");
+  refinement.elements = elements.value_or("");
+  constexpr Range few{.low = 1, .high = 8, .low_open = false, .high_open = false};
+  refinement.depth = table.optional<int>("depth", few).value_or(refinement.depth);
+  if (around) refinement.layers = table.optional<int>("layers", few).value_or(refinement.layers);
+  table.finish();
+  return refinement;
+}
+
 Gravity read_gravity(TableReader table) {
   Gravity gravity;
   gravity.value = table.required<Vector>("value", Range::any());
@@ -265,6 +282,7 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   };
   description.sets = read_sets("sets", true);
   description.element_sets = read_sets("element_sets", false);
+  for (const auto& table : reader.tables("refine")) description.refinements.push_back(read_refinement(table));
   for (const auto& table : reader.tables("displacement"))
     description.displacements.push_back(read_displacement(table));
   for (const auto& table : reader.tables("rotation")) description.rotations.push_back(read_rotation(table));

@@ -188,6 +188,10 @@ void write_foreign_mesh(const Scene& scene, const fs::path& path, const ForeignF
     throw InputError(fmt::format("{}: a case of {} materials has no deck; allowed is one material",
                                  scene.description.file.string(), scene.materials.list.size()));
   }
+  if (!scene.ties.empty()) {
+    throw InputError(fmt::format("{}: a refined mesh has nodes that hang, which no other format here knows",
+                                 scene.description.file.string()));
+  }
   NewFile output(path);
   const TemporaryFolder folder;
   const fs::path source = folder / "mesh.h5";

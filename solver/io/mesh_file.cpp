@@ -49,6 +49,23 @@ std::map<std::string, std::vector<int>> read_sets(const Hdf5File& file, const st
   return sets;
 }
 
+/// One row for each pair of a tied node and one that it follows.
+void write_ties(const Ties& ties, Hdf5File& file) {
+  if (ties.empty()) return;
+  std::vector<std::int64_t> nodes, of;
+  std::vector<double> weights;
+  for (const Tie& tie : ties) {
+    for (const auto& [node, weight] : tie.mean_of) {
+      nodes.push_back(tie.node);
+      of.push_back(node);
+      weights.push_back(weight);
+    }
+  }
+  file.write("/mesh/ties/node", {nodes.size()}, std::span<const std::int64_t>(nodes));
+  file.write("/mesh/ties/of", {of.size()}, std::span<const std::int64_t>(of));
+  file.write("/mesh/ties/weight", {weights.size()}, std::span<const double>(weights));
+}
+
 }  // namespace
 
 void write_mesh(const Scene& scene, Hdf5File& file) {
@@ -61,6 +78,7 @@ void write_mesh(const Scene& scene, Hdf5File& file) {
   file.write("/mesh/cells", {mesh.cells.size(), 8}, std::span<const std::int64_t>(cells));
   write_sets(scene.sets, "/mesh/sets", file);
   write_sets(scene.element_sets, "/mesh/element_sets", file);
+  write_ties(scene.ties, file);
   if (!scene.materials.of_element.empty()) {
     const std::vector<std::int64_t> materials(scene.materials.of_element.begin(),
                                               scene.materials.of_element.end());
@@ -106,6 +124,13 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
     throw InputError(fmt::format(
         "{}: dataset '/mesh/cells' has shape {}; it must be [elements, 8], hexahedra in VTK order",
         path.string(), cells.shape));
+  }
+  if (file.contains("/mesh/ties")) {
+    throw InputError(
+        fmt::format("{}: has /mesh/ties: nodes of this mesh hang; a mesh file must have none. Take the mesh "
+                    "before it was "
+                    "refined, and [[refine]]",
+                    path.string()));
   }
   const auto points = file.read_doubles("/mesh/points");
   const std::size_t n_nodes = points.shape.empty() ? 0 : points.shape[0];

@@ -8,8 +8,8 @@
 namespace sandglass {
 
 /// Writes mesh, sets and hashes of a scene: /mesh/points, /mesh/cells, /mesh/sets/NAME,
-/// /mesh/element_sets/NAME and, where there are several, the number of each element's material,
-/// /mesh/materials. Throws InputError.
+/// /mesh/element_sets/NAME, the ties of nodes that hang, /mesh/ties/node, of, weight, and, where there are
+/// several, the number of each element's material, /mesh/materials. Throws InputError.
 void write_mesh_file(const Scene& scene, const std::filesystem::path& path);
 
 /// The same into a file that is being written.

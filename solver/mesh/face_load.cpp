@@ -52,9 +52,8 @@ std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x) {
   return forces;
 }
 
-std::vector<Quadrilateral> faces_within(const Mesh& mesh, const std::vector<int>& nodes) {
+std::vector<Quadrilateral> faces_within(std::vector<Quadrilateral> faces, const std::vector<int>& nodes) {
   const auto inside = [&](int node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
-  std::vector<Quadrilateral> faces = boundary_faces(mesh.cells);
   std::erase_if(faces,
                 [&](const Quadrilateral& face) { return !std::all_of(face.begin(), face.end(), inside); });
   return faces;

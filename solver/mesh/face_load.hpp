@@ -30,8 +30,8 @@ std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners);
 /// The corners of a face, m.
 std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& face);
 
-/// The boundary faces whose four nodes all belong to a set of nodes (sorted), in the order of the cells.
-std::vector<Quadrilateral> faces_within(const Mesh& mesh, const std::vector<int>& nodes);
+/// The faces whose four nodes all belong to a set of nodes (sorted), in their order.
+std::vector<Quadrilateral> faces_within(std::vector<Quadrilateral> faces, const std::vector<int>& nodes);
 
 /// Consistent nodal loads, sorted by node, of the traction t(X) = a + b x (X - c) over faces, where c is
 /// their centroid, a = total / area, and b is such that the moment about c is `moment`. A twisting moment

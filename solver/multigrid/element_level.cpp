@@ -32,8 +32,8 @@ class Elements final : public ElementLevel {
   };
 
  public:
-  Elements(const Mesh& mesh, const Layout& layout, const Rows<float>& free, const Rows<float>& springs,
-           int threads)
+  Elements(const Mesh& mesh, const Ties& ties, const Layout& layout, const Rows<float>& free,
+           const Rows<float>& springs, int threads)
       : ElementLevel(threads, pressure_steps),
         layout_(layout),
         coordinates_(centred_coordinates<float>(mesh.points, layout)),
@@ -42,6 +42,7 @@ class Elements final : public ElementLevel {
     resize(layout.rows(), layout.elements.size());
     free_ = free;
     springs_ = springs;
+    ties_ = RowTies<float>(ties, layout);
     stiffness_.resize(layout.rows());
     tangents_.resize(layout.elements.size());
     cells_.resize(mesh.cells.size());
@@ -59,6 +60,7 @@ class Elements final : public ElementLevel {
                 [&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c], moduli); });
     sum_over_chunks(layout_, threads_, numbers_of(stiffness_),
                     [&](std::size_t c) { add_diagonals(layout_.chunks[c]); });
+    ties_.hand_on(stiffness_);  // means are convex: D - A stays positive where it was
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) stiffness_[row][i] += springs_[row][i];
     }
@@ -68,6 +70,7 @@ class Elements final : public ElementLevel {
   void apply(const MixedVector& x, MixedVector& y) const override {
     sum_over_chunks(layout_, threads_, numbers_of(y.u),
                     [&](std::size_t c) { apply_to(layout_.chunks[c], x, y); });
+    ties_.hand_on(y.u);
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) y.u[row][i] += springs_[row][i] * x.u[row][i];
     }
@@ -80,6 +83,7 @@ class Elements final : public ElementLevel {
   void gradient(const std::vector<float>& p, Rows<float>& f) const override {
     sum_over_chunks(layout_, threads_, numbers_of(f),
                     [&](std::size_t c) { add_gradients(layout_.chunks[c], p, f); });
+    ties_.hand_on(f);
   }
 
   double largest_gradient(const Rows<float>& u) const override {
@@ -95,6 +99,7 @@ class Elements final : public ElementLevel {
 
  protected:
   void for_each_corner(const VisitCorner& visit) const override {
+    std::vector<Column> columns;  // of an element, those of tied nodes handed on
     for (const auto& group : layout_.groups) {
       for (std::size_t k = 0; k < group.ranks; ++k) {
         const std::size_t rank = group.first_rank + k, face = group.first_face + k;
@@ -103,20 +108,34 @@ class Elements final : public ElementLevel {
         for (int lane = 0; lane < W; ++lane) {
           const std::size_t cell = rank * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
           if (layout_.elements[cell] < 0) continue;
+          columns.clear();
           for (std::size_t I = 0; I < 8; ++I) {
             const std::size_t row = layout_.places(face + I / 4, I % 4)[lane] / 4;
             std::array<float, 3> column;
             for (int i = 0; i < 3; ++i) {
               column[static_cast<std::size_t>(i)] = Lanes<Number>::get(V * b(static_cast<int>(I), i), lane);
             }
-            visit(cell, row, column);
+            const auto shares = ties_.shares_of(row);
+            for (const auto& [from, weight] : shares) add_column(columns, from, weight, column);
+            if (shares.empty()) add_column(columns, row, 1.0f, column);
           }
+          for (const auto& [row, column] : columns) visit(cell, row, column);
         }
       }
     }
   }
 
  private:
+  using Column = std::pair<std::size_t, std::array<float, 3>>;  // row, m^2
+
+  static void add_column(std::vector<Column>& columns, std::size_t row, float weight,
+                         const std::array<float, 3>& b) {
+    auto known =
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.first == row; });
+    if (known == columns.end()) known = columns.insert(columns.end(), {row, {}});
+    for (std::size_t i = 0; i < 3; ++i) known->second[i] += weight * b[i];
+  }
+
   static float largest_lane(const Number& number) {
     float most = Lanes<Number>::get(number, 0);
     for (int lane = 1; lane < W; ++lane) most = std::max(most, Lanes<Number>::get(number, lane));
@@ -328,20 +347,20 @@ class Elements final : public ElementLevel {
 
 }  // namespace
 
-std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Layout& layout,
+std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Ties& ties, const Layout& layout,
                                                  const Rows<float>& free, const Rows<float>& springs,
                                                  int threads) {
   switch (layout.width) {
     case 1:
-      return std::make_unique<Elements<1>>(mesh, layout, free, springs, threads);
+      return std::make_unique<Elements<1>>(mesh, ties, layout, free, springs, threads);
     case 2:
-      return std::make_unique<Elements<2>>(mesh, layout, free, springs, threads);
+      return std::make_unique<Elements<2>>(mesh, ties, layout, free, springs, threads);
     case 4:
-      return std::make_unique<Elements<4>>(mesh, layout, free, springs, threads);
+      return std::make_unique<Elements<4>>(mesh, ties, layout, free, springs, threads);
     case 8:
-      return std::make_unique<Elements<8>>(mesh, layout, free, springs, threads);
+      return std::make_unique<Elements<8>>(mesh, ties, layout, free, springs, threads);
     default:
-      return std::make_unique<Elements<16>>(mesh, layout, free, springs, threads);
+      return std::make_unique<Elements<16>>(mesh, ties, layout, free, springs, threads);
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "assembly/layout.hpp"
+#include "assembly/row_ties.hpp"
 #include "multigrid/saddle_level.hpp"
 
 namespace sandglass {
@@ -48,16 +48,22 @@ class ElementLevel : public SaddleLevel {
   /// The diagonal of A on constrained components too, N/m.
   const Rows<float>& stiffness() const { return stiffness_; }
 
+  /// The ties of the mesh, on rows.
+  const RowTies<float>& ties() const { return ties_; }
+
+  void follow(Rows<float>& u) const override { ties_.follow(u); }
+
  protected:
+  RowTies<float> ties_;
   std::vector<std::size_t> cells_;
   std::vector<ElementTangent> tangents_;
   Rows<float> springs_;
   Rows<float> stiffness_;
 };
 
-/// For the rows and the lanes of a layout. `free` is 1, or 0 on constrained components and spare rows;
-/// `springs` as in ElementLevel.
-std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Layout& layout,
+/// For the rows and the lanes of a layout. `free` is 1, or 0 on constrained components, tied nodes and spare
+/// rows; `springs` as in ElementLevel.
+std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Ties& ties, const Layout& layout,
                                                  const Rows<float>& free, const Rows<float>& springs,
                                                  int threads);
 

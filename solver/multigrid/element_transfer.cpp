@@ -60,7 +60,8 @@ ElementTransfer::ElementTransfer(const Mesh& mesh, const Layout& layout, const E
       sums_(contents_.size()) {
   for (std::size_t row = 0; row < layout.rows(); ++row) {
     places_.push_back(grid.grid().locate(mesh.points[static_cast<std::size_t>(layout.node_of_row[row])]));
-    if (row < layout.nodes) contents_[places_[row].box].rows.push_back(static_cast<std::uint32_t>(row));
+    if (row < layout.nodes && elements.ties().shares_of(row).empty())
+      contents_[places_[row].box].rows.push_back(static_cast<std::uint32_t>(row));
   }
   for (std::size_t element = 0; element < mesh.cells.size(); ++element) sample(mesh, element);
 }
@@ -179,6 +180,7 @@ void ElementTransfer::add_correction(const MixedVector& x, MixedVector& fine) co
       for (std::size_t i = 0; i < 4; ++i) fine.u[row][i] += free[row][i] * sum[i];
     }
   });
+  elements_.follow(fine.u);
   for_each_block(fine.p.size(), elements_.threads(), [&](std::size_t first, std::size_t last) {
     for (std::size_t cell = first; cell < last; ++cell) fine.p[cell] += x.p[boxes_[cell]];
   });

@@ -93,6 +93,7 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   const std::size_t rows = 4 * free_.size(), cells = compliance_.size();
   const float *C = compliance_.data(), *D = numbers_of(relaxation_), *S = schur_.data();
   float *r = r_.data(), *d = change_.data(), *q = sum_.data(), *t = numbers_of(t_), *p = x.p.data();
+  follow(x.u);
   divergence(x.u, r_);
   // Chebyshev steps for eigenvalues between 1 / n^2 and 1, n the number of steps.
   const float least = 1.0f / static_cast<float>(pressure_steps_ * pressure_steps_);
@@ -105,6 +106,7 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   for (int step = 1; step < pressure_steps_; ++step) {
     gradient(change_, t_);
     for_all(rows, threads_, [=](std::size_t k) { t[k] *= D[k]; });
+    follow(t_);
     divergence(t_, y_.p);
     const float next = 1.0f / (2.0f * sigma - rho), keep = next * rho, add = 2.0f * next / radius;
     rho = next;
@@ -118,6 +120,7 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   gradient(sum_, t_);
   float* u = numbers_of(x.u);
   for_all(rows, threads_, [=](std::size_t k) { u[k] -= D[k] * t[k]; });
+  follow(x.u);
 }
 
 void SaddleLevel::residual(const MixedVector& b, const MixedVector& x, MixedVector& r) const {

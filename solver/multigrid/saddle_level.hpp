@@ -31,6 +31,9 @@ class SaddleLevel {
   /// f = B^T p.
   virtual void gradient(const std::vector<float>& p, Rows<float>& f) const = 0;
 
+  /// Lets what is tied follow.
+  virtual void follow(Rows<float>& /*u*/) const {}
+
   /// One step of the smoother from x: an inexact Uzawa step, symmetric, after Braess and Sarazin 1997.
   /// Displacements relax with D, pressures with Chebyshev steps on S = B D B^T + C, and the displacements
   /// follow the pressures.

@@ -3,17 +3,20 @@
 #include "multigrid/coarsest_level.hpp"
 #include "multigrid/element_transfer.hpp"
 #include "multigrid/grid_transfer.hpp"
+#include "multigrid/mesh_transfer.hpp"
 
 namespace sandglass {
 
 /// An approximate solution of the saddle-point problem of a body, by one V-cycle over a hierarchy of levels:
-/// the elements of the mesh, whatever its shape, and grids of boxes around it, ever coarser.
+/// the elements of the mesh, whatever its shape, those that were split into them, and grids of boxes around
+/// these, ever coarser.
 class SaddleMultigrid {
  public:
-  /// `free` is 1, or 0 on constrained components and spare rows; `springs` (N/m) hold rows, empty without
+  /// `ties` are those of the mesh, `coarser` the meshes that it was refined from, the last first. `free` is
+  /// 1, or 0 on constrained components, tied nodes and spare rows; `springs` (N/m) hold rows, empty without
   /// any; `update` must follow.
-  SaddleMultigrid(const Mesh& mesh, const Layout& layout, const Rows<float>& free, const Rows<float>& springs,
-                  int threads);
+  SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::vector<CoarserMesh>& coarser,
+                  const Layout& layout, const Rows<float>& free, const Rows<float>& springs, int threads);
 
   /// Takes the configuration with displacements u, rows of the layout (m), in which no element may be
   /// inverted, and the moduli of each material.
@@ -25,17 +28,28 @@ class SaddleMultigrid {
   const ElementLevel& elements() const { return *elements_; }
 
  private:
+  /// A mesh that was refined, and its vectors.
+  struct MeshStage {
+    std::unique_ptr<Layout> layout;
+    std::unique_ptr<ElementLevel> level;
+    std::unique_ptr<MeshTransfer> to_finer;
+    MixedVector b, x, r;
+  };
+
   /// A grid and its vectors.
-  struct Stage {
+  struct GridStage {
     std::unique_ptr<GridLevel> level;
     std::unique_ptr<GridTransfer> to_coarser;  // null on the coarsest
     MixedVector b, x, r;
   };
 
+  void cycle_mesh(std::size_t stage, ElementLevel& level, const MixedVector& b, MixedVector& x,
+                  MixedVector& r);
   void cycle_grid(std::size_t stage);
 
   std::unique_ptr<ElementLevel> elements_;
-  std::vector<Stage> stages_;
+  std::vector<MeshStage> meshes_;
+  std::vector<GridStage> grids_;
   std::unique_ptr<ElementTransfer> to_grid_;
   CoarsestLevel coarsest_;
   MixedVector residual_;

@@ -88,6 +88,9 @@ std::string case_hash(const Case& description) {
   }
   for (const auto& rule : description.sets) text += described(rule);
   for (const auto& rule : description.element_sets) text += "elements " + described(rule);
+  for (const auto& [around, elements, depth, layers] : description.refinements) {
+    text += fmt::format("refine({}:{}:{}:{})", around, elements, depth, layers);
+  }
   for (const auto& imposed : description.displacements) {
     text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);
   }

@@ -29,6 +29,14 @@ struct CaseMaterial : Material {
   FibreRule fibres = {};
 };
 
+/// Elements that are split in eight, their parts again, and so on.
+struct Refinement {
+  std::string around;    ///< a node set, at whose edge elements are split
+  std::string elements;  ///< an element set that is split; empty, or the other name is
+  int depth = 1;         ///< how often
+  int layers = 2;        ///< of elements and parts at the edge that are split
+};
+
 /// Displacements imposed on a node set; they follow the loading curve.
 struct ImposedDisplacement {
   std::string set;
@@ -99,6 +107,7 @@ struct Case {
   std::vector<CaseMaterial> materials = std::vector<CaseMaterial>(1);
   std::vector<NodeSetRule> sets;
   std::vector<NodeSetRule> element_sets;  ///< for the centres of elements
+  std::vector<Refinement> refinements;
   std::vector<ImposedDisplacement> displacements;
   std::vector<ImposedRotation> rotations;
   std::vector<ImposedForce> forces;

@@ -62,8 +62,8 @@ Model::Model(const Scene& scene, MethodChoice choice)
       choice_(std::move(choice)),
       internal_force_(make_internal_force(scene.mesh, scene.materials, choice_)),
       element_masses_(sandglass::element_masses(scene.mesh, scene.materials)),
-      masses_(lumped_masses(scene.mesh, element_masses_)),
-      load_rates_(load_rates_of(scene, masses_)) {}
+      masses_(handed_on(scene.ties, lumped_masses(scene.mesh, element_masses_))),
+      load_rates_(load_rates_of(scene, lumped_masses(scene.mesh, element_masses_))) {}
 
 NodalField internal_forces(const Model& model, const NodalField& u) {
   return std::visit(

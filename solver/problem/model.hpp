@@ -16,7 +16,7 @@ class Model {
   const MethodChoice& choice() const { return choice_; }
   const AnyInternalForce& internal_force() const { return internal_force_; }
 
-  /// Lumped masses of the nodes, kg.
+  /// Lumped masses of the nodes, kg; tied nodes have none, those that they follow have theirs.
   const std::vector<double>& masses() const { return masses_; }
 
   /// Mass of each element, kg.

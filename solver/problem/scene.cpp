@@ -15,6 +15,7 @@
 #include "problem/initial_motion.hpp"
 #include "problem/masses.hpp"
 #include "problem/scene_materials.hpp"
+#include "problem/scene_refinement.hpp"
 
 namespace sandglass {
 
@@ -142,7 +143,7 @@ double largest_length(const Scene& scene, const Turning& turning) {
 /// The boundary faces within the set that a load names. Throws InputError if there are none.
 std::vector<Quadrilateral> loaded_faces(const Scene& scene, const std::string& key, const std::string& name) {
   const auto& nodes = node_set(scene.description, scene.sets, key, name);
-  auto faces = faces_within(scene.mesh, nodes);
+  auto faces = faces_within(scene.boundary, nodes);
   if (faces.empty()) {
     throw InputError(fmt::format(
         "{}: {} = '{}' has no boundary face among its {} nodes; a {} acts on faces of the boundary "
@@ -255,6 +256,9 @@ Mesh generate_mesh(const AnyGenerator& generator) {
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets element_sets_of_file) {
   Scene scene{.description = std::move(description),
               .mesh = std::move(mesh),
+              .ties = {},
+              .coarser = {},
+              .boundary = {},
               .sets = std::move(sets_of_file),
               .element_sets = std::move(element_sets_of_file),
               .materials = {},
@@ -287,7 +291,10 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
     scene.element_sets[rule.name] = select_elements(scene.mesh, rule);
   }
   scene.materials = make_materials(scene);
+  scene.boundary = boundary_faces(scene.mesh.cells);
+  refine(scene);
   scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
+  std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
   make_loads(scene);
   scene.initial_velocities =
       make_initial_velocities(scene.description, scene.mesh, scene.sets, scene.materials);

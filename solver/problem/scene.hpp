@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/face_load.hpp"
+#include "mesh/refinement.hpp"
 #include "problem/case.hpp"
 #include "problem/imposed_path.hpp"
 
@@ -35,6 +36,9 @@ struct FaceSupport {
 struct Scene {
   Case description;
   Mesh mesh;
+  Ties ties;                            ///< of nodes, to such as are not tied
+  std::vector<CoarserMesh> coarser;     ///< the meshes before each refinement, the last first
+  std::vector<Quadrilateral> boundary;  ///< faces on the boundary of the body
   NodeSets sets;
   ElementSets element_sets;
   Materials materials;

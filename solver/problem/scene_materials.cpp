@@ -11,29 +11,6 @@ namespace sandglass {
 
 namespace {
 
-/// The elements of a set that a material names. Throws InputError if there is no such set or no element in
-/// it.
-const std::vector<int>& element_set(const Scene& scene, const std::string& name) {
-  const std::string file = scene.description.file.string();
-  const auto found = scene.element_sets.find(name);
-  if (found == scene.element_sets.end()) {
-    const auto known = names_in(scene.element_sets);
-    throw InputError(fmt::format(
-        "{}: materials.elements = '{}' is not an element set of this case{}", file, name,
-        known.empty()
-            ? ", which has none: [element_sets] gives rules for them, a mesh from a file brings its "
-              "physical volumes (Gmsh), ELSETs (Abaqus) or cell arrays (VTK)"
-            : "; " + suggestion(name, known)));
-  }
-  if (found->second.empty()) {
-    throw InputError(
-        fmt::format("{}: materials.elements = '{}' has no element in the mesh; a material needs at "
-                    "least one",
-                    file, name));
-  }
-  return found->second;
-}
-
 /// The material of each element. Throws InputError for an element that has none or two.
 Materials assigned_materials(const Scene& scene) {
   const auto& regions = scene.description.materials;
@@ -51,7 +28,7 @@ Materials assigned_materials(const Scene& scene) {
       other = m;
       continue;
     }
-    for (const int e : element_set(scene, name)) {
+    for (const int e : element_set(scene, "materials.elements", name)) {
       std::uint16_t& material = of_element[static_cast<std::size_t>(e)];
       if (material != none) {
         throw InputError(fmt::format("{}: element {} is in '{}' and in '{}'; an element has one material",
@@ -73,6 +50,25 @@ Materials assigned_materials(const Scene& scene) {
 }
 
 }  // namespace
+
+const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name) {
+  const std::string file = scene.description.file.string();
+  const auto found = scene.element_sets.find(name);
+  if (found == scene.element_sets.end()) {
+    const auto known = names_in(scene.element_sets);
+    throw InputError(fmt::format(
+        "{}: {} = '{}' is not an element set of this case{}", file, key, name,
+        known.empty()
+            ? ", which has none: [element_sets] gives rules for them, a mesh from a file brings its "
+              "physical volumes (Gmsh), ELSETs (Abaqus) or cell arrays (VTK)"
+            : "; " + suggestion(name, known)));
+  }
+  if (found->second.empty()) {
+    throw InputError(
+        fmt::format("{}: {} = '{}' has no element in the mesh; a set needs at least one", file, key, name));
+  }
+  return found->second;
+}
 
 Materials make_materials(const Scene& scene) {
   Materials materials = assigned_materials(scene);

@@ -23,6 +23,7 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
       threads_(model.choice().threads),
       angles_(model.scene().angles),
       terms_(angles_.size()),
+      ties_(model.scene().ties, elements.layout()),
       loads_(model.scene(), elements.layout()),
       state_(elements.undeformed()),
       force_(state_.u.size()),
@@ -39,6 +40,7 @@ template <class Real>
 void Body<Real>::evaluate_forces() {
   elements_.evaluate(state_, force_);
   loads_.subtract(state_, force_);
+  ties_.hand_on(force_);
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     Real& component = force_[constraints_[k].row][constraints_[k].component];
     reactions_[k] = static_cast<double>(component);
@@ -71,6 +73,7 @@ void Body<Real>::impose(double factor, double time) {
     const std::array<Real, 3>&share = constraint.share, &terms = terms_[constraint.angle];
     impose(constraint, share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2]);
   }
+  follow();
 }
 
 template <class Real>
@@ -80,11 +83,13 @@ void Body<Real>::impose(std::span<const double> displacements, double factor, do
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     impose(constraints_[k], static_cast<Real>(displacements[k]));
   }
+  follow();
 }
 
 template <class Real>
 Rows<Real> Body<Real>::change_of_loads(double factor) const {
   Rows<Real> rows = loads_.change_to(factor, factor, state_.u);
+  ties_.hand_on(rows);
   for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
   return rows;
 }
@@ -110,6 +115,7 @@ Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) cons
     const auto value = static_cast<Real>(nodal[static_cast<std::size_t>(layout.node_of_row[r])]);
     for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value;
   }
+  ties_.clear(rows);
   for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
   return rows;
 }

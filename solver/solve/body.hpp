@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "assembly/row_ties.hpp"
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
 #include "solve/loads.hpp"
@@ -20,7 +21,8 @@ class Body {
   const State<Real>& state() const { return state_; }
   State<Real>& state() { return state_; }
 
-  /// Internal forces minus loads (N) of the last evaluation; zero on constrained components.
+  /// Internal forces minus loads (N) of the last evaluation, tied nodes' handed on to those they follow; zero
+  /// on constrained components and tied nodes.
   const Rows<Real>& free_forces() const { return force_; }
 
   /// Internal forces minus loads (N) on constrained components, in the order of the scene's constraints: the
@@ -37,7 +39,7 @@ class Body {
   /// The same from the square of the norm of the free forces (N^2).
   double residual(double free_square) const;
 
-  /// Moves to displacements `target` (m); `impose` sets the constrained components afterwards.
+  /// Moves to displacements `target` (m); `impose` sets constrained components and tied nodes afterwards.
   void move_to(const Rows<Real>& target);
 
   /// Sets constrained components to their paths at a load factor, and their increments to the change; from
@@ -51,6 +53,15 @@ class Body {
   /// increments to the change; from now on loads are those of this factor and `time` (s).
   void impose(std::span<const double> displacements, double factor, double time);
 
+  /// Lets tied nodes and their increments follow.
+  void follow() {
+    ties_.follow(state_.u);
+    ties_.follow(state_.increment);
+  }
+
+  /// The ties of the scene, on rows.
+  const RowTies<Real>& ties() const { return ties_; }
+
   /// The present factor of the load.
   double load_factor() const { return load_factor_; }
 
@@ -63,8 +74,8 @@ class Body {
   /// The work (J) of the loads since the last call.
   double work_of_loads() { return loads_.work(state_.u); }
 
-  /// Nodal values as rows, zero on constrained components and in spare rows: with inverse masses only free
-  /// components move, without a branch.
+  /// Nodal values as rows, zero on constrained components, at tied nodes and in spare rows: with inverse
+  /// masses only free components move, without a branch.
   Rows<Real> on_free_components(const std::vector<double>& nodal) const;
 
   /// The order of its rows.
@@ -130,6 +141,7 @@ class Body {
   const std::vector<double>& angles_;       // of paths, rad
   std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the present factor
   std::vector<RowConstraint> constraints_;
+  RowTies<Real> ties_;
   Loads<Real> loads_;
   double load_factor_ = 0.0;
   State<Real> state_;

@@ -134,6 +134,7 @@ class CentralDifference {
       v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
           loading_rate(time()) * by_factor;
     }
+    follow(model_.scene().ties, v);
     return v;
   }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/error.hpp"
 #include "solve/body.hpp"
 #include "solve/condensed_response.hpp"
 
@@ -41,6 +42,10 @@ std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layou
         fmt::format("method '{}' superposes answers to displacements and dead forces, to which pressures and "
                     "supports do not belong; choose another method",
                     model.choice().method));
+  }
+  if (!scene.ties.empty()) {
+    throw ComputationError(fmt::format("method '{}' does not know refined meshes; choose another method",
+                                       model.choice().method));
   }
   const Handles handles = handles_of_sets(scene);
   std::vector<NodalField> loads;

@@ -71,8 +71,9 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       linear_(method_named(model.choice().method).is_linear),
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
-      multigrid_(model.scene().mesh, elements.layout(), rounded_rows<float>(free_),
-                 springs_of(model.scene(), elements.layout()), model.choice().threads),
+      multigrid_(model.scene().mesh, model.scene().ties, model.scene().coarser, elements.layout(),
+                 rounded_rows<float>(free_), springs_of(model.scene(), elements.layout()),
+                 model.choice().threads),
       linearized_at_(free_.size()),
       p_(model.scene().mesh.cells.size()),
       defect_(p_.size()),
@@ -149,8 +150,15 @@ void MixedBody<Real>::evaluate() {
 }
 
 template <class Real>
+void MixedBody<Real>::replace_pressures(const std::vector<Real>& pressures,
+                                        const std::vector<double>& lambdas) {
+  elements_.replace_pressures(body_.state(), pressures, lambdas, pressure_force_, defect_);
+  body_.ties().hand_on(pressure_force_);
+}
+
+template <class Real>
 void MixedBody<Real>::compare() {
-  elements_.replace_pressures(body_.state(), p_, lambdas_, pressure_force_, defect_);
+  replace_pressures(p_, lambdas_);
   const Real *f = numbers_of(body_.free_forces()), *g = numbers_of(pressure_force_),
              *free = numbers_of(free_);
   const float* w = numbers_of(weights_.u);
@@ -206,12 +214,13 @@ void MixedBody<Real>::move(const MixedVector& step, double share) {
   for_each_block(p_.size(), body_.threads(), [&](std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) p_[e] += factor * static_cast<Real>(step.p[cell(e)]);
   });
+  body_.follow();
 }
 
 template <class Real>
 void MixedBody<Real>::take_own_pressures() {
   std::fill(p_.begin(), p_.end(), Real(0));
-  elements_.replace_pressures(body_.state(), p_, lambdas_, pressure_force_, defect_);
+  replace_pressures(p_, lambdas_);
   for (std::size_t e = 0; e < p_.size(); ++e) {
     p_[e] = static_cast<Real>(lambda(e) * static_cast<double>(defect_[e]) / volume(e));
   }
@@ -224,8 +233,7 @@ void MixedBody<Real>::evaluate(const Multipliers* multipliers, Rows<Real>& f) {
   residual_ = body_.residual();
   f = body_.free_forces();
   if (multipliers == nullptr) return;
-  elements_.replace_pressures(body_.state(), multipliers->pressures, multipliers->given_up, pressure_force_,
-                              defect_);
+  replace_pressures(multipliers->pressures, multipliers->given_up);
   for (std::size_t row = 0; row < f.size(); ++row) {
     for (std::size_t i = 0; i < 3; ++i) f[row][i] += free_[row][i] * pressure_force_[row][i];
   }

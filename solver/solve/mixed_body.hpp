@@ -117,6 +117,9 @@ class MixedBody {
   }
   void update_multigrid();
 
+  /// See InternalForce::replace_pressures.
+  void replace_pressures(const std::vector<Real>& pressures, const std::vector<double>& lambdas);
+
   /// What remains of lambda (Pa) with a penalty, by material.
   std::vector<double> remaining(double penalty) const;
   double lambda(std::size_t element) const { return moduli_[materials_.of(element)].lambda; }

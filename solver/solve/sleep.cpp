@@ -48,6 +48,9 @@ std::vector<int> pushed_nodes(const Scene& scene) {
 Scene scene_of(const Scene& whole, const MeshPart& part) {
   Scene scene = {.description = whole.description,
                  .mesh = part.mesh,
+                 .ties = {},
+                 .coarser = {},
+                 .boundary = {},
                  .sets = {},
                  .element_sets = {},
                  .materials = materials_of(whole.materials, part.element_of),
@@ -264,6 +267,11 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
   if (method_named(choice.method).is_condensed) {
     throw InputError(fmt::format(
         "sleep: method '{}' does not compute elements; allowed: a method that takes steps", choice.method));
+  }
+  if (!scene.ties.empty()) {
+    throw InputError(
+        "sleep: distances are counted in elements, which in a refined mesh differ in size; allowed: "
+        "a mesh without [[refine]]");
   }
   if (pushed_nodes(scene).empty()) {
     throw InputError("sleep: everything would sleep; impose a displacement or a force");

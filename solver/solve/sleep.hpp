@@ -21,7 +21,8 @@ struct LocalRelaxation {
 /// under the full load.
 ///
 /// Observers receive reports on the whole mesh; such a run has no checkpoints. Throws ComputationError as
-/// `relax`, and InputError for a condensed method, or if no displacement or force is imposed.
+/// `relax`, and InputError for a condensed method, a refined mesh, or if no displacement or force is
+/// imposed.
 LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share, Observer& observer);
 
 }  // namespace sandglass

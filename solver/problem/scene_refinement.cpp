@@ -1,0 +1,88 @@
+#include "problem/scene_refinement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "mesh/refinement.hpp"
+#include "problem/scene_materials.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::size_t at(int n) {
+  return static_cast<std::size_t>(n);
+}
+
+/// The nodes of a set at its edge: those of a boundary face that is not within the set. Throws InputError if
+/// there are none.
+std::vector<bool> edge_of(const Scene& scene, const RefinedMesh& refined, const std::string& name) {
+  const auto set = refined.nodes_of(node_set(scene.description, scene.sets, "refine.around", name));
+  const auto in_set = [&](int node) { return std::binary_search(set.begin(), set.end(), node); };
+  std::vector<bool> edge(refined.mesh().points.size(), false);
+  for (const auto& face : refined.boundary()) {
+    if (std::all_of(face.begin(), face.end(), in_set)) continue;
+    for (const int node : face) {
+      if (in_set(node)) edge[at(node)] = true;
+    }
+  }
+  if (std::find(edge.begin(), edge.end(), true) == edge.end()) {
+    throw InputError(fmt::format(
+        "{}: refine.around = '{}' has no edge: its nodes must be on the boundary, and some at faces that "
+        "are not within it; elements = NAME refines an element set",
+        scene.description.file.string(), name));
+  }
+  return edge;
+}
+
+/// Marks the elements that have a marked node, and those at their nodes, and so on, `layers` times in all.
+void mark_around(const Mesh& mesh, std::vector<bool> nodes, int layers, std::vector<bool>& marked) {
+  for (int layer = 0; layer < layers; ++layer) {
+    std::vector<bool> reached = nodes;
+    for (std::size_t e = 0; e < marked.size(); ++e) {
+      const auto& cell = mesh.cells[e];
+      if (!std::any_of(cell.begin(), cell.end(), [&](int node) { return nodes[at(node)]; })) continue;
+      marked[e] = true;
+      for (const int node : cell) reached[at(node)] = true;
+    }
+    nodes = std::move(reached);
+  }
+}
+
+/// The elements that a rule wants split in the present mesh.
+void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined, std::vector<bool>& marked) {
+  if (!rule.around.empty()) {
+    mark_around(refined.mesh(), edge_of(scene, refined, rule.around), rule.layers, marked);
+  }
+  if (!rule.elements.empty()) {
+    const auto& set = element_set(scene, "refine.elements", rule.elements);
+    for (const int e : refined.elements_of(set)) marked[at(e)] = true;
+  }
+}
+
+}  // namespace
+
+void refine(Scene& scene) {
+  const auto& rules = scene.description.refinements;
+  if (rules.empty()) return;
+  RefinedMesh refined(scene.mesh);
+  for (int depth = 0;; ++depth) {
+    std::vector<bool> marked(refined.mesh().cells.size(), false);
+    for (const Refinement& rule : rules) {
+      if (depth < rule.depth) mark(scene, rule, refined, marked);
+    }
+    if (std::find(marked.begin(), marked.end(), true) == marked.end()) break;
+    refined.split(std::move(marked));
+  }
+  scene.mesh = refined.mesh();
+  scene.ties = to_free_nodes(refined.ties());
+  scene.coarser = refined.coarser();
+  scene.boundary = refined.boundary();
+  scene.materials = materials_of(scene.materials, refined.original());
+  for (auto& [name, set] : scene.sets) set = refined.nodes_of(set);
+  for (auto& [name, set] : scene.element_sets) set = refined.elements_of(set);
+}
+
+}  // namespace sandglass
