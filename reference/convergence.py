@@ -123,6 +123,8 @@ def fields_of(kind, name, displacement, refinements):
     with tempfile.TemporaryDirectory() as scratch:
         make_mesh(path, Path(scratch) / "mesh.h5", name)
         mesh, _ = load_case_mesh(case, Path(scratch) / "mesh.h5")
+    if mesh.ties:
+        return [displacement], "a mesh with nodes that hang is not split further"
     cells = len(halve(mesh)[0].cells)
     if kind == "golden":
         splits = splits_of(cells)

@@ -158,6 +158,10 @@ class GetfemProblem:
         prescribed, values = self._nodes.imposed(load)
         return values[prescribed][np.argsort(self._dofs[prescribed])]
 
+    def node_dofs(self):
+        """See MixedProblem.node_dofs."""
+        return self._dofs[: self._n_points]
+
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh."""
         return self.displacement.array[self._dofs[: self._n_points]]

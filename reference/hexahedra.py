@@ -92,7 +92,9 @@ class HexMesh:
     points: (n, 3) undeformed coordinates, m. cells: (m, 8) node numbers in VTK order.
     conditions: tuple of Condition. tractions: tuple of Traction. materials: (m,) the number of
     each element's material, or None if there is only one. surfaces: tuple of Surface. gravity:
-    (3,) m/s^2 at full load. axes: (m, 3, 3) material axes of each element by rows, or None.
+    (3,) m/s^2 at full load. axes: (m, 3, 3) material axes of each element by rows, or None. ties:
+    (tied, of, weights) of k pairs of a tied node and one whose displacement it follows with that
+    weight, or None.
     """
 
     points: np.ndarray
@@ -103,6 +105,7 @@ class HexMesh:
     surfaces: tuple = ()
     gravity: tuple = (0.0, 0.0, 0.0)
     axes: np.ndarray | None = None
+    ties: tuple | None = None
 
     def imposed(self, load=1.0):
         """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""

@@ -19,7 +19,7 @@ class MeshFile:
     """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, where it came from.
 
     materials: (m,) the number of each element's material; None without several. axes: (m, 3, 3)
-    material axes of each element by rows; None without fibres.
+    material axes of each element by rows; None without fibres. ties: as of HexMesh.
     """
 
     points: np.ndarray
@@ -30,6 +30,7 @@ class MeshFile:
     mesh_hash: str
     materials: np.ndarray | None = None
     axes: np.ndarray | None = None
+    ties: tuple | None = None
 
 
 def make_mesh(case_path, output, name=None):
@@ -62,6 +63,12 @@ def read_mesh(path):
             if "/mesh/materials" in file:
                 materials = _dataset(path, file, "/mesh/materials", np.int64, None)
             axes = file["/mesh/axes"][...] if "/mesh/axes" in file else None
+            ties = None
+            if "/mesh/ties" in file:
+                pairs = [
+                    _dataset(path, file, f"/mesh/ties/{n}", np.int64, None) for n in ("node", "of")
+                ]
+                ties = (*pairs, _dataset(path, file, "/mesh/ties/weight", np.float64, None))
             attributes = {}
             for name in ("case", "case_hash", "mesh_hash"):
                 if name not in file.attrs:
@@ -86,7 +93,7 @@ def read_mesh(path):
             f"{path}: /mesh/materials has {len(materials)} numbers; it must have one for each of "
             f"the {len(cells)} elements"
         )
-    return MeshFile(points, cells, sets, materials=materials, axes=axes, **attributes)
+    return MeshFile(points, cells, sets, materials=materials, axes=axes, ties=ties, **attributes)
 
 
 def load_case_mesh(case, mesh_path):
@@ -109,7 +116,9 @@ def load_case_mesh(case, mesh_path):
             f"{mesh_path}: /mesh/materials must have a number below {len(case.materials)} for each "
             "element: the case has so many materials"
         )
-    mesh = HexMesh(file.points, file.cells, (), materials=file.materials, axes=file.axes)
+    mesh = HexMesh(
+        file.points, file.cells, (), materials=file.materials, axes=file.axes, ties=file.ties
+    )
     for entry in case.displacements:
         nodes = _mask(file, _members(mesh_path, file, "displacement", entry.set_name))
         condition = Condition(nodes, entry.components, np.tile(entry.value, (len(nodes), 1)))

@@ -147,6 +147,10 @@ class MixedProblem:
         np.add.at(masses, space.dofmap.list.array.reshape(len(volumes), 8), of_cells)
         return np.repeat(masses, 3)
 
+    def node_dofs(self):
+        """The numbers (n, 3) of the displacement dofs of the HexMesh's nodes."""
+        return 3 * self._vertex_block[:, None] + np.arange(3)
+
     def dofs_of(self, nodal):
         """Values (n, 3) at the nodes of the HexMesh as those of the displacement dofs (N,)."""
         dofs = np.zeros((self.displacement.x.array.size // 3, 3))

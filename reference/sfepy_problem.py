@@ -175,6 +175,10 @@ class SfepyProblem:
         """Values (in m) of the prescribed dofs at a load factor."""
         return self._mesh.imposed(load)[1].ravel()[self.fixed]
 
+    def node_dofs(self):
+        """See MixedProblem.node_dofs."""
+        return np.arange(self.displacement.array.size).reshape(-1, 3)
+
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh."""
         return self.displacement.array.reshape(-1, 3)

@@ -30,6 +30,7 @@ from mesh_file import initial_velocity, load_case_mesh
 from problem import GOLDEN, TRUTH, MixedProblem
 from reference_file import MOTION, NOT_ESTIMATED, write_reference
 from symmetry import expand, halve
+from tied_problem import TiedProblem
 
 PAIRS = {"golden": GOLDEN, "truth": TRUTH, MOTION: GOLDEN}
 # A step that fails is halved, so these affect only the speed. One step cannot turn a body far.
@@ -55,6 +56,8 @@ def solve_case(kind, case, mesh, refinements, load_steps, pair=None, make=MixedP
     for level in range(refinements + 1):
         part = refine(part) if level else part
         problem = make(part, pair or PAIRS[kind], case.materials)
+        if part.ties:
+            problem = TiedProblem(problem, part.ties)
         if coarse:
             problem.start_from(coarse)
         try:
@@ -80,6 +83,11 @@ def run(options):
     if (kind == MOTION) != bool(case.motion):
         raise InputError(f"{options.case}: a dynamic case has a golden of motion and no other")
     mesh, file = load_case_mesh(case, options.mesh)
+    if mesh.ties and (kind != "golden" or refinements):
+        raise InputError(
+            f"{options.case}: a refined mesh has a golden at rest only: quadratic elements, motion and "
+            "meshes that are split further have no ties here"
+        )
     require_writable(options.output)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     pair = replace(PAIRS[kind], gauss_points=options.gauss or PAIRS[kind].gauss_points)

@@ -1,0 +1,72 @@
+"""Nodes that hang: a linear field is an answer, in FEniCSx and in SfePy, and forces are kept."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from blocks import MATERIALS, affine, distorted_block
+from hexahedra import Condition, HexMesh, refine
+from newton import solve
+from problem import GOLDEN, MixedProblem
+from tied_problem import TiedProblem
+
+GRADIENT = [[0.02, 0.05, -0.03], [0.04, -0.03, 0.02], [-0.05, 0.01, 0.02]]
+
+
+@pytest.fixture
+def block():
+    """A distorted cube of eight cells, the first split in eight: (HexMesh, values, inside).
+
+    Its nodes in the middle of edges and faces of other cells hang. Imposed is a linear field, but
+    inside, (n,) bool: at nodes that hang, and at the one in the middle of the cube.
+    """
+    points, cells, boundary = distorted_block(n=2)
+    split = refine(HexMesh(points, cells[:1], ()))
+    points = split.points
+    pairs = set()
+    for number, cell, k in itertools.product(range(len(boundary), len(points)), cells[1:], (2, 4)):
+        for among in itertools.combinations(cell, k):
+            if np.allclose(points[number], points[list(among)].mean(axis=0), atol=1e-12):
+                pairs |= {(number, corner, 1 / k) for corner in among}
+    ties = tuple(map(np.array, zip(*sorted(pairs))))
+    assert len(np.unique(ties[0])) == 3 + 9  # three faces with nine edges are shared with others
+    inside = np.zeros(len(points), dtype=bool)
+    inside[: len(boundary)] = ~boundary
+    inside[ties[0]] = True
+    values = affine(points, GRADIENT)
+    held = (Condition(~inside, (0, 1, 2), values),)
+    mesh = HexMesh(points, np.concatenate([split.cells, cells[1:]]), held, ties=ties)
+    return mesh, values, inside
+
+
+@pytest.mark.parametrize("program", ["FEniCSx", "SfePy"])
+def test_patch(block, program):
+    make = MixedProblem
+    if program == "SfePy":
+        make = pytest.importorskip("sfepy_problem").SfepyProblem
+    mesh, values, _ = block
+    problem = TiedProblem(make(mesh, GOLDEN, MATERIALS), mesh.ties)
+    outcome = solve(problem, 1, 1e-10)
+    assert outcome.residual < 1e-9
+    np.testing.assert_allclose(problem.nodal_displacement(), values, atol=1e-12)
+
+
+def test_without_ties_it_is_no_answer(block):
+    """The test above would notice: nodes that do not follow open cracks."""
+    mesh, values, _ = block
+    problem = MixedProblem(mesh, GOLDEN, MATERIALS)
+    solve(problem, 1, 1e-10)
+    assert np.abs(problem.nodal_displacement() - values).max() > 1e-4
+
+
+def test_forces_are_handed_on(block):
+    mesh, values, inside = block
+    problem = TiedProblem(MixedProblem(mesh, GOLDEN, MATERIALS), mesh.ties)
+    moved = np.random.default_rng(1).normal(scale=0.01, size=values.size)
+    problem.displacement.array[:] = moved
+    forces, _ = problem.mixed_residual()
+    of_nodes = forces[problem.node_dofs()]
+    assert (of_nodes[mesh.ties[0]] == 0).all() and (of_nodes[~inside] != 0).all()
+    # Internal forces keep momentum.
+    np.testing.assert_allclose(of_nodes.sum(axis=0), 0.0, atol=1e-10 * np.abs(forces).max())
