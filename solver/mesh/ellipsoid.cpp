@@ -14,8 +14,8 @@ Mesh EllipsoidMesh::build() const {
   });
 
   // Every node on the core's surface is joined to the unit sphere by equal layers.
-  const auto on_surface = boundary_nodes(mesh);
   const auto faces = boundary_faces(mesh.cells);
+  const auto on_surface = nodes_of(faces, mesh.points.size());
   const auto core_nodes = mesh.points.size();
   std::vector<int> below(core_nodes);  // the node under the layer being built, per core surface node
   for (std::size_t n = 0; n < core_nodes; ++n) below[n] = static_cast<int>(n);

@@ -51,12 +51,16 @@ std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) 
   return boundary;
 }
 
-std::vector<bool> boundary_nodes(const Mesh& mesh) {
-  std::vector<bool> on_boundary(mesh.points.size(), false);
-  for (const auto& face : boundary_faces(mesh.cells)) {
-    for (const int node : face) on_boundary[static_cast<std::size_t>(node)] = true;
+std::vector<bool> nodes_of(const std::vector<Quadrilateral>& faces, std::size_t nodes) {
+  std::vector<bool> on_faces(nodes, false);
+  for (const auto& face : faces) {
+    for (const int node : face) on_faces[static_cast<std::size_t>(node)] = true;
   }
-  return on_boundary;
+  return on_faces;
+}
+
+std::vector<bool> boundary_nodes(const Mesh& mesh) {
+  return nodes_of(boundary_faces(mesh.cells), mesh.points.size());
 }
 
 std::array<Vector, 2> bounding_box(const NodalField& points) {

@@ -277,7 +277,8 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file, error.what()));
   }
-  const auto on_boundary = boundary_nodes(scene.mesh);
+  scene.boundary = boundary_faces(scene.mesh.cells);
+  const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
   for (const auto& rule : scene.description.sets) {
     auto nodes = select_nodes(scene.mesh, on_boundary, rule);
     if (nodes.empty()) {
@@ -291,7 +292,6 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
     scene.element_sets[rule.name] = select_elements(scene.mesh, rule);
   }
   scene.materials = make_materials(scene);
-  scene.boundary = boundary_faces(scene.mesh.cells);
   refine(scene);
   scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
   std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
