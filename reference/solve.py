@@ -85,8 +85,8 @@ def run(options):
     mesh, file = load_case_mesh(case, options.mesh)
     if mesh.ties and (kind != "golden" or refinements):
         raise InputError(
-            f"{options.case}: a refined mesh has a golden at rest only: quadratic elements, motion and "
-            "meshes that are split further have no ties here"
+            f"{options.case}: a refined mesh has a golden at rest only: quadratic elements, motion "
+            "and meshes that are split further have no ties here"
         )
     require_writable(options.output)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
