@@ -28,8 +28,6 @@ class RowTies {
     std::sort(ties_.begin(), ties_.end(), [](const TiedRow& a, const TiedRow& b) { return a.row < b.row; });
   }
 
-  bool empty() const { return ties_.empty(); }
-
   /// Sets tied rows to the means that they follow.
   void follow(Rows<Real>& displacements) const {
     for (const auto& [row, first, last] : ties_) {

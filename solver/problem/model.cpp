@@ -15,8 +15,9 @@ namespace {
 /// A pressure p on a face with edges along xi and eta has the tangent p times the integral of N_I (dN_J/dxi x
 /// dx/deta - ...), whose norm is at most p times half the sum of two edges, as those of the integrals of N_I
 /// dN_J/dxi are 1 and |dx/deta| is at most half the longer edge.
-std::vector<Model::LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& masses) {
+std::vector<Model::LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& element_masses) {
   if (scene.pressures.empty() && scene.supports.empty()) return {};
+  const std::vector<double> masses = lumped_masses(scene.mesh, element_masses);
   std::vector<Model::LoadRates> at_nodes(masses.size());
   const double end = scene.description.quasi_static ? 1.0 : scene.description.dynamics.duration;
   for (const FacePressure& pressure : scene.pressures) {
@@ -63,7 +64,7 @@ Model::Model(const Scene& scene, MethodChoice choice)
       internal_force_(make_internal_force(scene.mesh, scene.materials, choice_)),
       element_masses_(sandglass::element_masses(scene.mesh, scene.materials)),
       masses_(handed_on(scene.ties, lumped_masses(scene.mesh, element_masses_))),
-      load_rates_(load_rates_of(scene, lumped_masses(scene.mesh, element_masses_))) {}
+      load_rates_(load_rates_of(scene, element_masses_)) {}
 
 NodalField internal_forces(const Model& model, const NodalField& u) {
   return std::visit(
