@@ -286,6 +286,11 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   if (quasi_static && answer.status == "complete") {
     print_accuracy(scene, answer.u);
     if (options.estimate) print_estimate(model, answer.u);
+    if (options.estimate) {
+      const auto e = estimate_truth_error(model, answer.u);
+      const double unit = displacement_unit(scene, answer.u);
+      fmt::print("truth estimate {:.4g} {:.4g} %\n", 100 * e.largest / unit, 100 * e.rms / unit);
+    }
   }
   print_time(answer.seconds, answer.steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
   return answer;

@@ -144,15 +144,23 @@ Refinement read_refinement(TableReader table) {
   Refinement refinement;
   const auto around = table.optional<std::string>("around"),
              elements = table.optional<std::string>("elements");
-  if (around.has_value() == elements.has_value()) {
+  const auto numbers = table.optional<std::vector<int>>("numbers", Range::at_least(0.0));
+  if (around.has_value() + elements.has_value() + numbers.has_value() != 1) {
     table.fail("around",
-               "and elements: one of the two must be given, the name of a node set or of an element set");
+               "elements or numbers: one of the three must be given, the name of a node set, that of an "
+               "element set, or numbers of elements");
   }
   refinement.around = around.value_or("");
   refinement.elements = elements.value_or("");
-  constexpr Range few{.low = 1, .high = 8, .low_open = false, .high_open = false};
-  refinement.depth = table.optional<int>("depth", few).value_or(refinement.depth);
-  if (around) refinement.layers = table.optional<int>("layers", few).value_or(refinement.layers);
+  refinement.numbers = numbers.value_or(std::vector<int>{});
+  if (numbers) {
+    constexpr Range before{.low = 0, .high = 7, .low_open = false, .high_open = false};
+    refinement.after = table.optional<int>("after", before).value_or(refinement.after);
+  } else {
+    constexpr Range few{.low = 1, .high = 8, .low_open = false, .high_open = false};
+    refinement.depth = table.optional<int>("depth", few).value_or(refinement.depth);
+    if (around) refinement.layers = table.optional<int>("layers", few).value_or(refinement.layers);
+  }
   table.finish();
   return refinement;
 }

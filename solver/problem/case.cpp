@@ -88,8 +88,9 @@ std::string case_hash(const Case& description) {
   }
   for (const auto& rule : description.sets) text += described(rule);
   for (const auto& rule : description.element_sets) text += "elements " + described(rule);
-  for (const auto& [around, elements, depth, layers] : description.refinements) {
+  for (const auto& [around, elements, numbers, after, depth, layers] : description.refinements) {
     text += fmt::format("refine({}:{}:{}:{})", around, elements, depth, layers);
+    if (!numbers.empty()) text += fmt::format("{}:{}", after, numbers);
   }
   for (const auto& imposed : description.displacements) {
     text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);

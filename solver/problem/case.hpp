@@ -31,10 +31,12 @@ struct CaseMaterial : Material {
 
 /// Elements that are split in eight, their parts again, and so on.
 struct Refinement {
-  std::string around;    ///< a node set, at whose edge elements are split
-  std::string elements;  ///< an element set that is split; empty, or the other name is
-  int depth = 1;         ///< how often
-  int layers = 2;        ///< of elements and parts at the edge that are split
+  std::string around;        ///< a node set, at whose edge elements are split; or
+  std::string elements;      ///< an element set that is split; or
+  std::vector<int> numbers;  ///< elements that are split, of the mesh
+  int after = 0;             ///< after so many splits
+  int depth = 1;             ///< how often, around a set and of a set
+  int layers = 2;            ///< of elements and parts at the edge that are split
 };
 
 /// Displacements imposed on a node set; they follow the loading curve.

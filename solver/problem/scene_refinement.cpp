@@ -51,8 +51,20 @@ void mark_around(const Mesh& mesh, std::vector<bool> nodes, int layers, std::vec
   }
 }
 
-/// The elements that a rule wants split in the present mesh.
-void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined, std::vector<bool>& marked) {
+/// The elements that a rule wants split in the present mesh, after `splits` splits.
+void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined, int splits,
+          std::vector<bool>& marked) {
+  if (!rule.numbers.empty() && splits == rule.after) {
+    for (const int e : rule.numbers) {
+      if (at(e) >= marked.size()) {
+        throw InputError(fmt::format(
+            "{}: refine.numbers = {} must be below {}, the number of elements of the mesh after {} splits",
+            scene.description.file.string(), e, marked.size(), splits));
+      }
+      marked[at(e)] = true;
+    }
+  }
+  if (splits >= rule.depth) return;
   if (!rule.around.empty()) {
     mark_around(refined.mesh(), edge_of(scene, refined, rule.around), rule.layers, marked);
   }
@@ -68,12 +80,11 @@ void refine(Scene& scene) {
   const auto& rules = scene.description.refinements;
   if (rules.empty()) return;
   RefinedMesh refined(scene.mesh);
-  for (int depth = 0;; ++depth) {
+  int most = 0;
+  for (const Refinement& rule : rules) most = std::max(most, rule.numbers.empty() ? rule.depth : rule.after + 1);
+  for (int splits = 0; splits < most; ++splits) {
     std::vector<bool> marked(refined.mesh().cells.size(), false);
-    for (const Refinement& rule : rules) {
-      if (depth < rule.depth) mark(scene, rule, refined, marked);
-    }
-    if (std::find(marked.begin(), marked.end(), true) == marked.end()) break;
+    for (const Refinement& rule : rules) mark(scene, rule, refined, splits, marked);
     refined.split(std::move(marked));
   }
   scene.mesh = refined.mesh();
@@ -83,6 +94,42 @@ void refine(Scene& scene) {
   scene.materials = materials_of(scene.materials, refined.original());
   for (auto& [name, set] : scene.sets) set = refined.nodes_of(set);
   for (auto& [name, set] : scene.element_sets) set = refined.elements_of(set);
+}
+
+Scene remade(const Scene& scene, Case description) {
+  if (scene.coarser.empty()) return make_scene(std::move(description), scene.mesh, scene.sets, scene.element_sets);
+  const Mesh& original = scene.coarser.back().mesh;
+  NodeSets sets = scene.sets;
+  for (auto& [name, nodes] : sets) {
+    std::erase_if(nodes, [&](int node) { return at(node) >= original.points.size(); });
+  }
+  ElementSets element_sets = scene.element_sets;
+  for (auto& [name, elements] : element_sets) {
+    for (int& e : elements) {
+      for (const CoarserMesh& coarser : scene.coarser) e = coarser.element_of[at(e)];
+    }
+    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+  }
+  return make_scene(std::move(description), original, std::move(sets), std::move(element_sets));
+}
+
+Scene refined(const Scene& scene, std::vector<int> elements) {
+  Case description = scene.description;
+  Refinement split;
+  split.numbers = std::move(elements);
+  split.after = static_cast<int>(scene.coarser.size());
+  description.refinements.push_back(std::move(split));
+  return remade(scene, std::move(description));
+}
+
+NodalField prolonged(const CoarserMesh& coarser, NodalField u) {
+  for (const auto& corners : coarser.corners) {
+    Vector mean{};
+    for (const int n : corners)
+      for (std::size_t i = 0; i < 3; ++i) mean[i] += u[at(n)][i] / static_cast<double>(corners.size());
+    u.push_back(mean);
+  }
+  return u;
 }
 
 }  // namespace sandglass

@@ -13,6 +13,7 @@
 #include "comparison/comparison.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/interpolation.hpp"
+#include "problem/scene_refinement.hpp"
 
 namespace sandglass {
 
@@ -51,8 +52,7 @@ MethodChoice golden_element(int threads) {
 Scene with_margin(const Scene& scene) {
   Case description = scene.description;
   scale_load(description, margin);
-  description.sets.clear();
-  return make_scene(std::move(description), scene.mesh, scene.sets, scene.element_sets);
+  return remade(scene, std::move(description));
 }
 
 double smallest_jacobian(const Model& model, const Displacements& history) {
