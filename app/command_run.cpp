@@ -21,6 +21,7 @@
 #include "solve/error_estimate.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/sleep.hpp"
+#include "solve/truth_estimate.hpp"
 
 namespace sandglass {
 
@@ -38,7 +39,7 @@ struct RunOptions {
   std::string output;
   std::string checkpoint;
   double checkpoint_every = 60.0;
-  bool estimate = false;
+  std::string estimate;
   bool describe = false;
 };
 
@@ -149,14 +150,23 @@ void print_levels(const std::string& name, const std::vector<double>& levels, do
   fmt::print("elements: {}; chosen in {:.2g} % of the time\n", text, 100.0 * share_of_time);
 }
 
-void print_estimate(const Model& model, const NodalField& u) {
-  const ErrorEstimate estimate = estimate_error(model, u);
+/// Prints the estimates that are asked for: against the golden's element on the same mesh, or the truth.
+void print_estimates(const RunOptions& options, const Model& model, const NodalField& u) {
   const double unit = displacement_unit(model.scene(), u);
-  fmt::print(
-      "estimated error against {}: max {:.4g} %, rms {:.4g} % of the {} displacement, after {} "
-      "evaluations\n",
-      golden_method, 100.0 * estimate.largest / unit, 100.0 * estimate.rms / unit,
-      largest_imposed(model.scene()) > 0.0 ? "imposed" : "largest", estimate.evaluations);
+  const auto print = [&](std::string_view against, double largest, double rms, const std::string& how) {
+    fmt::print("estimated error against {}: max {:.4g} %, rms {:.4g} % of the {} displacement, {}\n", against,
+               100.0 * largest / unit, 100.0 * rms / unit,
+               largest_imposed(model.scene()) > 0.0 ? "imposed" : "largest", how);
+  };
+  if (options.estimate == "golden") {
+    const ErrorEstimate estimate = estimate_error(model, u);
+    print(golden_method, estimate.largest, estimate.rms, fmt::format("after {} evaluations", estimate.evaluations));
+  } else if (options.estimate == "truth") {
+    const TruthEstimate estimate = estimate_truth_error(model, u);
+    print("the truth", estimate.largest, estimate.rms,
+          fmt::format("from meshes of up to {} elements", estimate.elements));
+    if (!estimate.remark.empty()) fmt::print("note: refined once instead of twice: {}\n", estimate.remark);
+  }
 }
 
 /// `asleep`: steps had different numbers of elements.
@@ -223,7 +233,7 @@ void require_quasi_static(const RunOptions& options, const Case& description) {
     throw InputError(
         fmt::format("{}: '{}' is in motion; {} quasi-static answers", option, description.name, what));
   };
-  if (options.estimate) refuse("--estimate", "the estimate is for");
+  if (!options.estimate.empty()) refuse("--estimate", "the estimate is for");
   if (options.sleep) refuse("--sleep", "what sleeps is known of");
 }
 
@@ -285,12 +295,7 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
   if (quasi_static && answer.status == "complete") {
     print_accuracy(scene, answer.u);
-    if (options.estimate) print_estimate(model, answer.u);
-    if (options.estimate) {
-      const auto e = estimate_truth_error(model, answer.u);
-      const double unit = displacement_unit(scene, answer.u);
-      fmt::print("truth estimate {:.4g} {:.4g} %\n", 100 * e.largest / unit, 100 * e.rms / unit);
-    }
+    print_estimates(options, model, answer.u);
   }
   print_time(answer.seconds, answer.steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
   return answer;
@@ -364,9 +369,14 @@ void add_run_command(CLI::App& app, int& exit_code) {
                    "seconds between checkpoints; 0 means wherever the run can go on from: at the checks of "
                    "dynamic runs, at the load levels of quasi-static ones")
       ->capture_default_str();
-  command->add_flag("--estimate", options->estimate,
-                    "estimate how far a quasi-static answer is from that of the mean-dilatation element, the "
-                    "mixed element's twin, on the same mesh");
+  command
+      ->add_option("--estimate", options->estimate,
+                   "estimate how far a quasi-static answer is from the 'golden', that of the mean-dilatation "
+                   "element on the same mesh, or from the 'truth', that of ever finer meshes; without a word "
+                   "the golden")
+      ->expected(0, 1)
+      ->default_str("golden")
+      ->check(CLI::IsMember({"golden", "truth"}));
   command->add_flag("--describe", options->describe,
                     "print every key of a case file with unit, range and meaning");
   command->callback([options, &exit_code] {

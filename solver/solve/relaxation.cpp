@@ -25,6 +25,7 @@ class Search {
  public:
   Search(const Model& model, const InternalForce<Real>& elements, Observer& observer)
       : model_(model),
+        elements_(elements),
         settings_(model.scene().description.relaxation),
         most_evaluations_(without_stiffness(model) ? std::min(few_evaluations, settings_.max_steps)
                                                    : settings_.max_steps),
@@ -57,13 +58,21 @@ class Search {
         retry_load_level();
       }
     }
-    result_.u = body().field(body().state().u);
-    result_.energies = body().energies();
-    result_.steps = equilibrium_.evaluations() + evaluations_of_estimates_;
-    result_.residual = equilibrium_.residual();
-    result_.adaption_seconds = adaption_.seconds();
-    observer_.frame(body().frame(time(), no_velocity_));
-    return std::move(result_);
+    return finish();
+  }
+
+  /// The same from displacements near the answer, at the full load; none if they do not lead to it.
+  std::optional<Relaxation> run_near(const NodalField& u) {
+    const Frame rest = body().frame(0.0, no_velocity_);
+    load_levels_.skip_to_end();
+    body().state() = state_at(elements_, u);
+    body().impose(load_levels_.load());
+    if (!body().healthy()) return std::nullopt;
+    equilibrium_.take_own_pressures();
+    if (!solve() || result_.stagnated) return std::nullopt;
+    observer_.frame(rest);
+    finish_load_level();
+    return finish();
   }
 
  private:
@@ -94,6 +103,16 @@ class Search {
   static constexpr double epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
 
   Body<Real>& body() { return equilibrium_.body(); }
+
+  Relaxation finish() {
+    result_.u = body().field(body().state().u);
+    result_.energies = body().energies();
+    result_.steps = equilibrium_.evaluations() + evaluations_of_estimates_;
+    result_.residual = equilibrium_.residual();
+    result_.adaption_seconds = adaption_.seconds();
+    observer_.frame(body().frame(time(), no_velocity_));
+    return std::move(result_);
+  }
 
   /// The data that the next load level depends on; see checkpoint.hpp.
   template <class Archive>
@@ -254,6 +273,7 @@ class Search {
   }
 
   const Model& model_;
+  const InternalForce<Real>& elements_;
   const RelaxationSettings& settings_;
   int most_evaluations_;
   double amplification_;
@@ -287,12 +307,16 @@ std::string outcome(const Relaxation& relaxation, Precision precision) {
   return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
 }
 
-Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from) {
+Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
   const auto start = std::chrono::steady_clock::now();
   Relaxation result = method_named(model.choice().method).is_condensed
                           ? condensed_answer(model, observer)
                           : std::visit(
                                 [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+                                  if (near != nullptr && !elements->needs_increment()) {
+                                    auto found = Search<Real>(model, *elements, observer).run_near(*near);
+                                    if (found) return std::move(*found);
+                                  }
                                   return Search<Real>(model, *elements, observer).run(from);
                                 },
                                 model.internal_force());

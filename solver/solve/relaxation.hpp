@@ -27,8 +27,10 @@ struct Relaxation {
 /// condensed method superposes its answer in one step. Throws ComputationError if an element remains inverted
 /// or no increment is small enough. The search can be resumed from the start of every load level; with
 /// `from`, a checkpoint of the same model, it starts there, and nothing is reported twice. A condensed method
-/// has no checkpoints.
-Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from = nullptr);
+/// has no checkpoints. With displacements (m) near the answer, of another method or from a coarser mesh, the
+/// search first starts from these, at the full load, where no forces depend on the path.
+Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from = nullptr,
+                 const NodalField* near = nullptr);
 
 /// Whether the answer is in equilibrium within the tolerance, or within roundoff: in single precision the
 /// roundoff of the forces may keep the residual above the tolerance.
