@@ -160,7 +160,8 @@ void print_estimates(const RunOptions& options, const Model& model, const NodalF
   };
   if (options.estimate == "golden") {
     const ErrorEstimate estimate = estimate_error(model, u);
-    print(golden_method, estimate.largest, estimate.rms, fmt::format("after {} evaluations", estimate.evaluations));
+    print(golden_method, estimate.largest, estimate.rms,
+          fmt::format("after {} evaluations", estimate.evaluations));
   } else if (options.estimate == "truth") {
     const TruthEstimate estimate = estimate_truth_error(model, u);
     print("the truth", estimate.largest, estimate.rms,

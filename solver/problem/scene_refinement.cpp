@@ -81,7 +81,8 @@ void refine(Scene& scene) {
   if (rules.empty()) return;
   RefinedMesh refined(scene.mesh);
   int most = 0;
-  for (const Refinement& rule : rules) most = std::max(most, rule.numbers.empty() ? rule.depth : rule.after + 1);
+  for (const Refinement& rule : rules)
+    most = std::max(most, rule.numbers.empty() ? rule.depth : rule.after + 1);
   for (int splits = 0; splits < most; ++splits) {
     std::vector<bool> marked(refined.mesh().cells.size(), false);
     for (const Refinement& rule : rules) mark(scene, rule, refined, splits, marked);
@@ -97,7 +98,8 @@ void refine(Scene& scene) {
 }
 
 Scene remade(const Scene& scene, Case description) {
-  if (scene.coarser.empty()) return make_scene(std::move(description), scene.mesh, scene.sets, scene.element_sets);
+  if (scene.coarser.empty())
+    return make_scene(std::move(description), scene.mesh, scene.sets, scene.element_sets);
   const Mesh& original = scene.coarser.back().mesh;
   NodeSets sets = scene.sets;
   for (auto& [name, nodes] : sets) {

@@ -131,7 +131,8 @@ void Refining::refine() {
   Relaxation found = find_answer(finer, &guess, threads_);
   before_ = std::move(answer_.u);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  answer_ = {std::move(finer), std::move(found.u), answer_.evaluations + found.steps, answer_.seconds + seconds};
+  answer_ = {std::move(finer), std::move(found.u), answer_.evaluations + found.steps,
+             answer_.seconds + seconds};
 }
 
 NodalField Refining::on_original(const NodalField& u) const {
