@@ -18,7 +18,7 @@ from mpi4py import MPI
 from boundary import prescribed_dofs
 from common.hexahedron import LEXICOGRAPHIC
 from laws import energy
-from loads import JIT_OPTIONS, Loads
+from loads import JIT_OPTIONS, Loads, assembled
 
 
 @dataclass(frozen=True)
@@ -64,24 +64,12 @@ class MixedProblem:
         pressures = ufl.FiniteElement(pair.pressure_family, "hexahedron", pair.pressure_order)
         self.displacement = fem.Function(fem.FunctionSpace(domain, displacements))
         self.pressure = fem.Function(fem.FunctionSpace(domain, pressures))
-        # Constants rather than literals, so that one compiled form serves every case.
-        laws = [
-            partial(
-                energy,
-                m.law,
-                m.volumetric,
-                **{k: fem.Constant(domain, v) for k, v in m.parameters.items()},
-            )
-            for m in materials
-        ]
-        of_cell = None
-        if len(laws) > 1:
-            of_cell = mesh.materials[np.asarray(domain.topology.original_cell_index)]
-        axes = None
-        if mesh.axes is not None:
-            axes = fem.Function(fem.FunctionSpace(domain, ufl.TensorElement("DG", "hexahedron", 0)))
-            axes.x.array[:] = mesh.axes[np.asarray(domain.topology.original_cell_index)].ravel()
-        self._forms = _compile_forms(self.displacement, self.pressure, pair, laws, of_cell, axes)
+        self._degree = 2 * pair.gauss_points - 1
+        points, _ = basix.make_quadrature(basix.CellType.hexahedron, self._degree)
+        assert len(points) == pair.gauss_points**3, "FEniCSx chose another Gauss rule"
+        self._forms = compile_forms(
+            self.displacement, self.pressure, mesh, materials, self._degree
+        )
         self._matrices = {
             name: fem.petsc.create_matrix(form) for name, form in self._forms["matrices"].items()
         }
@@ -100,9 +88,7 @@ class MixedProblem:
         self.scale = max(np.abs(self.values).max(initial=0.0), mesh.largest_turn().max())
         self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
         self.load = 1.0
-        of_cells = np.zeros(n_cells, dtype=int) if of_cell is None else of_cell
-        self._densities = np.array([material.density for material in materials])[of_cells]
-        self._degree = 2 * pair.gauss_points - 1
+        self._densities = densities_of(domain, mesh, materials)
         self._loads = Loads(mesh, self.displacement, cell_nodes, self._densities, self._degree)
         self.symmetric = self._loads.symmetric
 
@@ -205,35 +191,49 @@ class MixedProblem:
         return self.pressure.function_space.dofmap.dof_layout.num_dofs
 
     def _assemble_matrix(self, name):
-        matrix = self._matrices[name]
-        matrix.zeroEntries()
-        fem.petsc.assemble_matrix(matrix, self._forms["matrices"][name])
-        matrix.assemble()
-        indptr, indices, data = matrix.getValuesCSR()
-        return scipy.sparse.csr_matrix((data, indices, indptr), shape=matrix.getSize())
+        return assembled(self._forms["matrices"][name], self._matrices[name])
 
     def _assemble_vector(self, name):
         return fem.assemble_vector(self._forms["vectors"][name]).array
 
 
-def _compile_forms(u, p, pair, laws, of_cell, axes):
+def densities_of(domain, mesh, materials):
+    """Densities (m,) in kg/m^3 of the cells of a HexMesh, in dolfinx's order of cells."""
+    numbers = np.zeros(len(mesh.cells), dtype=int) if len(materials) == 1 else mesh.materials
+    of_cells = numbers[np.asarray(domain.topology.original_cell_index)]
+    return np.array([material.density for material in materials])[of_cells]
+
+
+def compile_forms(u, p, mesh, materials, degree):
     """First and second derivatives of the energy with respect to displacement and pressure.
 
-    laws: list of functions (F, p) -> energy density. of_cell: the number of the law of each cell,
-    if there are several. axes: material axes by rows, in which laws take F, or None.
+    u, p: dolfinx functions on a domain made from a HexMesh. materials: list of Material. degree: of
+    the quadrature. Returns "scalars", "vectors" and "matrices" -> name -> compiled form.
     """
-    degree = 2 * pair.gauss_points - 1
-    points, _ = basix.make_quadrature(basix.CellType.hexahedron, degree)
-    assert len(points) == pair.gauss_points**3, "FEniCSx chose another Gauss rule"
+    domain = u.function_space.mesh
+    # Constants rather than literals, so that one compiled form serves every case.
+    laws = [
+        partial(
+            energy,
+            m.law,
+            m.volumetric,
+            **{k: fem.Constant(domain, v) for k, v in m.parameters.items()},
+        )
+        for m in materials
+    ]
+    original = np.asarray(domain.topology.original_cell_index)
     measure = ufl.dx(metadata={"quadrature_rule": "default", "quadrature_degree": degree})
     parts = [measure]
-    if of_cell is not None:
-        cells = np.arange(len(of_cell), dtype=np.int32)
-        domain = u.function_space.mesh
-        tags = dolfinx.mesh.meshtags(domain, 3, cells, of_cell.astype(np.int32))
+    if len(laws) > 1:
+        numbers = mesh.materials[original].astype(np.int32)
+        cells = np.arange(len(numbers), dtype=np.int32)
+        tags = dolfinx.mesh.meshtags(domain, 3, cells, numbers)
         parts = [measure(number, subdomain_data=tags) for number in range(len(laws))]
     F = ufl.Identity(3) + ufl.grad(u)
-    if axes is not None:
+    if mesh.axes is not None:  # laws take F in material axes
+        tensors = ufl.TensorElement("DG", domain.ufl_cell(), 0)
+        axes = fem.Function(fem.FunctionSpace(domain, tensors))
+        axes.x.array[:] = mesh.axes[original].ravel()
         F = axes * F * axes.T
     total = sum(law(F, p) * part for law, part in zip(laws, parts, strict=True))
     v, du = ufl.TestFunction(u.function_space), ufl.TrialFunction(u.function_space)

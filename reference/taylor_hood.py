@@ -1,0 +1,153 @@
+"""The mixed problem on quadratic tetrahedra with a continuous linear pressure (Taylor-Hood)."""
+
+import dolfinx
+import numpy as np
+import scipy.sparse
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+from scipy.spatial import cKDTree
+
+from loads import Loads, assembled
+from newton import Unknown
+from problem import compile_forms, densities_of
+from tetrahedra import EDGES
+
+DEGREE = 6  # of the quadrature: squares of gradients times the Jacobian of curved tetrahedra
+
+
+class TaylorHoodProblem:
+    """Equilibrium on quadratic tetrahedra: what newton.solve() needs.
+
+    mesh: HexMesh of tetrahedra.cut(). materials: list of Material. A continuous pressure cannot be
+    eliminated element by element: unknowns are displacements and pressures together, the latter
+    over a stiffness (Pa/m) that makes both blocks of the tangent alike.
+    Attributes: as of a MixedProblem; displacement holds all unknowns.
+    """
+
+    def __init__(self, mesh, materials):
+        self._mesh = mesh
+        element = ufl.VectorElement("Lagrange", "tetrahedron", 2)
+        domain = dolfinx.mesh.create_mesh(MPI.COMM_SELF, mesh.cells, mesh.points, ufl.Mesh(element))
+        self._u = fem.Function(fem.FunctionSpace(domain, element))
+        self._p = fem.Function(fem.FunctionSpace(domain, ("Lagrange", 1)))
+        self._forms = compile_forms(self._u, self._p, mesh, materials, DEGREE)
+        # Geometry and displacement number the nodes of a cell alike: see MixedProblem.
+        geometry = domain.geometry.dofmap.array.reshape(-1, 10)
+        self._cells = np.asarray(domain.geometry.input_global_indices)[geometry]
+        block = self._u.function_space.dofmap.list.array.reshape(-1, 10)
+        self._block = np.empty(len(mesh.points), dtype=np.int64)
+        self._block[self._cells] = block
+        densities = densities_of(domain, mesh, materials)
+        self._loads = Loads(mesh, self._u, self._cells, densities, DEGREE)
+        self.symmetric, self.load = self._loads.symmetric, 1.0
+        self._n = self._u.x.array.size
+        self.displacement = Unknown(self._n + self._p.x.array.size)
+        self.pressure = Unknown(0)
+        prescribed, _ = mesh.imposed()
+        self._nodes, self._axes = np.nonzero(prescribed)
+        self.fixed = 3 * self._block[self._nodes] + self._axes
+        self.free = np.setdiff1d(np.arange(self.displacement.array.size), self.fixed)
+        self.scale = max(np.abs(self.values_at(1.0)).max(initial=0.0), mesh.largest_turn().max())
+        forms = self._forms["matrices"]
+        alike = [np.abs(assembled(forms[name]).diagonal()).mean() for name in ("uu", "pp")]
+        self._stiffness = np.sqrt(alike[0] / alike[1])
+
+    def values_at(self, load):
+        """Values (in m) of the prescribed dofs at a load factor."""
+        return self._mesh.imposed(load)[1][self._nodes, self._axes]
+
+    def nodal_displacement(self):
+        """Displacement (n, 3) in m at the nodes of the mesh, in its numbering."""
+        return self.displacement.array[: self._n].reshape(-1, 3)[self._block]
+
+    def start_from(self, coarse):
+        """Interpolate displacement and pressure from a TaylorHoodProblem on another mesh."""
+        mesh, other = self._mesh, coarse._mesh
+        cell, places = locate(mesh.points, other.points, other.cells)
+        u = coarse.nodal_displacement()[other.cells[cell]]
+        p = coarse._nodal_pressure()[other.cells[cell][:, :4]]
+        u = np.einsum("ka,kai->ki", _quadratic(places), u)
+        p = np.einsum("ka,ka->k", places, p) / self._stiffness
+        self.displacement.array[: self._n].reshape(-1, 3)[self._block] = u
+        dofs = self._pressure_dofs()
+        self.displacement.array[self._n + dofs] = p[self._cells[:, :4]]
+
+    def mixed_residual(self):
+        """Unbalanced forces (N,) in N of all unknowns, and an empty row."""
+        self._move()
+        vectors = self._forms["vectors"]
+        forces = fem.assemble_vector(vectors["u"]).array + self._loads.forces(self._factor)
+        dilatation = fem.assemble_vector(vectors["p"]).array
+        return np.concatenate([forces, self._stiffness * dilatation]), np.empty(0)
+
+    def linearize(self):
+        """See MixedProblem.linearize: nothing is eliminated here."""
+        residual, _ = self.mixed_residual()
+        forms, s = self._forms["matrices"], self._stiffness
+        uu = assembled(forms["uu"]) + self._loads.tangent(self._factor)
+        up, pp = s * assembled(forms["up"]), s**2 * assembled(forms["pp"])
+        tangent = scipy.sparse.bmat([[uu, up], [up.T, pp]], format="csr")
+        return tangent, residual, lambda _: np.empty(0)
+
+    def _factor(self, _curve):
+        return self.load
+
+    def _move(self):
+        self._u.x.array[:] = self.displacement.array[: self._n]
+        self._p.x.array[:] = self._stiffness * self.displacement.array[self._n :]
+
+    def _pressure_dofs(self):
+        return self._p.function_space.dofmap.list.array.reshape(-1, 4)
+
+    def _nodal_pressure(self):
+        """Pressures (n,) in Pa at the nodes of the mesh that are vertices."""
+        found = np.zeros(len(self._mesh.points))
+        pressures = self._stiffness * self.displacement.array[self._n :]
+        found[self._cells[:, :4]] = pressures[self._pressure_dofs()]
+        return found
+
+
+def _quadratic(places):
+    """The ten shape functions (k, 10) at barycentric coordinates (k, 4)."""
+    on_edges = 4 * places[:, EDGES[:, 0]] * places[:, EDGES[:, 1]]
+    return np.concatenate([places * (2 * places - 1), on_edges], axis=1)
+
+
+def _slopes(places):
+    """Derivatives (k, 10, 3) of the shape functions by the last three barycentric coordinates."""
+    by = np.zeros((len(places), 10, 4))
+    for v in range(4):
+        by[:, v, v] = 4 * places[:, v] - 1
+    for e, (a, b) in enumerate(EDGES):
+        by[:, 4 + e, a], by[:, 4 + e, b] = 4 * places[:, b], 4 * places[:, a]
+    return by[:, :, 1:] - by[:, :, :1]
+
+
+def locate(targets, points, cells, candidates=40):
+    """The quadratic tetrahedron of each target (k, 3), and the barycentric coordinates in it.
+
+    Newton's method in the tetrahedra with the nearest centres; the one that comes closest to
+    holding the target counts. points: (n, 3). cells: (m, 10). Returns (k,), (k, 4).
+    """
+    tree = cKDTree(points[cells[:, :4]].mean(axis=1))
+    _, near = tree.query(targets, min(candidates, len(cells)))
+    best = np.full(len(targets), -np.inf)
+    cell, found = np.zeros(len(targets), dtype=int), np.zeros((len(targets), 4))
+    for tried in near.T:
+        open_ = np.flatnonzero(best < -1e-9)
+        if not open_.size:
+            break
+        nodes = points[cells[tried[open_]]]
+        places = np.full((len(open_), 4), 0.25)
+        for _ in range(6):
+            gap = targets[open_] - np.einsum("ka,kai->ki", _quadratic(places), nodes)
+            jacobian = np.einsum("kaj,kai->kij", _slopes(places), nodes)
+            step = np.linalg.solve(jacobian, gap[..., None])[..., 0]
+            places[:, 1:] += np.clip(step, -1, 1)
+            places[:, 0] = 1 - places[:, 1:].sum(axis=1)
+        inside = places.min(axis=1)
+        better = inside > best[open_]
+        rows = open_[better]
+        best[rows], cell[rows], found[rows] = inside[better], tried[rows], places[better]
+    return cell, found
