@@ -22,26 +22,27 @@ class TaylorHoodProblem:
     mesh: HexMesh of tetrahedra.cut(). materials: list of Material. A continuous pressure cannot be
     eliminated element by element: unknowns are displacements and pressures together, the latter
     over a stiffness (Pa/m) that makes both blocks of the tangent alike.
-    Attributes: as of a MixedProblem; displacement holds all unknowns.
+    Attributes: as of a MixedProblem; displacement holds all unknowns; function is the displacement
+    (dolfinx function, m) where the residual was last computed.
     """
 
     def __init__(self, mesh, materials):
         self._mesh = mesh
         element = ufl.VectorElement("Lagrange", "tetrahedron", 2)
         domain = dolfinx.mesh.create_mesh(MPI.COMM_SELF, mesh.cells, mesh.points, ufl.Mesh(element))
-        self._u = fem.Function(fem.FunctionSpace(domain, element))
+        self.function = fem.Function(fem.FunctionSpace(domain, element))
         self._p = fem.Function(fem.FunctionSpace(domain, ("Lagrange", 1)))
-        self._forms = compile_forms(self._u, self._p, mesh, materials, DEGREE)
+        self._forms = compile_forms(self.function, self._p, mesh, materials, DEGREE)
         # Geometry and displacement number the nodes of a cell alike: see MixedProblem.
         geometry = domain.geometry.dofmap.array.reshape(-1, 10)
         self._cells = np.asarray(domain.geometry.input_global_indices)[geometry]
-        block = self._u.function_space.dofmap.list.array.reshape(-1, 10)
+        block = self.function.function_space.dofmap.list.array.reshape(-1, 10)
         self._block = np.empty(len(mesh.points), dtype=np.int64)
         self._block[self._cells] = block
         densities = densities_of(domain, mesh, materials)
-        self._loads = Loads(mesh, self._u, self._cells, densities, DEGREE)
+        self._loads = Loads(mesh, self.function, self._cells, densities, DEGREE)
         self.symmetric, self.load = self._loads.symmetric, 1.0
-        self._n = self._u.x.array.size
+        self._n = self.function.x.array.size
         self.displacement = Unknown(self._n + self._p.x.array.size)
         self.pressure = Unknown(0)
         prescribed, _ = mesh.imposed()
@@ -60,6 +61,14 @@ class TaylorHoodProblem:
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the mesh, in its numbering."""
         return self.displacement.array[: self._n].reshape(-1, 3)[self._block]
+
+    def size(self):
+        """Elements and unknowns in words."""
+        return f"{len(self._mesh.cells)} tetrahedra, {self.displacement.array.size} unknowns"
+
+    def nodal_forces(self):
+        """Unbalanced forces (n, 3) in N at the nodes of the mesh, in its numbering."""
+        return self.mixed_residual()[0][: self._n].reshape(-1, 3)[self._block]
 
     def start_from(self, coarse):
         """Interpolate displacement and pressure from a TaylorHoodProblem on another mesh."""
@@ -94,7 +103,7 @@ class TaylorHoodProblem:
         return self.load
 
     def _move(self):
-        self._u.x.array[:] = self.displacement.array[: self._n]
+        self.function.x.array[:] = self.displacement.array[: self._n]
         self._p.x.array[:] = self._stiffness * self.displacement.array[self._n :]
 
     def _pressure_dofs(self):
