@@ -27,8 +27,8 @@ class Loads:
     """The loads of a HexMesh on the displacement dofs (N,) of a function.
 
     mesh: HexMesh. displacement: dolfinx function, m. cell_nodes: (m, 8 or 10) node numbers in the
-    space's order of cells and nodes. densities: (m,) of the cells in the order of the space, kg/m^3.
-    degree: of the quadrature.
+    space's order of cells and nodes. densities: (m,) of the cells in the order of the space,
+    kg/m^3. degree: of the quadrature.
     """
 
     def __init__(self, mesh, displacement, cell_nodes, densities, degree):

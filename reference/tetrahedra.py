@@ -71,8 +71,7 @@ def cut(mesh):
         dataclasses.replace(
             with_set(one),
             values=extend(one.values),
-            turn=one.turn
-            and Turn(one.turn.angle, extend(one.turn.versine), extend(one.turn.sine)),
+            turn=one.turn and Turn(one.turn.angle, extend(one.turn.versine), extend(one.turn.sine)),
         )
         for one in mesh.conditions
     )

@@ -2,9 +2,13 @@
 
 import h5py
 import numpy as np
+import pytest
 
 from case_file import Material
 from hexahedra import Condition, HexMesh, refine
+from problem import MixedProblem
+from taylor_hood import TaylorHoodProblem
+from tetrahedra import cut
 
 MATERIAL = {"young_modulus": 3000.0, "poisson_ratio": 0.49}
 MATERIALS = [Material("neo-hookean", MATERIAL)]
@@ -99,3 +103,13 @@ def with_hanging_nodes(mesh, split):
         Condition(c.nodes[kept], c.components, c.values[kept]) for c in fine.conditions
     )
     return HexMesh(fine.points[kept], number.reshape(cells.shape), conditions)
+
+
+def taylor_hood(mesh, materials):
+    """The problem of a HexMesh cut into tetrahedra; the nodes of the HexMesh come first."""
+    return TaylorHoodProblem(cut(mesh), materials)
+
+
+ELEMENTS = pytest.mark.parametrize(
+    "make", [MixedProblem, taylor_hood], ids=["hexahedra", "tetrahedra"]
+)
