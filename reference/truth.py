@@ -77,11 +77,11 @@ def _bar(whole):
 
 PLATES = {"bottom": 1, "top": 1}
 GRADINGS = {
-    "block-compression": Grading({"bottom": 2, "top": 2}, whole=1, steps=4),
+    "block-compression": Grading({"bottom": 0, "top": 0}, steps=4),
     "column": Grading({"bottom": 2, "top": 2}, whole=1),
-    "cylinder-compression": Grading(PLATES, steps=2),
+    "cylinder-compression": Grading({"bottom": 0, "top": 0}, steps=2),
     "cylinder-stretch": Grading(PLATES),
-    "ellipsoid-indentation": Grading({"indenter": 0, "support": 0}, steps=4),
+    "ellipsoid-indentation": Grading({"indenter": 0}, steps=4),
     "ellipsoid-touch": Grading({"indenter": 1, "support": 1}),
     "pressed-beam": Grading({"foot": 1}, whole=1),
     "stiff-core": Grading(PLATES, whole=1, parts={"core": 1}),
