@@ -106,6 +106,9 @@ class Body {
   /// Lets small elements take small steps alone from the next evaluation on; see Subcycling.
   void subcycle(const Model& model) { subcycling_.emplace(model, elements_); }
 
+  /// What small elements do, if they do anything else than the others.
+  const std::optional<Subcycling<Real>>& subcycling() const { return subcycling_; }
+
   /// Sets the step (s) that follows evaluations from now on.
   void set_step(double step) {
     if (subcycling_) subcycling_->set_step(step);
