@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <numeric>
 
 #include "base/error.hpp"
+#include "material/viscoelastic.hpp"
 #include "mesh/refinement.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/leapfrog.hpp"
@@ -20,8 +20,8 @@ namespace {
 
 const NeoHookean soft{.young_modulus = 3000.0, .poisson_ratio = 0.3};
 
-/// A bar of so many cubes of 5 cm along z, of which the first is split in eight, and its parts again: 64 small
-/// elements, with their neighbours' 8 for a transition.
+/// A bar of so many cubes of 5 cm along z, of which the first is split in eight, and its parts again: 64
+/// small elements, with their neighbours' 8 for a transition.
 RefinedMesh bar(int length) {
   RefinedMesh refined(box({0.05, 0.05, 0.05 * length}, {1, 1, length}));
   for (int depth = 0; depth < 2; ++depth) {
@@ -32,7 +32,7 @@ RefinedMesh bar(int length) {
   return refined;
 }
 
-/// A moving scene on it. What is held is told by a set "held" in `description`.
+/// A moving scene on it, in which some nodes are held.
 Scene scene_on(const RefinedMesh& refined, Case description, const std::vector<int>& held = {}) {
   description.quasi_static = false;
   if (description.dynamics.duration == 0.0) description.dynamics.duration = 1.0;
@@ -74,8 +74,7 @@ Operator operator_of(const Scene& scene) {
       for (std::size_t i = 0; i < 3; ++i) free.push_back(3 * n + i);
   for (const Constraint& c : scene.constraints) std::erase(free, 3 * index(c.node) + index(c.component));
   const auto size = static_cast<Eigen::Index>(free.size());
-  Operator found{Eigen::MatrixXd(size, size), step,
-                 body.subcycling() ? body.subcycling()->substeps() : 1};
+  Operator found{Eigen::MatrixXd(size, size), step, body.subcycling() ? body.subcycling()->substeps() : 1};
   for (std::size_t a = 0; a < free.size(); ++a) {
     NodalField u(model.masses().size());
     u[free[a] / 3][free[a] % 3] = 1.0;
@@ -85,7 +84,8 @@ Operator operator_of(const Scene& scene) {
     const NodalField force = body.field(body.free_forces());
     for (std::size_t b = 0; b < free.size(); ++b) {
       found.matrix(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(a)) =
-          force[free[b] / 3][free[b] % 3] / std::sqrt(model.masses()[free[a] / 3] * model.masses()[free[b] / 3]);
+          force[free[b] / 3][free[b] % 3] /
+          std::sqrt(model.masses()[free[a] / 3] * model.masses()[free[b] / 3]);
     }
   }
   return found;
@@ -95,54 +95,60 @@ Eigen::VectorXd eigenvalues_of(const Operator& found) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(found.matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-
+/// Of motion in steps, 1/s: sin(w dt / 2) = dt sqrt(eigenvalue) / 2.
 Eigen::VectorXd frequencies(const Operator& found) {
   return (found.step / 2 * eigenvalues_of(found).cwiseMax(0.0).cwiseSqrt()).array().asin() * 2 / found.step;
 }
 
+/// A case whose step is so many times the stable one without subcycling.
+Case subcycled_case(const RefinedMesh& refined, double times) {
+  Case description = moving_case(16);
+  description.dynamics.time_step = times * operator_of(scene_on(refined, moving_case(1))).step;
+  return description;
+}
+
+/// With two to four small steps, wherever fine modes fall: symmetric to the rounding of sums, not negative to
+/// that of the largest eigenvalue, and below 4 / dt^2, which is where steps cease to be stable. Elements of
+/// this method are bounded so loosely that steps twice as long as proven would not do; resonances are what is
+/// looked for: without stabilisation (nu = 0) they are here.
 TEST(Subcycling, averaged_forces_are_of_a_symmetric_operator_in_the_stable_range) {
   const RefinedMesh refined = bar(6);
-  const double small_step = operator_of(scene_on(refined, moving_case(1))).step;
   std::vector<int> counts;
   for (double times = 1.05; times < 3.6; times += 0.05) {
-    Case description = moving_case(16);
-    description.dynamics.time_step = times * small_step;
-    const Operator found = operator_of(scene_on(refined, description));
+    const Operator found = operator_of(scene_on(refined, subcycled_case(refined, times)));
     counts.push_back(found.substeps);
     EXPECT_LT((found.matrix - found.matrix.transpose()).norm(), 1e-14 * found.matrix.norm());
     const Eigen::VectorXd squares = found.step * found.step * eigenvalues_of(found);
     EXPECT_GT(squares.minCoeff(), -1e-12);
-    EXPECT_LT(squares.maxCoeff(), 4.0) << found.substeps << " in " << times;
-    std::printf("%g %d %g\n", times, found.substeps, squares.maxCoeff() / 4);
+    EXPECT_LT(squares.maxCoeff(), 3.7) << found.substeps << " small steps, " << times;
   }
   EXPECT_EQ(counts.front(), 2);
   EXPECT_EQ(counts.back(), 4);
+  EXPECT_TRUE(std::is_sorted(counts.begin(), counts.end()));
 }
 
+/// The first fourteen that are not rigid motions, to the .1 % that is asked for; a step that resolves the
+/// last of them has an error of (w dt)^2 / 24 = 2e-4 itself.
 TEST(Subcycling, keeps_the_first_frequencies) {
   const RefinedMesh refined = bar(32);
-  const Operator plain = operator_of(scene_on(refined, moving_case(1)));
-  Case description = moving_case(16);
-  description.dynamics.time_step = 3.59 * plain.step;
-  const Operator cycled = operator_of(scene_on(refined, description));
-  const Eigen::VectorXd exact = frequencies(plain), found = frequencies(cycled);
+  const Eigen::VectorXd exact = frequencies(operator_of(scene_on(refined, moving_case(1))));
+  const Eigen::VectorXd found = frequencies(operator_of(scene_on(refined, subcycled_case(refined, 3.59))));
   for (Eigen::Index k = 6; k < 20; ++k) EXPECT_NEAR(found[k], exact[k], 1e-3 * exact[k]) << k;
 }
 
-/// Leapfrog's own energy.
+/// A linear body, all of whose modes vibrate at random, keeps m v^2 / 2 + u_n f_(n+1) / 2, which leapfrog
+/// keeps for symmetric operators, to the rounding of 1e5 steps. Growth by resonance would be exponential.
 TEST(Subcycling, keeps_energy_over_a_hundred_thousand_steps) {
   const RefinedMesh refined = bar(6);
   const auto held = nodes_where(refined.mesh().points, [](const Vector& X) { return X[2] > 0.299; });
-  const double small_step = operator_of(scene_on(refined, moving_case(1), held)).step;
   for (const double times : {2.0, 3.59}) {
-    Case description = moving_case(16);
-    description.dynamics.time_step = times * small_step;
-    const Scene scene = scene_on(refined, description, held);
+    const Scene scene = scene_on(refined, subcycled_case(refined, times), held);
+    const double step = scene.description.dynamics.time_step;
     const Model model(scene, {"linear"});
-    Leapfrog<double> motion(model, *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force()), 0.0);
+    Leapfrog<double> motion(model, *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force()),
+                            0.0);
     Body<double>& body = motion.body();
     body.subcycle(model);
-    const double step = description.dynamics.time_step;
     EXPECT_LE(step, body.stable_step(model, step).step);
     body.set_step(step);
     body.evaluate_forces();
@@ -170,45 +176,109 @@ TEST(Subcycling, keeps_energy_over_a_hundred_thousand_steps) {
       if (n == 1) start = energy();
       if (n % 100 == 0) largest = std::max(largest, std::abs(energy() - start));
     }
-    std::printf("energy %g changes %g\n", start, largest / start);
-    EXPECT_LT(largest, 1e-9 * start);
+    EXPECT_LT(largest, 1e-12 * start) << times;
   }
 }
 
-TEST(Subcycling, nonlinear) {
-  const RefinedMesh refined = bar(6);
-  const double small_step = operator_of(scene_on(refined, moving_case(1))).step;
-  for (const double speed : {0.01, 0.1, 0.3}) for (const int subcycles : {1, 16}) {
-    Case description = moving_case(subcycles);
-    if (subcycles > 1) description.dynamics.time_step = 3.2 * small_step;
-    else description.dynamics.time_step = 0.8 * small_step;
-    description.velocities = {{.value = {0.3 * speed, 0.1 * speed, 0.0}},
-                              {.value = {0.0, 0.5 * speed, speed}, .half_waves = {1, 0, 2}},
-                              {.spin = {0.1, 0.0, 0.5}}};
-    description.dynamics.duration = 100000 * description.dynamics.time_step;
-    description.dynamics.check_interval = 20;
-    const Scene scene = scene_on(refined, description);
-    const Model model(scene, {"tl-perturbation"});
-    Recorder recorder;
-    try { integrate(model, recorder); } catch (const std::exception& e) { std::printf("%s\n", e.what()); }
-    const auto& rows = recorder.rows;
-    std::printf("speed %g sub %d rows %zu: ", speed, subcycles, rows.size());
-    for (std::size_t part = 0; part < 10; ++part) {
-      double low = 1e9, high = 0, mean = 0;
-      for (std::size_t n = part * rows.size() / 10; n < (part + 1) * rows.size() / 10; ++n) {
-        low = std::min(low, total_energy(rows[n])), high = std::max(high, total_energy(rows[n]));
-        mean += total_energy(rows[n]) / (rows.size() / 10);
-      }
-      std::printf(" %.6g[%.3g %.3g]", mean, low, high);
-    }
-    std::printf("\n");
-    Vector p{}, p0{};
-    for (std::size_t n = 0; n < model.masses().size(); ++n) for (std::size_t i = 0; i < 3; ++i) {
-      p[i] += model.masses()[n] * recorder.frames.back().v[n][i];
-      p0[i] += model.masses()[n] * recorder.frames.front().v[n][i];
-    }
-    std::printf("momentum change %g\n", distance(p, p0) / length(p0));
+/// A free bar that bends and stretches by 3 %.
+Scene vibrating_bar(const RefinedMesh& refined, double times, long steps) {
+  Case description = subcycled_case(refined, times);
+  const double speed = 0.03 * std::sqrt(soft.young_modulus / 1000.0);
+  description.velocities = {{.value = {speed, 0.0, speed}, .half_waves = {0, 0, 1}},
+                            {.value = {0.1, 0.2, 0.3}}};
+  description.dynamics.duration = static_cast<double>(steps) * description.dynamics.time_step;
+  return scene_on(refined, description);
+}
+
+/// Its energy stays within the oscillation that central differences have, below (w dt)^2 of the highest mode
+/// that takes part, over 1e5 steps: under finite strain the mean forces have no potential, and all that is
+/// known is measured.
+TEST(Subcycling, a_bar_that_vibrates_keeps_its_energy) {
+  const Scene scene = vibrating_bar(bar(32), 3.2, 100000);
+  Recorder recorder;
+  EXPECT_GE(integrate(Model(scene, {"tl-perturbation"}), recorder).steps, 100000);
+  const double start = total_energy(recorder.rows.front());
+  for (const HistoryRow& row : recorder.rows) EXPECT_NEAR(total_energy(row), start, 0.005 * start);
+}
+
+/// Forces of elements add up to nothing in every small step: momentum is kept to the rounding of 1000 steps.
+TEST(Subcycling, keeps_momentum) {
+  const Scene scene = vibrating_bar(bar(6), 3.2, 1000);
+  const Model model(scene, {"tl-perturbation"});
+  Recorder recorder;
+  integrate(model, recorder);
+  const auto momentum = [&](const Frame& frame) {
+    Vector sum{};
+    for (std::size_t n = 0; n < frame.v.size(); ++n)
+      for (std::size_t i = 0; i < 3; ++i) sum[i] += model.masses()[n] * frame.v[n][i];
+    return sum;
+  };
+  const Vector start = momentum(recorder.frames.front());
+  for (const Frame& frame : recorder.frames)
+    EXPECT_LT(distance(momentum(frame), start), 1e-12 * length(start));
+}
+
+TEST(Subcycling, has_the_same_bits_for_any_number_of_threads) {
+  const Scene scene = vibrating_bar(bar(6), 3.2, 200);
+  Observer silent;
+  const NodalField u = integrate(Model(scene, {"tl-perturbation"}), silent).u;
+  for (const int threads : {2, 3}) {
+    const Model model(scene, {.method = "tl-perturbation", .threads = threads});
+    EXPECT_EQ(integrate(model, silent).u, u) << threads;
   }
+}
+
+/// Where nothing is gained, nothing changes: in a mesh of equal elements, or if small elements are most.
+TEST(Subcycling, of_one_small_step_has_the_bits_of_none) {
+  for (const bool refine : {false, true}) {
+    const RefinedMesh mesh = refine ? bar(6) : RefinedMesh(box({0.05, 0.05, 0.3}, {1, 1, 6}));
+    Observer silent;
+    std::vector<NodalField> u;
+    for (const int subcycles : {1, 16}) {
+      Case description = moving_case(subcycles);
+      description.velocities = {{.value = {0.0, 0.0, 0.05}, .half_waves = {0, 0, 1}}};
+      u.push_back(integrate(Model(scene_on(mesh, description), {"tl-perturbation"}), silent).u);
+    }
+    EXPECT_EQ(u[0], u[1]);
+  }
+}
+
+/// A run that goes on from a checkpoint has the same bits, whatever number of small steps it had there.
+TEST(Subcycling, goes_on_from_a_checkpoint) {
+  struct Keeper final : Observer {
+    void resumable(const std::function<Checkpoint()>& checkpoint) override {
+      if (++points == 4) kept = checkpoint();
+    }
+    int points = 0;
+    Checkpoint kept;
+  } keeper;
+  const Scene scene = vibrating_bar(bar(6), 3.2, 200);
+  const Model model(scene, {"tl-perturbation"});
+  const NodalField u = integrate(model, keeper).u;
+  Observer silent;
+  EXPECT_EQ(integrate(model, silent, &keeper.kept).u, u);
+}
+
+/// What it cannot average is refused, by name.
+TEST(Subcycling, refuses_what_depends_on_more_than_displacements) {
+  const RefinedMesh refined = bar(6);
+  Observer silent;
+  const auto refusal = [&](const Scene& scene, const std::string& method) {
+    try {
+      integrate(Model(scene, {method}), silent);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  Case description = subcycled_case(refined, 3.2);
+  for (const char* method : {"ul-perturbation", "ul-viscous", "tl-adaptive", "t4-anp"})
+    EXPECT_NE(refusal(scene_on(refined, description), method).find(method), std::string::npos) << method;
+  Scene scene = scene_on(refined, description);
+  for (const Quadrilateral& face : refined.boundary()) scene.pressures.push_back({face, 1.0, 0});
+  EXPECT_NE(refusal(scene, "tl-perturbation").find("pressure acts on node"), std::string::npos);
+  description.materials.front().law = Viscoelastic<NeoHookean>{soft};
+  EXPECT_NE(refusal(scene_on(refined, description), "tl-perturbation").find("subcycles"), std::string::npos);
 }
 
 }  // namespace
