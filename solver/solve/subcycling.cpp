@@ -37,8 +37,6 @@ class Dependence {
     for (const Tie& tie : scene.ties) tie_of_[at(tie.node)] = &tie;
   }
 
-  const Tie* tie_of(int node) const { return tie_of_[at(node)]; }
-
   /// The division where elements are small whose stable step is below a limit (s).
   Division at_limit(std::span<const double> element_steps, double limit) const {
     const auto& cells = scene_.mesh.cells;
@@ -46,27 +44,29 @@ class Dependence {
                       std::vector<bool>(cells.size(), false)};
     for (std::size_t e = 0; e < cells.size(); ++e) {
       if (element_steps[e] >= limit) continue;
-      for_each_node(cells[e], [&](int node) { division.is_small[at(node)] = true; });
+      for (const int node : cells[e]) for_each_free(node, [&](int n) { division.is_small[at(n)] = true; });
     }
     for (std::size_t e = 0; e < cells.size(); ++e) {
-      for_each_node(cells[e], [&](int node) {
-        (division.is_small[at(node)] ? division.in_part : division.on_large_nodes)[e] = true;
-      });
+      for (const int node : cells[e]) {
+        for_each_free(node, [&](int n) {
+          (division.is_small[at(n)] ? division.in_part : division.on_large_nodes)[e] = true;
+        });
+      }
     }
     return division;
   }
 
- private:
+  /// Calls use(n) for a node, or for those that it follows.
   template <class Use>
-  void for_each_node(const Hexahedron& cell, const Use& use) const {
-    for (const int node : cell) {
-      if (tie_of_[at(node)] == nullptr)
-        use(node);
-      else
-        for (const auto& share : tie_of_[at(node)]->mean_of) use(share.node);
+  void for_each_free(int node, const Use& use) const {
+    if (tie_of_[at(node)] == nullptr) {
+      use(node);
+    } else {
+      for (const auto& share : tie_of_[at(node)]->mean_of) use(share.node);
     }
   }
 
+ private:
   const Scene& scene_;
   std::vector<const Tie*> tie_of_;
 };
@@ -113,15 +113,15 @@ Cheapest cheapest(const StableSteps& stable, double elements, double part_elemen
 
 void require_bare_elements(const MethodChoice& choice, bool needs_increment, bool has_history) {
   const MethodEntry& method = method_named(choice.method);
-  const auto refuse = [&](const char* why) {
+  const auto refuse = [&](const char* what) {
     throw InputError(
-        fmt::format("dynamics.subcycles: {} '{}'{}; allowed: 1, or a method and laws whose forces depend on "
-                    "displacements alone",
-                    "method", method.name, why));
+        fmt::format("dynamics.subcycles: with method '{}' {}; allowed: 1, or a method and laws whose forces "
+                    "depend on displacements alone",
+                    method.name, what));
   };
-  if (method.adapts()) refuse(" changes the levels of its elements");
-  if (needs_increment) refuse(" has forces that depend on the last step");
-  if (has_history) refuse(", or a law, has elements that remember steps or share nodal averages");
+  if (method.adapts()) refuse("elements change their levels");
+  if (needs_increment) refuse("forces depend on the last step");
+  if (has_history) refuse("and this law, elements remember steps, or share averages over nodes");
 }
 
 }  // namespace
@@ -164,11 +164,13 @@ void Subcycling<Real>::require_bare(const Model& model, const std::vector<bool>&
   const Dependence dependence(model.scene());
   const auto require = [&](const Quadrilateral& face, const char* what) {
     for (const int node : face) {
-      if (!is_small[at(node)] && dependence.tie_of(node) == nullptr) continue;
-      throw InputError(fmt::format(
-          "dynamics.subcycles: a {} acts on node {}, which belongs to small elements; allowed: 1, or a "
-          "mesh that is refined elsewhere",
-          what, node));
+      dependence.for_each_free(node, [&](int n) {
+        if (!is_small[at(n)]) return;
+        throw InputError(fmt::format(
+            "dynamics.subcycles: a {} acts on node {}, which belongs to small elements; allowed: 1, "
+            "or a mesh that is refined elsewhere",
+            what, n));
+      });
     }
   };
   for (const FacePressure& pressure : model.scene().pressures) require(pressure.face, "pressure");
