@@ -1,6 +1,6 @@
 """Truths: Taylor-Hood tetrahedra on meshes graded towards the edges of what is held and driven.
 
-Usage: /usr/bin/python3 reference/truth.py CASE... [--levels 3] [-o FILE]
+Usage: /usr/bin/python3 reference/truth.py CASE... [-o FILE]
 Solves a case on meshes that become finer at those edges, and stores the finest answer with the
 distance from the limit of the sequence. Needs the solver's binary, which makes the meshes.
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
@@ -24,13 +24,13 @@ if __name__ == "__main__":
 import newton
 from case_file import find_case, read_case
 from common.accuracy import relative_errors
-from common.command import exit_code, whole_number
+from common.command import exit_code
 from common.errors import ComputationError, InputError, suggestion
 from common.files import require_writable
 from common.program import CASES
 from convergence import attributes_of
 from mesh_file import load_case_mesh, make_mesh
-from reference_file import path_of, stored, write_reference
+from reference_file import path_of, write_reference
 from solve import BOUNDARY_RULE, NEWTON_TOLERANCE
 from symmetry import expand, halve
 from taylor_hood import DEGREE, TaylorHoodProblem
@@ -42,11 +42,11 @@ ASSUMED_ORDER = 1.0  # of two meshes: that of the singular edges
 
 @dataclass(frozen=True)
 class Grading:
-    """The meshes of a truth: how often elements are split on the first of them.
+    """The meshes of a truth: how often elements are split on each of them.
 
-    edges: set -> how often those at the edge of a node set are; once more on each further mesh.
-    layers: of elements. whole: how often all elements are. parts: element set -> how often its
-    elements are; once more on each further mesh. steps: load steps from rest.
+    edges: node set -> how often those at its edge are, a number for each mesh. layers: of elements
+    there. whole: how often all elements are, on every mesh. parts: element set -> how often its
+    elements are, a number for each mesh. steps: load steps from rest.
     """
 
     edges: dict
@@ -60,10 +60,14 @@ class Grading:
         text = "\n[element_sets.everything]\nx = [-inf, inf]\n"
         text += _refine("elements", "everything", self.whole)
         for name, splits in self.parts.items():
-            text += _refine("elements", name, splits + level)
+            text += _refine("elements", name, splits[level])
         for name, splits in self.edges.items():
-            text += _refine("around", name, splits + level, f"layers = {self.layers}")
+            text += _refine("around", name, splits[level], f"layers = {self.layers}")
         return text
+
+    def levels(self):
+        """The number of meshes."""
+        return len(next(iter(self.edges.values())))
 
 
 def _refine(what, name, depth, more=""):
@@ -71,26 +75,21 @@ def _refine(what, name, depth, more=""):
     return f'[[refine]]\n{what} = "{name}"\ndepth = {depth}\n{more}\n' if depth else ""
 
 
-def _bar(whole):
-    return Grading({"root": whole + 2}, layers=2, whole=whole)
-
-
-PLATES = {"bottom": 1, "top": 1}
+PLATES = {"bottom": (1, 2, 3), "top": (1, 2, 3)}
 GRADINGS = {
-    "block-compression": Grading({"bottom": 0, "top": 0}, steps=4),
-    "column": Grading({"bottom": 2, "top": 2}, whole=1),
-    "cylinder-compression": Grading({"bottom": 0, "top": 0}, steps=2),
+    "column": Grading({"bottom": (2, 3, 4), "top": (2, 3, 4)}, whole=1),
     "cylinder-stretch": Grading(PLATES),
-    "ellipsoid-indentation": Grading({"indenter": 0}, steps=4),
-    "ellipsoid-touch": Grading({"indenter": 1, "support": 1}),
-    "pressed-beam": Grading({"foot": 1}, whole=1),
-    "stiff-core": Grading(PLATES, whole=1, parts={"core": 1}),
+    "ellipsoid-indentation": Grading({"indenter": (0, 1, 2), "support": (0, 1, 1)}, steps=4),
+    "ellipsoid-touch": Grading({"indenter": (1, 2, 3), "support": (1, 2, 3)}),
+    "pressed-beam": Grading({"foot": (1, 2, 3)}, whole=1),
+    "stiff-core": Grading(PLATES, whole=1, parts={"core": (1, 2, 3)}),
     "twist": Grading(PLATES, whole=1, steps=10),
 }
 # Bars of all variants have elements of a quarter of their thickness.
 for _elements, _whole in ((1, 2), (2, 1), (4, 0)):
     for _nu in ("0.25", "0.45", "0.49", "0.499"):
-        GRADINGS[f"bending-{_elements}-nu{_nu}"] = _bar(_whole)
+        _root = (_whole + 2, _whole + 3, _whole + 4)
+        GRADINGS[f"bending-{_elements}-nu{_nu}"] = Grading({"root": _root}, layers=2, whole=_whole)
 
 
 def graded_mesh(name, grading, level):
@@ -105,7 +104,7 @@ def graded_mesh(name, grading, level):
     return case, dataclasses.replace(mesh, ties=None)
 
 
-def solve_levels(name, grading, levels, mesh):
+def solve_levels(name, grading, mesh):
     """Displacements (n, 3) in m of a case on each level, at the nodes of its own HexMesh.
 
     Each mesh starts from the answer on the one before or, if that inverts elements, from rest.
@@ -113,7 +112,7 @@ def solve_levels(name, grading, levels, mesh):
     """
     n_nodes, unit = len(mesh.points), mesh.largest_imposed()
     fields, facts, coarse = [], {}, None
-    for level in range(levels):
+    for level in range(grading.levels()):
         started = time.perf_counter()
         case, graded = graded_mesh(name, grading, level)
         part, halves = halve(graded)
@@ -130,7 +129,7 @@ def solve_levels(name, grading, levels, mesh):
         facts = {
             "law": ", ".join(material.law for material in case.materials),
             "mirror_planes": "".join("xyz"[half.axis] for half in halves),
-            "refinements": max([*grading.edges.values(), *grading.parts.values()]) + level,
+            "refinements": max(splits[level] for splits in grading.edges.values()),
             "load_steps": outcome.load_steps,
             "newton_iterations": outcome.newton_iterations,
             "residual": outcome.residual,
@@ -150,7 +149,7 @@ def _report(name, level, problem, seconds, fields, unit):
     print(text, flush=True)
 
 
-def make_truth(name, output, levels=3):
+def make_truth(name, output):
     """Computes a case's truth and stores it. Raises InputError or ComputationError."""
     started = time.perf_counter()
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
@@ -161,7 +160,7 @@ def make_truth(name, output, levels=3):
     with tempfile.TemporaryDirectory() as folder:
         make_mesh(path, Path(folder) / "mesh.h5", name)
         mesh, file = load_case_mesh(read_case(path, name), Path(folder) / "mesh.h5")
-    fields, facts = solve_levels(name, GRADINGS[name], levels, mesh)
+    fields, facts = solve_levels(name, GRADINGS[name], mesh)
     displacement = fields[-1].copy()
     prescribed, values = mesh.imposed()
     displacement[prescribed] = values[prescribed]  # the same but for rounding
@@ -181,7 +180,7 @@ def make_truth(name, output, levels=3):
         "wall_seconds": time.perf_counter() - started,
         "discretisation_error_max": most,
         "discretisation_error_rms": rms,
-        "discretisation_error_note": "difference to the mesh whose edges are split once less",
+        "discretisation_error_note": "difference to the mesh before",
         **facts,
         **attributes_of(fields, displacement, unit, "there are only two meshes", ASSUMED_ORDER),
     }
@@ -192,8 +191,8 @@ def run(options):
     """Computes the named truths. Raises InputError or ComputationError."""
     if options.output and len(options.cases) > 1:
         raise InputError(f"-o: {options.output} is one file for {len(options.cases)} cases")
-    for name in options.cases or stored("truth"):
-        make_truth(name, options.output or path_of("truth", name), options.levels)
+    for name in options.cases or GRADINGS:
+        make_truth(name, options.output or path_of("truth", name))
 
 
 def main(arguments=None):
@@ -203,8 +202,7 @@ def main(arguments=None):
         epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found",
     )
     add = parser.add_argument
-    add("cases", nargs="*", metavar="CASE", help="default: all that have a truth")
-    add("--levels", type=whole_number(2), default=3, metavar="N", help="meshes (default: 3)")
+    add("cases", nargs="*", metavar="CASE", help="default: all in GRADINGS")
     add("-o", "--output", metavar="FILE", help="HDF5 file to write (default: the stored truth)")
     return exit_code(run, parser.parse_args(arguments))
 

@@ -15,14 +15,16 @@ from tetrahedra import cut
 
 
 def test_every_truth_has_meshes():
-    assert set(stored("truth")) <= set(truth.GRADINGS)
+    """But for two whose sides fold too far: theirs are of an earlier kind (README)."""
+    folded = {"block-compression", "cylinder-compression"}
+    assert set(stored("truth")) == set(truth.GRADINGS) | folded
 
 
 def test_a_graded_mesh_is_the_case_with_smaller_elements(tmp_path):
     name = "ellipsoid-touch"
     make_mesh(find_case(CASES, name), tmp_path / "mesh.h5", name)
     mesh, _ = load_case_mesh(read_case(find_case(CASES, name), name), tmp_path / "mesh.h5")
-    _, graded = truth.graded_mesh(name, truth.Grading({"indenter": 1}), 0)
+    _, graded = truth.graded_mesh(name, truth.Grading({"indenter": (1,)}), 0)
     n = len(mesh.points)
     assert (graded.points[:n] == mesh.points).all() and len(graded.cells) > len(mesh.cells)
     assert all(
@@ -38,7 +40,7 @@ def test_a_graded_mesh_is_the_case_with_smaller_elements(tmp_path):
 
 def test_a_coarse_truth_is_near_the_stored_one(tmp_path, monkeypatch):
     name = "bending-1-nu0.49"
-    monkeypatch.setitem(truth.GRADINGS, name, truth.Grading({"root": 1}, whole=1))
+    monkeypatch.setitem(truth.GRADINGS, name, truth.Grading({"root": (1, 2, 3)}, whole=1))
     assert truth.main([name, "-o", str(tmp_path / "truth.h5")]) == 0
     points, displacement, found = read_reference(tmp_path / "truth.h5")
     _, expected, attributes = read_reference(path_of("truth", name))
