@@ -93,24 +93,6 @@ def test_order_on_a_smooth_answer():
     assert np.log2(errors[0] / errors[1]) > 2.8  # third order, on meshes that are not yet fine
 
 
-@pytest.mark.parametrize(
-    ("nodes_of", "expected"),
-    [
-        (lambda x: x[:, 2] == 0, 25),  # a lattice of twice the elements
-        # Three corners of a face hold two of its edges, not its diagonal.
-        (lambda x: (x[:, 2] == 0) & (x[:, 0] + x[:, 1] <= 0.5), 5),
-    ],
-)
-def test_what_is_prescribed(nodes_of, expected):
-    points, cells, _ = distorted_block(n=2, distortion=0.0)
-    condition = Condition(nodes_of(points), (0, 1, 2), 1.0 + points)
-    mesh = cut(HexMesh(points, cells, (condition,)))
-    (found,) = mesh.conditions
-    assert found.nodes.sum() == expected
-    assert np.abs(mesh.points[found.nodes, 2]).max() == 0
-    assert np.abs(found.values - 1 - mesh.points).max() < 1e-15  # it is linear
-
-
 def test_nodes_at_the_edge_of_a_split_face_are_held_by_both_sides():
     points, cells, _ = distorted_block(n=2, distortion=0.0)
     condition = Condition(points[:, 2] == 0, (0, 1, 2), points)
