@@ -154,6 +154,7 @@ Refinement read_refinement(TableReader table) {
   refinement.elements = elements.value_or("");
   refinement.numbers = numbers.value_or(std::vector<int>{});
   if (numbers) {
+    if (numbers->empty()) table.fail("numbers", "= [] must name at least one element");
     constexpr Range before{.low = 0, .high = 7, .low_open = false, .high_open = false};
     refinement.after = table.optional<int>("after", before).value_or(refinement.after);
   } else {

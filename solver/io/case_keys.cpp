@@ -89,9 +89,8 @@ constexpr std::string_view sets_and_loads = R"(
 [[refine]] around = NAME, depth 1 to 8 (default: 1), layers 1 to 8 (default: 2): so many layers of elements at
   the edge of a node set, where what is imposed on it ends, are split in eight; of their parts at the edge as
   many layers again, depth times in all. Or elements = NAME, depth: those of an element set. Or numbers =
-  [...], after 0 to 7 (default: 0): elements by their numbers, from 0, in the mesh after so many splits; `run
-  --against truth` and `choose --against truth` write these. Faces keep their shape, sets and materials pass on
-  to the parts, and nodes that hang follow the element they hang on
+  [...], after 0 to 7 (default: 0): elements by their numbers, from 0, in the mesh after so many splits. Faces
+  keep their shape, sets and materials pass on to the parts, and nodes that hang follow the element they hang on
 [[displacement]] set = NAME, value = [x, y, z] in m, components = "xyz" (default: all)
 [[rotation]] set = NAME, axis = "x", "y", "z" or [x, y, z], angle in degrees, by the right-hand rule:
   the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis

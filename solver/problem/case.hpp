@@ -33,9 +33,9 @@ struct CaseMaterial : Material {
 struct Refinement {
   std::string around;        ///< a node set, at whose edge elements are split; or
   std::string elements;      ///< an element set that is split; or
-  std::vector<int> numbers;  ///< elements that are split, of the mesh
-  int after = 0;             ///< after so many splits
-  int depth = 1;             ///< how often, around a set and of a set
+  std::vector<int> numbers;  ///< elements that are split once, numbered in the mesh
+  int after = 0;             ///< after so many splits; with `numbers` alone
+  int depth = 1;             ///< how often the elements of a set, or at its edge, are split
   int layers = 2;            ///< of elements and parts at the edge that are split
 };
 

@@ -1,9 +1,8 @@
 #include "solve/truth_estimate.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
 #include "mesh/hexahedron.hpp"
@@ -15,11 +14,12 @@ namespace sandglass {
 
 namespace {
 
-/// The share of the indicators that is refined at once. Larger ones waste elements, smaller ones searches.
+/// The elements that are refined at once make this share of the sum of all indicators. A larger share wastes
+/// elements, a smaller one needs more searches.
 constexpr double refined_share = 0.6;
 
-/// What is left of the last change of an answer: of order 1.3, as where edges dominate, were the mesh refined
-/// everywhere.
+/// The change from the last answer to the limit, as a share of the change before: 1 / (2^p - 1) for p = 1.3,
+/// which lies between the orders of singular edges (about 1) and of smooth answers (2).
 constexpr double left_of_change = 0.7;
 
 std::size_t at(int n) {
@@ -39,7 +39,7 @@ class RecoveredGradients {
     }
   }
 
-  /// Tied nodes hand on what they have, and follow.
+  /// Divides by the weights, after tied nodes have handed theirs on to those they follow.
   void finish(const Ties& ties) {
     for (const auto& [node, mean_of] : ties) {
       for (const auto& [free, weight] : mean_of) {
@@ -68,14 +68,48 @@ class RecoveredGradients {
   std::vector<double> weights_;
 };
 
-/// The mean-dilatation element's answer, near u (m) if that is given.
-Relaxation find_answer(const Scene& scene, const NodalField* near, int threads) {
+/// The mean-dilatation element's answer (m), searched for near u (m).
+NodalField find_answer(const Scene& scene, const NodalField& u, int threads) {
   const Model model(scene, {.method = std::string(estimate_method), .threads = threads});
   Observer quiet;
-  Relaxation found = relax(model, quiet, nullptr, near);
+  Relaxation found = relax(model, quiet, nullptr, &u);
   if (!found.converged) throw ComputationError(outcome(found, Precision::double_precision));
-  return found;
+  return std::move(found.u);
 }
+
+/// The mean-dilatation element's answers on a mesh and on meshes that are refined where it errs most.
+class Refining {
+ public:
+  /// Starts on the mesh of a scene, near u (m). Throws ComputationError if there is no answer.
+  Refining(const Scene& scene, const NodalField& u, int threads)
+      : threads_(threads), scene_(scene), u_(find_answer(scene, u, threads)), before_(u_) {}
+
+  /// Refines the mesh once more. Throws ComputationError if the finer mesh has no answer; nothing has changed
+  /// then.
+  void refine() {
+    Scene finer = refined(scene_, largest_share(error_indicators(scene_, u_), refined_share));
+    NodalField u = find_answer(finer, prolonged(finer.coarser.front(), u_), threads_);
+    before_ = std::exchange(u_, std::move(u));
+    scene_ = std::move(finer);
+  }
+
+  std::size_t elements() const { return scene_.mesh.cells.size(); }
+
+  /// The exact displacements (m) at the first `nodes` nodes, extrapolated from the last two answers.
+  /// Refinement adds nodes behind those that are there.
+  NodalField limit(std::size_t nodes) const {
+    NodalField limit(nodes);
+    for (std::size_t n = 0; n < nodes; ++n)
+      for (std::size_t i = 0; i < 3; ++i)
+        limit[n][i] = u_[n][i] + left_of_change * (u_[n][i] - before_[n][i]);
+    return limit;
+  }
+
+ private:
+  int threads_;
+  Scene scene_;
+  NodalField u_, before_;  // on the last mesh, and on the one before
+};
 
 }  // namespace
 
@@ -117,44 +151,9 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
   return elements;
 }
 
-Refining::Refining(const Scene& scene, const NodalField* near, int threads)
-    : threads_(threads), nodes_(scene.mesh.points.size()) {
-  Relaxation found = find_answer(scene, near, threads);
-  answer_ = {scene, std::move(found.u), found.steps, found.seconds};
-}
-
-void Refining::refine() {
-  const auto start = std::chrono::steady_clock::now();
-  Scene finer =
-      refined(answer_.scene, largest_share(error_indicators(answer_.scene, answer_.u), refined_share));
-  const NodalField guess = prolonged(finer.coarser.front(), answer_.u);
-  Relaxation found = find_answer(finer, &guess, threads_);
-  before_ = std::move(answer_.u);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  answer_ = {std::move(finer), std::move(found.u), answer_.evaluations + found.steps,
-             answer_.seconds + seconds};
-}
-
-NodalField Refining::on_original(const NodalField& u) const {
-  return NodalField(u.begin(), u.begin() + static_cast<std::ptrdiff_t>(nodes_));
-}
-
-NodalField Refining::limit() const {
-  NodalField limit = on_original(answer_.u);
-  if (before_.empty()) return limit;
-  for (std::size_t n = 0; n < nodes_; ++n)
-    for (std::size_t i = 0; i < 3; ++i) limit[n][i] += left_of_change * (limit[n][i] - before_[n][i]);
-  return limit;
-}
-
-double Refining::error() const {
-  if (before_.empty()) return std::numeric_limits<double>::infinity();
-  return largest_distance(limit(), on_original(answer_.u));
-}
-
 TruthEstimate estimate_truth_error(const Model& model, const NodalField& u) {
   constexpr int times = 2;
-  Refining refining(model.scene(), &u, model.choice().threads);
+  Refining refining(model.scene(), u, model.choice().threads);
   TruthEstimate estimate;
   for (int n = 0; n < times; ++n) {
     try {
@@ -165,10 +164,10 @@ TruthEstimate estimate_truth_error(const Model& model, const NodalField& u) {
       break;
     }
   }
-  const NodalField limit = refining.limit();
+  const NodalField limit = refining.limit(u.size());
   estimate.largest = largest_distance(limit, u);
   estimate.rms = rms_distance(limit, u);
-  estimate.elements = refining.answer().scene.mesh.cells.size();
+  estimate.elements = refining.elements();
   return estimate;
 }
 

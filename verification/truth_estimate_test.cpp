@@ -1,0 +1,198 @@
+/// The estimate against the truth: its indicators, the meshes that follow from them, and its distance from
+/// stored truths.
+
+#include "solve/truth_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "comparison/comparison.hpp"
+#include "comparison/reference_file.hpp"
+#include "io/case_file.hpp"
+#include "problem/scene_refinement.hpp"
+#include "solve/relaxation.hpp"
+#include "support/case_text.hpp"
+#include "support/scenes.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+/// A box of 2 x 2 x 2 elements in two layers of different stiffness, held below and pushed above, with
+/// further tables.
+Scene two_layers(const std::string& more = "") {
+  std::string text = box_case("layers", "[1.0, 1.0, 1.0]", "[2, 2, 2]");
+  text = text.substr(text.find("[case]"), text.find("[mesh]")) + R"(
+[[materials]]
+law = "neo-hookean"
+young_modulus = 3000.0
+poisson_ratio = 0.4
+density = 1000.0
+
+[[materials]]
+elements = "upper"
+law = "neo-hookean"
+young_modulus = 9000.0
+poisson_ratio = 0.3
+density = 1000.0
+
+[element_sets]
+upper = { z = [0.5, inf] }
+
+[sets]
+bottom = { z = [0.0, 0.0] }
+top = { z = [1.0, 1.0] }
+
+[[displacement]]
+set = "bottom"
+value = [0.0, 0.0, 0.0]
+
+[[displacement]]
+set = "top"
+value = [0.1, 0.0, -0.1]
+)" + more;
+  return read_scene(text, {.mesh = box({1, 1, 1}, {2, 2, 2})});
+}
+
+NodalField at_rest(const Scene& scene, const std::string& method) {
+  const Model model(scene, {method});
+  Observer quiet;
+  const Relaxation found = relax(model, quiet);
+  EXPECT_TRUE(found.converged);
+  return found.u;
+}
+
+/// A displacement that is linear in each material has no error, though its gradient jumps where they meet and
+/// nodes hang there.
+TEST(ErrorIndicators, vanish_where_each_material_has_one_gradient) {
+  const Scene scene = refined(two_layers(), {0, 5});
+  ASSERT_FALSE(scene.ties.empty());
+  const Tensor<double> lower{{.1, .2, -.3, .4, .5, .6, -.7, .8, .9}};
+  NodalField u;
+  for (const Vector& X : scene.mesh.points) {
+    u.push_back(linear(lower, X));
+    u.back()[0] += 2.0 * std::max(0.0, X[2] - 0.5);
+  }
+  // Rounding: gradients of about one from differences of coordinates of about one over sizes of a quarter.
+  for (const double indicator : error_indicators(scene, u)) EXPECT_LT(indicator, 1e4 * eps * eps);
+}
+
+/// u_x = x^2 / 2 on two elements in a row of length one half: their mean gradients are .25 and .75, recovered
+/// are .25, .5 and .75; each has half its corners in the middle, where the distance is .25.
+TEST(ErrorIndicators, are_the_squared_distance_from_recovered_gradients) {
+  const Scene scene = make_scene(plain_case(NeoHookean{}), box({1, 1, 1}, {2, 1, 1}));
+  NodalField u;
+  for (const Vector& X : scene.mesh.points) u.push_back({0.5 * X[0] * X[0], 0, 0});
+  for (const double indicator : error_indicators(scene, u))
+    EXPECT_NEAR(indicator, 0.5 * 0.5 * 0.25 * 0.25, 16 * eps);
+}
+
+TEST(LargestShare, takes_the_fewest_elements) {
+  const std::vector<double> indicators{1, 5, 0, 2, 2};
+  EXPECT_EQ(largest_share(indicators, 0.5), std::vector<int>({1}));
+  EXPECT_EQ(largest_share(indicators, 0.6), std::vector<int>({1, 3}));
+  EXPECT_EQ(largest_share(indicators, 0.9), std::vector<int>({1, 3, 4}));
+  EXPECT_EQ(largest_share(indicators, 0.95), std::vector<int>({0, 1, 3, 4}));
+  EXPECT_TRUE(largest_share({0, 0}, 0.5).empty());
+}
+
+/// What is refined in steps is what the case file says in one go, with its sets, materials and ties.
+TEST(Refined, is_the_case_with_one_more_rule) {
+  const Scene once = refined(two_layers(), {1, 6});
+  const Scene twice = refined(once, {4});
+  const Scene at_once = two_layers("[[refine]]\nnumbers = [1, 6]\n[[refine]]\nnumbers = [4]\nafter = 1\n");
+  EXPECT_GT(twice.mesh.cells.size(), once.mesh.cells.size());
+  EXPECT_EQ(twice.mesh_hash, at_once.mesh_hash);
+  EXPECT_EQ(twice.case_hash, at_once.case_hash);
+  EXPECT_NE(twice.case_hash, once.case_hash);
+  EXPECT_EQ(twice.constraints.size(), at_once.constraints.size());
+}
+
+/// Without its rules the scene is the original one, whatever was split.
+TEST(Refined, can_be_made_again_without_its_rules) {
+  const Scene original = two_layers();
+  const Scene scene = refined(refined(original, {1, 6}), {4});
+  Case description = scene.description;
+  description.refinements.clear();
+  const Scene again = remade(scene, description);
+  EXPECT_EQ(again.mesh_hash, original.mesh_hash);
+  EXPECT_EQ(again.case_hash, original.case_hash);
+  EXPECT_EQ(again.sets, original.sets);
+  EXPECT_EQ(again.element_sets, original.element_sets);
+}
+
+TEST(Refined, wrong_numbers_are_refused) {
+  const auto message = [](const std::string& rule) {
+    try {
+      two_layers("[[refine]]\n" + rule);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(message("numbers = [8]\n").find("refine.numbers = 8 must be below 8"), std::string::npos);
+  EXPECT_NE(message("numbers = [-1]\n").find("refine.numbers = -1"), std::string::npos);
+  EXPECT_NE(message("numbers = []\n").find("at least one element"), std::string::npos);
+  EXPECT_NE(message("numbers = [1]\nelements = \"upper\"\n").find("one of the three"), std::string::npos);
+  EXPECT_NE(message("numbers = [1]\ndepth = 2\n").find("depth"), std::string::npos);
+}
+
+/// The coarse field stays what it is.
+TEST(Prolonged, keeps_linear_fields) {
+  const Scene coarse = two_layers();
+  const Scene fine = refined(coarse, {2, 7});
+  const Tensor<double> H{{.1, .2, -.3, .4, .5, .6, -.7, .8, .9}};
+  const auto field = [&](const Mesh& mesh) {
+    NodalField u;
+    for (const Vector& X : mesh.points) u.push_back(linear(H, X));
+    return u;
+  };
+  EXPECT_LT(largest_distance(prolonged(fine.coarser.front(), field(coarse.mesh)), field(fine.mesh)),
+            16 * eps);
+}
+
+/// From near the answer the search finds it in fewer evaluations, and from nonsense at all.
+TEST(Relax, starts_near_a_guess) {
+  const Scene scene = refined(two_layers(), {4, 5});
+  const Model model(scene, {"tl-mean-dilatation"});
+  Observer quiet;
+  const Relaxation from_rest = relax(model, quiet);
+  NodalField guess = from_rest.u;
+  for (std::size_t n = 0; n < guess.size(); ++n) guess[n][n % 3] += 1e-4 * static_cast<double>(n % 5);
+  const Relaxation near = relax(model, quiet, nullptr, &guess);
+  for (Vector& u : guess) u[2] *= -20.0;  // elements are inverted
+  const Relaxation from_nonsense = relax(model, quiet, nullptr, &guess);
+  // A residual of 1e-8 leaves displacements of about as much of the imposed ones; ten times for its
+  // condition.
+  const double tolerance = 10.0 * scene.description.relaxation.tolerance * largest_imposed(scene);
+  EXPECT_TRUE(near.converged);
+  EXPECT_LT(near.steps, from_rest.steps);
+  EXPECT_LT(largest_distance(near.u, from_rest.u), tolerance);
+  EXPECT_TRUE(from_nonsense.converged);
+  EXPECT_LT(largest_distance(from_nonsense.u, from_rest.u), tolerance);
+}
+
+/// Between half and twice the error against the stored truth, largest and mean, for an accurate method and a
+/// poor one. The truths' own errors are within a third of the errors told here.
+TEST(TruthEstimate, is_about_the_error) {
+  for (const auto* name : {"column", "twist", "stiff-core", "pressed-beam", "ellipsoid-touch"}) {
+    const Scene scene =
+        read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / (std::string(name) + ".toml"));
+    const NodalField truth = read_reference(read_comparison(scene).truth, scene).front();
+    for (const auto* method : {"tl-mean-dilatation", "tl-perturbation"}) {
+      const NodalField u = at_rest(scene, method);
+      const Accuracy told = accuracy(u, truth, nullptr, 1.0);
+      const TruthEstimate estimate = estimate_truth_error(Model(scene, {method}), u);
+      EXPECT_EQ(estimate.remark, "") << name;
+      EXPECT_GT(estimate.elements, scene.mesh.cells.size()) << name;
+      for (const double ratio :
+           {estimate.largest / told.max_relative_error, estimate.rms / told.rms_relative_error}) {
+        EXPECT_GT(ratio, 0.5) << name << " " << method;
+        EXPECT_LT(ratio, 2.0) << name << " " << method;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sandglass::verification
