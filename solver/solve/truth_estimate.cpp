@@ -25,6 +25,13 @@ constexpr double refined_share = 0.6;
 /// which lies between the orders of singular edges (about 1) and of smooth answers (2).
 constexpr double left_of_change = 0.7;
 
+/// The residual at which searches end, over the accuracy that is asked for; displacements are then about as
+/// many per cent of the largest one from equilibrium as the residual is of the loads.
+constexpr double tolerance_over_accuracy = 0.1;
+
+/// The residual at which searches for an estimate end: errors that are estimated are larger.
+constexpr double tolerance_of_estimate = 1e-4;
+
 std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
@@ -120,12 +127,13 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
   return elements;
 }
 
-RefinedAnswer::RefinedAnswer(const Scene& scene, int threads, const NodalField* near)
-    : threads_(threads),
-      original_nodes_(scene.mesh.points.size()),
-      scene_(scene),
-      u_(find_answer(scene, near, threads)),
-      before_(u_) {}
+RefinedAnswer::RefinedAnswer(Scene scene, double tolerance, int threads, const NodalField* near)
+    : threads_(threads), original_nodes_(scene.mesh.points.size()), scene_(std::move(scene)) {
+  RelaxationSettings& settings = scene_.description.relaxation;
+  settings.tolerance = std::max(settings.tolerance, tolerance);
+  settings.check_interval = 1;
+  u_ = before_ = find_answer(scene_, near, threads);
+}
 
 void RefinedAnswer::refine() {
   Scene finer = refined(scene_, largest_share(error_indicators(scene_, u_), refined_share));
@@ -145,7 +153,7 @@ NodalField RefinedAnswer::limit() const {
 AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
                                  std::size_t most_elements) {
   const auto start = std::chrono::steady_clock::now();
-  RefinedAnswer answer(scene, threads);
+  RefinedAnswer answer(scene, tolerance_over_accuracy * accuracy, threads);
   const double unit = displacement_unit(scene, answer.u());
   std::string nearest = "how far its answer is from the exact one is not known";
   const auto fail = [&](const std::string& why) {
@@ -176,7 +184,7 @@ AccurateMesh refine_until_within(double accuracy, const Scene& scene, int thread
 
 TruthEstimate estimate_truth_error(const Model& model, const NodalField& u) {
   constexpr int times = 2;
-  RefinedAnswer refined(model.scene(), model.choice().threads, &u);
+  RefinedAnswer refined(model.scene(), tolerance_of_estimate, model.choice().threads, &u);
   TruthEstimate estimate;
   for (int n = 0; n < times; ++n) {
     try {

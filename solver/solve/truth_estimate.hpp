@@ -17,9 +17,10 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
 /// The mean-dilatation element's answers on a mesh and on meshes that are refined where it errs most.
 class RefinedAnswer {
  public:
-  /// Starts on the mesh of a quasi-static scene, near u (m) if that is given. Throws ComputationError if
-  /// there is no answer.
-  RefinedAnswer(const Scene& scene, int threads, const NodalField* near = nullptr);
+  /// Starts on the mesh of a quasi-static scene, near u (m) if that is given. Searches end at a residual of
+  /// `tolerance`, unless that of the case is larger: displacements are then about that share of the largest
+  /// one from the equilibrium. Throws ComputationError if there is no answer.
+  RefinedAnswer(Scene scene, double tolerance, int threads, const NodalField* near = nullptr);
 
   /// Refines the mesh once more. Throws ComputationError if the finer mesh has no answer; nothing has changed
   /// then.
@@ -49,7 +50,8 @@ struct AccurateMesh {
 
 /// Refines the mesh of a quasi-static scene until the mean-dilatation element's answer is nowhere at the
 /// original nodes farther from the exact one, as estimated, than `accuracy` times the unit of errors
-/// (`displacement_unit`). A mesh that is fine enough as it is stays. Throws ComputationError, with the
+/// (`displacement_unit`). A mesh that is fine enough as it is stays. Searches for rest on the mesh end at a
+/// residual of a tenth of `accuracy`, for more is lost in the error. Throws ComputationError, with the
 /// nearest estimate, if a mesh of more than `most_elements` elements would be refined, or one has no answer.
 AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
                                  std::size_t most_elements = 1'000'000);
