@@ -6,6 +6,7 @@
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
 #include "solve/loads.hpp"
+#include "solve/subcycling.hpp"
 
 namespace sandglass {
 
@@ -99,6 +100,20 @@ class Body {
   /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
   const std::vector<double>& stiffness_bounds();
 
+  /// The longest stable step. `given_step` (s) is the one that a user demands, or 0.
+  StableStep stable_step(const Model& model, double given_step = 0.0);
+
+  /// Lets small elements take small steps alone from the next evaluation on; see Subcycling.
+  void subcycle(const Model& model) { subcycling_.emplace(model, elements_); }
+
+  /// What small elements do, if they do anything else than the others.
+  const std::optional<Subcycling<Real>>& subcycling() const { return subcycling_; }
+
+  /// Sets the step (s) that follows evaluations from now on.
+  void set_step(double step) {
+    if (subcycling_) subcycling_->set_step(step);
+  }
+
   /// See InternalForce::adapt.
   Adaptation adapt(const Rows<Real>& mobility, double length, double demoting_length) {
     return elements_.adapt(state_, mobility, length, demoting_length);
@@ -120,6 +135,7 @@ class Body {
     archive("body reaction", reactions_);
     archive("load factor", load_factor_);
     loads_.keep(archive);
+    if (subcycling_) subcycling_->keep(archive);
   }
 
  private:
@@ -143,6 +159,7 @@ class Body {
   std::vector<RowConstraint> constraints_;
   RowTies<Real> ties_;
   Loads<Real> loads_;
+  std::optional<Subcycling<Real>> subcycling_;
   double load_factor_ = 0.0;
   State<Real> state_;
   Rows<Real> force_;

@@ -43,7 +43,9 @@ class CentralDifference {
         body_(leapfrog_.body()),
         reactions_(model.scene().constraints.size(), 0.0),
         moved_(model.scene().angles.size()),
-        accelerations_(moved_.size()) {}
+        accelerations_(moved_.size()) {
+    if (settings_.subcycles > 1) body_.subcycle(model);
+  }
 
   Body<Real>& body() { return body_; }
   double time() const { return leapfrog_.time(); }
@@ -67,13 +69,14 @@ class CentralDifference {
 
   /// Sets the next step: the user's, rejected if unstable, or a share of the stable one.
   void choose_step() {
-    const StableStep stable = stable_step(model_, body_.stiffness_bounds());
+    const StableStep stable = body_.stable_step(model_, settings_.time_step);
     if (settings_.time_step > 0.0) {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
       next_step_ = settings_.step_fraction * stable.step;
     }
+    body_.set_step(next_step_);
   }
 
   /// Whether the end is reached, up to the roundoff of a sum of steps.
