@@ -40,8 +40,8 @@ template <class Real>
 void Body<Real>::evaluate_forces() {
   elements_.evaluate(state_, force_);
   loads_.subtract(state_, force_);
-  ties_.hand_on(force_);
   if (subcycling_) subcycling_->average(state_.u, force_);
+  ties_.hand_on(force_);
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     Real& component = force_[constraints_[k].row][constraints_[k].component];
     reactions_[k] = static_cast<double>(component);

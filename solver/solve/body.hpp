@@ -103,11 +103,15 @@ class Body {
   /// The longest stable step. `given_step` (s) is the one that a user demands, or 0.
   StableStep stable_step(const Model& model, double given_step = 0.0);
 
-  /// Lets small elements take small steps alone from the next evaluation on; see Subcycling.
-  void subcycle(const Model& model) { subcycling_.emplace(model, elements_); }
+  /// Lets small elements take small steps alone from the next evaluation on, if the case asks for it; see
+  /// Subcycling.
+  void subcycle(const Model& model, const Rows<Real>& inverse_masses) {
+    if (model.scene().description.dynamics.subcycles > 1)
+      subcycling_.emplace(model, elements_, inverse_masses);
+  }
 
-  /// What small elements do, if they do anything else than the others.
-  const std::optional<Subcycling<Real>>& subcycling() const { return subcycling_; }
+  /// The number of small steps that small elements take in a step at present.
+  int substeps() const { return subcycling_ ? subcycling_->substeps() : 1; }
 
   /// Sets the step (s) that follows evaluations from now on.
   void set_step(double step) {

@@ -43,9 +43,7 @@ class CentralDifference {
         body_(leapfrog_.body()),
         reactions_(model.scene().constraints.size(), 0.0),
         moved_(model.scene().angles.size()),
-        accelerations_(moved_.size()) {
-    if (settings_.subcycles > 1) body_.subcycle(model);
-  }
+        accelerations_(moved_.size()) {}
 
   Body<Real>& body() { return body_; }
   double time() const { return leapfrog_.time(); }
@@ -231,6 +229,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     archive("frames", frames);
     adaption_schedule.keep(archive);
     archive("smallest step", motion.smallest_step);
+    archive("most substeps", motion.most_substeps);
   };
   const auto checkpoint = [&] {
     Checkpoint state;
@@ -254,6 +253,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     scheme.advance(observer);
     scheme.update_external_work();
     motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
+    motion.most_substeps = std::max(motion.most_substeps, body.substeps());
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {
       body.require_healthy(scheme.step());
       report();

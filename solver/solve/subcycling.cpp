@@ -19,59 +19,46 @@ std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// Small nodes, and the elements that depend on them or on others, directly or because their nodes are tied.
-struct Division {
-  std::vector<bool> is_small;        ///< nodes that are not tied
-  std::vector<bool> in_part;         ///< elements that depend on small nodes
-  std::vector<bool> on_large_nodes;  ///< elements that depend on others
-
-  std::size_t elements() const {
-    return static_cast<std::size_t>(std::count(in_part.begin(), in_part.end(), true));
-  }
-};
-
-/// What elements depend on: of each node itself, or the nodes that it follows.
-class Dependence {
+/// Of each node itself, or the nodes that it follows.
+class FreeNodes {
  public:
-  explicit Dependence(const Scene& scene) : scene_(scene), tie_of_(scene.mesh.points.size(), nullptr) {
+  explicit FreeNodes(const Scene& scene) : tie_of_(scene.mesh.points.size(), nullptr) {
     for (const Tie& tie : scene.ties) tie_of_[at(tie.node)] = &tie;
   }
 
-  /// The division where elements are small whose stable step is below a limit (s).
-  Division at_limit(std::span<const double> element_steps, double limit) const {
-    const auto& cells = scene_.mesh.cells;
-    Division division{std::vector<bool>(tie_of_.size(), false), std::vector<bool>(cells.size(), false),
-                      std::vector<bool>(cells.size(), false)};
-    for (std::size_t e = 0; e < cells.size(); ++e) {
-      if (element_steps[e] >= limit) continue;
-      for (const int node : cells[e]) for_each_free(node, [&](int n) { division.is_small[at(n)] = true; });
-    }
-    for (std::size_t e = 0; e < cells.size(); ++e) {
-      for (const int node : cells[e]) {
-        for_each_free(node, [&](int n) {
-          (division.is_small[at(n)] ? division.in_part : division.on_large_nodes)[e] = true;
-        });
+  /// Calls use(n) for the free nodes that any of `nodes` depends on.
+  template <class Nodes, class Use>
+  void for_each(const Nodes& nodes, const Use& use) const {
+    for (const int node : nodes) {
+      if (tie_of_[at(node)] == nullptr) {
+        use(node);
+      } else {
+        for (const auto& share : tie_of_[at(node)]->mean_of) use(share.node);
       }
-    }
-    return division;
-  }
-
-  /// Calls use(n) for a node, or for those that it follows.
-  template <class Use>
-  void for_each_free(int node, const Use& use) const {
-    if (tie_of_[at(node)] == nullptr) {
-      use(node);
-    } else {
-      for (const auto& share : tie_of_[at(node)]->mean_of) use(share.node);
     }
   }
 
  private:
-  const Scene& scene_;
   std::vector<const Tie*> tie_of_;
 };
 
-/// The smallest step of the marked elements.
+/// The division where elements are small whose stable step is below a limit (s).
+Division divide(const Scene& scene, const FreeNodes& free, std::span<const double> steps, double limit) {
+  const auto& cells = scene.mesh.cells;
+  const std::vector<bool> no_elements(cells.size(), false);
+  Division division{std::vector<bool>(scene.mesh.points.size(), false), no_elements, no_elements};
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    if (steps[e] < limit) free.for_each(cells[e], [&](int n) { division.is_small[at(n)] = true; });
+  }
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    free.for_each(cells[e], [&](int n) {
+      (division.is_small[at(n)] ? division.in_part : division.on_large_nodes)[e] = true;
+    });
+  }
+  return division;
+}
+
+/// The smallest of the steps of the marked elements.
 StableStep smallest(std::span<const double> steps, const std::vector<bool>& marked) {
   StableStep found{std::numeric_limits<double>::infinity(), -1};
   for (std::size_t e = 0; e < steps.size(); ++e) {
@@ -80,33 +67,36 @@ StableStep smallest(std::span<const double> steps, const std::vector<bool>& mark
   return found;
 }
 
-/// The stable steps of the elements on small nodes, and of those on others.
-struct StableSteps {
-  StableStep small, large;
+/// A number of small steps.
+struct Plan {
+  int substeps;
+  StableStep stable;
+  double work;  ///< evaluations of elements per second; infinite for a given step that is not stable
 
-  StableStep with(const Substeps& substeps) const {
-    StableStep by_small = small, by_large = large;
-    if (substeps.count() > 1) {
-      by_small.step *= substeps.reach();
-      by_large.step *= Substeps::share_of_large;
-    }
-    return by_small.step < by_large.step ? by_small : by_large;
+  bool is_better_than(const Plan& other) const {
+    return std::pair(work, -stable.step) < std::pair(other.work, -other.stable.step);
   }
 };
 
-/// The number of small steps with the least work per second, and that work (evaluations of elements per s);
-/// for a given step the smallest stable number.
-struct Cheapest {
-  int substeps = 1;
-  double work = std::numeric_limits<double>::infinity();
-};
-
-Cheapest cheapest(const StableSteps& stable, double elements, double part_elements, int most, double given) {
-  Cheapest best;
-  for (int p = 1; p <= most; ++p) {
-    const double step = stable.with(Substeps(p)).step;
-    const double work = (elements + (p > 1 ? p * part_elements : 0.0)) / (given > 0.0 ? given : step);
-    if (step >= given && work < best.work) best = {p, work};
+/// The plan with the least work among those of at most so many small steps; `given` (s) is a step to take, or
+/// 0 for the stable one.
+Plan best_plan(std::span<const double> steps, const Division& division, int most, double given) {
+  const StableStep small = smallest(steps, division.in_part);
+  const StableStep large = smallest(steps, division.on_large_nodes);
+  const auto elements = static_cast<double>(steps.size());
+  const auto part = static_cast<double>(std::count(division.in_part.begin(), division.in_part.end(), true));
+  const auto plan = [&](int p) {
+    const StableStep by_small{small.step * Substeps(p).reach(), small.element};
+    const StableStep by_large{large.step * (p > 1 ? Substeps::share_of_large : 1.0), large.element};
+    const StableStep stable = by_small.step < by_large.step ? by_small : by_large;
+    const double evaluations = elements + (p > 1 ? p * part : 0.0);
+    return Plan{p, stable,
+                stable.step < given ? std::numeric_limits<double>::infinity()
+                                    : evaluations / (given > 0.0 ? given : stable.step)};
+  };
+  Plan best = plan(1);
+  for (int p = 2; p <= most; ++p) {
+    if (const Plan next = plan(p); next.is_better_than(best)) best = next;
   }
   return best;
 }
@@ -124,165 +114,138 @@ void require_bare_elements(const MethodChoice& choice, bool needs_increment, boo
   if (has_history) refuse("and this law, elements remember steps, or share averages over nodes");
 }
 
+/// Pressures and supports are evaluated once in a step, which is too long for light nodes.
+void require_bare_faces(const Scene& scene, const FreeNodes& free, const std::vector<bool>& is_small) {
+  const auto require = [&](const Quadrilateral& face, const char* what) {
+    free.for_each(face, [&](int n) {
+      if (!is_small[at(n)]) return;
+      throw InputError(
+          fmt::format("dynamics.subcycles: a {} acts on node {}, which belongs to small elements; "
+                      "allowed: 1, or a mesh that is refined elsewhere",
+                      what, n));
+    });
+  };
+  for (const FacePressure& pressure : scene.pressures) require(pressure.face, "pressure");
+  for (const FaceSupport& support : scene.supports) require(support.face, "support");
+}
+
 }  // namespace
 
 template <class Real>
-Subcycling<Real>::Subcycling(const Model& model, const InternalForce<Real>& elements)
+Subcycling<Real>::Subcycling(const Model& model, const InternalForce<Real>& elements,
+                             const Rows<Real>& inverse_masses)
     : threads_(model.choice().threads), most_substeps_(model.scene().description.dynamics.subcycles) {
+  const Scene& scene = model.scene();
   const State<Real> undeformed = elements.undeformed();
   require_bare_elements(model.choice(), elements.needs_increment(), !undeformed.history.empty());
   std::vector<double> bounds(model.element_masses().size());
   elements.stiffness_bounds(undeformed, bounds);
   const std::vector<double> steps = stable_steps(model, bounds);
-  const Dependence dependence(model.scene());
-  const auto cheapest_of = [&](const Division& division, int most) {
-    return cheapest({smallest(steps, division.in_part), smallest(steps, division.on_large_nodes)},
-                    static_cast<double>(steps.size()), static_cast<double>(division.elements()), most,
-                    model.scene().description.dynamics.time_step);
+  const FreeNodes free(scene);
+  const auto plan_of = [&](const Division& division) {
+    return best_plan(steps, division, most_substeps_, scene.description.dynamics.time_step);
   };
-  Division best = dependence.at_limit(steps, 0.0);
-  Cheapest choice = cheapest_of(best, 1);
+  division_ = divide(scene, free, steps, 0.0);
+  Plan best = plan_of(division_);
   // Splits halve the steps of elements: limits are between those of one split and the next.
   const double least = *std::min_element(steps.begin(), steps.end());
   for (double limit = std::sqrt(2.0) * least; limit < most_substeps_ * least; limit *= 2.0) {
-    Division division = dependence.at_limit(steps, limit);
-    const Cheapest next = cheapest_of(division, most_substeps_);
-    if (next.work >= choice.work) continue;
-    choice = next;
-    best = std::move(division);
+    Division division = divide(scene, free, steps, limit);
+    const Plan next = plan_of(division);
+    if (!next.is_better_than(best)) continue;
+    best = next;
+    division_ = std::move(division);
   }
-  in_part_ = std::move(best.in_part);
-  on_large_nodes_ = std::move(best.on_large_nodes);
-  if (choice.substeps == 1) return;
-  require_bare(model, best.is_small);
-  build_part(model, elements.layout(), best.is_small);
-}
-
-/// Their forces are evaluated once in a step, which is too long for light nodes.
-template <class Real>
-void Subcycling<Real>::require_bare(const Model& model, const std::vector<bool>& is_small) const {
-  const Dependence dependence(model.scene());
-  const auto require = [&](const Quadrilateral& face, const char* what) {
-    for (const int node : face) {
-      dependence.for_each_free(node, [&](int n) {
-        if (!is_small[at(n)]) return;
-        throw InputError(fmt::format(
-            "dynamics.subcycles: a {} acts on node {}, which belongs to small elements; allowed: 1, "
-            "or a mesh that is refined elsewhere",
-            what, n));
-      });
-    }
-  };
-  for (const FacePressure& pressure : model.scene().pressures) require(pressure.face, "pressure");
-  for (const FaceSupport& support : model.scene().supports) require(support.face, "support");
+  if (best.substeps == 1) return;
+  require_bare_faces(scene, free, division_.is_small);
+  build_part(model, elements.layout(), inverse_masses);
 }
 
 template <class Real>
 void Subcycling<Real>::build_part(const Model& model, const Layout& layout,
-                                  const std::vector<bool>& is_small) {
+                                  const Rows<Real>& inverse_masses) {
   const Scene& scene = model.scene();
-  const MeshPart part = part_of_mesh(scene.mesh, in_part_);
-  part_elements_ = part.element_of.size();
+  const MeshPart part = part_of_mesh(scene.mesh, division_.in_part);
   part_ = std::get<std::unique_ptr<InternalForce<Real>>>(
       make_internal_force(part.mesh, materials_of(scene.materials, part.element_of), model.choice()));
   state_ = part_->undeformed();
-  const std::size_t rows = state_.u.size();
-  mobility_ = rest_ = force_ = sum_ = Rows<Real>(rows);
-  is_tied_.assign(rows, false);
-  const auto row_of = [&](int node) {  // in the part, of a node of the whole
-    return static_cast<std::uint32_t>(part_->layout().row_of_node[at(part.part_of[at(node)])]);
-  };
-  const auto whole_row_of = [&](int node) {
-    return static_cast<std::uint32_t>(layout.row_of_node[at(node)]);
-  };
+  mobility_ = force_ = mean_ = rest_ = Rows<Real>(state_.u.size());
   whole_row_.resize(part.node_of.size());
-  for (const int node : part.node_of) {
-    whole_row_[row_of(node)] = whole_row_of(node);
-    if (!is_small[at(node)]) continue;
-    for (std::size_t i = 0; i < 3; ++i)
-      mobility_[row_of(node)][i] = static_cast<Real>(1.0 / model.masses()[at(node)]);
+  for (std::size_t r = 0; r < whole_row_.size(); ++r) {
+    const int node = part.node_of[at(part_->layout().node_of_row[r])];
+    whole_row_[r] = static_cast<std::uint32_t>(layout.row_of_node[at(node)]);
+    if (division_.is_small[at(node)]) mobility_[r] = inverse_masses[whole_row_[r]];
   }
-  for (const auto& [node, component, path] : scene.constraints) {
-    if (part.part_of[at(node)] >= 0) mobility_[row_of(node)][at(component)] = Real(0);
-  }
+  Ties to_small;
   for (const auto& [node, mean_of] : scene.ties) {
-    if (part.part_of[at(node)] < 0) continue;
-    is_tied_[row_of(node)] = true;
+    Tie tie{part.part_of[at(node)], {}};
     for (const auto& [to, weight] : mean_of) {
-      const auto share = static_cast<Real>(weight);
-      if (is_small[at(to)])
-        to_small_.push_back({row_of(node), row_of(to), share});
-      else
-        to_others_.push_back({row_of(node), whole_row_of(to), share});
+      if (division_.is_small[at(to)]) tie.mean_of.push_back({part.part_of[at(to)], weight});
     }
+    if (!tie.mean_of.empty()) to_small.push_back(std::move(tie));
   }
+  ties_ = RowTies<Real>(to_small, part_->layout());
 }
 
 template <class Real>
 StableStep Subcycling<Real>::choose_substeps(std::span<const double> element_steps, double given_step) {
-  if (part_ == nullptr) return smallest(element_steps, std::vector<bool>(element_steps.size(), true));
-  const StableSteps stable{smallest(element_steps, in_part_), smallest(element_steps, on_large_nodes_)};
-  const auto elements = static_cast<double>(element_steps.size());
-  const auto part_elements = static_cast<double>(part_elements_);
-  const int count = cheapest(stable, elements, part_elements, most_substeps_, given_step).substeps;
-  if (count != substeps_.count()) substeps_ = Substeps(count);
-  return stable.with(substeps_);
+  const int most = part_ == nullptr ? 1 : most_substeps_;
+  const Plan plan = best_plan(element_steps, division_, most, given_step);
+  if (plan.substeps != substeps_.count()) substeps_ = Substeps(plan.substeps);
+  return plan.stable;
 }
 
-/// Sets the force of the part at its present displacements, handed on by tied rows to small nodes.
+/// Adds the force before the k-th small step to the mean, and what acts beside the part to the force.
 template <class Real>
-void Subcycling<Real>::evaluate() {
-  part_->evaluate(state_, force_);
-  for (const auto& [tied, to, weight] : to_small_) {
-    for (std::size_t i = 0; i < 3; ++i) force_[to][i] += weight * force_[tied][i];
-  }
+void Subcycling<Real>::add_to_mean(std::size_t k) {
+  const auto before = static_cast<Real>(k > 0 ? 1 : 0), share = static_cast<Real>(substeps_.weight(k));
+  Real *mean = numbers_of(mean_), *force = numbers_of(force_);
+  const Real* rest = numbers_of(rest_);
+  for_each_block(4 * force_.size(), threads_, [=](std::size_t first, std::size_t last) {
+#pragma omp simd
+    for (std::size_t n = first; n < last; ++n) {
+      mean[n] = before * mean[n] + share * force[n];
+      force[n] += rest[n];
+    }
+  });
 }
 
-/// Takes the k-th small step.
+/// Takes the k-th small step: tied nodes move with the small nodes that they follow, others are held.
 template <class Real>
 void Subcycling<Real>::move(std::size_t k) {
   const auto keep = static_cast<Real>(substeps_.keep(k));
   const auto gain = static_cast<Real>(-substeps_.gain(k) * step_ * step_);
-  const auto share = static_cast<Real>(substeps_.weight(k));
-  Real *u = numbers_of(state_.u), *increment = numbers_of(state_.increment), *sum = numbers_of(sum_);
-  const Real *mobility = numbers_of(mobility_), *rest = numbers_of(rest_), *force = numbers_of(force_);
-  for_each_block(4 * mobility_.size(), threads_, [=](std::size_t first, std::size_t last) {
+  Real *u = numbers_of(state_.u), *increment = numbers_of(state_.increment);
+  const Real *mobility = numbers_of(mobility_), *force = numbers_of(force_);
+  const auto for_each_number = [&](const auto& move_number) {
+    for_each_block(4 * mobility_.size(), threads_, [=](std::size_t first, std::size_t last) {
 #pragma omp simd
-    for (std::size_t n = first; n < last; ++n) {
-      sum[n] += share * force[n];
-      increment[n] = keep * increment[n] + gain * mobility[n] * (rest[n] + force[n]);
-      u[n] += increment[n];
-    }
-  });
-  for (const auto& [tied, to, weight] : to_small_) {
-    for (std::size_t i = 0; i < 3; ++i) state_.u[tied][i] += weight * state_.increment[to][i];
-  }
+      for (std::size_t n = first; n < last; ++n) move_number(n);
+    });
+  };
+  ties_.hand_on(force_);
+  for_each_number([=](std::size_t n) { increment[n] = keep * increment[n] + gain * mobility[n] * force[n]; });
+  ties_.follow(state_.increment);
+  for_each_number([=](std::size_t n) { u[n] += increment[n]; });
 }
 
 template <class Real>
 void Subcycling<Real>::average(const Rows<Real>& u, Rows<Real>& force) {
-  if (substeps_.count() == 1) return;
-  const std::size_t nodes = whole_row_.size(), last = at(substeps_.count()) - 1;
-  for (std::size_t r = 0; r < nodes; ++r) state_.u[r] = u[whole_row_[r]];
-  evaluate();
-  for (std::size_t r = 0; r < nodes; ++r) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      rest_[r][i] = force[whole_row_[r]][i] - force_[r][i];
-      sum_[r][i] = -force_[r][i];
-    }
+  const std::size_t rows = whole_row_.size(), count = at(substeps_.count());
+  if (count == 1) return;
+  for (std::size_t r = 0; r < rows; ++r) state_.u[r] = u[whole_row_[r]];
+  part_->evaluate(state_, force_);
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t i = 0; i < 3; ++i) rest_[r][i] = force[whole_row_[r]][i] - force_[r][i];
   }
-  for (std::size_t k = 0; k < last; ++k) {
-    move(k);
-    evaluate();
+  add_to_mean(0);
+  for (std::size_t k = 1; k < count; ++k) {
+    move(k - 1);
+    part_->evaluate(state_, force_);
+    add_to_mean(k);
   }
-  const auto share = static_cast<Real>(substeps_.weight(last));
-  for (std::size_t r = 0; r < nodes; ++r) {
-    for (std::size_t i = 0; i < 3; ++i) sum_[r][i] += share * force_[r][i];
-    if (is_tied_[r]) continue;
-    for (std::size_t i = 0; i < 3; ++i) force[whole_row_[r]][i] += sum_[r][i];
-  }
-  for (const auto& [tied, to, weight] : to_others_) {
-    for (std::size_t i = 0; i < 3; ++i) force[to][i] += weight * sum_[tied][i];
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t i = 0; i < 3; ++i) force[whole_row_[r]][i] = rest_[r][i] + mean_[r][i];
   }
 }
 
