@@ -149,8 +149,8 @@ Subcycling<Real>::Subcycling(const Model& model, const InternalForce<Real>& elem
   Plan best = plan_of(division_);
   // Splits halve the steps of elements: limits are between those of one split and the next.
   const double least = *std::min_element(steps.begin(), steps.end());
-  for (double limit = std::sqrt(2.0) * least; limit < most_substeps_ * least; limit *= 2.0) {
-    Division division = divide(scene, free, steps, limit);
+  for (int size = 1; std::sqrt(2.0) * size < most_substeps_; size *= 2) {
+    Division division = divide(scene, free, steps, std::sqrt(2.0) * size * least);
     const Plan next = plan_of(division);
     if (!next.is_better_than(best)) continue;
     best = next;
