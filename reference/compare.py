@@ -56,7 +56,7 @@ def table():
     """The Markdown table that compares all stored goldens with their truths, as a string."""
     lines = [
         "| case | golden to truth, max | rms | golden's own error, max | rms | order "
-        "| truth's mesh | truth's own error, max | rms | order | golden, s | truth, s |",
+        "| truth's edges split | truth's own error, max | rms | order | golden, s | truth, s |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for name in stored("golden"):
@@ -67,7 +67,7 @@ def table():
             _, _, truth = read_reference(truth_path)
             cells = [_percent(error) for error in golden_error(golden_path, truth_path)]
             cells += _own_error(golden)
-            cells.append(f"split {truth['refinements']}x" if truth["refinements"] else "same")
+            cells.append(f"{truth['refinements']}x")
             cells += _own_error(truth) + [seconds, f"{truth['wall_seconds']:.0f}"]
         else:
             cells = ["-", "-"] + _own_error(golden) + ["-"] * 4 + [seconds, "-"]
