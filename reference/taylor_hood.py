@@ -25,12 +25,12 @@ class TaylorHoodProblem:
     mesh: HexMesh of tetrahedra.cut(). materials: list of Material. A continuous pressure cannot be
     eliminated element by element: unknowns are displacements and pressures together, the latter
     over a stiffness (Pa/m) that makes both blocks of the tangent alike.
-    Attributes: as of a MixedProblem; displacement holds all unknowns; function is the displacement
-    (dolfinx function, m) where the residual was last computed.
+    Attributes: as of a MixedProblem; mesh; displacement holds all unknowns; function is the
+    displacement (dolfinx function, m) where the residual was last computed.
     """
 
     def __init__(self, mesh, materials):
-        self._mesh = mesh
+        self.mesh = mesh
         element = ufl.VectorElement("Lagrange", "tetrahedron", 2)
         domain = dolfinx.mesh.create_mesh(MPI.COMM_SELF, mesh.cells, mesh.points, ufl.Mesh(element))
         self.function = fem.Function(fem.FunctionSpace(domain, element))
@@ -69,7 +69,7 @@ class TaylorHoodProblem:
 
     def values_at(self, load):
         """Values (in m) of the prescribed dofs at a load factor."""
-        return self._mesh.imposed(load)[1][self._nodes, self._axes]
+        return self.mesh.imposed(load)[1][self._nodes, self._axes]
 
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the mesh, in its numbering."""
@@ -77,23 +77,30 @@ class TaylorHoodProblem:
 
     def size(self):
         """Elements and unknowns in words."""
-        return f"{len(self._mesh.cells)} tetrahedra, {self.displacement.array.size} unknowns"
+        return f"{len(self.mesh.cells)} tetrahedra, {self.displacement.array.size} unknowns"
 
     def nodal_forces(self):
         """Unbalanced forces (n, 3) in N at the nodes of the mesh, in its numbering."""
         return self.mixed_residual()[0][: self._n].reshape(-1, 3)[self._block]
 
-    def start_from(self, coarse):
-        """Interpolate displacement and pressure from a TaylorHoodProblem on another mesh."""
-        mesh, other = self._mesh, coarse._mesh
+    def start_from(self, coarse, share=None):
+        """Interpolate displacement and pressure from a TaylorHoodProblem on another mesh.
+
+        share: how much of them counts at the nodes (n,), beside what there was; all, if None.
+        """
+        mesh, other = self.mesh, coarse.mesh
         cell, places = locate(mesh.points, other.points, other.cells)
         u = coarse.nodal_displacement()[other.cells[cell]]
         materials = 0 if mesh.materials is None else other.materials[cell][:, None]
         p = coarse._pressure_at(other.cells[cell][:, :4] + len(other.points) * materials)
         u = np.einsum("ka,kai->ki", _quadratic(places), u)
         p = np.einsum("ka,ka->k", places, p) / self._stiffness
-        self.displacement.array[: self._n].reshape(-1, 3)[self._block] = u
-        self.displacement.array[self._n :] = p[self._place % len(mesh.points)]
+        share = np.ones(len(mesh.points)) if share is None else share
+        at = self._place % len(mesh.points)
+        nodal, pressures = np.split(self.displacement.array, [self._n])
+        nodal = nodal.reshape(-1, 3)
+        nodal[self._block] += share[:, None] * (u - nodal[self._block])
+        pressures += share[at] * (p[at] - pressures)
 
     def mixed_residual(self):
         """Unbalanced forces (N,) in N of all unknowns, and an empty row."""

@@ -1,6 +1,6 @@
 """Truths: Taylor-Hood tetrahedra on meshes graded towards the edges of what is held and driven.
 
-Usage: /usr/bin/python3 reference/truth.py CASE... [-o FILE]
+Usage: /usr/bin/python3 reference/truth.py CASE... [-o FILE] [--keep FOLDER]
 Solves a case on meshes that become finer at those edges, and stores the finest answer with the
 distance from the limit of the sequence. Needs the solver's binary, which makes the meshes.
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
@@ -8,6 +8,7 @@ Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
 
 import argparse
 import dataclasses
+import hashlib
 import logging
 import sys
 import tempfile
@@ -17,6 +18,7 @@ from pathlib import Path
 
 import dolfinx
 import numpy as np
+from scipy.spatial import cKDTree
 
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
@@ -46,7 +48,11 @@ class Grading:
 
     edges: node set -> how often those at its edge are, a number for each mesh. layers: of elements
     there. whole: how often all elements are, on every mesh. parts: element set -> how often its
-    elements are, a number for each mesh. steps: load steps from rest.
+    elements are, a number for each mesh. steps: load steps from rest. inside: the mesh, counted
+    from 0, that is solved with a finer inside as well, None if that is too dear; its edges must be
+    split more often than the rest. starts: mesh -> those whose answers it starts from, if not the
+    one before. sequences: the meshes that show how fast the answer converges, all in one sequence
+    if empty; what is left at the end of each is added up.
     """
 
     edges: dict
@@ -54,6 +60,9 @@ class Grading:
     whole: int = 0
     parts: dict = dataclasses.field(default_factory=dict)
     steps: int = 1
+    inside: int | None = 0
+    starts: dict = dataclasses.field(default_factory=dict)
+    sequences: tuple = ()
 
     def tables(self, level):
         """The text to add to a case file for its mesh on a level, counted from 0."""
@@ -64,6 +73,10 @@ class Grading:
         for name, splits in self.edges.items():
             text += _refine("around", name, splits[level], f"layers = {self.layers}")
         return text
+
+    def with_finer_inside(self):
+        """The Grading with all elements split once more but the smallest, those at the edges."""
+        return dataclasses.replace(self, whole=self.whole + 1, layers=2 * self.layers)
 
     def levels(self):
         """The number of meshes."""
@@ -79,11 +92,17 @@ PLATES = {"bottom": (1, 2, 3), "top": (1, 2, 3)}
 GRADINGS = {
     "column": Grading({"bottom": (2, 3, 4), "top": (2, 3, 4)}, whole=1),
     "cylinder-stretch": Grading(PLATES),
-    "ellipsoid-indentation": Grading({"indenter": (0, 1, 2), "support": (0, 1, 1)}, steps=4),
+    "ellipsoid-indentation": Grading(
+        {"indenter": (0, 1, 2, 0, 0, 2), "support": (0, 0, 0, 1, 2, 2)},
+        steps=4,
+        inside=None,
+        starts={3: [0], 5: [2, 4]},
+        sequences=((0, 1, 2), (0, 3, 4)),
+    ),
     "ellipsoid-touch": Grading({"indenter": (1, 2, 3), "support": (1, 2, 3)}),
-    "pressed-beam": Grading({"foot": (1, 2, 3)}, whole=1),
-    "stiff-core": Grading(PLATES, whole=1, parts={"core": (1, 2, 3)}),
-    "twist": Grading(PLATES, whole=1, steps=10),
+    "pressed-beam": Grading({"foot": (1, 2, 3)}, whole=1, inside=1),
+    "stiff-core": Grading(PLATES, whole=1, parts={"core": (1, 2, 3)}, inside=1),
+    "twist": Grading(PLATES, whole=1, steps=10, inside=1),
 }
 # Bars of all variants have elements of a quarter of their thickness.
 for _elements, _whole in ((1, 2), (2, 1), (4, 0)):
@@ -104,53 +123,131 @@ def graded_mesh(name, grading, level):
     return case, dataclasses.replace(mesh, ties=None)
 
 
-def solve_levels(name, grading, mesh):
+def solve_levels(name, grading, mesh, keep=None):
     """Displacements (n, 3) in m of a case on each level, at the nodes of its own HexMesh.
 
-    Each mesh starts from the answer on the one before or, if that inverts elements, from rest.
-    Returns (list of them, what the last mesh took: dict of attributes). Raises ComputationError.
+    Each mesh starts from the answer on the one before, or on those that `starts` names, or, if that
+    leads nowhere, from rest. keep: as of an Answer.
+    Returns (list of them; (n, 3), m, by how much a finer inside changes one, None if not measured;
+    what the last mesh took: dict of attributes). Raises ComputationError.
     """
-    n_nodes, unit = len(mesh.points), mesh.largest_imposed()
-    fields, facts, coarse = [], {}, None
+    answers, fields, inside = [], [], None
     for level in range(grading.levels()):
+        starts = [answers[n] for n in grading.starts.get(level, range(level)[-1:])]
+        answers.append(Answer(name, grading, level, starts, keep))
+        fields.append(answers[-1].field[: len(mesh.points)])
+        before = fields[max(grading.starts.get(level, [level - 1]))] if level else None
+        report(f"{name}, mesh {level + 1}", answers[-1], before, fields[-1], mesh.largest_imposed())
+        if level == grading.inside:
+            finer = Answer(name, grading.with_finer_inside(), level, answers[-1:])
+            there = finer.field[: len(mesh.points)]
+            report(f"{name}, finer inside", finer, fields[-1], there, mesh.largest_imposed())
+            inside = there - fields[-1]
+    splits = max(splits[-1] for splits in grading.edges.values())
+    return fields, inside, answers[-1].facts | {"refinements": splits}
+
+
+class Answer:
+    """The answer on a mesh of a Grading, started from Answers on others or from rest.
+
+    starts: list of Answers, at most two. keep: a folder where answers are stored, to be taken up by
+    a run that follows one that was stopped.
+    Attributes: problem; field (n, 3), m, at the nodes of the mesh with those that hang; facts
+    (attributes of the file); seconds. Raises ComputationError.
+    """
+
+    def __init__(self, name, grading, level, starts, keep=None):
         started = time.perf_counter()
         case, graded = graded_mesh(name, grading, level)
         part, halves = halve(graded)
-        problem = TaylorHoodProblem(cut(part), case.materials)
-        if coarse:
-            problem.start_from(coarse)
-        try:
-            outcome = newton.solve(problem, grading.steps, NEWTON_TOLERANCE, guessed=bool(coarse))
-        except ComputationError as error:
-            raise ComputationError(f"{name}, mesh {level + 1}: {error}") from error
-        answer = expand(halves, problem.nodal_displacement()[: len(part.points)])
-        fields.append(answer[:n_nodes])
-        coarse = problem
-        facts = {
+        self.problem = TaylorHoodProblem(cut(part), case.materials)
+        outcome = None
+        kept = keep and Path(keep) / f"{name}-{_digest(graded)}.npz"
+        if kept and kept.exists():
+            with np.load(kept) as found:
+                self.problem.displacement.array[:] = found["state"]
+                outcome, before = newton.Outcome(*found["outcome"]), float(found["seconds"])
+                started -= before
+        else:
+            try:
+                outcome = self._solve(starts, grading.steps)
+            except ComputationError as error:
+                raise ComputationError(f"{name}, mesh {level + 1}: {error}") from error
+        self.field = expand(halves, self.problem.nodal_displacement()[: len(part.points)])
+        self.facts = {
             "law": ", ".join(material.law for material in case.materials),
             "mirror_planes": "".join("xyz"[half.axis] for half in halves),
-            "refinements": max(splits[level] for splits in grading.edges.values()),
-            "load_steps": outcome.load_steps,
-            "newton_iterations": outcome.newton_iterations,
-            "residual": outcome.residual,
-            "last_correction": outcome.last_correction,
+            **dataclasses.asdict(outcome),
         }
-        _report(name, level, problem, time.perf_counter() - started, fields, unit)
-    return fields, facts
+        self.seconds = time.perf_counter() - started
+        if kept and not kept.exists():
+            row = dataclasses.astuple(outcome)
+            state = self.problem.displacement.array
+            np.savez(kept, state=state, outcome=row, seconds=self.seconds)
+
+    def _solve(self, starts, steps):
+        """Solves for the answer. Returns an Outcome."""
+        for number, start in enumerate(starts):
+            share = self._share(*starts[::-1]) if number else None
+            self.problem.start_from(start.problem, share)
+        return newton.solve(self.problem, steps, NEWTON_TOLERANCE, guessed=bool(starts))
+
+    def _share(self, one, other):
+        """How much of one of two Answers to take at the problem's nodes (n,): all where its mesh is
+        finer than the other's, nothing where that is."""
+        points = [answer.problem.mesh.points for answer in (one, other)]
+        size = np.ptp(points[0])
+        gaps = []
+        for here, there in (points, points[::-1]):
+            own = here[cKDTree(there).query(here)[0] > 1e-9 * size]
+            gaps.append(cKDTree(own).query(self.problem.mesh.points)[0])
+        near = gaps[1] / (gaps[0] + gaps[1])
+        return near**2 * (3 - 2 * near)
 
 
-def _report(name, level, problem, seconds, fields, unit):
+def _digest(mesh):
+    """A name for a mesh: that of a stored answer on it."""
+    return hashlib.sha256(mesh.points.tobytes() + mesh.cells.tobytes()).hexdigest()[:16]
+
+
+def report(what, answer, before, after, unit):
     """A line on what a mesh took and changed. unit: m, or 0 for the largest displacement."""
-    text = f"{name}, mesh {level + 1}: {problem.size()}, {seconds:.0f} s"
-    if len(fields) > 1:
-        unit = unit or np.linalg.norm(fields[-1], axis=1).max()
-        most, rms = relative_errors(fields[-2], fields[-1], unit)
+    text = f"{what}: {answer.problem.size()}, {answer.seconds:.0f} s"
+    if before is not None:
+        unit = unit or np.linalg.norm(after, axis=1).max()
+        most, rms = relative_errors(before, after, unit)
         text += f", changed by {100 * most:.3g} % (rms {100 * rms:.3g} %)"
     print(text, flush=True)
 
 
-def make_truth(name, output):
-    """Computes a case's truth and stores it. Raises InputError or ComputationError."""
+def error_bar(sequences, inside, unit):
+    """The attributes that state how far a truth is from the exact answer.
+
+    sequences: lists of fields (n, 3), m, coarse to fine. inside: as solve_levels() has it. unit: m,
+    for relative errors. What is left at the end of each sequence, by Richardson's extrapolation,
+    and the error of the inside are added, maxima and root mean squares: a finer inside changes the
+    answer by 3/4 of that error if it makes it a quarter.
+    """
+    few = "there are only two meshes"
+    bars = [attributes_of(fields, fields[-1], unit, few, ASSUMED_ORDER) for fields in sequences]
+    note = " and ".join(one["own_error_note"] for one in bars)
+    if inside is None:
+        note, most, rms = f"edges alone: {note}", 0.0, 0.0
+    else:
+        most, rms = relative_errors(4 / 3 * inside, 0, unit)
+        note = f"inside {100 * most:.2g} % (rms {100 * rms:.2g} %), edges: {note}"
+    return bars[0] | {
+        "own_error_max": most + sum(one["own_error_max"] for one in bars),
+        "own_error_rms": rms + sum(one["own_error_rms"] for one in bars),
+        "own_error_note": note,
+    }
+
+
+def make_truth(name, output, keep=None):
+    """Computes a case's truth and stores it. Raises InputError or ComputationError.
+
+    keep: as of an Answer.
+    """
     started = time.perf_counter()
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     if name not in GRADINGS:
@@ -160,7 +257,10 @@ def make_truth(name, output):
     with tempfile.TemporaryDirectory() as folder:
         make_mesh(path, Path(folder) / "mesh.h5", name)
         mesh, file = load_case_mesh(read_case(path, name), Path(folder) / "mesh.h5")
-    fields, facts = solve_levels(name, GRADINGS[name], mesh)
+    grading = GRADINGS[name]
+    fields, inside, facts = solve_levels(name, grading, mesh, keep)
+    orders = grading.sequences or (range(grading.levels()),)
+    sequences = [[fields[level] for level in order] for order in orders]
     displacement = fields[-1].copy()
     prescribed, values = mesh.imposed()
     displacement[prescribed] = values[prescribed]  # the same but for rounding
@@ -182,7 +282,7 @@ def make_truth(name, output):
         "discretisation_error_rms": rms,
         "discretisation_error_note": "difference to the mesh before",
         **facts,
-        **attributes_of(fields, displacement, unit, "there are only two meshes", ASSUMED_ORDER),
+        **error_bar(sequences, inside, unit),
     }
     write_reference(output, mesh.points, displacement, attributes)
 
@@ -192,7 +292,7 @@ def run(options):
     if options.output and len(options.cases) > 1:
         raise InputError(f"-o: {options.output} is one file for {len(options.cases)} cases")
     for name in options.cases or GRADINGS:
-        make_truth(name, options.output or path_of("truth", name))
+        make_truth(name, options.output or path_of("truth", name), options.keep)
 
 
 def main(arguments=None):
@@ -204,6 +304,7 @@ def main(arguments=None):
     add = parser.add_argument
     add("cases", nargs="*", metavar="CASE", help="default: all in GRADINGS")
     add("-o", "--output", metavar="FILE", help="HDF5 file to write (default: the stored truth)")
+    add("--keep", metavar="FOLDER", help="where answers on each mesh are kept and looked for")
     return exit_code(run, parser.parse_args(arguments))
 
 

@@ -40,7 +40,7 @@ def test_a_graded_mesh_is_the_case_with_smaller_elements(tmp_path):
 
 def test_a_coarse_truth_is_near_the_stored_one(tmp_path, monkeypatch):
     name = "bending-1-nu0.49"
-    monkeypatch.setitem(truth.GRADINGS, name, truth.Grading({"root": (1, 2, 3)}, whole=1))
+    monkeypatch.setitem(truth.GRADINGS, name, truth.Grading({"root": (1, 2, 3)}, layers=2))
     assert truth.main([name, "-o", str(tmp_path / "truth.h5")]) == 0
     points, displacement, found = read_reference(tmp_path / "truth.h5")
     _, expected, attributes = read_reference(path_of("truth", name))
@@ -49,7 +49,37 @@ def test_a_coarse_truth_is_near_the_stored_one(tmp_path, monkeypatch):
     assert 0 < distance < 2 * found["own_error_max"] + attributes["own_error_max"]
     assert found["own_error_max"] < 0.01
     assert found["element"] == "P2-P1" and found["mirror_planes"] == "y"
-    assert found["own_error_note"].startswith("Richardson's extrapolation of 3 meshes")
+    assert found["own_error_note"].startswith("inside 0.0")
+    assert "edges: Richardson's extrapolation of 3 meshes" in found["own_error_note"]
+    assert found["own_error_note"].endswith(": measured")
+
+
+def test_a_bar_adds_up_edges_and_inside():
+    limit = np.ones((2, 3))
+    far, near = ([limit * (1 + c / 2**n) for n in range(3)] for c in (0.4, 0.1))
+    edges = truth.error_bar([far, near], None, 1.0)
+    # Halved from mesh to mesh: what is left is the last of it, 0.1 and 0.025 in each component.
+    assert edges["own_error_max"] == pytest.approx(0.125 * 3**0.5)
+    assert edges["own_error_note"].startswith("edges alone: ")
+    both = truth.error_bar([far, near], np.array([[0.03, 0, 0], [0, 0, 0]]), 1.0)
+    assert both["own_error_max"] - edges["own_error_max"] == pytest.approx(0.04)
+    assert both["own_error_rms"] - edges["own_error_rms"] == pytest.approx(0.04 / 2**0.5)
+
+
+def test_answers_are_kept_and_mixed(tmp_path):
+    name = "ellipsoid-touch"
+    grading = truth.Grading(
+        {"indenter": (1, 0, 1), "support": (0, 1, 1)}, starts={1: [], 2: [0, 1]}, inside=None
+    )
+    one, other = (truth.Answer(name, grading, level, [], tmp_path) for level in (0, 1))
+    again = truth.Answer(name, grading, 1, [], tmp_path)
+    assert (again.field == other.field).all() and again.facts == other.facts
+    both = truth.Answer(name, grading, 2, [one, other])
+    assert both.facts["load_steps"] == 1  # the mixture is near enough
+    share = both._share(one, other)
+    assert share.min() == 0 and share.max() == 1
+    upper, lower = (both.problem.mesh.points[:, 2] * sign > 0.06 for sign in (1, -1))
+    assert share[upper].min() > 0.8 and share[lower].max() < 0.2
 
 
 def test_wrong_input(tmp_path, capsys):
