@@ -13,7 +13,6 @@
 #include "choice/choose_json.hpp"
 #include "io/case_file.hpp"
 #include "io/text_file.hpp"
-#include "mesh/variations.hpp"
 
 namespace sandglass {
 
@@ -59,12 +58,12 @@ std::string answer_columns(const Evaluation& evaluation) {
                      smallest_jacobian ? fmt::format("{:.2g}", *smallest_jacobian) : "-");
 }
 
-void print_coarser(const Scene& scene, const Choice& choice) {
+void print_other_meshes(const Scene& scene, const Choice& choice) {
   if (std::holds_alternative<MeshFile>(scene.description.mesh)) {
     fmt::print("the mesh comes from a file: no coarser one was looked at\n");
   }
-  for (const auto& [mesh, evaluation, kept] : choice.coarser) {
-    fmt::print("coarser mesh, {}: {}{}{}\n", counts_text(mesh),
+  for (const auto& [mesh, evaluation, kept] : choice.others) {
+    fmt::print("another mesh, {}: {}{}{}\n", mesh,
                evaluation.error
                    ? fmt::format("the golden's own element is {:.3g} % off", 100.0 * *evaluation.error)
                    : "",
@@ -107,7 +106,7 @@ void print_choice(const Scene& scene, const Choice& choice, const std::string& o
       "real-time "
       "loop pays, and the order of the rows; run: what the run of a motion took\n",
       demand.threads, demand.threads == 1 ? "" : "s", answers_per_second);
-  print_coarser(scene, choice);
+  print_other_meshes(scene, choice);
   print_attempts(choice);
   for (const auto& remark : remarks(choice)) fmt::print("note: {}\n", remark);
   if (!choice.chosen) {
@@ -121,8 +120,8 @@ void print_choice(const Scene& scene, const Choice& choice, const std::string& o
 
 void write_chosen(const Scene& scene, const Choice& choice, const std::string& output) {
   const Rung& rung = choice.attempts[*choice.chosen].rung;
-  const Case* coarser = rung.mesh->coarser ? &rung.mesh->scene.description : nullptr;
-  write_text_file(output, case_text(scene.description, rung.choice, coarser, output));
+  const Case* other = rung.mesh->own() ? nullptr : &rung.mesh->scene.description;
+  write_text_file(output, case_text(scene.description, rung.choice, other, output));
   fmt::print("wrote {}\n", output);
 }
 

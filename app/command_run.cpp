@@ -9,6 +9,7 @@
 #include "app/kappa_option.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
+#include "app/run_report.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
@@ -40,6 +41,7 @@ struct RunOptions {
   std::string checkpoint;
   double checkpoint_every = 60.0;
   std::string estimate;
+  std::string against;
   bool describe = false;
 };
 
@@ -103,81 +105,22 @@ Provenance provenance(const Model& model) {
   return attributes;
 }
 
-void print_energies(const Scene& scene, const HistoryRow& row) {
-  fmt::print("energies (J): strain {:.6g}, hourglass {:.6g}", row.strain, row.hourglass);
-  // In a relaxation part of the external work is damped away, so that there its sum tells nothing.
-  if (!scene.description.quasi_static) {
-    fmt::print(", kinetic {:.6g}, work of the imposed displacements {:.6g}", row.kinetic, row.external_work);
-    if (row.adaption != 0.0) fmt::print(", brought by changes of levels {:.3g}", row.adaption);
-  }
-  fmt::print("\n");
-}
-
-/// The references of a scene; one that belongs to another case is told, not fatal: a case may be edited and
-/// run.
-References references_to_show(const Scene& scene) {
-  try {
-    return read_references(scene);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "note: not compared: {}\n", error.what());
-    return {};
-  }
-}
-
-void print_accuracy(const Scene& scene, const NodalField& u) {
-  const References references = references_to_show(scene);
-  const auto print = [&](const char* name, const std::optional<Displacements>& reference) {
-    const auto figures = accuracy_of(scene, references.comparison, {u}, reference);
-    if (!figures) return;
-    fmt::print("against the {}: max {:.4g} %, rms {:.4g} % of the imposed displacement\n", name,
-               100.0 * figures->max_relative_error, 100.0 * figures->rms_relative_error);
-  };
-  print("golden", references.golden);
-  print("truth", references.truth);
-}
-
-/// How many elements of an adaptive method stand at each of its levels, and what share of the time it took to
-/// choose them.
-void print_levels(const std::string& name, const std::vector<double>& levels, double share_of_time) {
-  if (levels.empty()) return;
-  std::string text;
-  double level = 0.0;
-  for (const auto& method : method_named(name).levels) {
-    const auto count = static_cast<double>(std::count(levels.begin(), levels.end(), level++));
-    text += fmt::format("{}{:.3g} % {}", text.empty() ? "" : ", ",
-                        100.0 * count / static_cast<double>(levels.size()), method);
-  }
-  fmt::print("elements: {}; chosen in {:.2g} % of the time\n", text, 100.0 * share_of_time);
-}
-
-/// Prints the estimates that are asked for: against the golden's element on the same mesh, or the truth.
-void print_estimates(const RunOptions& options, const Model& model, const NodalField& u) {
+/// Prints the estimate that is asked for: against the golden's element on the same mesh, or the truth.
+void print_estimate_of(const std::string& against, const Model& model, const NodalField& u) {
   const double unit = displacement_unit(model.scene(), u);
-  const auto print = [&](std::string_view against, double largest, double rms, const std::string& how) {
-    fmt::print("estimated error against {}: max {:.4g} %, rms {:.4g} % of the {} displacement, {}\n", against,
-               100.0 * largest / unit, 100.0 * rms / unit,
-               largest_imposed(model.scene()) > 0.0 ? "imposed" : "largest", how);
+  const auto print = [&](std::string_view what, double largest, double rms, const std::string& how) {
+    print_estimate(what, model.scene(), unit, largest, rms, how);
   };
-  if (options.estimate == "golden") {
+  if (against == "golden") {
     const ErrorEstimate estimate = estimate_error(model, u);
     print(golden_method, estimate.largest, estimate.rms,
           fmt::format("after {} evaluations", estimate.evaluations));
-  } else if (options.estimate == "truth") {
+  } else if (against == "truth") {
     const TruthEstimate estimate = estimate_truth_error(model, u);
     print("the truth", estimate.largest, estimate.rms,
           fmt::format("from meshes of up to {} elements", estimate.elements));
     if (!estimate.remark.empty()) fmt::print("note: refined once instead of twice: {}\n", estimate.remark);
   }
-}
-
-/// `asleep`: steps had different numbers of elements.
-void print_time(double seconds, long steps, std::size_t elements, bool went_on, bool asleep) {
-  if (went_on || asleep) {
-    fmt::print("wall time {:.3g} s{}\n", seconds, went_on ? " since the checkpoint" : "");
-    return;
-  }
-  fmt::print("wall time {:.3g} s, {:.4g} ns per element and step\n", seconds,
-             1e9 * seconds / static_cast<double>(std::max(steps, 1L)) / static_cast<double>(elements));
 }
 
 /// The options that were given.
@@ -203,6 +146,8 @@ Given parse(const RunOptions& options) {
 /// its own method, not about one that an option names.
 MethodChoice choose_method(const RunOptions& options, const Given& given, const Case& description) {
   MethodChoice choice = method_of(description, options.method);
+  // The mesh is refined for this method; unless told otherwise, it gives the answer too.
+  if (!options.against.empty() && !options.method && !description.method) choice.method = golden_method;
   choice.kappa = given.kappa.value_or(choice.kappa);
   choice.kappa_modulus = given.kappa_modulus.value_or(choice.kappa_modulus);
   choice.precision = given.precision.value_or(choice.precision);
@@ -222,6 +167,13 @@ void require_sensible(const RunOptions& options) {
     throw InputError(
         fmt::format("--checkpoint = '{}' must be another file than --output", options.checkpoint));
   }
+  if (!options.against.empty()) {
+    if (!options.accuracy) throw InputError("--against: give the largest error too, such as --accuracy 2%");
+    if (options.sleep)
+      throw InputError("--against: a refined mesh is computed as a whole; leave out --sleep");
+    if (!options.checkpoint.empty())
+      throw InputError("--against: a run that refines its mesh keeps no checkpoints; leave out --checkpoint");
+  }
   if (options.sleep && !options.checkpoint.empty()) {
     throw InputError("--sleep: a run of which a part sleeps keeps no checkpoints; leave out --checkpoint");
   }
@@ -235,6 +187,7 @@ void require_quasi_static(const RunOptions& options, const Case& description) {
         fmt::format("{}: '{}' is in motion; {} quasi-static answers", option, description.name, what));
   };
   if (!options.estimate.empty()) refuse("--estimate", "the estimate is for");
+  if (!options.against.empty()) refuse("--against", "meshes are refined for");
   if (options.sleep) refuse("--sleep", "what sleeps is known of");
 }
 
@@ -245,7 +198,37 @@ struct Answer {
   long steps = 0;
   double seconds = 0.0;
   double adaption_seconds = 0.0;
+  bool near_enough = true;  ///< to the exact answer, if that is asked for
 };
+
+/// A mesh that was refined for an accuracy, and what it is compared on.
+struct Refined {
+  const Scene& own;  ///< of the case
+  AccurateMesh mesh;
+  double accuracy;
+};
+
+/// The mesh on which the run is computed, if that is to be refined.
+std::optional<Refined> refine_as_requested(const RunOptions& options, const Given& given,
+                                           const Scene& scene) {
+  if (options.against.empty()) return std::nullopt;
+  return Refined{scene, refine_until_within(*given.accuracy, scene, options.threads), *given.accuracy};
+}
+
+/// Prints how far an answer u (m) on a refined mesh is from the exact one. Returns whether it is near enough.
+bool print_refined(const Refined& refined, const std::string& method, NodalField u) {
+  const auto& [own, mesh, accuracy] = refined;
+  const double largest = largest_distance(mesh.limit, u), unit = displacement_unit(own, mesh.limit);
+  print_estimate("the truth", own, unit, largest, rms_distance(mesh.limit, u),
+                 fmt::format("on {} elements instead of {}, found in {:.3g} s", mesh.scene.mesh.cells.size(),
+                             own.mesh.cells.size(), mesh.seconds));
+  u.resize(own.mesh.points.size());
+  print_accuracy(own, u, false);
+  if (largest <= accuracy * unit) return true;
+  fmt::print("note: that is more than {:.3g} %: the mesh is fine enough for {}, but not for {}\n",
+             100.0 * accuracy, golden_method, method);
+  return false;
+}
 
 void print_outcome(const Model& model, const std::string& what) {
   fmt::print("{} {} {}: {}\n", model.scene().description.name, model.choice().method, kappa_text(model),
@@ -254,16 +237,16 @@ void print_outcome(const Model& model, const std::string& what) {
 
 /// A static answer, of the whole or of what moves.
 Relaxation relax_as_requested(const Model& model, const std::optional<double>& sleep, Observer& observer,
-                              const Checkpoint* from) {
-  if (!sleep) return relax(model, observer, from);
+                              const Checkpoint* from, const NodalField* near) {
+  if (!sleep) return relax(model, observer, from, near);
   LocalRelaxation local = relax_awake(model.scene(), model.choice(), *sleep, observer);
   fmt::print("awake: {} of {} elements\n", local.elements, model.scene().mesh.cells.size());
   return std::move(local.relaxation);
 }
 
 Answer static_answer(const Model& model, const std::optional<double>& sleep, Observer& observer,
-                     const Checkpoint* from) {
-  Relaxation found = relax_as_requested(model, sleep, observer, from);
+                     const Checkpoint* from, const NodalField* near) {
+  Relaxation found = relax_as_requested(model, sleep, observer, from, near);
   const Precision precision = model.choice().precision;
   const std::string ending = outcome(found, precision);
   print_outcome(model,
@@ -281,22 +264,27 @@ Answer dynamic_answer(const Model& model, Observer& observer, const Checkpoint* 
   return {std::move(found.u), status, found.steps, found.seconds, found.adaption_seconds};
 }
 
-/// Computes and prints an answer; `writer` and `keeper` may be null.
-Answer compute(const RunOptions& options, const Given& given, const Model& model, ResultWriter* writer,
-               CheckpointKeeper* keeper) {
+/// Computes and prints an answer; `refined`, `writer` and `keeper` may be null.
+Answer compute(const RunOptions& options, const Given& given, const Model& model, const Refined* refined,
+               ResultWriter* writer, CheckpointKeeper* keeper) {
   const Scene& scene = model.scene();
   const bool quasi_static = scene.description.quasi_static;
   const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
   if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
   watch_for_interrupt();
   RunObserver observer(scene.description.name, writer, keeper);
-  Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from)
+  const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
+  Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
                                : dynamic_answer(model, observer, from);
   print_energies(scene, observer.last());
   print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
   if (quasi_static && answer.status == "complete") {
-    print_accuracy(scene, answer.u);
-    print_estimates(options, model, answer.u);
+    if (refined != nullptr) {
+      answer.near_enough = print_refined(*refined, model.choice().method, answer.u);
+    } else {
+      print_accuracy(scene, answer.u, true);
+    }
+    print_estimate_of(options.estimate, model, answer.u);
   }
   print_time(answer.seconds, answer.steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
   return answer;
@@ -307,14 +295,16 @@ int run_case(const RunOptions& options) {
   require_sensible(options);
   const Scene scene = read_scene(find_case(options.name));
   require_quasi_static(options, scene.description);
-  const Model model(scene, choose_method(options, given, scene.description));
+  const auto refined = refine_as_requested(options, given, scene);
+  const Model model(refined ? refined->mesh.scene : scene, choose_method(options, given, scene.description));
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
-  std::string status;
+  Answer answer;
   try {
-    status = compute(options, given, model, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr).status;
+    answer = compute(options, given, model, refined ? &*refined : nullptr, writer ? &*writer : nullptr,
+                     keeper ? &*keeper : nullptr);
   } catch (const ComputationError& error) {
     if (!writer || writer->frames() < 2) throw;
     writer->commit("failed");
@@ -322,15 +312,16 @@ int run_case(const RunOptions& options) {
                            error.breakdown());
   }
   if (writer) {
-    writer->commit(status);
+    writer->commit(answer.status);
     fmt::print("wrote {}\n", options.output);
   }
-  if (status != "complete") {
-    throw ComputationError(fmt::format("{}: {}; what was complete is {}", scene.description.name, status,
+  if (answer.status != "complete") {
+    throw ComputationError(fmt::format("{}: {}; what was complete is {}", scene.description.name,
+                                       answer.status,
                                        writer ? "in " + options.output : "not kept (no --output)"));
   }
   if (keeper) keeper->finish();
-  return 0;
+  return answer.near_enough ? 0 : 1;
 }
 
 }  // namespace
@@ -354,6 +345,13 @@ void add_run_command(CLI::App& app, int& exit_code) {
       fmt::format("what an adaptive method aims at, as 0.5% or 0.005: displacement error against its highest "
                   "level over the largest imposed displacement; {:g}% unless told",
                   100.0 * default_accuracy));
+  command
+      ->add_option("--against", options->against,
+                   "with 'truth', --accuracy is the largest distance from the exact answer, over the largest "
+                   "imposed displacement, at any node of the case's mesh: the mesh is refined where the "
+                   "mean-dilatation element errs, until the estimate is within it. Exit code 1 where that "
+                   "element is near enough but METHOD is not")
+      ->check(CLI::IsMember({"truth"}));
   command->add_option(
       "--sleep", options->sleep,
       "leave out what would move by less than this share of the largest imposed displacement, as 0.1%: "

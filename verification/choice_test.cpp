@@ -112,7 +112,7 @@ TEST(Choose, takes_the_first_that_suffices) {
     EXPECT_EQ(evaluation.reason.empty(), outcome != Outcome::refused) << name_of(rung);
     EXPECT_TRUE(outcome != Outcome::not_tried || !evaluation.error);
   }
-  for (const auto& mesh : choice.coarser)
+  for (const auto& mesh : choice.others)
     EXPECT_EQ(mesh.kept, *mesh.evaluation.error <= 0.02) << mesh.evaluation.reason;
   const Evaluation& chosen = choice.attempts[*choice.chosen].evaluation;
   EXPECT_LE(*chosen.error, 0.02);
@@ -130,13 +130,13 @@ TEST(Choose, predicts_what_a_run_gives) {
   const Displacements golden = compute_answer(scene, {"tl-mean-dilatation"}, silent).u;
   int compared = 0;
   for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
-    if (rung.mesh->coarser) continue;
+    if (!rung.mesh->own()) continue;
     const Displacements u = compute_answer(scene, rung.choice, silent).u;
     EXPECT_DOUBLE_EQ(*evaluation.error, largest_distance(u.front(), golden.front()) / 0.3) << name_of(rung);
     ++compared;
   }
   EXPECT_EQ(compared, 2 + 6);
-  for (const auto& mesh : choice.coarser) EXPECT_FALSE(mesh.kept);
+  for (const auto& mesh : choice.others) EXPECT_FALSE(mesh.kept);
 }
 
 /// Small strains suffice for a small motion, and not for a large one, whatever the numbers and the kappa.
@@ -212,7 +212,7 @@ TEST(Choose, takes_motions) {
     }
     EXPECT_TRUE(rung.unfit.empty()) << name_of(rung);
     ASSERT_TRUE(evaluation.error && evaluation.per_simulated_second) << name_of(rung) << evaluation.reason;
-    if (rung.mesh->coarser) continue;
+    if (!rung.mesh->own()) continue;
     const Displacements u = compute_answer(scene_of_case(description), rung.choice, silent).u;
     double error = 0.0;
     for (std::size_t t = 0; t < 5; ++t)

@@ -166,7 +166,7 @@ def test_a_mesh_from_a_file_stays_where_it_is(block, tmp_path):
     chosen = tmp_path / "there" / "chosen.toml"
     outcome, document = choose(case, "--tolerance", "5%", "-o", chosen)
     assert outcome.returncode == 0, outcome.stderr
-    assert document["coarser_meshes"] == []
+    assert document["other_meshes"] == []
     run = sandglass("run", chosen)
     assert run.returncode == 0, run.stderr
     assert chosen_of(document)["method"] in run.stdout

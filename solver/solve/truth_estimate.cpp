@@ -1,6 +1,9 @@
 #include "solve/truth_estimate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +24,13 @@ constexpr double refined_share = 0.6;
 /// The change from the last answer to the limit, as a share of the change before: 1 / (2^p - 1) for p = 1.3,
 /// which lies between the orders of singular edges (about 1) and of smooth answers (2).
 constexpr double left_of_change = 0.7;
+
+/// The residual at which searches end, over the accuracy that is asked for; displacements are then about as
+/// many per cent of the largest one from equilibrium as the residual is of the loads.
+constexpr double tolerance_over_accuracy = 0.1;
+
+/// The residual at which searches for an estimate end: errors that are estimated are larger.
+constexpr double tolerance_of_estimate = 1e-4;
 
 std::size_t at(int n) {
   return static_cast<std::size_t>(n);
@@ -68,48 +78,14 @@ class RecoveredGradients {
   std::vector<double> weights_;
 };
 
-/// The mean-dilatation element's answer (m), searched for near u (m).
-NodalField find_answer(const Scene& scene, const NodalField& u, int threads) {
+/// The mean-dilatation element's answer (m), searched for near u (m) if that is given.
+NodalField find_answer(const Scene& scene, const NodalField* u, int threads) {
   const Model model(scene, {.method = std::string(estimate_method), .threads = threads});
   Observer quiet;
-  Relaxation found = relax(model, quiet, nullptr, &u);
+  Relaxation found = relax(model, quiet, nullptr, u);
   if (!found.converged) throw ComputationError(outcome(found, Precision::double_precision));
   return std::move(found.u);
 }
-
-/// The mean-dilatation element's answers on a mesh and on meshes that are refined where it errs most.
-class Refining {
- public:
-  /// Starts on the mesh of a scene, near u (m). Throws ComputationError if there is no answer.
-  Refining(const Scene& scene, const NodalField& u, int threads)
-      : threads_(threads), scene_(scene), u_(find_answer(scene, u, threads)), before_(u_) {}
-
-  /// Refines the mesh once more. Throws ComputationError if the finer mesh has no answer; nothing has changed
-  /// then.
-  void refine() {
-    Scene finer = refined(scene_, largest_share(error_indicators(scene_, u_), refined_share));
-    NodalField u = find_answer(finer, prolonged(finer.coarser.front(), u_), threads_);
-    before_ = std::exchange(u_, std::move(u));
-    scene_ = std::move(finer);
-  }
-
-  std::size_t elements() const { return scene_.mesh.cells.size(); }
-
-  /// The exact displacements (m) at the first `nodes` nodes, extrapolated from the last two answers.
-  /// Refinement adds nodes behind those that are there.
-  NodalField limit(std::size_t nodes) const {
-    NodalField limit(nodes);
-    for (std::size_t n = 0; n < nodes; ++n)
-      for (std::size_t i = 0; i < 3; ++i)
-        limit[n][i] = u_[n][i] + left_of_change * (u_[n][i] - before_[n][i]);
-    return limit;
-  }
-
- private:
-  int threads_;
-  Scene scene_;
-  NodalField u_, before_;  // on the last mesh, and on the one before
-};
 
 }  // namespace
 
@@ -151,23 +127,78 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
   return elements;
 }
 
+RefinedAnswer::RefinedAnswer(Scene scene, double tolerance, int threads, const NodalField* near)
+    : threads_(threads), original_nodes_(scene.mesh.points.size()), scene_(std::move(scene)) {
+  RelaxationSettings& settings = scene_.description.relaxation;
+  settings.tolerance = std::max(settings.tolerance, tolerance);
+  settings.check_interval = 1;
+  u_ = before_ = find_answer(scene_, near, threads);
+}
+
+void RefinedAnswer::refine() {
+  Scene finer = refined(scene_, largest_share(error_indicators(scene_, u_), refined_share));
+  const NodalField guess = prolonged(finer.coarser.front(), u_);
+  NodalField u = find_answer(finer, &guess, threads_);
+  before_ = std::exchange(u_, std::move(u));
+  scene_ = std::move(finer);
+}
+
+NodalField RefinedAnswer::limit() const {
+  NodalField limit(original_nodes_);
+  for (std::size_t n = 0; n < original_nodes_; ++n)
+    for (std::size_t i = 0; i < 3; ++i) limit[n][i] = u_[n][i] + left_of_change * (u_[n][i] - before_[n][i]);
+  return limit;
+}
+
+AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
+                                 std::size_t most_elements) {
+  const auto start = std::chrono::steady_clock::now();
+  RefinedAnswer answer(scene, tolerance_over_accuracy * accuracy, threads);
+  const double unit = displacement_unit(scene, answer.u());
+  std::string nearest = "how far its answer is from the exact one is not known";
+  const auto fail = [&](const std::string& why) {
+    return ComputationError(fmt::format("{}: a mesh of {} elements is not refined further, and {}: {}",
+                                        scene.description.name, answer.scene().mesh.cells.size(), nearest,
+                                        why));
+  };
+  while (true) {
+    if (answer.scene().mesh.cells.size() > most_elements)
+      throw fail(fmt::format("it has more than {} elements", most_elements));
+    AccurateMesh before{answer.scene(), answer.u(), {}, 0.0};
+    try {
+      answer.refine();
+    } catch (const ComputationError& error) {
+      throw fail(error.what());
+    }
+    const NodalField limit = answer.limit();
+    const auto error = [&](const NodalField& u) { return largest_distance(limit, u) / unit; };
+    const auto took = [&] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    if (error(before.u) <= accuracy) return {std::move(before.scene), std::move(before.u), limit, took()};
+    if (error(answer.u()) <= accuracy) return {answer.scene(), answer.u(), limit, took()};
+    nearest = fmt::format("its answer is {:.3g} % from the exact one, as estimated, instead of {:.3g} %",
+                          100.0 * error(answer.u()), 100.0 * accuracy);
+  }
+}
+
 TruthEstimate estimate_truth_error(const Model& model, const NodalField& u) {
   constexpr int times = 2;
-  Refining refining(model.scene(), u, model.choice().threads);
+  RefinedAnswer refined(model.scene(), tolerance_of_estimate, model.choice().threads, &u);
   TruthEstimate estimate;
   for (int n = 0; n < times; ++n) {
     try {
-      refining.refine();
+      refined.refine();
     } catch (const ComputationError& error) {
       if (n == 0) throw;
       estimate.remark = error.what();
       break;
     }
   }
-  const NodalField limit = refining.limit(u.size());
+  const NodalField limit = refined.limit();
   estimate.largest = largest_distance(limit, u);
   estimate.rms = rms_distance(limit, u);
-  estimate.elements = refining.elements();
+  estimate.elements = refined.scene().mesh.cells.size();
   return estimate;
 }
 

@@ -14,6 +14,48 @@ std::vector<double> error_indicators(const Scene& scene, const NodalField& u);
 /// 1996).
 std::vector<int> largest_share(const std::vector<double>& indicators, double share);
 
+/// The mean-dilatation element's answers on a mesh and on meshes that are refined where it errs most.
+class RefinedAnswer {
+ public:
+  /// Starts on the mesh of a quasi-static scene, near u (m) if that is given. Searches end at a residual of
+  /// `tolerance`, unless that of the case is larger: displacements are then about that share of the largest
+  /// one from the equilibrium. Throws ComputationError if there is no answer.
+  RefinedAnswer(Scene scene, double tolerance, int threads, const NodalField* near = nullptr);
+
+  /// Refines the mesh once more. Throws ComputationError if the finer mesh has no answer; nothing has changed
+  /// then.
+  void refine();
+
+  const Scene& scene() const { return scene_; }
+  const NodalField& u() const { return u_; }
+
+  /// The exact displacements (m) at the original nodes, which come first on every mesh, extrapolated from the
+  /// last two answers. Only after a refinement.
+  NodalField limit() const;
+
+ private:
+  int threads_;
+  std::size_t original_nodes_;
+  Scene scene_;
+  NodalField u_, before_;  // on the last mesh, and on the one before
+};
+
+/// A mesh that is fine enough for an accuracy, and what is known of the answer on it.
+struct AccurateMesh {
+  Scene scene;
+  NodalField u;      ///< the mean-dilatation element's answer, m
+  NodalField limit;  ///< the estimate of the exact displacements at the original nodes, m
+  double seconds;    ///< wall time that it took to find
+};
+
+/// Refines the mesh of a quasi-static scene until the mean-dilatation element's answer is nowhere at the
+/// original nodes farther from the exact one, as estimated, than `accuracy` times the unit of errors
+/// (`displacement_unit`). A mesh that is fine enough as it is stays. Searches for rest on the mesh end at a
+/// residual of a tenth of `accuracy`, for more is lost in the error. Throws ComputationError, with the
+/// nearest estimate, if a mesh of more than `most_elements` elements would be refined, or one has no answer.
+AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
+                                 std::size_t most_elements = 1'000'000);
+
 /// The distance of an answer from the exact one on the same body, the limit of ever finer meshes.
 struct TruthEstimate {
   double largest = 0.0;      ///< over all nodes, m

@@ -75,9 +75,20 @@ void keep_sets(toml::table& sets, const Case& description) {
   }
 }
 
+/// The elements by number that the other case splits besides what the case says.
+void add_refinements(toml::table& root, const Case& description, const Case& other) {
+  toml::array& rules = *root.insert("refine", toml::array{}).first->second.as_array();
+  for (std::size_t n = description.refinements.size(); n < other.refinements.size(); ++n) {
+    toml::array numbers;
+    for (const int e : other.refinements[n].numbers) numbers.push_back(e);
+    rules.push_back(toml::table{{"numbers", std::move(numbers)}, {"after", other.refinements[n].after}});
+  }
+  if (rules.empty()) root.erase("refine");
+}
+
 /// What the case says of answers on its own mesh.
 void forget_answers(toml::table& root, const Case& description) {
-  set_text(table_of(root, "case"), "name", description.name + "-coarser");
+  set_text(table_of(root, "case"), "name", description.name + "-other-mesh");
   root.erase("expect");
   root.erase("published");
   root.erase("comparison");
@@ -86,7 +97,7 @@ void forget_answers(toml::table& root, const Case& description) {
 
 }  // namespace
 
-std::string case_text(const Case& description, const MethodChoice& choice, const Case* coarser,
+std::string case_text(const Case& description, const MethodChoice& choice, const Case* other,
                       const fs::path& place) {
   toml::table root = read_case_tables(description.file, description.variants).root;
   const fs::path folder = fs::absolute(place).parent_path();
@@ -94,10 +105,12 @@ std::string case_text(const Case& description, const MethodChoice& choice, const
   if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
     set_text(table_of(root, "mesh"), "file", path_from(folder, file->path));
   }
-  if (coarser != nullptr) {
-    set_counts(table_of(root, "mesh"), std::get<AnyGenerator>(coarser->mesh));
+  if (other != nullptr) {
+    if (const auto* generator = std::get_if<AnyGenerator>(&other->mesh))
+      set_counts(table_of(root, "mesh"), *generator);
+    add_refinements(root, description, *other);
     forget_answers(root, description);
-    keep_sets(table_of(root, "sets"), *coarser);
+    keep_sets(table_of(root, "sets"), *other);
   } else {
     set_references(root, description, folder);
   }

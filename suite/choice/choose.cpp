@@ -12,6 +12,7 @@
 #include "comparison/comparison.hpp"
 #include "mesh/interpolation.hpp"
 #include "mesh/variations.hpp"
+#include "solve/truth_estimate.hpp"
 
 namespace sandglass {
 
@@ -24,32 +25,96 @@ void require_methods(const Demand& demand) {
   for (const auto& name : demand.methods) method_named(name, "--methods");
 }
 
-/// The user's mesh, and those coarser ones that the golden's own element can still answer on. What was looked
-/// at is told in `looked_at`.
-std::deque<LadderMesh> make_meshes(const Scene& scene, const Reference& reference, Evaluator& evaluator,
-                                   std::vector<MeshAttempt>& looked_at) {
-  std::deque<LadderMesh> meshes;
-  meshes.push_back({{}, scene, reference.u});
-  auto& most = meshes.front().scene.description.relaxation.max_steps;
-  most = std::min(most, most_evaluations);
-  const auto* generator = std::get_if<AnyGenerator>(&scene.description.mesh);
-  if (generator == nullptr) return meshes;
-  for (const auto& coarser : coarser_meshes(*generator)) {
-    MeshAttempt attempt{coarser};
-    try {
-      Scene on_it = scene_on(coarser, meshes.front().scene.description);
-      Displacements there = interpolate(scene.mesh, reference.u, on_it.mesh.points);
-      LadderMesh mesh{coarser, std::move(on_it), std::move(there)};
-      attempt.evaluation = evaluator.evaluate_mesh(mesh);
-      attempt.kept = attempt.evaluation.reason.empty();
-      if (attempt.kept) meshes.push_back(std::move(mesh));
-    } catch (const InputError& error) {
-      attempt.evaluation.reason = error.what();
-    }
-    looked_at.push_back(std::move(attempt));
+/// The meshes that rungs stand on: the user's, and those others that the golden's own element can still
+/// answer on. All others that are looked at are told.
+class Meshes {
+ public:
+  Meshes(const Scene& scene, Choice& choice, Evaluator& evaluator)
+      : scene_(scene), choice_(choice), evaluator_(evaluator) {
+    choice_.meshes.push_back({{}, scene, choice.reference.u});
+    auto& most = choice_.meshes.front().scene.description.relaxation.max_steps;
+    most = std::min(most, most_evaluations);
   }
-  return meshes;
-}
+
+  void add_coarser() {
+    const auto* generator = std::get_if<AnyGenerator>(&scene_.description.mesh);
+    if (generator == nullptr) return;
+    for (const auto& coarser : coarser_meshes(*generator)) {
+      const std::string difference = counts_text(coarser);
+      try {
+        Scene scene = scene_on(coarser, choice_.meshes.front().scene.description);
+        if (!try_out(difference, scene)) too_coarse_.emplace_back(difference, std::move(scene));
+      } catch (const InputError& error) {
+        choice_.others.push_back({difference, {{}, {}, {}, error.what()}});
+      }
+    }
+  }
+
+  /// Refines meshes that are too coarse where the golden's own element errs. One with more elements than a
+  /// mesh that suffices is not worth it: its smallest elements, which decide its step, are smaller, too.
+  void add_refined() {
+    const LadderMesh& own = choice_.meshes.front();
+    const bool own_suffices = evaluator_.evaluate_mesh(own).reason.empty();
+    for (const LadderMesh& mesh : choice_.meshes) {
+      if (!mesh.own() || own_suffices) enough_elements_ = std::min(enough_elements_, elements_of(mesh.scene));
+    }
+    if (!own_suffices) too_coarse_.emplace_front("", own.scene);
+    for (const auto& [difference, scene] : too_coarse_) refine_until_near(difference, scene);
+  }
+
+ private:
+  /// Refinements after which a mesh is given up.
+  static constexpr int most_refinements = 5;
+
+  /// Whether the golden's own element can answer on a mesh; if so, rungs stand on it.
+  bool try_out(const std::string& difference, const Scene& scene) {
+    LadderMesh mesh{difference, scene, interpolate(scene_.mesh, choice_.reference.u, scene.mesh.points)};
+    choice_.others.push_back({difference, evaluator_.evaluate_mesh(mesh)});
+    MeshAttempt& attempt = choice_.others.back();
+    attempt.kept = attempt.evaluation.reason.empty();
+    if (attempt.kept) choice_.meshes.push_back(std::move(mesh));
+    return attempt.kept;
+  }
+
+  /// Ends, too, where a refinement no longer brings the answer nearer by a tenth: the error is the shape's
+  /// then.
+  void refine_until_near(const std::string& difference, const Scene& start) {
+    std::string name = difference;
+    const auto done = [&](const auto& search) {
+      try {
+        search();
+        return true;
+      } catch (const ComputationError& error) {
+        choice_.others.push_back({name + " and further", {{}, {}, {}, error.what()}});
+        return false;
+      }
+    };
+    std::optional<RefinedAnswer> answer;
+    if (!done([&] { answer.emplace(start, 0.1 * choice_.demand.tolerance, choice_.demand.threads); })) return;
+    double before = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < most_refinements; ++n) {
+      if (!done([&] { answer->refine(); })) return;
+      const std::size_t elements = elements_of(answer->scene());
+      if (elements >= enough_elements_) return;
+      name = fmt::format("{}{}refined to {} elements", difference, difference.empty() ? "" : ", ", elements);
+      if (try_out(name, answer->scene())) {
+        enough_elements_ = elements;
+        return;
+      }
+      const double error = choice_.others.back().evaluation.error.value_or(0.0);
+      if (error > 0.9 * before) return;
+      before = error;
+    }
+  }
+
+  static std::size_t elements_of(const Scene& scene) { return scene.mesh.cells.size(); }
+
+  const Scene& scene_;
+  Choice& choice_;
+  Evaluator& evaluator_;
+  std::deque<std::pair<std::string, Scene>> too_coarse_;  // by their differences from the user's
+  std::size_t enough_elements_ = std::numeric_limits<std::size_t>::max();
+};
 
 /// What a rung's place is by: its cost. An adaptive one stands behind fixed ones that cost up to a tenth
 /// more: elements that stay as they are make the simpler program.
@@ -166,8 +231,10 @@ Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progre
   const Proceed proceed = [&](double share) { return progress(share, stage); };
   Choice choice{.demand = demand, .reference = make_reference(scene, demand.against, proceed), .meshes = {}};
   Evaluator evaluator(scene, choice.reference, demand.tolerance, proceed);
-  stage = "coarser meshes";
-  choice.meshes = make_meshes(scene, choice.reference, evaluator, choice.coarser);
+  stage = "other meshes";
+  Meshes meshes(scene, choice, evaluator);
+  meshes.add_coarser();
+  if (demand.against == "truth" && scene.description.quasi_static) meshes.add_refined();
   stage = "time of steps";
   auto rungs = make_ladder(choice.meshes, {demand.methods, demand.tolerance, demand.threads});
   const auto costings = measure_costs(rungs, proceed);
@@ -189,7 +256,7 @@ std::vector<std::string> remarks(const Choice& choice) {
   }
   for (const auto& attempt : choice.attempts) {
     const auto& [rung, cost, evaluation, outcome] = attempt;
-    const bool is_golden = rung.choice.method == golden_method && !rung.mesh->coarser &&
+    const bool is_golden = rung.choice.method == golden_method && rung.mesh->own() &&
                            rung.choice.precision == Precision::double_precision;
     if (!is_golden || !evaluation.error || !(*evaluation.error > tolerance)) continue;
     said.push_back(

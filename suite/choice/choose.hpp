@@ -35,7 +35,7 @@ struct Attempt {
 
 /// A mesh that was looked at before any method.
 struct MeshAttempt {
-  AnyGenerator mesh;
+  std::string mesh;  ///< its difference from the user's
   Evaluation evaluation = {};
   bool kept = false;
 };
@@ -45,7 +45,7 @@ struct Choice {
   Demand demand;
   Reference reference;
   std::deque<LadderMesh> meshes;           ///< those that rungs stand on
-  std::vector<MeshAttempt> coarser = {};   ///< all coarser meshes that were looked at
+  std::vector<MeshAttempt> others = {};    ///< all other meshes that were looked at
   std::vector<Attempt> attempts = {};      ///< from the cheapest to the dearest; those without a cost last
   std::optional<std::size_t> chosen = {};  ///< into the attempts; none: nothing suffices
 };
@@ -55,10 +55,11 @@ using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 
 /// The cheapest way to compute a scene that is near enough to the reference at every node, within the limits
 /// of time on this machine, and with a reserve of load. Coarser meshes are looked at first, with the golden's
-/// own element: an answer that is nearer than its mesh allows is so by luck, and not taken. Then the rungs
-/// are timed, put in the order of their cost per simulated second, and climbed. Throws InputError for an
-/// unknown method and a stored reference that is not there, ComputationError where the reference finds no
-/// answer or when told to end.
+/// own element: an answer that is nearer than its mesh allows is so by luck, and not taken. For a static
+/// answer that is measured against the truth, meshes that are too coarse are refined where that element errs,
+/// until it is near enough. Then the rungs are timed, put in the order of their cost per simulated second,
+/// and climbed. Throws InputError for an unknown method and a stored reference that is not there,
+/// ComputationError where the reference finds no answer or when told to end.
 Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress);
 
 /// Why nothing suffices, in sentences; or what is to be known of the choice.

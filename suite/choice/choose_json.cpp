@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "assembly/method_entry.hpp"
-#include "mesh/variations.hpp"
 
 namespace sandglass {
 
@@ -53,12 +52,12 @@ std::string to_json(const Provenance& provenance, const Scene& scene, const Choi
   document["answers_per_second"] = answers_per_second;
   document["chosen"] = or_null(choice.chosen);
   document["remarks"] = remarks(choice);
-  document["coarser_meshes"] = Json::array();
-  for (const auto& [mesh, evaluation, kept] : choice.coarser) {
-    document["coarser_meshes"].push_back({{"mesh", counts_text(mesh)},
-                                          {"error", or_null(evaluation.error)},
-                                          {"kept", kept},
-                                          {"reason", evaluation.reason}});
+  document["other_meshes"] = Json::array();
+  for (const auto& [mesh, evaluation, kept] : choice.others) {
+    document["other_meshes"].push_back({{"mesh", mesh},
+                                        {"error", or_null(evaluation.error)},
+                                        {"kept", kept},
+                                        {"reason", evaluation.reason}});
   }
   document["rungs"] = Json::array();
   for (const auto& attempt : choice.attempts) document["rungs"].push_back(to_record(attempt));

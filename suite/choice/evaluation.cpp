@@ -165,8 +165,7 @@ Evaluation Evaluator::evaluate_answer(const Rung& rung) {
   found.smallest_jacobian = smallest_jacobian(Model(scene, rung.choice), answer.u);
   if (!scene.description.quasi_static)
     found.per_simulated_second = answer.seconds / scene.description.dynamics.duration;
-  const Displacements u =
-      rung.mesh->coarser ? interpolate(scene.mesh, answer.u, scene_.mesh.points) : answer.u;
+  const Displacements u = rung.mesh->own() ? answer.u : interpolate(scene.mesh, answer.u, scene_.mesh.points);
   found.error = accuracy(u, reference_.u, nullptr, reference_.unit).max_relative_error;
   if (answer.failure) {
     found.reason = failure_reason(answer);

@@ -6,13 +6,8 @@
 
 #include "assembly/method_entry.hpp"
 #include "choice/candidates.hpp"
-#include "mesh/variations.hpp"
 
 namespace sandglass {
-
-std::string LadderMesh::name() const {
-  return coarser ? counts_text(*coarser) : "own mesh";
-}
 
 const NodalField& LadderMesh::farthest() const {
   const Displacements at_rest(reference.size(), NodalField(scene.mesh.points.size()));
@@ -30,7 +25,7 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
       if (!asked(method.name)) continue;
       MethodChoice plain{.method = std::string(method.name), .threads = plan.threads};
       if (const std::string_view why = unfit(method, mesh.scene.description.quasi_static); !why.empty()) {
-        if (!mesh.coarser) rungs.push_back({plain, &mesh, std::string(why)});
+        if (mesh.own()) rungs.push_back({plain, &mesh, std::string(why)});
         continue;
       }
       for (const auto precision : {Precision::double_precision, Precision::single_precision}) {

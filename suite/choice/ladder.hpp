@@ -10,14 +10,16 @@
 
 namespace sandglass {
 
-/// The user's own mesh, or a coarser one of the same body.
+/// The user's own mesh, or another one of the same body.
 struct LadderMesh {
-  std::optional<AnyGenerator> coarser = {};  ///< none: the user's own
+  std::string difference = {};  ///< the counts of elements of a coarser one, what one is refined to, or both
   Scene scene;
   Displacements reference;  ///< the reference's displacements at its nodes, m
 
-  /// "own mesh", or the counts of elements of a coarser one.
-  std::string name() const;
+  bool own() const { return difference.empty(); }
+
+  /// "own mesh", or the difference from it.
+  std::string name() const { return own() ? "own mesh" : difference; }
 
   /// The reference where it is farthest from rest.
   const NodalField& farthest() const;
