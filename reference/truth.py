@@ -28,7 +28,7 @@ from case_file import find_case, read_case
 from common.accuracy import relative_errors
 from common.command import exit_code
 from common.errors import ComputationError, InputError, suggestion
-from common.files import require_writable
+from common.files import require_writable, writing
 from common.program import CASES
 from convergence import attributes_of
 from mesh_file import load_case_mesh, make_mesh
@@ -93,11 +93,11 @@ GRADINGS = {
     "column": Grading({"bottom": (2, 3, 4), "top": (2, 3, 4)}, whole=1),
     "cylinder-stretch": Grading(PLATES),
     "ellipsoid-indentation": Grading(
-        {"indenter": (0, 1, 2, 0, 0, 2), "support": (0, 0, 0, 1, 2, 2)},
+        {"indenter": (0, 1, 0, 2, 2), "support": (0, 0, 1, 0, 1)},
         steps=4,
         inside=None,
-        starts={3: [0], 5: [2, 4]},
-        sequences=((0, 1, 2), (0, 3, 4)),
+        starts={2: [0], 3: [1], 4: [3, 2]},
+        sequences=((0, 1, 3), (0, 2)),
     ),
     "ellipsoid-touch": Grading({"indenter": (1, 2, 3), "support": (1, 2, 3)}),
     "pressed-beam": Grading({"foot": (1, 2, 3)}, whole=1, inside=1),
@@ -291,6 +291,9 @@ def run(options):
     """Computes the named truths. Raises InputError or ComputationError."""
     if options.output and len(options.cases) > 1:
         raise InputError(f"-o: {options.output} is one file for {len(options.cases)} cases")
+    if options.keep:
+        with writing(options.keep):
+            Path(options.keep).mkdir(parents=True, exist_ok=True)
     for name in options.cases or GRADINGS:
         make_truth(name, options.output or path_of("truth", name), options.keep)
 
