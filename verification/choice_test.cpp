@@ -139,6 +139,31 @@ TEST(Choose, predicts_what_a_run_gives) {
   for (const auto& mesh : choice.others) EXPECT_FALSE(mesh.kept);
 }
 
+/// Against the truth, the mesh of a column and coarser ones are refined until the golden's own element is
+/// near enough; rungs on what suffices are tried, and a mesh with more elements than that is not.
+TEST(Choose, refines_meshes_against_the_truth) {
+  const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "column.toml");
+  const Choice choice =
+      choose(scene, {.tolerance = 0.003, .against = "truth", .methods = {"tl-mean-dilatation"}},
+             [](double, const std::string&) { return true; });
+  ASSERT_TRUE(choice.chosen);
+  const Attempt& chosen = choice.attempts[*choice.chosen];
+  EXPECT_TRUE(contains(chosen.rung.mesh->name(), "refined to"));
+  EXPECT_LE(*chosen.evaluation.error, 0.003);
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  int coarse_ones = 0;
+  for (const auto& attempt : choice.others) {
+    EXPECT_EQ(attempt.kept, attempt.evaluation.error && *attempt.evaluation.error <= 0.003) << attempt.mesh;
+    coarse_ones += contains(attempt.mesh, "elements = ") && contains(attempt.mesh, "refined to");
+  }
+  EXPECT_GT(coarse_ones, 0);
+  for (const auto& mesh : choice.meshes) {
+    if (mesh.own()) continue;
+    EXPECT_LT(mesh.scene.mesh.cells.size(), fewest) << mesh.name();
+    fewest = mesh.scene.mesh.cells.size();
+  }
+}
+
 /// Small strains suffice for a small motion, and not for a large one, whatever the numbers and the kappa.
 TEST(Choose, takes_small_strains_for_small_motions_only) {
   const std::vector<std::string> linear_ones{"linear", "linear-condensed"};

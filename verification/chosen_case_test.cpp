@@ -8,6 +8,7 @@
 #include "io/case_file.hpp"
 #include "io/toml_text.hpp"
 #include "mesh/variations.hpp"
+#include "problem/scene_refinement.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace sandglass::verification {
@@ -127,6 +128,20 @@ TEST_F(MethodTableTest, goes_with_a_coarser_mesh) {
     EXPECT_NE(again.name, original.name);
     EXPECT_EQ(again.method->method, "tl-full");
     EXPECT_NO_THROW(read_scene(again));
+  }
+}
+
+/// On a refined mesh it names the elements that are split, besides what it said of refinement.
+TEST_F(MethodTableTest, goes_with_a_refined_mesh) {
+  for (const std::string more : {"", "\n[[refine]]\naround = \"foot\"\n"}) {
+    const Case original = read(more);
+    const Scene scene = refined(refined(read_scene(original), {1, 2}), {0});
+    const fs::path place = folder / "refined.toml";
+    const Case again = read_case_file(
+        folder.write("refined.toml", case_text(original, {.method = "tl-full"}, &scene.description, place)));
+    EXPECT_EQ(case_hash(again), scene.case_hash);
+    EXPECT_NE(again.name, original.name);
+    EXPECT_EQ(read_scene(again).mesh_hash, scene.mesh_hash);
   }
 }
 

@@ -54,6 +54,10 @@ value = [0.1, 0.0, -0.1]
   return read_scene(text, {.mesh = box({1, 1, 1}, {2, 2, 2})});
 }
 
+Scene case_named(const std::string& name) {
+  return read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / (name + ".toml"));
+}
+
 NodalField at_rest(const Scene& scene, const std::string& method) {
   const Model model(scene, {method});
   Observer quiet;
@@ -176,8 +180,7 @@ TEST(Relax, starts_near_a_guess) {
 /// poor one. The truths' own errors are within a third of the errors told here.
 TEST(TruthEstimate, is_about_the_error) {
   for (const auto* name : {"column", "twist", "stiff-core", "pressed-beam", "ellipsoid-touch"}) {
-    const Scene scene =
-        read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / (std::string(name) + ".toml"));
+    const Scene scene = case_named(name);
     const NodalField truth = read_reference(read_comparison(scene).truth, scene).front();
     for (const auto* method : {"tl-mean-dilatation", "tl-perturbation"}) {
       const NodalField u = at_rest(scene, method);
@@ -192,6 +195,52 @@ TEST(TruthEstimate, is_about_the_error) {
       }
     }
   }
+}
+
+/// As many refinements as the accuracy takes, none where it takes none. Against the stored truth, whose bar
+/// is .0018 of the unit, errors are within what was asked for; the estimate is the distance from the limit.
+TEST(RefineUntilWithin, refines_no_more_than_is_asked) {
+  const Scene scene = case_named("column");
+  const NodalField truth = read_reference(read_comparison(scene).truth, scene).front();
+  std::size_t before = 0;
+  for (const double accuracy : {0.02, 0.006, 0.003}) {
+    const AccurateMesh found = refine_until_within(accuracy, scene, 1);
+    const double unit = displacement_unit(scene, truth);
+    EXPECT_EQ(found.scene.mesh_hash == scene.mesh_hash, accuracy == 0.02);
+    EXPECT_GT(found.scene.mesh.cells.size(), before);
+    EXPECT_EQ(found.limit.size(), scene.mesh.points.size());
+    EXPECT_LE(largest_distance(found.limit, found.u), accuracy * unit);
+    EXPECT_LE(largest_distance(truth, found.u), accuracy * unit);
+    EXPECT_GT(largest_distance(truth, found.u), 0.1 * accuracy * unit);
+    before = found.scene.mesh.cells.size();
+  }
+}
+
+/// An answer that is asked for less exactly is searched for less long, and no farther from the equilibrium on
+/// its mesh than a fifth of the accuracy: the residual that is left, a tenth, moves nodes by about as much.
+TEST(RefineUntilWithin, searches_as_long_as_the_accuracy_needs) {
+  const Scene scene = case_named("ellipsoid-touch");
+  const AccurateMesh found = refine_until_within(0.1, scene, 1);
+  const NodalField exact = at_rest(remade(found.scene, found.scene.description), "tl-mean-dilatation");
+  const double left = largest_distance(exact, found.u) / displacement_unit(scene, exact);
+  EXPECT_LT(left, 0.2 * 0.1);
+  EXPECT_GT(left, 1e-4);
+}
+
+TEST(RefineUntilWithin, says_how_near_it_came) {
+  const auto message = [](double accuracy, const std::string& name, std::size_t most) {
+    try {
+      refine_until_within(accuracy, case_named(name), 1, most);
+    } catch (const ComputationError& error) {
+      return std::string(error.what());
+    }
+    return std::string("found");
+  };
+  EXPECT_NE(message(1e-3, "column", 200).find("a mesh of 270 elements is not refined further, and how far"),
+            std::string::npos);
+  EXPECT_NE(message(1e-3, "column", 300).find("it has more than 300 elements"), std::string::npos);
+  EXPECT_NE(message(1e-3, "column", 300).find("from the exact one, as estimated, instead of 0.1 %"),
+            std::string::npos);
 }
 
 }  // namespace

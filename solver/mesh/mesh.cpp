@@ -25,28 +25,24 @@ double largest_distance(const NodalField& a, const NodalField& b) {
 }
 
 std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) {
-  struct Face {
-    Quadrilateral nodes;
-    int count;
-  };
-  std::vector<Face> faces;
-  std::map<Quadrilateral, std::size_t> known;  // sorted nodes -> index in faces
+  std::vector<Quadrilateral> faces, keys;  // keys have their nodes in ascending order
+  int last = -1;
   for (const auto& cell : cells) {
     for (const auto& local : local_faces) {
-      const Quadrilateral nodes{cell[local[0]], cell[local[1]], cell[local[2]], cell[local[3]]};
-      Quadrilateral key = nodes;
-      std::sort(key.begin(), key.end());
-      const auto [entry, is_new] = known.try_emplace(key, faces.size());
-      if (is_new) {
-        faces.push_back({nodes, 1});
-      } else {
-        ++faces[entry->second].count;
-      }
+      faces.push_back({cell[local[0]], cell[local[1]], cell[local[2]], cell[local[3]]});
+      keys.push_back(faces.back());
+      std::sort(keys.back().begin(), keys.back().end());
+      last = std::max(last, keys.back()[0]);
     }
   }
+  std::vector<std::vector<std::size_t>> by_first_node(static_cast<std::size_t>(last + 1));
+  for (std::size_t f = 0; f < keys.size(); ++f)
+    by_first_node[static_cast<std::size_t>(keys[f][0])].push_back(f);
   std::vector<Quadrilateral> boundary;
-  for (const auto& face : faces) {
-    if (face.count == 1) boundary.push_back(face.nodes);
+  for (std::size_t f = 0; f < keys.size(); ++f) {
+    const auto& near = by_first_node[static_cast<std::size_t>(keys[f][0])];
+    const auto same = [&](std::size_t other) { return keys[other] == keys[f]; };
+    if (std::count_if(near.begin(), near.end(), same) == 1) boundary.push_back(faces[f]);
   }
   return boundary;
 }

@@ -1,7 +1,8 @@
 #include "mesh/refinement.hpp"
 
 #include <algorithm>
-#include <set>
+#include <map>
+#include <unordered_set>
 
 #include "mesh/hexahedron.hpp"
 
@@ -28,26 +29,25 @@ std::vector<std::size_t> parents_of(const std::array<int, 3>& point) {
   return corners;
 }
 
-std::vector<int> sorted_corners(const Hexahedron& cell, const std::vector<std::size_t>& corners) {
-  std::vector<int> nodes;
-  for (const std::size_t I : corners) nodes.push_back(cell[I]);
-  std::sort(nodes.begin(), nodes.end());
-  return nodes;
-}
-
-/// The corners of edges and faces.
-const std::vector<std::vector<std::size_t>>& edges_and_faces() {
+/// The same of all points of the lattice; the first coordinate counts fastest.
+const std::vector<std::vector<std::size_t>>& lattice() {
   static const auto all = [] {
     std::vector<std::vector<std::size_t>> found;
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          auto corners = parents_of({x, y, z});
-          if (corners.size() == 2 || corners.size() == 4) found.push_back(std::move(corners));
-        }
+    for (int k = 0; k < 27; ++k) found.push_back(parents_of({k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}));
     return found;
   }();
   return all;
+}
+
+bool is_edge_or_face(const std::vector<std::size_t>& corners) {
+  return corners.size() == 2 || corners.size() == 4;
+}
+
+EdgeOrFace sorted_corners(const Hexahedron& cell, const std::vector<std::size_t>& corners) {
+  EdgeOrFace nodes{-1, -1, -1, -1};
+  for (std::size_t i = 0; i < corners.size(); ++i) nodes[i] = cell[corners[i]];
+  std::sort(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(corners.size()));
+  return nodes;
 }
 
 }  // namespace
@@ -57,17 +57,32 @@ RefinedMesh::RefinedMesh(const Mesh& mesh)
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) original_.push_back(static_cast<int>(e));
 }
 
-int RefinedMesh::middle_of(std::vector<int> corners) {
-  if (corners.size() == 1) return corners[0];
-  const auto [entry, is_new] = middles_.try_emplace(corners, static_cast<int>(mesh_.points.size()));
-  if (is_new) {
-    Vector mean{};
-    for (const int n : corners)
-      for (std::size_t i = 0; i < 3; ++i)
-        mean[i] += mesh_.points[at(n)][i] / static_cast<double>(corners.size());
-    mesh_.points.push_back(mean);
-    parents_.push_back(std::move(corners));
-  }
+std::size_t RefinedMesh::Hash::operator()(const EdgeOrFace& corners) const {
+  std::size_t hash = 0;
+  for (const int n : corners) hash = 1'000'003 * hash + static_cast<std::size_t>(n);
+  return hash;
+}
+
+/// A new node in the middle of some corners of an element.
+int RefinedMesh::new_node(const Hexahedron& cell, const std::vector<std::size_t>& corners) {
+  Vector mean{};
+  std::vector<int> parents;
+  for (const std::size_t I : corners) parents.push_back(cell[I]);
+  std::sort(parents.begin(), parents.end());
+  for (const int n : parents)
+    for (std::size_t i = 0; i < 3; ++i)
+      mean[i] += mesh_.points[at(n)][i] / static_cast<double>(parents.size());
+  mesh_.points.push_back(mean);
+  parents_.push_back(std::move(parents));
+  return static_cast<int>(mesh_.points.size()) - 1;
+}
+
+/// The node at the point of an element's lattice between some of its corners, made if it is not there yet.
+int RefinedMesh::node_at(const Hexahedron& cell, const std::vector<std::size_t>& corners) {
+  if (corners.size() == 1) return cell[corners[0]];
+  if (!is_edge_or_face(corners)) return new_node(cell, corners);
+  const auto [entry, is_new] = middles_.try_emplace(sorted_corners(cell, corners), 0);
+  if (is_new) entry->second = new_node(cell, corners);
   return entry->second;
 }
 
@@ -105,7 +120,7 @@ void RefinedMesh::balance(std::vector<bool>& marked) const {
 void RefinedMesh::split(std::vector<bool> marked) {
   balance(marked);
   const Mesh before = mesh_;
-  CoarserMesh coarser{mesh_, to_free_nodes(ties()), {}, {}};
+  CoarserMesh coarser{mesh_, to_free_nodes(ties_), {}, {}};
   const auto splits = splits_, original = original_;
   mesh_.cells.clear();
   splits_.clear();
@@ -119,18 +134,15 @@ void RefinedMesh::split(std::vector<bool> marked) {
       original_.push_back(original[e]);
       continue;
     }
-    std::array<int, 27> lattice{};
-    for (int k = 0; k < 27; ++k) {
-      const std::array<int, 3> point{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-      lattice[at(k)] = middle_of(sorted_corners(cell, parents_of(point)));
-    }
+    std::array<int, 27> nodes{};
+    for (std::size_t k = 0; k < nodes.size(); ++k) nodes[k] = node_at(cell, lattice()[k]);
     for (int child = 0; child < 8; ++child) {
       Hexahedron part;
       for (int I = 0; I < 8; ++I) {
         int k = 0;
         for (int i = 2; i >= 0; --i)
           k = 3 * k + 1 + static_cast<int>(corner_signs(I, i) + corner_signs(child, i)) / 2;
-        part[at(I)] = lattice[at(k)];
+        part[at(I)] = nodes[at(k)];
       }
       mesh_.cells.push_back(part);
       coarser.element_of.push_back(static_cast<int>(e));
@@ -141,17 +153,23 @@ void RefinedMesh::split(std::vector<bool> marked) {
   const auto known = static_cast<std::ptrdiff_t>(before.points.size() - original_nodes_);
   coarser.corners.assign(parents_.begin() + known, parents_.end());
   coarser_.push_back(std::move(coarser));
+  ties_ = make_ties();
 }
 
-Ties RefinedMesh::ties() const {
+Ties RefinedMesh::make_ties() const {
+  std::vector<bool> is_corner(mesh_.points.size(), false);  // of what is split: most nodes are not
+  for (const auto& [corners, middle] : middles_)
+    for (const int n : corners)
+      if (n >= 0) is_corner[at(n)] = true;
   std::map<int, Tie> tied;
   for (const auto& cell : mesh_.cells) {
-    for (const auto& corners : edges_and_faces()) {
-      const auto nodes = sorted_corners(cell, corners);
-      const auto middle = middles_.find(nodes);
+    for (const auto& corners : lattice()) {
+      if (!is_edge_or_face(corners) || !is_corner[at(cell[corners[0]])]) continue;
+      const auto middle = middles_.find(sorted_corners(cell, corners));
       if (middle == middles_.end()) continue;
       Tie tie{middle->second, {}};
-      for (const int n : nodes) tie.mean_of.push_back({n, 1.0 / static_cast<double>(nodes.size())});
+      for (const int n : parents_[at(tie.node) - original_nodes_])
+        tie.mean_of.push_back({n, 1.0 / static_cast<double>(corners.size())});
       tied.emplace(tie.node, std::move(tie));
     }
   }
@@ -161,12 +179,12 @@ Ties RefinedMesh::ties() const {
 }
 
 std::vector<Quadrilateral> RefinedMesh::boundary() const {
-  std::set<int> inside;  // nodes in the middle of faces that are split on one side
-  for (const Tie& tie : ties())
+  std::unordered_set<int> inside;  // nodes in the middle of faces that are split on one side
+  for (const Tie& tie : ties_)
     if (tie.mean_of.size() == 4) inside.insert(tie.node);
   std::vector<Quadrilateral> faces;
   for (const auto& face : boundary_faces(mesh_.cells)) {
-    std::vector<int> corners(face.begin(), face.end());
+    EdgeOrFace corners = face;
     std::sort(corners.begin(), corners.end());
     const bool is_split = middles_.count(corners) > 0;
     const bool is_part = std::any_of(face.begin(), face.end(), [&](int n) { return inside.count(n) > 0; });

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unordered_map>
+
 #include "mesh/ties.hpp"
 
 namespace sandglass {
@@ -12,6 +14,9 @@ struct CoarserMesh {
   std::vector<int> element_of;  ///< which element of this mesh each one of the finer mesh is a part of
   std::vector<std::vector<int>> corners;  ///< of the new nodes: the nodes whose mean they are
 };
+
+/// The corners of an edge, two and then -1, or of a face, in ascending order.
+using EdgeOrFace = std::array<int, 4>;
 
 /// A mesh whose elements are split in eight, some of them, of those some again, and so on. Nodes of small
 /// elements in the middle of an edge or a face of a large one are tied to its corners. Elements that share a
@@ -27,7 +32,7 @@ class RefinedMesh {
   const Mesh& mesh() const { return mesh_; }
 
   /// Of the nodes in the middle of edges and faces that are not split on all sides, to their corners.
-  Ties ties() const;
+  const Ties& ties() const { return ties_; }
 
   /// The faces on the boundary of the body.
   std::vector<Quadrilateral> boundary() const;
@@ -47,15 +52,22 @@ class RefinedMesh {
   std::vector<int> elements_of(const std::vector<int>& set) const;
 
  private:
-  int middle_of(std::vector<int> corners);
+  struct Hash {
+    std::size_t operator()(const EdgeOrFace& corners) const;
+  };
+
+  int new_node(const Hexahedron& cell, const std::vector<std::size_t>& corners);
+  int node_at(const Hexahedron& cell, const std::vector<std::size_t>& corners);
+  Ties make_ties() const;
   void balance(std::vector<bool>& marked) const;
 
   Mesh mesh_;
   std::size_t original_nodes_;
   std::vector<int> splits_, original_;
   std::vector<CoarserMesh> coarser_;
-  std::map<std::vector<int>, int> middles_;  // of edges and faces, by their corners in ascending order
-  std::vector<std::vector<int>> parents_;    // of each new node
+  Ties ties_;
+  std::unordered_map<EdgeOrFace, int, Hash> middles_;  // of edges and faces
+  std::vector<std::vector<int>> parents_;              // of each new node
 };
 
 }  // namespace sandglass
