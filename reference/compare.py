@@ -111,14 +111,18 @@ def update_readme():
 def _own_error(attributes, judged=(math.inf, math.inf)):
     """Table cells of a result's distance from the limit of refinement: max, rms, order.
 
-    judged: max and rms of the distances that a truth judges; more than a share of them is marked.
+    judged: max and rms of the distances that a truth judges; more than a share of them is marked,
+    and so are bars without a part for the inside.
     """
     order = attributes["own_error_order"]
     if math.isnan(order):
         return [_percent(math.nan)] * 2 + ["-"]
-    mark = "" if attributes["own_error_note"].endswith(": measured") else " (*)"
+    note = attributes["own_error_note"]
+    mark = "" if note.endswith(": measured") else " (*)"
+    alone = " (e)" if note.startswith("edges alone") else ""
     cells = [
         _percent(attributes[f"own_error_{which}"])
+        + alone
         + (" (!)" if attributes[f"own_error_{which}"] > LARGEST_SHARE * distance else "")
         for which, distance in zip(("max", "rms"), judged)
     ]
