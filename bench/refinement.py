@@ -41,7 +41,7 @@ WHOLE = '\n[element_sets.everything]\nx = [-inf, inf]\n\n[[refine]]\nelements = 
 
 
 def uniform_text(text, splits, residual):
-    """The text of a case file, its elements all split so often, its searches ended at a residual."""
+    """The text of a case file, all elements split so often, searches ended at a residual."""
     more = f"[relaxation]\ntolerance = {residual}\n"
     text = text.replace("[relaxation]\n", more) if "[relaxation]\n" in text else text + "\n" + more
     return text + (WHOLE + f"depth = {splits}\n" if splits else "")
@@ -82,7 +82,7 @@ def time_refined(name, accuracy, result):
 
 
 def ways(name, most, result):
-    """(what is recorded of it, its seconds in turn) of each way to an answer, the cheap ones first."""
+    """(what is recorded of it, its seconds in turn) of each way to an answer."""
     elements = 0
     for splits in range(4):
         if splits == 0 or 8 * elements <= most:

@@ -20,6 +20,7 @@ from sandglass_report.growth import growth_plate, read_growth
 from sandglass_report.verdicts import read_verdicts
 from sandglass_report.measured import read_measured
 from sandglass_report.page import Inputs, write_report
+from sandglass_report.refinement import read_refinement, refinement_plate
 from sandglass_report.second import read_second_program
 from sandglass_report.subject import read_subjects
 
@@ -38,7 +39,18 @@ def make(options):
     growth = growth_plate(read_growth(options.growth)) if options.growth.exists() else None
     second_path = options.reference / "second_program.json"
     second = read_second_program(second_path) if second_path.exists() else {}
-    inputs = Inputs(verdicts, options.verdicts, subjects, found, evidence, pictures, growth, second)
+    refined = options.refinement
+    inputs = Inputs(
+        verdicts,
+        options.verdicts,
+        subjects,
+        found,
+        evidence,
+        pictures,
+        growth=growth,
+        refinement=refinement_plate(read_refinement(refined)) if refined.exists() else None,
+        second=second,
+    )
     size = write_report(inputs, options.output)
     seconds = time.monotonic() - start
     print(f"{options.output}: {size / 1e6:.1f} MB, made in {seconds:.0f} s")
@@ -67,6 +79,12 @@ def main(arguments=None):
     add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")
     add("--pictures", type=Path, default="reports/figures", help="folder of drawn failure maps")
     add("--growth", type=Path, default="reports/figures/growth.json", help="of bench/growth.py")
+    add(
+        "--refinement",
+        type=Path,
+        default="reports/figures/refinement.json",
+        help="of bench/refinement.py",
+    )
     add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
     add(
         "--mutants",

@@ -1,4 +1,4 @@
-"""`sandglass run --accuracy --against truth`: its mesh, output and exit codes, and rejected input."""
+"""`sandglass run --accuracy --against truth`: mesh, output, exit codes and rejected input."""
 
 import re
 

@@ -22,6 +22,7 @@ ANCHORS = {"chart": "chart-head"} | {
         "shapes",
         "bending",
         "published",
+        "refinement",
         "growth",
         "maps",
         "kappa",
@@ -43,6 +44,7 @@ class Inputs:
     evidence: object  # Evidence
     pictures: tuple = ()  # paths of failure maps as PNG, for maps that were not recomputed
     growth: plates.Plate | None = None
+    refinement: plates.Plate | None = None
     second: dict = field(default_factory=dict)  # kind -> SecondProgram
 
 
@@ -78,6 +80,7 @@ def write_report(inputs, page):
             bending=bent,
             published=others,
             growth=inputs.growth,
+            refinement=inputs.refinement,
             second=inputs.second,
             evidence=inputs.evidence,
             anchors=ANCHORS,
@@ -86,7 +89,8 @@ def write_report(inputs, page):
     folder = page.parent / "figures"
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        more = [*bent, *(one.plate for one in others), *filter(None, [inputs.growth])]
+        timed = filter(None, [inputs.growth, inputs.refinement])
+        more = [*bent, *(one.plate for one in others), *timed]
         for plate in (*_static_plates(inputs, palette, sections), *more):
             plates.save_plate(plate, folder)
     write_whole(page, html)

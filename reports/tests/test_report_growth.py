@@ -5,12 +5,13 @@ import subprocess
 import sys
 
 import pytest
+from synthetic import Axes
 
 from common.errors import InputError
 from common.program import ROOT
 from sandglass_report.growth import growth_plate, read_growth
 
-SCRIPT = ROOT / "reports" / "make_growth.py"
+SCRIPT = ROOT / "reports" / "make_timings.py"
 
 
 def record(elements, seconds, **changed):
@@ -22,19 +23,6 @@ def write(tmp_path, *records):
     path = tmp_path / "growth.json"
     path.write_text(json.dumps({"records": records}))
     return path
-
-
-class Axes:
-    """Notes what is plotted."""
-
-    def __init__(self):
-        self.lines = []
-
-    def plot(self, x, y, *words, **options):
-        self.lines.append((x, y))
-
-    def __getattr__(self, name):
-        return lambda *words: None
 
 
 def test_a_line_per_program_and_ratio_in_the_order_of_the_meshes(tmp_path):
@@ -65,5 +53,6 @@ def test_the_script_draws_the_plate(tmp_path):
     command = [sys.executable, str(SCRIPT), str(write(tmp_path, record(320, 1.0)))]
     subprocess.run([*command, "-o", str(tmp_path)], check=True)
     assert "How the cost grows" in (tmp_path / "growth.svg").read_text()
-    missing = [*command[:2], str(tmp_path / "none.json"), "-o", str(tmp_path)]
-    assert subprocess.run(missing, capture_output=True).returncode == 2
+    for wrong in ("none/growth.json", "other.json"):
+        missing = [*command[:2], str(tmp_path / wrong), "-o", str(tmp_path)]
+        assert subprocess.run(missing, capture_output=True).returncode == 2
