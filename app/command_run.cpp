@@ -259,8 +259,12 @@ Answer dynamic_answer(const Model& model, Observer& observer, const Checkpoint* 
   Motion found = integrate(model, observer, from);
   const std::string status =
       found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete";
-  print_outcome(model, fmt::format("{} s in {} steps of at least {:.4g} s, {}", found.time, found.steps,
-                                   found.smallest_step, status));
+  const std::string subcycles =
+      model.scene().description.dynamics.subcycles > 1
+          ? fmt::format("{} subcycle{}, ", found.most_substeps, found.most_substeps > 1 ? "s" : "")
+          : "";
+  print_outcome(model, fmt::format("{} s in {} steps of at least {:.4g} s, {}{}", found.time, found.steps,
+                                   found.smallest_step, subcycles, status));
   return {std::move(found.u), status, found.steps, found.seconds, found.adaption_seconds};
 }
 

@@ -298,6 +298,26 @@ def test_dynamic_case(block):
     assert outcome.returncode == 2 and "dynamic" in outcome.stderr
 
 
+def test_run_tells_how_many_subcycles_it_took(block):
+    bar = BLOCK.replace("[0.1, 0.1, 0.2]", "[0.05, 0.05, 20.0]").replace("[2, 2, 4]", "[1, 1, 400]")
+    bar = bar.replace("[0.2, 0.2]", "[20.0, 20.0]")
+    end = '[element_sets]\nend = { z = [0.0, 0.05] }\n[[refine]]\nelements = "end"\ndepth = 2\n'
+    for text, most, told in [
+        (bar + end, 16, ", 4 subcycles, complete"),
+        (bar + end, 2, ", 2 subcycles, complete"),
+        (bar, 16, ", 1 subcycle, complete"),
+        (bar + end, 1, " s, complete"),
+    ]:
+        block.write_text(dynamic(text, duration=0.1, subcycles=most))
+        outcome = sandglass("run", block)
+        assert outcome.returncode == 0
+        assert told in outcome.stdout
+        assert ("subcycle" in outcome.stdout) == (most > 1)
+    block.write_text(dynamic(bar, duration=0.1, subcycles=65))
+    outcome = sandglass("run", block)
+    assert outcome.returncode == 2 and "dynamics.subcycles = 65" in outcome.stderr
+
+
 # Failures of the computation.
 
 

@@ -38,6 +38,7 @@ struct DynamicsSettings {
   double time_step = 0.0;
   double step_fraction = 0.9;
   double damping = 0.0;
+  int subcycles = 1;
   int check_interval = 20;
   int frames = 20;
 
@@ -54,6 +55,12 @@ struct DynamicsSettings {
                   false},
         Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},
                   "chosen step over the stable one", false},
+        Parameter{
+            &S::subcycles, "subcycles", "-",
+            Range{.low = 1.0, .high = 64.0, .low_open = false, .high_open = false},
+            "small elements may take so many small steps in a step of the others; 1 means that all take "
+            "the same",
+            false},
         Parameter{&S::damping, "damping", "1/s", Range::at_least(0.0), "mass-proportional damping", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
                   "steps between checks for inversion, divergence and stiffening", false},

@@ -11,7 +11,6 @@
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
-#include "solve/stable_step.hpp"
 
 namespace sandglass {
 
@@ -238,7 +237,9 @@ class Simulation<Real>::Parts {
   }
 
   void choose_step() {
-    step_size_ = step_fraction_ * stable_step(problem_->model, leapfrog_.body().stiffness_bounds()).step;
+    Body<Real>& body = leapfrog_.body();
+    step_size_ = step_fraction_ * body.stable_step(problem_->model).step;
+    body.set_step(step_size_);
   }
 
   std::shared_ptr<const Problem> problem_;

@@ -45,8 +45,9 @@ struct NodalView {
 };
 
 /// A body in motion, in `double` or `float`: central differences with lumped masses, as in a dynamic run of
-/// `sandglass run`, but you say where the driven nodes go, frame by frame. Driven are the components to which
-/// the case imposes a displacement or a rotation; they start at rest where the mesh has them.
+/// `sandglass run`, subcycles included, but you say where the driven nodes go, frame by frame. Driven are the
+/// components to which the case imposes a displacement or a rotation; they start at rest where the mesh has
+/// them.
 ///
 /// It is a value: a copy is a snapshot that goes its own way and shares what does not change. Several may run
 /// at once, each in one thread at a time. Errors are InputError for what you say and ComputationError when

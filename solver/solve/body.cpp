@@ -40,6 +40,7 @@ template <class Real>
 void Body<Real>::evaluate_forces() {
   elements_.evaluate(state_, force_);
   loads_.subtract(state_, force_);
+  if (subcycling_) subcycling_->average(state_.u, force_);
   ties_.hand_on(force_);
   for (std::size_t k = 0; k < constraints_.size(); ++k) {
     Real& component = force_[constraints_[k].row][constraints_[k].component];
@@ -149,6 +150,12 @@ template <class Real>
 const std::vector<double>& Body<Real>::stiffness_bounds() {
   elements_.stiffness_bounds(state_, per_element_);
   return per_element_;
+}
+
+template <class Real>
+StableStep Body<Real>::stable_step(const Model& model, double given_step) {
+  if (!subcycling_) return sandglass::stable_step(model, stiffness_bounds());
+  return subcycling_->choose_substeps(stable_steps(model, stiffness_bounds()), given_step);
 }
 
 Frame static_frame(const Model& model, double time, const NodalField& u) {

@@ -6,6 +6,7 @@
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
 #include "solve/loads.hpp"
+#include "solve/subcycling.hpp"
 
 namespace sandglass {
 
@@ -99,6 +100,24 @@ class Body {
   /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
   const std::vector<double>& stiffness_bounds();
 
+  /// The longest stable step. `given_step` (s) is the one that a user demands, or 0.
+  StableStep stable_step(const Model& model, double given_step = 0.0);
+
+  /// Lets small elements take small steps alone from the next evaluation on, if the case asks for it; see
+  /// Subcycling.
+  void subcycle(const Model& model, const Rows<Real>& inverse_masses) {
+    if (model.scene().description.dynamics.subcycles > 1)
+      subcycling_.emplace(model, elements_, inverse_masses);
+  }
+
+  /// The number of small steps that small elements take in a step at present.
+  int substeps() const { return subcycling_ ? subcycling_->substeps() : 1; }
+
+  /// Sets the step (s) that follows evaluations from now on.
+  void set_step(double step) {
+    if (subcycling_) subcycling_->set_step(step);
+  }
+
   /// See InternalForce::adapt.
   Adaptation adapt(const Rows<Real>& mobility, double length, double demoting_length) {
     return elements_.adapt(state_, mobility, length, demoting_length);
@@ -120,6 +139,7 @@ class Body {
     archive("body reaction", reactions_);
     archive("load factor", load_factor_);
     loads_.keep(archive);
+    if (subcycling_) subcycling_->keep(archive);
   }
 
  private:
@@ -143,6 +163,7 @@ class Body {
   std::vector<RowConstraint> constraints_;
   RowTies<Real> ties_;
   Loads<Real> loads_;
+  std::optional<Subcycling<Real>> subcycling_;
   double load_factor_ = 0.0;
   State<Real> state_;
   Rows<Real> force_;

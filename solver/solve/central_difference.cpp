@@ -67,13 +67,14 @@ class CentralDifference {
 
   /// Sets the next step: the user's, rejected if unstable, or a share of the stable one.
   void choose_step() {
-    const StableStep stable = stable_step(model_, body_.stiffness_bounds());
+    const StableStep stable = body_.stable_step(model_, settings_.time_step);
     if (settings_.time_step > 0.0) {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
       next_step_ = settings_.step_fraction * stable.step;
     }
+    body_.set_step(next_step_);
   }
 
   /// Whether the end is reached, up to the roundoff of a sum of steps.
@@ -228,6 +229,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     archive("frames", frames);
     adaption_schedule.keep(archive);
     archive("smallest step", motion.smallest_step);
+    archive("most substeps", motion.most_substeps);
   };
   const auto checkpoint = [&] {
     Checkpoint state;
@@ -251,6 +253,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     scheme.advance(observer);
     scheme.update_external_work();
     motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
+    motion.most_substeps = std::max(motion.most_substeps, body.substeps());
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {
       body.require_healthy(scheme.step());
       report();

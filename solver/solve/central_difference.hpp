@@ -12,6 +12,7 @@ struct Motion {
   double time = 0.0;  ///< s
   long steps = 0;
   double smallest_step = 0.0;  ///< s
+  int most_substeps = 1;       ///< of small elements in a step; see Subcycling
   bool interrupted = false;
   double seconds = 0.0;           ///< wall time of the steps
   double adaption_seconds = 0.0;  ///< the share of it for the choice of levels, adaptive methods

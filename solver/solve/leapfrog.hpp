@@ -13,9 +13,11 @@ void require_steps(const Model& model);
 template <class Real>
 class Leapfrog {
  public:
-  /// Undeformed and at rest. `damping` is mass-proportional, 1/s.
+  /// Undeformed and at rest, with the subcycles of the case. `damping` is mass-proportional, 1/s.
   Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping)
-      : explicit_step_(model, elements), damping_(damping) {}
+      : explicit_step_(model, elements), damping_(damping) {
+    body().subcycle(model, explicit_step_.inverse_masses());
+  }
 
   Body<Real>& body() { return explicit_step_.body(); }
   const Body<Real>& body() const { return explicit_step_.body(); }

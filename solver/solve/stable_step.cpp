@@ -32,7 +32,10 @@ std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
 }  // namespace
 
 std::vector<double> stable_steps(const Model& model, const NodalField& u) {
-  std::vector<double> steps = stiffness_bounds(model, u);
+  return stable_steps(model, stiffness_bounds(model, u));
+}
+
+std::vector<double> stable_steps(const Model& model, std::vector<double> steps) {
   for (std::size_t e = 0; e < steps.size(); ++e) steps[e] = step_of(model, e, steps[e]);
   return steps;
 }

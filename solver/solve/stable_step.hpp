@@ -19,6 +19,9 @@ struct StableStep {
 /// it: omega^2 dt^2 + 2 c/m dt <= 4.
 std::vector<double> stable_steps(const Model& model, const NodalField& u);
 
+/// The same from bounds of the elements' stiffness (N/m).
+std::vector<double> stable_steps(const Model& model, std::vector<double> stiffness_bounds);
+
 /// The smallest of them.
 StableStep stable_step(const Model& model, const NodalField& u);
 

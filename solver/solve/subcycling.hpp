@@ -1,0 +1,82 @@
+#pragma once
+
+#include <memory>
+
+#include "assembly/row_ties.hpp"
+#include "solve/stable_step.hpp"
+#include "solve/substeps.hpp"
+
+namespace sandglass {
+
+/// What small elements take small steps with. Nodes and elements depend on the nodes that tied ones follow.
+struct Division {
+  std::vector<bool> is_small;        ///< nodes of small elements, none of them tied
+  std::vector<bool> in_part;         ///< elements that depend on small nodes
+  std::vector<bool> on_large_nodes;  ///< elements that depend on other nodes
+};
+
+/// Small elements take small steps alone, while the others take one large step: the local time stepping of
+/// Diaz and Grote (SIAM J. Sci. Comput. 31, 2009), stabilised as by Grote, Michel and Sauter (Math. Comp. 90,
+/// 2021).
+///
+/// In every step, small nodes, those that small elements depend on, move from rest in small steps, while all
+/// others are held. The weighted mean of the forces on the way replaces the force at its start, at all nodes.
+/// It is a function of the displacements alone, so that all else in a step is as without subcycling. See
+/// README.md, "Small steps for small elements".
+template <class Real>
+class Subcycling {
+ public:
+  /// Chooses small elements by the stable steps of the undeformed ones, so that a second takes the least
+  /// work, or as a fixed step of the case demands; none if nothing is gained by it. `elements` are those of
+  /// the model, `inverse_masses` (1/kg) are zero where nodes do not move freely. Throws InputError for
+  /// elements whose forces depend on more than the displacements of their nodes, and for pressures and
+  /// supports at small elements.
+  Subcycling(const Model& model, const InternalForce<Real>& elements, const Rows<Real>& inverse_masses);
+
+  /// Chooses the number of small steps for elements with these stable steps (s): the one that takes the least
+  /// work, or, for a step > 0 that is given, the smallest stable one. Returns the stable step.
+  StableStep choose_substeps(std::span<const double> element_steps, double given_step);
+
+  /// Sets the step (s) over which forces are averaged from now on.
+  void set_step(double step) { step_ = step; }
+
+  /// The number of small steps in a step.
+  int substeps() const { return substeps_.count(); }
+
+  /// Replaces the forces (N) of the displacements u (m), those at tied nodes included, by their mean over the
+  /// small steps. Allocates nothing. The bits do not depend on the number of threads.
+  void average(const Rows<Real>& u, Rows<Real>& force);
+
+  /// The data that the next step depends on; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive& archive) {
+    int count = substeps_.count();
+    archive("substeps", count);
+    archive("averaged step", step_);
+    substeps_ = Substeps(count);
+  }
+
+ private:
+  void build_part(const Model& model, const Layout& layout, const Rows<Real>& inverse_masses);
+  void add_to_mean(std::size_t k);
+  void move(std::size_t k);
+
+  int threads_;
+  int most_substeps_;
+  Substeps substeps_{1};
+  double step_ = 0.0;  // s
+  Division division_;
+  std::shared_ptr<const InternalForce<Real>> part_;  // the elements that depend on small nodes
+  std::vector<std::uint32_t> whole_row_;             // of each row of the part
+  RowTies<Real> ties_;                               // of rows of the part to small nodes
+  State<Real> state_;                                // of the part
+  Rows<Real> mobility_;                              // inverse masses (1/kg) of small nodes, else zero
+  Rows<Real> force_;                                 // N, of the part
+  Rows<Real> mean_;                                  // N, of the forces of the part
+  Rows<Real> rest_;                                  // N, of all but the part
+};
+
+extern template class Subcycling<double>;
+extern template class Subcycling<float>;
+
+}  // namespace sandglass
