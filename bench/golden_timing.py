@@ -24,7 +24,7 @@ from common.accuracy import relative_errors
 from common.command import exit_code, whole_number
 from common.files import require_writable
 from mesh_file import load_case_mesh
-from problem import GOLDEN, MixedProblem
+from problem import MixedProblem
 from solve import LOAD_STEPS, NEWTON_TOLERANCE
 
 
@@ -68,7 +68,7 @@ def time_golden(case, mesh, load_steps):
     """
     set_up = [time.perf_counter()]
     for _ in range(2):
-        problem = WatchedProblem(mesh, GOLDEN, case.materials)
+        problem = WatchedProblem(mesh, case.materials)
         set_up.append(time.perf_counter())
     first, again = np.diff(set_up)
     outcome = newton.solve(problem, load_steps, NEWTON_TOLERANCE)

@@ -21,6 +21,10 @@ from common.files import write_whole
 from reference_file import FOLDER, MOTION, path_of, read_reference, stored, write_reference
 
 
+# Of the distance of a golden from a truth: what the truth's own error should be at most.
+LARGEST_SHARE = 0.2
+
+
 def golden_error(golden_path, truth_path):
     """Distance of a golden from the truth of the same case and mesh: (max, rms), fractions.
 
@@ -56,7 +60,7 @@ def table():
     """The Markdown table that compares all stored goldens with their truths, as a string."""
     lines = [
         "| case | golden to truth, max | rms | golden's own error, max | rms | order "
-        "| truth's mesh | truth's own error, max | rms | order | golden, s | truth, s |",
+        "| truth's edges split | truth's own error, max | rms | order | golden, s | truth, s |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for name in stored("golden"):
@@ -65,10 +69,10 @@ def table():
         seconds = f"{golden['wall_seconds']:.0f}"
         if truth_path.exists():
             _, _, truth = read_reference(truth_path)
-            cells = [_percent(error) for error in golden_error(golden_path, truth_path)]
-            cells += _own_error(golden)
-            cells.append(f"split {truth['refinements']}x" if truth["refinements"] else "same")
-            cells += _own_error(truth) + [seconds, f"{truth['wall_seconds']:.0f}"]
+            errors = golden_error(golden_path, truth_path)
+            cells = [_percent(error) for error in errors] + _own_error(golden)
+            cells.append(f"{truth['refinements']}x")
+            cells += _own_error(truth, errors) + [seconds, f"{truth['wall_seconds']:.0f}"]
         else:
             cells = ["-", "-"] + _own_error(golden) + ["-"] * 4 + [seconds, "-"]
         cells.insert(0, golden["case"])
@@ -104,14 +108,25 @@ def update_readme():
     write_whole(readme, text)
 
 
-def _own_error(attributes):
-    """Table cells of a result's distance from the limit of refinement: max, rms, order."""
+def _own_error(attributes, judged=(math.inf, math.inf)):
+    """Table cells of a result's distance from the limit of refinement: max, rms, order.
+
+    judged: max and rms of the distances that a truth judges; more than a share of them is marked,
+    and so are bars without a part for the inside.
+    """
     order = attributes["own_error_order"]
     if math.isnan(order):
         return [_percent(math.nan)] * 2 + ["-"]
-    mark = "" if attributes["own_error_note"].endswith(": measured") else " (*)"
-    errors = (attributes["own_error_max"], attributes["own_error_rms"])
-    return [_percent(error) for error in errors] + [f"{order:.2f}{mark}"]
+    note = attributes["own_error_note"]
+    mark = "" if note.endswith(": measured") else " (*)"
+    alone = " (e)" if note.startswith("edges alone") else ""
+    cells = [
+        _percent(attributes[f"own_error_{which}"])
+        + alone
+        + (" (!)" if attributes[f"own_error_{which}"] > LARGEST_SHARE * distance else "")
+        for which, distance in zip(("max", "rms"), judged)
+    ]
+    return cells + [f"{order:.2f}{mark}"]
 
 
 def _percent(fraction):

@@ -1,8 +1,9 @@
-"""Estimates how far a golden or a truth is from its element's limit under mesh refinement.
+"""Estimates how far goldens are from their element's limit under mesh refinement.
 
 Usage: /usr/bin/python3 reference/convergence.py [CASE...]
-Solves the named cases (default: all with stored results) again on split meshes where that takes
-only minutes, and stores the estimates as attributes; the stored displacements are not touched.
+Solves the named cases (default: all with goldens) again on split meshes where that takes only
+minutes, and stores the estimates as attributes; the stored displacements are not touched. truth.py
+estimates the errors of truths in the same way, from their own meshes.
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
 """
 
@@ -29,9 +30,8 @@ from mesh_file import load_case_mesh, make_mesh
 from reference_file import path_of, read_reference, stored, write_estimate
 from symmetry import halve
 
-# With two meshes the order is assumed: 2 for the golden's element, its order on smooth answers; 1
-# for a truth, which has converged so far that the singular edges dominate its error.
-ASSUMED_ORDER = {"golden": 2.0, "truth": 1.0}
+# With two meshes the order is assumed: that of the golden's element on smooth answers.
+ASSUMED_ORDER = 2.0
 
 # At an edge where a body is held or driven, displacements vary like r^a with a > 1/2, so energy,
 # and with it the displacement of loads, converges with order 2 a > 1. A sequence that seems slower
@@ -39,7 +39,7 @@ ASSUMED_ORDER = {"golden": 2.0, "truth": 1.0}
 LOWEST_ORDER = 1.0
 
 # A golden's mesh, halved at its mirror planes, is split as long as that gives at most this many
-# cells: about a minute on one core. A truth is solved only on meshes coarser than the stored one.
+# cells: about a minute on one core.
 MOST_CELLS = 18000
 MOST_SPLITS = 3
 
@@ -80,14 +80,14 @@ def richardson(fields, assumed_order):
     return Estimate(fields[-1] + last / (2**order - 1), order, origin)
 
 
-def attributes_of(kind, fields, displacement, unit, reason):
+def attributes_of(fields, displacement, unit, reason, assumed_order=ASSUMED_ORDER):
     """The attributes that state how far a displacement is from the limit of `fields`.
 
-    kind: "golden" or "truth". fields: as for richardson(). displacement: (n, 3), m, one of them.
-    unit: m, for relative errors. reason: why there are no more fields, for the note.
-    Returns what reference_file.write_estimate() takes.
+    fields, assumed_order: as for richardson(). displacement: (n, 3), m, one of the fields. unit: m,
+    for relative errors. reason: why there are no more fields, for the note. Returns what
+    reference_file.write_estimate() takes.
     """
-    estimate = richardson(fields, ASSUMED_ORDER[kind])
+    estimate = richardson(fields, assumed_order)
     if estimate is None:
         why = "differences do not fall" if len(fields) > 1 else reason
         errors, order, note = (math.nan, math.nan), math.nan, f"not estimated: {why}"
@@ -112,11 +112,11 @@ def splits_of(cells):
     return splits
 
 
-def fields_of(kind, name, displacement, refinements):
-    """The displacements that a stored result's element gives on its mesh split 0, 1, 2, ... times.
+def fields_of(name, displacement):
+    """The displacements that the golden's element gives on its mesh split 0, 1, 2, ... times.
 
-    displacement: the stored one, on the mesh split `refinements` times. Returns (list of (n, 3),
-    m; why there are no more). Raises InputError or ComputationError.
+    displacement: the stored one, on the mesh itself. Returns (list of (n, 3), m; why there are no
+    more). Raises InputError or ComputationError.
     """
     path = find_case(CASES, name)
     case = read_case(path, name)
@@ -126,49 +126,39 @@ def fields_of(kind, name, displacement, refinements):
     if mesh.ties:
         return [displacement], "a mesh with nodes that hang is not split further"
     cells = len(halve(mesh)[0].cells)
-    if kind == "golden":
-        splits = splits_of(cells)
-        reason = f"a mesh of {cells * 8 ** (splits + 1)} cells was too dear"
-        fields, _, _ = solve.solve_case(kind, case, mesh, splits, solve.load_steps_of(kind, case))
-        return [displacement] + fields[1:], reason
-    reason = f"a mesh of {cells * 8 ** (refinements + 1)} cells was too dear"
-    if refinements == 0:
-        return [displacement], reason
-    fields, _, _ = solve.solve_case(
-        kind, case, mesh, refinements - 1, solve.load_steps_of(kind, case)
-    )
-    return fields + [displacement], reason
+    splits = splits_of(cells)
+    reason = f"a mesh of {cells * 8 ** (splits + 1)} cells was too dear"
+    fields, _, _ = solve.solve_case(case, mesh, splits, solve.load_steps_of(case))
+    return [displacement] + fields[1:], reason
 
 
-def estimate(kind, name):
-    """Estimate a stored result's own error and store it. Raises InputError or ComputationError."""
-    path = path_of(kind, name)
+def estimate(name):
+    """Estimate a golden's own error and store it. Raises InputError or ComputationError."""
+    path = path_of("golden", name)
     _, displacement, attributes = read_reference(path)
-    fields, reason = fields_of(kind, name, displacement, attributes["refinements"])
-    found = attributes_of(kind, fields, displacement, attributes["largest_imposed"], reason)
-    print(f"{kind} {name}: {100 * found['own_error_max']:.3g} %; {found['own_error_note']}")
+    fields, reason = fields_of(name, displacement)
+    found = attributes_of(fields, displacement, attributes["largest_imposed"], reason)
+    print(f"{name}: {100 * found['own_error_max']:.3g} %; {found['own_error_note']}")
     write_estimate(path, found)
 
 
 def run(options):
-    """Estimates the errors of the named results. Raises InputError or ComputationError."""
+    """Estimates the errors of the named goldens. Raises InputError or ComputationError."""
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
-    for kind in [options.kind] if options.kind else ASSUMED_ORDER:
-        known = stored(kind)
-        for name in options.cases or known:
-            if name not in known:
-                raise InputError(f"CASE: '{name}' has no {kind}; {suggestion(name, known)}")
-            estimate(kind, name)
+    known = stored("golden")
+    for name in options.cases or known:
+        if name not in known:
+            raise InputError(f"CASE: '{name}' has no golden; {suggestion(name, known)}")
+        estimate(name)
 
 
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        description="Estimate the discretisation errors of stored goldens and truths.",
+        description="Estimate the discretisation errors of stored goldens.",
         epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found",
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all stored ones")
-    parser.add_argument("--kind", choices=ASSUMED_ORDER, help="default: both")
     return exit_code(run, parser.parse_args(arguments))
 
 

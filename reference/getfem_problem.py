@@ -1,4 +1,4 @@
-"""Golden and truth by a second program: GetFEM, with weak forms in its own language.
+"""Goldens by a second program: GetFEM, with weak forms in its own language.
 
 Elements, quadrature and the symbolic derivatives of the weak form are GetFEM's; its stresses are
 derived by hand, where FEniCSx derives them from the energy. Only Newton's method and the linear
@@ -11,9 +11,7 @@ import scipy.sparse
 
 from common.errors import InputError
 from common.hexahedron import CORNERS, LEXICOGRAPHIC
-from hexahedra import refine, split_nodes
 from newton import Unknown
-from problem import invert_blocks
 
 getfem.util_trace_level(0)
 
@@ -27,26 +25,20 @@ LAWS = {
 }
 # The corners of the reference element, and those of its faces, both in GetFEM's order.
 REFERENCE = CORNERS[LEXICOGRAPHIC]
-HALF = np.array([0.0, 0.5, 1.0])
 FACES = [np.flatnonzero(REFERENCE[:, axis] == side) for axis in range(3) for side in (1, -1)]
-# The three quadratic functions of a line, at the nodes of its lower and of its upper half.
-QUADRATIC = {
-    side: np.array([((s - 1) * s / 2, 1 - s**2, (s + 1) * s / 2) for s in (side - 1) / 2 + HALF])
-    for side in (-1, 1)
-}
 # The weak form of balance, of the first Piola-Kirchhoff stress, and of p = K (J - 1).
 FORM = """
 Def F := (Id(3) + Grad_u);
 Def J := Det(F);
 Def x := (pow(J, -2/3) * Norm_sqr(F) - 3);
-Def p := (pressure . basis);
-(2 * ({slope}) * pow(J, -2/3) * (F - Norm_sqr(F) / 3 * Inv(F)') + p * J * Inv(F)') : Grad_Test_u
-+ (J - 1 - p / ({bulk})) * (Test_pressure . basis)
+(2 * ({slope}) * pow(J, -2/3) * (F - Norm_sqr(F) / 3 * Inv(F)') + pressure * J * Inv(F)')
+: Grad_Test_u
++ (J - 1 - pressure / ({bulk})) * Test_pressure
 """
 
 
 class GetfemProblem:
-    """Equilibrium of a HexMesh with the elements of an ElementPair, assembled by GetFEM.
+    """Equilibrium of a HexMesh with the golden's element, assembled by GetFEM.
 
     mesh: HexMesh. materials: list of Material. Raises InputError for a law that is not in LAWS.
     It has the functions and attributes of MixedProblem that newton.solve() needs.
@@ -54,31 +46,17 @@ class GetfemProblem:
 
     program = "GetFEM"
 
-    def __init__(self, mesh, pair, materials):
+    def __init__(self, mesh, materials):
         corners = mesh.cells[:, LEXICOGRAPHIC]
-        quadratic = pair.displacement_order == 2
-        # The nodes of the quadratic element are those of the split mesh, conditions included.
-        self._nodes = refine(mesh) if quadratic else mesh
-        of_cells = split_nodes(corners, len(mesh.points))[0] if quadratic else corners
-        self._n_points = len(mesh.points)
         body = getfem.Mesh("empty", 3)
         body.add_convex(getfem.GeoTrans("GT_QK(3,1)"), mesh.points[corners].transpose(2, 1, 0))
-        rule = f"IM_GAUSS_PARALLELEPIPED(3,{2 * pair.gauss_points - 1})"
-        self._points = getfem.MeshIm(body, getfem.Integ(rule))
-        displacements = _field(body, 3, f"FEM_QK(3,{pair.displacement_order})")
-        self._of_cells = displacements.basic_dof_from_cvid()[0].reshape(len(corners), -1, 3)
-        self._dofs = np.empty((len(self._nodes.points), 3), dtype=np.int64)
-        self._dofs[of_cells] = self._of_cells
-        self._n_pressures = (1, 4)[pair.pressure_order]
+        self._points = getfem.MeshIm(body, getfem.Integ("IM_GAUSS_PARALLELEPIPED(3,3)"))
+        displacements = _field(body, 3, "FEM_QK(3,1)")
+        self._dofs = np.empty(mesh.points.shape, dtype=np.int64)
+        self._dofs[corners] = displacements.basic_dof_from_cvid()[0].reshape(len(corners), 8, 3)
         self._model = model = getfem.Model("real")
         model.add_fem_variable("u", displacements)
-        model.add_fem_variable("pressure", _field(body, self._n_pressures, "FEM_QK(3,0)"))
-        # A function that is linear in the coordinates of the reference element.
-        of_corner = np.column_stack([np.ones(8), REFERENCE])[:, : self._n_pressures]
-        corner_values = _field(body, self._n_pressures, "FEM_QK_DISCONTINUOUS(3,1)")
-        model.add_initialized_fem_data(
-            "basis", corner_values, np.tile(of_corner, (len(corners), 1)).ravel()
-        )
+        model.add_fem_variable("pressure", _field(body, 1, "FEM_QK(3,0)"))
         model.add_initialized_data("load", 1.0)
         intervals = (model.interval_of_variable(name) for name in ("u", "pressure"))
         self._rows = [slice(first, first + size) for first, size in intervals]
@@ -86,8 +64,8 @@ class GetfemProblem:
         self._add_materials(materials)
         self._add_loads()
         self.displacement = Unknown(self._dofs.size)
-        self.pressure = Unknown(len(corners) * self._n_pressures)
-        prescribed, _ = self._nodes.imposed()
+        self.pressure = Unknown(len(corners))
+        prescribed, _ = mesh.imposed()
         self.fixed = np.sort(self._dofs[prescribed])
         self.free = np.setdiff1d(np.arange(self._dofs.size), self.fixed)
         self.scale = max(np.abs(self.values_at(1.0)).max(initial=0.0), mesh.largest_turn().max())
@@ -141,30 +119,18 @@ class GetfemProblem:
         kept = loaded[cells, faces]
         return np.stack([cells[kept], faces[kept]])
 
-    def start_from(self, coarse):
-        """See MixedProblem.start_from; for quadratic displacements and linear pressures."""
-        values = coarse.displacement.array[coarse._of_cells].reshape(-1, 3, 3, 3, 3)
-        pressures = coarse.pressure.array.reshape(-1, 4)
-        finer = self.pressure.array.reshape(-1, 4)
-        for child, sides in enumerate(REFERENCE):
-            x, y, z = (QUADRATIC[side] for side in sides)
-            moved = np.einsum("ax, by, cz, ezyxi -> ecbai", x, y, z, values)
-            self.displacement.array[self._of_cells[child::8]] = moved.reshape(-1, 27, 3)
-            finer[child::8, 0] = pressures[:, 0] + pressures[:, 1:] @ sides / 2
-            finer[child::8, 1:] = pressures[:, 1:] / 2
-
     def values_at(self, load):
         """Values (in m) of the prescribed dofs at a load factor."""
-        prescribed, values = self._nodes.imposed(load)
+        prescribed, values = self._mesh.imposed(load)
         return values[prescribed][np.argsort(self._dofs[prescribed])]
 
     def node_dofs(self):
         """See MixedProblem.node_dofs."""
-        return self._dofs[: self._n_points]
+        return self._dofs
 
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh."""
-        return self.displacement.array[self._dofs[: self._n_points]]
+        return self.displacement.array[self._dofs]
 
     def _assemble(self, what):
         model = self._model
@@ -189,7 +155,7 @@ class GetfemProblem:
         starts, rows = matrix.csc_ind()
         matrix = scipy.sparse.csc_matrix((matrix.csc_val(), rows, starts)).tocsr()
         (stiffness, up), (pu, pp) = ([matrix[rows, cs] for cs in self._rows] for rows in self._rows)
-        inverse = invert_blocks(pp, self._n_pressures)
+        inverse = scipy.sparse.diags(1 / pp.diagonal())
         condensed = up @ inverse
 
         def recover(increment):

@@ -11,12 +11,24 @@ from dolfinx import fem
 JIT_OPTIONS = {"timeout": 600, "cffi_extra_compile_args": ["-O3", "-g0"]}
 
 
+# Nodes of a cell -> those of its faces: hexahedra of 8 nodes, and tetrahedra of 10, whose 6 edges
+# have a node each after the vertices.
+_OF_TETRAHEDRON = basix.topology(basix.CellType.tetrahedron)
+FACE_NODES = {
+    8: basix.topology(basix.CellType.hexahedron)[2],
+    10: [
+        face + [4 + number for number, edge in enumerate(_OF_TETRAHEDRON[1]) if {*edge} <= {*face}]
+        for face in _OF_TETRAHEDRON[2]
+    ],
+}
+
+
 class Loads:
     """The loads of a HexMesh on the displacement dofs (N,) of a function.
 
-    mesh: HexMesh. displacement: dolfinx function, m. cell_nodes: (m, 8) node numbers in the space's
-    order of cells and vertices. densities: (m,) of the cells in the order of the space, kg/m^3.
-    degree: of the quadrature.
+    mesh: HexMesh. displacement: dolfinx function, m. cell_nodes: (m, 8 or 10) node numbers in the
+    space's order of cells and nodes. densities: (m,) of the cells in the order of the space,
+    kg/m^3. degree: of the quadrature.
     """
 
     def __init__(self, mesh, displacement, cell_nodes, densities, degree):
@@ -70,33 +82,35 @@ class Loads:
     def tangent(self, factor_of):
         """The derivative (N, N) of forces() by the displacement, N/m; 0 if they are constant."""
         self._set(factor_of)
-        return sum((_assembled(matrix) for _, matrix in self._forms), 0)
+        return sum((assembled(matrix) for _, matrix in self._forms), 0)
 
     def _set(self, factor_of):
         for factor, curve in self._factors:
             factor.value = factor_of(curve)
 
 
-def _assembled(form):
-    """The sparse matrix of a form."""
-    matrix = fem.petsc.assemble_matrix(form)
-    matrix.assemble()
-    indptr, indices, data = matrix.getValuesCSR()
-    size = matrix.getSize()
-    matrix.destroy()
+def assembled(form, matrix=None):
+    """The sparse matrix of a form. matrix: from create_matrix(form), to assemble into and keep."""
+    into = matrix or fem.petsc.create_matrix(form)
+    into.zeroEntries()
+    fem.petsc.assemble_matrix(into, form)
+    into.assemble()
+    indptr, indices, data = into.getValuesCSR()
+    size = into.getSize()
+    if matrix is None:
+        into.destroy()
     return scipy.sparse.csr_matrix((data, indices, indptr), shape=size)
 
 
 def _measure(domain, nodes, cell_nodes, degree):
-    """The measure on the boundary faces whose vertices all lie in a set. nodes: (n,) bool."""
+    """The measure on the boundary faces whose nodes all lie in a set. nodes: (n,) bool."""
     domain.topology.create_connectivity(2, 3)
     domain.topology.create_connectivity(3, 2)
     facets = []
     for facet in dolfinx.mesh.exterior_facet_indices(domain.topology):
         (cell,) = domain.topology.connectivity(2, 3).links(facet)
         local = list(domain.topology.connectivity(3, 2).links(cell)).index(facet)
-        vertices = basix.topology(basix.CellType.hexahedron)[2][local]
-        if nodes[cell_nodes[cell, vertices]].all():
+        if nodes[cell_nodes[cell, FACE_NODES[len(cell_nodes[cell])][local]]].all():
             facets.append(facet)
     facets = np.sort(np.array(facets, dtype=np.int32))
     tags = dolfinx.mesh.meshtags(domain, 2, facets, np.ones_like(facets))

@@ -13,7 +13,7 @@ import scipy.sparse
 import newton
 from common.accuracy import relative_errors
 from common.errors import ComputationError
-from problem import GOLDEN, MixedProblem
+from problem import MixedProblem
 
 # Newton's method converges quadratically: its last correction is below the square of this.
 TOLERANCE = 1e-6
@@ -35,7 +35,7 @@ class MovingProblem(MixedProblem):
     """
 
     def __init__(self, mesh, materials, motion, velocity):
-        super().__init__(mesh, GOLDEN, materials)
+        super().__init__(mesh, materials)
         self._motion = motion
         self._masses = self.lumped_masses()
         self._v = self.dofs_of(velocity)

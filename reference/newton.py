@@ -147,6 +147,9 @@ def _direct_solve(matrix, right, symmetric):
     pc = ksp.getPC()
     pc.setType(PETSc.PC.Type.CHOLESKY if symmetric else PETSc.PC.Type.LU)
     pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+    pc.setFactorSetUpSolverType()
+    # Indefinite systems delay pivots: half as much memory again as MUMPS expects (default: 20 %).
+    pc.getFactorMatrix().setMumpsIcntl(14, 50)
     b = PETSc.Vec().createWithArray(right, comm=PETSc.COMM_SELF)
     x = PETSc.Vec().createWithArray(np.empty(size[0]), comm=PETSc.COMM_SELF)
     ksp.solve(b, x)

@@ -1,10 +1,9 @@
 """The mixed displacement-pressure problem on a mesh of hexahedra, assembled with FEniCSx.
 
-The pressure is discontinuous, so every Newton step eliminates it exactly on the element level
-(static condensation), which leaves a symmetric system in the displacement alone.
+Each element has a pressure of its own, so every Newton step eliminates it exactly on the element
+level (static condensation), which leaves a symmetric system in the displacement alone.
 """
 
-from dataclasses import dataclass
 from functools import partial
 
 import basix
@@ -15,73 +14,37 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
-from boundary import prescribed_dofs
 from common.hexahedron import LEXICOGRAPHIC
 from laws import energy
-from loads import JIT_OPTIONS, Loads
+from loads import JIT_OPTIONS, Loads, assembled
 
 
-@dataclass(frozen=True)
-class ElementPair:
-    """Displacement Lagrange order, pressure family and order, Gauss points per direction."""
-
-    name: str
-    displacement_order: int
-    pressure_family: str
-    pressure_order: int
-    gauss_points: int
-
-    @property
-    def quadrature(self):
-        """The quadrature in words."""
-        n = self.gauss_points
-        return f"Gauss-Legendre {n}x{n}x{n}"
-
-
-GOLDEN = ElementPair("Q1-P0", 1, "DQ", 0, 2)
-# Not 3 x 3 x 3: elements under an indenter's rim are so distorted that it matters (README).
-TRUTH = ElementPair("Q2-P1", 2, "DPC", 1, 4)
+QUADRATURE = 3  # the degree that 2 x 2 x 2 Gauss points integrate
 
 
 class MixedProblem:
     """Equilibrium of a HexMesh: residual and tangent in the displacement's unknowns.
 
-    mesh: HexMesh. pair: ElementPair. materials: list of Material, of which the mesh's elements
-    have the numbers.
+    The golden's element: a trilinear displacement and one pressure (Q1-P0), 2 x 2 x 2 Gauss points.
+
+    mesh: HexMesh. materials: list of Material, of which the mesh's elements have the numbers.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
     dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
     (the other dofs), load (the current factor of the loads, 0 to 1),
     symmetric (whether tangents are).
     """
 
-    def __init__(self, mesh, pair, materials):
+    def __init__(self, mesh, materials):
         vertex = ufl.VectorElement("Lagrange", "hexahedron", 1)
         lexicographic = mesh.cells[:, LEXICOGRAPHIC]
         domain = dolfinx.mesh.create_mesh(
             MPI.COMM_SELF, lexicographic, mesh.points, ufl.Mesh(vertex)
         )
-        displacements = ufl.VectorElement("Lagrange", "hexahedron", pair.displacement_order)
-        pressures = ufl.FiniteElement(pair.pressure_family, "hexahedron", pair.pressure_order)
-        self.displacement = fem.Function(fem.FunctionSpace(domain, displacements))
-        self.pressure = fem.Function(fem.FunctionSpace(domain, pressures))
-        # Constants rather than literals, so that one compiled form serves every case.
-        laws = [
-            partial(
-                energy,
-                m.law,
-                m.volumetric,
-                **{k: fem.Constant(domain, v) for k, v in m.parameters.items()},
-            )
-            for m in materials
-        ]
-        of_cell = None
-        if len(laws) > 1:
-            of_cell = mesh.materials[np.asarray(domain.topology.original_cell_index)]
-        axes = None
-        if mesh.axes is not None:
-            axes = fem.Function(fem.FunctionSpace(domain, ufl.TensorElement("DG", "hexahedron", 0)))
-            axes.x.array[:] = mesh.axes[np.asarray(domain.topology.original_cell_index)].ravel()
-        self._forms = _compile_forms(self.displacement, self.pressure, pair, laws, of_cell, axes)
+        self.displacement = fem.Function(fem.FunctionSpace(domain, vertex))
+        self.pressure = fem.Function(fem.FunctionSpace(domain, ("DG", 0)))
+        points, _ = basix.make_quadrature(basix.CellType.hexahedron, QUADRATURE)
+        assert len(points) == 8, "FEniCSx chose another Gauss rule"
+        self._forms = compile_forms(self.displacement, self.pressure, mesh, materials, QUADRATURE)
         self._matrices = {
             name: fem.petsc.create_matrix(form) for name, form in self._forms["matrices"].items()
         }
@@ -92,18 +55,16 @@ class MixedProblem:
         cell_nodes = np.asarray(domain.geometry.input_global_indices)[geometry]
         space = self.displacement.function_space
         self._vertex_block = np.empty(len(mesh.points), dtype=np.int64)
-        cell_dofs = space.dofmap.list.array.reshape(n_cells, -1)
-        vertex_dofs = [space.dofmap.dof_layout.entity_dofs(0, v)[0] for v in range(8)]
-        self._vertex_block[cell_nodes] = cell_dofs[:, vertex_dofs]
-        self._prescribed = partial(prescribed_dofs, space, cell_nodes, mesh.conditions)
-        self.fixed, self.values = self._prescribed()
+        self._vertex_block[cell_nodes] = space.dofmap.list.array.reshape(n_cells, 8)
+        self._mesh = mesh
+        prescribed, values = mesh.imposed()
+        self.fixed = self.node_dofs()[prescribed].astype(np.int32)
+        self.values = values[prescribed]
         self.scale = max(np.abs(self.values).max(initial=0.0), mesh.largest_turn().max())
         self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
         self.load = 1.0
-        of_cells = np.zeros(n_cells, dtype=int) if of_cell is None else of_cell
-        self._densities = np.array([material.density for material in materials])[of_cells]
-        self._degree = 2 * pair.gauss_points - 1
-        self._loads = Loads(mesh, self.displacement, cell_nodes, self._densities, self._degree)
+        self._densities = densities_of(domain, mesh, materials)
+        self._loads = Loads(mesh, self.displacement, cell_nodes, self._densities, QUADRATURE)
         self.symmetric = self._loads.symmetric
 
     def start_from(self, coarse):
@@ -129,7 +90,8 @@ class MixedProblem:
 
     def values_at(self, load):
         """Values (in m) of the prescribed dofs at a load factor."""
-        return self._prescribed(load)[1]
+        prescribed, values = self._mesh.imposed(load)
+        return values[prescribed]
 
     def factor_of(self, _curve):
         """The present factor of a load: at rest no load has a curve of its own."""
@@ -140,7 +102,7 @@ class MixedProblem:
         vertex, as solver/problem/masses.cpp does. For elements whose only nodes are vertices."""
         space = self.displacement.function_space
         test = ufl.TestFunction(fem.FunctionSpace(space.mesh, ("DG", 0)))
-        measure = ufl.dx(metadata={"quadrature_degree": self._degree})
+        measure = ufl.dx(metadata={"quadrature_degree": QUADRATURE})
         volumes = fem.assemble_vector(fem.form(test * measure, jit_params=JIT_OPTIONS)).array
         masses = np.zeros(len(self._vertex_block))
         of_cells = (self._densities * volumes / 8)[:, None]
@@ -182,7 +144,7 @@ class MixedProblem:
         """
         stiffness = self._assemble_matrix("uu")
         coupling = self._assemble_matrix("up")
-        inverse = invert_blocks(self._assemble_matrix("pp"), self._pressures_per_cell())
+        inverse = scipy.sparse.diags(1 / self._assemble_matrix("pp").diagonal())
         force, dilatation = self.mixed_residual()
         condensed = coupling @ inverse
         tangent = (stiffness - condensed @ coupling.T + self._loads.tangent(self.factor_of)).tocsr()
@@ -201,39 +163,50 @@ class MixedProblem:
         forces = self._assemble_vector("u") + self._loads.forces(self.factor_of)
         return forces, self._assemble_vector("p")
 
-    def _pressures_per_cell(self):
-        return self.pressure.function_space.dofmap.dof_layout.num_dofs
-
     def _assemble_matrix(self, name):
-        matrix = self._matrices[name]
-        matrix.zeroEntries()
-        fem.petsc.assemble_matrix(matrix, self._forms["matrices"][name])
-        matrix.assemble()
-        indptr, indices, data = matrix.getValuesCSR()
-        return scipy.sparse.csr_matrix((data, indices, indptr), shape=matrix.getSize())
+        return assembled(self._forms["matrices"][name], self._matrices[name])
 
     def _assemble_vector(self, name):
         return fem.assemble_vector(self._forms["vectors"][name]).array
 
 
-def _compile_forms(u, p, pair, laws, of_cell, axes):
+def densities_of(domain, mesh, materials):
+    """Densities (m,) in kg/m^3 of the cells of a HexMesh, in dolfinx's order of cells."""
+    numbers = np.zeros(len(mesh.cells), dtype=int) if len(materials) == 1 else mesh.materials
+    of_cells = numbers[np.asarray(domain.topology.original_cell_index)]
+    return np.array([material.density for material in materials])[of_cells]
+
+
+def compile_forms(u, p, mesh, materials, degree):
     """First and second derivatives of the energy with respect to displacement and pressure.
 
-    laws: list of functions (F, p) -> energy density. of_cell: the number of the law of each cell,
-    if there are several. axes: material axes by rows, in which laws take F, or None.
+    u, p: dolfinx functions on a domain made from a HexMesh. materials: list of Material. degree: of
+    the quadrature. Returns "scalars", "vectors" and "matrices" -> name -> compiled form.
     """
-    degree = 2 * pair.gauss_points - 1
-    points, _ = basix.make_quadrature(basix.CellType.hexahedron, degree)
-    assert len(points) == pair.gauss_points**3, "FEniCSx chose another Gauss rule"
+    domain = u.function_space.mesh
+    # Constants rather than literals, so that one compiled form serves every case.
+    laws = [
+        partial(
+            energy,
+            m.law,
+            m.volumetric,
+            **{k: fem.Constant(domain, v) for k, v in m.parameters.items()},
+        )
+        for m in materials
+    ]
+    original = np.asarray(domain.topology.original_cell_index)
     measure = ufl.dx(metadata={"quadrature_rule": "default", "quadrature_degree": degree})
     parts = [measure]
-    if of_cell is not None:
-        cells = np.arange(len(of_cell), dtype=np.int32)
-        domain = u.function_space.mesh
-        tags = dolfinx.mesh.meshtags(domain, 3, cells, of_cell.astype(np.int32))
+    if len(laws) > 1:
+        numbers = mesh.materials[original].astype(np.int32)
+        cells = np.arange(len(numbers), dtype=np.int32)
+        tags = dolfinx.mesh.meshtags(domain, 3, cells, numbers)
         parts = [measure(number, subdomain_data=tags) for number in range(len(laws))]
     F = ufl.Identity(3) + ufl.grad(u)
-    if axes is not None:
+    if mesh.axes is not None:  # laws take F in material axes
+        tensors = ufl.TensorElement("DG", domain.ufl_cell(), 0)
+        axes = fem.Function(fem.FunctionSpace(domain, tensors))
+        axes.x.array[:] = mesh.axes[original].ravel()
         F = axes * F * axes.T
     total = sum(law(F, p) * part for law, part in zip(laws, parts, strict=True))
     v, du = ufl.TestFunction(u.function_space), ufl.TrialFunction(u.function_space)
@@ -252,17 +225,3 @@ def _compile_forms(u, p, pair, laws, of_cell, axes):
         kind: {name: fem.form(form, jit_params=JIT_OPTIONS) for name, form in group.items()}
         for kind, group in forms.items()
     }
-
-
-def invert_blocks(matrix, size):
-    """Inverse of a sparse block-diagonal matrix of contiguous (size x size) blocks."""
-    n_blocks = matrix.shape[0] // size
-    entries = matrix.tocoo()
-    rows, columns = entries.row // size, entries.col // size
-    assert (rows == columns).all(), "pressure is not local"
-    blocks = np.zeros((n_blocks, size, size))
-    blocks[rows, entries.row % size, entries.col % size] = entries.data
-    inverse = scipy.sparse.bsr_matrix(
-        (np.linalg.inv(blocks), np.arange(n_blocks), np.arange(n_blocks + 1)), shape=matrix.shape
-    )
-    return inverse.tocsr()

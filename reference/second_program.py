@@ -1,7 +1,7 @@
-"""Golden and truth by a second program: how far SfePy's and GetFEM's answers are from FEniCSx's.
+"""Goldens by a second program: how far SfePy's and GetFEM's answers are from FEniCSx's.
 
-Usage: /usr/bin/python3 reference/second_program.py [--kind golden|truth] [CASE...]
-Computes the stored references once more on the same meshes, from rest, and stores the distances in
+Usage: /usr/bin/python3 reference/second_program.py [CASE...]
+Computes the stored goldens once more on the same meshes, from rest, and stores the distances in
 second_program.json and in the table of README.md. Needs the solver's binary, which makes the
 meshes. Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found or a distance of 1e-9 or
 more.
@@ -24,7 +24,7 @@ from common.files import read_json, write_json, write_whole
 from common.program import CASES
 from mesh_file import load_case_mesh, make_mesh
 from reference_file import path_of, read_reference, stored
-from solve import PAIRS, load_steps_of, solve_case
+from solve import load_steps_of, solve_case
 
 STORE = Path(__file__).resolve().parent / "second_program.json"
 README = Path(__file__).resolve().parent / "README.md"
@@ -33,10 +33,10 @@ LIMIT = 1e-9
 PACKAGES = "python3-sfepy and python3-getfem (ci/setup test)"
 
 
-def distance(kind, name, change=None):
-    """How far a second program's answer is from the stored one: a record of second_program.json.
+def distance(name, change=None):
+    """How far a second program's answer is from the golden: a record of second_program.json.
 
-    kind: "golden" or "truth". name: of a case with that reference. change: from the Case's
+    name: of a case with a golden. change: from the Case's
     materials to others, for tests. Raises InputError or ComputationError.
     """
     path = find_case(CASES, name)
@@ -44,10 +44,10 @@ def distance(kind, name, change=None):
     with tempfile.TemporaryDirectory() as folder:
         make_mesh(path, Path(folder) / "mesh.h5", name)
         mesh, file = load_case_mesh(case, Path(folder) / "mesh.h5")
-    _, reference, attributes = read_reference(path_of(kind, name))
+    _, reference, attributes = read_reference(path_of("golden", name))
     if (attributes["case_hash"], attributes["mesh_hash"]) != (file.case_hash, file.mesh_hash):
         raise InputError(
-            f"{path_of(kind, name)}: belongs to another version of the case; run "
+            f"{path_of('golden', name)}: belongs to another version of the case; run "
             f"reference/regenerate {name}"
         )
     if change:
@@ -58,21 +58,20 @@ def distance(kind, name, change=None):
         problems.append(second_problem(*arguments))
         return problems[-1]
 
-    splits, load_steps = attributes["refinements"], load_steps_of(kind, case)
-    found, _, _ = solve_case(kind, case, mesh, splits, load_steps, make=make)
+    found, _, _ = solve_case(case, mesh, 0, load_steps_of(case), make=make)
     return {
-        "kind": kind,
+        "kind": "golden",
         "case": name,
-        "elements": len(mesh.cells) * 8**splits,
+        "elements": len(mesh.cells),
         "program": problems[-1].program,
         "distance": float(relative_errors(found[-1], reference, attributes["largest_imposed"])[0]),
     }
 
 
-def second_problem(mesh, pair, materials):
+def second_problem(mesh, materials):
     """The problem of a HexMesh by the first of SfePy and GetFEM that can state it.
 
-    pair: ElementPair. materials: list of Material. Raises InputError where neither can.
+    materials: list of Material. Raises InputError where neither can.
     """
     try:
         from getfem_problem import GetfemProblem
@@ -80,48 +79,43 @@ def second_problem(mesh, pair, materials):
     except ImportError as error:
         raise InputError(f"{error.name} is not installed; packages: {PACKAGES}") from error
     try:
-        return SfepyProblem(mesh, pair, materials)
+        return SfepyProblem(mesh, materials)
     except InputError:
-        return GetfemProblem(mesh, pair, materials)
+        return GetfemProblem(mesh, materials)
 
 
 def table(records):
     """The Markdown table of records, as a string."""
-    lines = ["| reference | case | elements | second program | distance |", "|---|---|---|---|---|"]
+    lines = ["| case | elements | second program | distance |", "|---|---|---|---|"]
     for record in records:
-        cells = [str(record[key]) for key in ("kind", "case", "elements", "program")]
+        cells = [str(record[key]) for key in ("case", "elements", "program")]
         lines.append(f"| {' | '.join(cells)} | {record['distance']:.1e} |")
     return "\n".join(lines)
 
 
 def run(options):
     """Computes, prints, stores. Returns the exit code. Raises InputError."""
-    wanted = []
-    for kind in (options.kind,) if options.kind else PAIRS:
-        known = stored(kind)
-        for name in options.cases:
-            if name not in known:
-                raise InputError(f"CASE: {name!r} has no stored {kind}; {suggestion(name, known)}")
-        wanted += [(kind, name) for name in options.cases or known]
+    known = stored("golden")
+    for name in options.cases:
+        if name not in known:
+            raise InputError(f"CASE: {name!r} has no stored golden; {suggestion(name, known)}")
     records = {}
     if STORE.exists():
-        before = read_json(STORE, "this program")["records"]
-        records = {(one["kind"], one["case"]): one for one in before}
+        records = {one["case"]: one for one in read_json(STORE, "this program")["records"]}
     code = 0
-    for kind, name in wanted:
+    for name in options.cases or known:
         try:
-            record = records[kind, name] = distance(kind, name)
+            record = records[name] = distance(name)
         except ComputationError as error:
-            print(f"error: {kind} of {name}: {error}", file=sys.stderr)
+            print(f"error: {name}: {error}", file=sys.stderr)
             code = 3
             continue
-        says = f"{kind} of {name}: {record['program']}: {record['distance']:.1e}"
+        says = f"{name}: {record['program']}: {record['distance']:.1e}"
         print(says, flush=True)
         if not record["distance"] < LIMIT:
             print(f"error: {says}: must be below {LIMIT:.0e}", file=sys.stderr)
             code = 3
-    every = [(kind, name) for kind in PAIRS for name in stored(kind)]
-    listed = [records[one] for one in every if one in records]
+    listed = [records[one] for one in known if one in records]
     write_json(STORE, {"records": listed})
     before, rest = README.read_text(encoding="utf-8").split(BEGIN)
     after = rest.split(END)[1]
@@ -132,10 +126,9 @@ def run(options):
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        description="Compute golden and truth by a second program, SfePy or GetFEM.",
+        description="Compute goldens by a second program, SfePy or GetFEM.",
         epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium or too far",
     )
-    parser.add_argument("--kind", choices=PAIRS, help="default: both")
     parser.add_argument("cases", metavar="CASE", nargs="*", help="default: all that have one")
     return exit_code(run, parser.parse_args(arguments))
 

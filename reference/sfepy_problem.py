@@ -20,7 +20,6 @@ with contextlib.redirect_stdout(io.StringIO()):
 from common.errors import InputError
 from common.hexahedron import boundary_faces
 from newton import Unknown
-from problem import GOLDEN
 
 output.set_output(quiet=True)
 
@@ -32,16 +31,14 @@ LAWS = ("neo-hookean",)
 class SfepyProblem:
     """Equilibrium of a HexMesh, Q1 displacements and P0 pressures, with the terms of SfePy.
 
-    mesh: HexMesh. pair: ElementPair. materials: list of Material. Raises InputError for what SfePy
+    mesh: HexMesh. materials: list of Material. Raises InputError for what SfePy
     has no element or term for. It has the functions and attributes of MixedProblem that
     newton.solve() needs.
     """
 
     program = f"SfePy {VERSION}"
 
-    def __init__(self, mesh, pair, materials):
-        if pair != GOLDEN:
-            raise InputError(f"SfePy has no discontinuous linear pressure, as {pair.name} needs it")
+    def __init__(self, mesh, materials):
         for material in materials:
             if material.law not in LAWS:
                 raise InputError(f"SfePy has no term for the law {material.law!r}")

@@ -1,6 +1,6 @@
-"""Solve a case with mixed elements in FEniCSx: the golden (Q1-P0) or the truth (Q2-P1).
+"""Solve a case with mixed elements (Q1-P0) in FEniCSx: the golden, at rest or of motion.
 
-Usage: /usr/bin/python3 reference/solve.py golden|truth|motion CASE.toml --mesh mesh.h5 -o out.h5
+Usage: /usr/bin/python3 reference/solve.py golden|motion CASE.toml --mesh mesh.h5 -o out.h5
 Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found.
 """
 
@@ -9,7 +9,6 @@ import logging
 import math
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import dolfinx
@@ -27,35 +26,34 @@ from common.errors import ComputationError, InputError
 from common.files import require_writable
 from hexahedra import refine
 from mesh_file import initial_velocity, load_case_mesh
-from problem import GOLDEN, TRUTH, MixedProblem
+from problem import MixedProblem
 from reference_file import MOTION, NOT_ESTIMATED, write_reference
 from symmetry import expand, halve
 from tied_problem import TiedProblem
 
-PAIRS = {"golden": GOLDEN, "truth": TRUTH, MOTION: GOLDEN}
+KINDS = ("golden", MOTION)
 # A step that fails is halved, so these affect only the speed. One step cannot turn a body far.
-LOAD_STEPS = {"golden": 10, "truth": 1}
+LOAD_STEPS = 10
 LARGEST_TURN = math.radians(36)
 NEWTON_TOLERANCE = 1e-10
 BOUNDARY_RULE = "trace of Q1: every vertex, edge and face whose vertices are all prescribed"
 
 
-def solve_case(kind, case, mesh, refinements, load_steps, pair=None, make=MixedProblem):
+def solve_case(case, mesh, refinements, load_steps, make=MixedProblem):
     """Solve a case on its mesh and on that mesh split once, twice, ... `refinements` times.
 
-    kind: "golden" or "truth". case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh.
-    pair: ElementPair, by default that of the kind. make: from HexMesh, ElementPair and materials to
-    a problem for newton.solve().
+    case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh. make: from HexMesh and
+    materials to a problem for newton.solve().
     Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
     the last mesh; axes of the mirror planes used, as text). Raises ComputationError.
     """
     # The golden is the oracle for all else: on its own mesh it takes no short cut.
-    part, halves = halve(mesh) if kind == "truth" or refinements else (mesh, [])
+    part, halves = halve(mesh) if refinements else (mesh, [])
     n_nodes = len(part.points)
     displacements, coarse = [], None
     for level in range(refinements + 1):
         part = refine(part) if level else part
-        problem = make(part, pair or PAIRS[kind], case.materials)
+        problem = make(part, case.materials)
         if part.ties:
             problem = TiedProblem(problem, part.ties)
         if coarse:
@@ -69,10 +67,10 @@ def solve_case(kind, case, mesh, refinements, load_steps, pair=None, make=MixedP
     return displacements, outcome, "".join("xyz"[half.axis] for half in halves)
 
 
-def load_steps_of(kind, case):
+def load_steps_of(case):
     """The initial number of load steps of a Case."""
     turn = max((abs(rotation.angle) for rotation in case.rotations), default=0.0)
-    return max(LOAD_STEPS[kind], math.ceil(turn / LARGEST_TURN - 1e-9))
+    return max(LOAD_STEPS, math.ceil(turn / LARGEST_TURN - 1e-9))
 
 
 def run(options):
@@ -85,12 +83,11 @@ def run(options):
     mesh, file = load_case_mesh(case, options.mesh)
     if mesh.ties and (kind != "golden" or refinements):
         raise InputError(
-            f"{options.case}: a refined mesh has a golden at rest only: quadratic elements, motion "
-            "and meshes that are split further have no ties here"
+            f"{options.case}: a refined mesh has a golden at rest only: motion and meshes that are "
+            "split further have no ties here"
         )
     require_writable(options.output)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
-    pair = replace(PAIRS[kind], gauss_points=options.gauss or PAIRS[kind].gauss_points)
     if case.motion:
         velocity = initial_velocity(case, options.mesh)
         golden = motion.solve_motion(mesh, case.materials, case.motion, velocity)
@@ -98,10 +95,8 @@ def run(options):
         halving = {"halving_max": golden.halving[0], "halving_rms": golden.halving[1]}
         facts = halving | discretisation_error([], unit)
     else:
-        load_steps = options.load_steps or load_steps_of(kind, case)
-        displacements, outcome, mirrors = solve_case(
-            kind, case, mesh, refinements, load_steps, pair
-        )
+        load_steps = options.load_steps or load_steps_of(case)
+        displacements, outcome, mirrors = solve_case(case, mesh, refinements, load_steps)
         displacement = displacements[-1]
         unit = mesh.largest_imposed() or np.linalg.norm(displacement, axis=1).max()
         facts = discretisation_error(displacements, unit)
@@ -110,9 +105,9 @@ def run(options):
         "case_hash": file.case_hash,
         "mesh_hash": file.mesh_hash,
         "kind": kind,
-        "element": pair.name,
+        "element": "Q1-P0",
         "refinements": refinements,
-        "quadrature": pair.quadrature,
+        "quadrature": "Gauss-Legendre 2x2x2",
         "law": ", ".join(material.law for material in case.materials),
         "mirror_planes": mirrors,
         "boundary_rule": BOUNDARY_RULE,
@@ -154,7 +149,7 @@ def main(arguments=None):
         epilog="exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found",
     )
     add = parser.add_argument
-    add("kind", choices=PAIRS, help="golden: Q1-P0; truth: Q2-P1; motion: Q1-P0 of a dynamic case")
+    add("kind", choices=KINDS, help="golden: at rest; motion: of a dynamic case")
     add("case", metavar="CASE.toml", help="the case file")
     add("--variant", metavar="NAME", help="case of the file, where it has variants")
     add("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
@@ -172,12 +167,6 @@ def main(arguments=None):
         type=whole_number(1),
         metavar="N",
         help=f"default: {LOAD_STEPS}, halved on failure",
-    )
-    add(
-        "--gauss",
-        type=whole_number(1),
-        metavar="N",
-        help="Gauss points per direction; default: 2, 4",
     )
     return exit_code(run, parser.parse_args(arguments))
 

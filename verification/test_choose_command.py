@@ -131,7 +131,7 @@ def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
     """No method can fix a mesh that is a percent off; a less accurate truth proves nothing."""
     case = copied("column", tmp_path)
     chosen = tmp_path / "chosen.toml"
-    outcome, document = choose(case, "--tolerance", "0.01%", "--against", "truth", "-o", chosen)
+    outcome, document = choose(case, "--tolerance", "0.001%", "--against", "truth", "-o", chosen)
     assert outcome.returncode == 1, outcome.stderr
     assert not chosen.exists() and document["chosen"] is None
     assert "nothing suffices" in outcome.stdout and "was not written" in outcome.stdout

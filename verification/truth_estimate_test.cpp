@@ -198,7 +198,7 @@ TEST(TruthEstimate, is_about_the_error) {
 }
 
 /// As many refinements as the accuracy takes, none where it takes none. Against the stored truth, whose bar
-/// is .0018 of the unit, errors are within what was asked for; the estimate is the distance from the limit.
+/// is 1e-4 of the unit, errors are within what was asked for; the estimate is the distance from the limit.
 TEST(RefineUntilWithin, refines_no_more_than_is_asked) {
   const Scene scene = case_named("column");
   const NodalField truth = read_reference(read_comparison(scene).truth, scene).front();

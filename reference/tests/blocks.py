@@ -2,9 +2,13 @@
 
 import h5py
 import numpy as np
+import pytest
 
 from case_file import Material
-from hexahedra import Condition, HexMesh
+from hexahedra import Condition, HexMesh, refine
+from problem import MixedProblem
+from taylor_hood import TaylorHoodProblem
+from tetrahedra import cut
 
 MATERIAL = {"young_modulus": 3000.0, "poisson_ratio": 0.49}
 MATERIALS = [Material("neo-hookean", MATERIAL)]
@@ -86,3 +90,26 @@ def write_mesh(path, points, cells, sets, case="block"):
         file.attrs["case"] = case
         file.attrs["case_hash"] = "0123456789abcdef"
         file.attrs["mesh_hash"] = "fedcba9876543210"
+
+
+def with_hanging_nodes(mesh, split):
+    """A HexMesh of which the cells with the numbers `split` are split into eight, by themselves."""
+    fine, split = refine(mesh), np.asarray(split, dtype=int)
+    whole = np.setdiff1d(np.arange(len(mesh.cells)), split)
+    children = 8 * np.repeat(split, 8) + np.tile(np.arange(8), len(split))
+    cells = np.concatenate([mesh.cells[whole], fine.cells[children]])
+    kept, number = np.unique(cells, return_inverse=True)
+    conditions = tuple(
+        Condition(c.nodes[kept], c.components, c.values[kept]) for c in fine.conditions
+    )
+    return HexMesh(fine.points[kept], number.reshape(cells.shape), conditions)
+
+
+def taylor_hood(mesh, materials):
+    """The problem of a HexMesh cut into tetrahedra; the nodes of the HexMesh come first."""
+    return TaylorHoodProblem(cut(mesh), materials)
+
+
+ELEMENTS = pytest.mark.parametrize(
+    "make", [MixedProblem, taylor_hood], ids=["hexahedra", "tetrahedra"]
+)

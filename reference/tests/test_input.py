@@ -18,18 +18,6 @@ def _run(folder, kind="golden", mesh="mesh.h5", options=()):
     return code
 
 
-def test_other_gauss_points(folder):
-    """The file records their number, and on a distorted mesh they change the answer."""
-    answers = []
-    for options in ((), ("--gauss", "2"), ("--gauss", "3")):
-        assert _run(folder, options=options) == 0
-        _, displacement, attributes = read_reference(folder / "out.h5")
-        answers.append((attributes["quadrature"], displacement))
-        (folder / "out.h5").unlink()
-    assert [words for words, _ in answers] == [f"Gauss-Legendre {n}x{n}x{n}" for n in (2, 2, 3)]
-    assert (answers[0][1] == answers[1][1]).all() and (answers[0][1] != answers[2][1]).any()
-
-
 def test_good_input(folder):
     assert _run(folder) == 0
     points, displacement, attributes = read_reference(folder / "out.h5")

@@ -16,7 +16,7 @@ from common.program import binary, output_of
 from common.result_file import last_displacement
 from laws import LAWS, VISCOELASTIC, VOLUMES, parameters
 from mesh_file import load_case_mesh, make_mesh
-from problem import GOLDEN, MixedProblem
+from problem import MixedProblem
 
 # Values for soft tissue, by parameter; parameters that are not listed are given a default guess.
 NUMBERS = {
@@ -141,7 +141,7 @@ def _compare(path, tmp_path):
     make_mesh(path, tmp_path / "mesh.h5")
     case = read_case(path)
     mesh, _ = load_case_mesh(case, tmp_path / "mesh.h5")
-    problem = MixedProblem(mesh, GOLDEN, case.materials)
+    problem = MixedProblem(mesh, case.materials)
     newton.solve(problem, 4, 1e-10)
     # The solver stops at forces of 1e-11 of the reactions, which means 1e-11 in displacements. A
     # c01 of 149 instead of 150 changes them by 1e-4.

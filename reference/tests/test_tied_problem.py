@@ -8,7 +8,7 @@ import pytest
 from blocks import MATERIALS, affine, distorted_block
 from hexahedra import Condition, HexMesh, refine
 from newton import solve
-from problem import GOLDEN, MixedProblem
+from problem import MixedProblem
 from tied_problem import TiedProblem
 
 GRADIENT = [[0.02, 0.05, -0.03], [0.04, -0.03, 0.02], [-0.05, 0.01, 0.02]]
@@ -46,7 +46,7 @@ def test_patch(block, program):
     if program == "SfePy":
         make = pytest.importorskip("sfepy_problem").SfepyProblem
     mesh, values, _ = block
-    problem = TiedProblem(make(mesh, GOLDEN, MATERIALS), mesh.ties)
+    problem = TiedProblem(make(mesh, MATERIALS), mesh.ties)
     outcome = solve(problem, 1, 1e-10)
     assert outcome.residual < 1e-9
     np.testing.assert_allclose(problem.nodal_displacement(), values, atol=1e-12)
@@ -55,14 +55,14 @@ def test_patch(block, program):
 def test_without_ties_it_is_no_answer(block):
     """The test above would notice: nodes that do not follow open cracks."""
     mesh, values, _ = block
-    problem = MixedProblem(mesh, GOLDEN, MATERIALS)
+    problem = MixedProblem(mesh, MATERIALS)
     solve(problem, 1, 1e-10)
     assert np.abs(problem.nodal_displacement() - values).max() > 1e-4
 
 
 def test_forces_are_handed_on(block):
     mesh, values, inside = block
-    problem = TiedProblem(MixedProblem(mesh, GOLDEN, MATERIALS), mesh.ties)
+    problem = TiedProblem(MixedProblem(mesh, MATERIALS), mesh.ties)
     moved = np.random.default_rng(1).normal(scale=0.01, size=values.size)
     problem.displacement.array[:] = moved
     forces, _ = problem.mixed_residual()

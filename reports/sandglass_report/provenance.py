@@ -78,7 +78,7 @@ def origins(subjects):
 
 def _words(about):
     """How a reference was computed, from its attributes."""
-    split = f", mesh split {about['refinements']}×" if about.get("refinements") else ", same mesh"
+    split = f", edges split {about['refinements']}×" if about.get("refinements") else ", same mesh"
     program = f", dolfinx {about['dolfinx_version']}" if "dolfinx_version" in about else ""
     return f"{about.get('element', 'unknown element')}{split}{program}"
 

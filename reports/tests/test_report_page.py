@@ -84,7 +84,7 @@ def test_a_missing_truth_is_said(page):
 
 
 def test_a_truth_gives_the_goldens_own_error(data):
-    data.write_reference("truth", data.answer * [1.0, 1.0, 1.1], element="Q2-P1", refinements=1)
+    data.write_reference("truth", data.answer * [1.0, 1.0, 1.1], element="P2-P1", refinements=1)
     assert "no run has a figure against the truth" in data.make()
     for record in data.records[1:3]:
         record["truth"] = record["golden"] | {"max_relative_error": 0.08}
@@ -93,7 +93,7 @@ def test_a_truth_gives_the_goldens_own_error(data):
     assert "no truth is stored for this case yet" not in page
     assert "golden to truth, max" in page
     assert "8.00 %" in page  # 0.1 * 0.4 m over 0.5 m
-    assert "mesh split 1×" in page
+    assert "edges split 1×" in page
 
 
 def test_a_broken_limit_comes_first(data):
