@@ -154,7 +154,7 @@ def main(arguments=None):
     add(
         "--most",
         type=whole_number(1),
-        default=150_000,
+        default=60_000,
         metavar="N",
         help="elements of uniform ones",
     )

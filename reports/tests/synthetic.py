@@ -260,4 +260,4 @@ class Axes:
         self.lines.append((x, y))
 
     def __getattr__(self, name):
-        return lambda *words: None
+        return mock.MagicMock()

@@ -20,9 +20,10 @@ def write(tmp_path, *records):
     return path
 
 
-def test_a_panel_per_case_and_a_line_per_way_in_the_order_of_seconds(tmp_path):
+def test_a_panel_per_case_and_a_line_per_way_in_the_order_of_elements(tmp_path):
     records = (
-        record(4.0, 0.01),
+        record(4.0, 0.01, elements=900),
+        record(0.75, 0.02),
         record(0.5, 0.02),
         record(0.25, 0.03, way="uniform", residual=1e-8),
         record(0.125, 0.04, way="uniform", residual=1e-3),
@@ -31,8 +32,8 @@ def test_a_panel_per_case_and_a_line_per_way_in_the_order_of_seconds(tmp_path):
     plate = refinement_plate(read_refinement(write(tmp_path, *records)))
     column, twist = plate.panels
     for panel, expected in (
-        (column, [([0.25], [3.0]), ([0.125], [4.0]), ([0.5, 4.0], [2.0, 1.0])]),
-        (twist, [([], []), ([], []), ([1.0], [5.0])]),
+        (column, [([0.25], [0.03]), ([0.125], [0.04]), ([0.5, 4.0], [0.02, 0.01])]),
+        (twist, [([], []), ([], []), ([1.0], [0.05])]),
     ):
         axes = Axes()
         panel.draw(axes)

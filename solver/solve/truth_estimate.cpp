@@ -32,6 +32,10 @@ constexpr double tolerance_over_accuracy = 0.1;
 /// The residual at which searches for an estimate end: errors that are estimated are larger.
 constexpr double tolerance_of_estimate = 1e-4;
 
+/// Evaluations after which a search that starts near an answer is given up, if it had to go back to rest: one
+/// that succeeds takes ten or twenty, or a hundred from rest.
+constexpr int most_evaluations_near = 500;
+
 std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
@@ -78,8 +82,10 @@ class RecoveredGradients {
   std::vector<double> weights_;
 };
 
-/// The mean-dilatation element's answer (m), searched for near u (m) if that is given.
-NodalField find_answer(const Scene& scene, const NodalField* u, int threads) {
+/// The mean-dilatation element's answer (m), searched for near u (m) if that is given, and then not for long.
+NodalField find_answer(Scene scene, const NodalField* u, int threads) {
+  int& most = scene.description.relaxation.max_steps;
+  if (u != nullptr) most = std::min(most, most_evaluations_near);
   const Model model(scene, {.method = std::string(estimate_method), .threads = threads});
   Observer quiet;
   Relaxation found = relax(model, quiet, nullptr, u);
