@@ -166,6 +166,12 @@ Refinement read_refinement(TableReader table) {
   return refinement;
 }
 
+NodeTie read_tie(TableReader table) {
+  NodeTie tie{table.required<std::string>("set"), table.required<std::string>("elements")};
+  table.finish();
+  return tie;
+}
+
 Gravity read_gravity(TableReader table) {
   Gravity gravity;
   gravity.value = table.required<Vector>("value", Range::any());
@@ -292,6 +298,7 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   description.sets = read_sets("sets", true);
   description.element_sets = read_sets("element_sets", false);
   for (const auto& table : reader.tables("refine")) description.refinements.push_back(read_refinement(table));
+  for (const auto& table : reader.tables("tie")) description.ties.push_back(read_tie(table));
   for (const auto& table : reader.tables("displacement"))
     description.displacements.push_back(read_displacement(table));
   for (const auto& table : reader.tables("rotation")) description.rotations.push_back(read_rotation(table));

@@ -91,6 +91,8 @@ constexpr std::string_view sets_and_loads = R"(
   many layers again, depth times in all. Or elements = NAME, depth: those of an element set. Or numbers =
   [...], after 0 to 7 (default: 0): elements by their numbers, from 0, in the mesh after so many splits. Faces
   keep their shape, sets and materials pass on to the parts, and nodes that hang follow the element they hang on
+[[tie]] set = NAME, elements = NAME: nodes of a set that are inside elements of an element set, or on their
+  faces, without being their corners, move with them: where meshes that do not match meet; not with [[refine]]
 [[displacement]] set = NAME, value = [x, y, z] in m, components = "xyz" (default: all)
 [[rotation]] set = NAME, axis = "x", "y", "z" or [x, y, z], angle in degrees, by the right-hand rule:
   the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis

@@ -13,9 +13,6 @@
 
 namespace sandglass {
 
-namespace {
-
-/// Values of the trilinear shape functions at a parent point.
 std::array<double, 8> shape_functions(const Vector& xi) {
   std::array<double, 8> N{};
   for (int I = 0; I < 8; ++I) {
@@ -24,6 +21,12 @@ std::array<double, 8> shape_functions(const Vector& xi) {
   }
   return N;
 }
+
+double parent_distance(const Vector& xi) {
+  return std::max({std::abs(xi[0]), std::abs(xi[1]), std::abs(xi[2])});
+}
+
+namespace {
 
 Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
   const auto N = shape_functions(xi);
@@ -34,11 +37,6 @@ Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
     }
   }
   return value;
-}
-
-/// The distance of a parent point from the centre in the maximum norm; at most 1 inside the element.
-double parent_distance(const Vector& xi) {
-  return std::max({std::abs(xi[0]), std::abs(xi[1]), std::abs(xi[2])});
 }
 
 /// The parent point of X in an element, by Newton's method; none if that does not converge, as for points far
@@ -131,22 +129,22 @@ class ElementGrid {
 
 }  // namespace
 
-NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalField& points) {
+std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& points) {
   const ElementGrid grid(mesh);
   std::vector<std::size_t> everywhere(mesh.cells.size());
   std::iota(everywhere.begin(), everywhere.end(), 0U);
-  NodalField values;
-  values.reserve(points.size());
+  std::vector<ElementPoint> places;
+  places.reserve(points.size());
   for (const Vector& X : points) {
     constexpr double inside = 1.0 + 1e-10;
     double least = std::numeric_limits<double>::infinity();
-    Vector value{};
+    ElementPoint place{};
     const auto look_in = [&](const std::vector<std::size_t>& elements) {
       for (const std::size_t e : elements) {
         const auto xi = parent_point(gather(mesh.points, mesh.cells[e]), X);
         if (!xi || !(parent_distance(*xi) < least)) continue;
         least = parent_distance(*xi);
-        value = trilinear(gather(field, mesh.cells[e]), *xi);
+        place = {e, *xi};
         if (least <= inside) return;
       }
     };
@@ -156,8 +154,16 @@ NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalFie
       throw InputError(
           fmt::format("interpolation: the point ({}, {}, {}) m is far outside the mesh", X[0], X[1], X[2]));
     }
-    values.push_back(value);
+    places.push_back(place);
   }
+  return places;
+}
+
+NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalField& points) {
+  NodalField values;
+  values.reserve(points.size());
+  for (const auto& [element, parent] : element_points(mesh, points))
+    values.push_back(trilinear(gather(field, mesh.cells[element]), parent));
   return values;
 }
 

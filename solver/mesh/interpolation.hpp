@@ -4,6 +4,22 @@
 
 namespace sandglass {
 
+/// A point of an element.
+struct ElementPoint {
+  std::size_t element;
+  Vector parent;  ///< in the element's parent coordinates
+};
+
+/// The distance of a parent point from the centre in the maximum norm; at most 1 inside the element.
+double parent_distance(const Vector& xi);
+
+/// Values of the trilinear shape functions at a parent point.
+std::array<double, 8> shape_functions(const Vector& xi);
+
+/// The element that contains each point (m), or for a point outside the mesh the one that is nearest in
+/// parent coordinates. Throws InputError for a point that is far from the mesh.
+std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& points);
+
 /// A nodal field of a mesh at other points (m), interpolated trilinearly in the element that contains each
 /// point. For a point outside the mesh, as on the curved boundary of a finer one, the field is extrapolated
 /// from the element that is nearest in parent coordinates. Throws InputError for a point that is far from the

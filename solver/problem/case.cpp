@@ -92,6 +92,7 @@ std::string case_hash(const Case& description) {
     text += fmt::format("refine({}:{}:{}:{})", around, elements, depth, layers);
     if (!numbers.empty()) text += fmt::format("{}:{}", after, numbers);
   }
+  for (const auto& [set, elements] : description.ties) text += fmt::format("tie({}:{})", set, elements);
   for (const auto& imposed : description.displacements) {
     text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);
   }

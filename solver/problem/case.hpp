@@ -39,6 +39,12 @@ struct Refinement {
   int layers = 2;            ///< of elements and parts at the edge that are split
 };
 
+/// Nodes that move with elements they are no corners of: where meshes that do not match meet, for instance.
+struct NodeTie {
+  std::string set;       ///< of nodes; those that are corners of the elements stay as they are
+  std::string elements;  ///< an element set
+};
+
 /// Displacements imposed on a node set; they follow the loading curve.
 struct ImposedDisplacement {
   std::string set;
@@ -110,6 +116,7 @@ struct Case {
   std::vector<NodeSetRule> sets;
   std::vector<NodeSetRule> element_sets;  ///< for the centres of elements
   std::vector<Refinement> refinements;
+  std::vector<NodeTie> ties;
   std::vector<ImposedDisplacement> displacements;
   std::vector<ImposedRotation> rotations;
   std::vector<ImposedForce> forces;

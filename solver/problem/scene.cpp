@@ -16,6 +16,7 @@
 #include "problem/masses.hpp"
 #include "problem/scene_materials.hpp"
 #include "problem/scene_refinement.hpp"
+#include "problem/scene_ties.hpp"
 
 namespace sandglass {
 
@@ -295,6 +296,7 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
   refine(scene);
   scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
   std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
+  tie(scene);
   make_loads(scene);
   scene.initial_velocities =
       make_initial_velocities(scene.description, scene.mesh, scene.sets, scene.materials);
