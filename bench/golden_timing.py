@@ -104,9 +104,7 @@ def main(arguments=None):
     parser.add_argument("case", metavar="CASE.toml", help="the case file")
     parser.add_argument("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
     parser.add_argument("-o", "--output", required=True, help="NPZ file to write")
-    parser.add_argument(
-        "--load-steps", type=whole_number(1), default=LOAD_STEPS["golden"], metavar="N"
-    )
+    parser.add_argument("--load-steps", type=whole_number(1), default=LOAD_STEPS, metavar="N")
     return exit_code(run, parser.parse_args(arguments))
 
 
