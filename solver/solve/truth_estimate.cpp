@@ -29,8 +29,8 @@ constexpr double left_of_change = 0.7;
 /// many per cent of the largest one from equilibrium as the residual is of the loads.
 constexpr double tolerance_over_accuracy = 0.1;
 
-/// The residual at which searches for an estimate end: errors that are estimated are larger.
-constexpr double tolerance_of_estimate = 1e-4;
+/// The accuracy of answers for an estimate: errors that are estimated are larger.
+constexpr double accuracy_of_estimate = 1e-3;
 
 /// Evaluations after which a search that starts near an answer is given up, if it had to go back to rest: one
 /// that succeeds takes ten or twenty, or a hundred from rest.
@@ -133,10 +133,10 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
   return elements;
 }
 
-RefinedAnswer::RefinedAnswer(Scene scene, double tolerance, int threads, const NodalField* near)
+RefinedAnswer::RefinedAnswer(Scene scene, double accuracy, int threads, const NodalField* near)
     : threads_(threads), original_nodes_(scene.mesh.points.size()), scene_(std::move(scene)) {
   RelaxationSettings& settings = scene_.description.relaxation;
-  settings.tolerance = std::max(settings.tolerance, tolerance);
+  settings.tolerance = std::max(settings.tolerance, tolerance_over_accuracy * accuracy);
   settings.check_interval = 1;
   u_ = before_ = find_answer(scene_, near, threads);
 }
@@ -159,7 +159,7 @@ NodalField RefinedAnswer::limit() const {
 AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
                                  std::size_t most_elements) {
   const auto start = std::chrono::steady_clock::now();
-  RefinedAnswer answer(scene, tolerance_over_accuracy * accuracy, threads);
+  RefinedAnswer answer(scene, accuracy, threads);
   const double unit = displacement_unit(scene, answer.u());
   std::string nearest = "how far its answer is from the exact one is not known";
   const auto fail = [&](const std::string& why) {
@@ -190,7 +190,7 @@ AccurateMesh refine_until_within(double accuracy, const Scene& scene, int thread
 
 TruthEstimate estimate_truth_error(const Model& model, const NodalField& u) {
   constexpr int times = 2;
-  RefinedAnswer refined(model.scene(), tolerance_of_estimate, model.choice().threads, &u);
+  RefinedAnswer refined(model.scene(), accuracy_of_estimate, model.choice().threads, &u);
   TruthEstimate estimate;
   for (int n = 0; n < times; ++n) {
     try {

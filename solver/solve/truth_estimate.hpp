@@ -17,10 +17,10 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
 /// The mean-dilatation element's answers on a mesh and on meshes that are refined where it errs most.
 class RefinedAnswer {
  public:
-  /// Starts on the mesh of a quasi-static scene, near u (m) if that is given. Searches end at a residual of
-  /// `tolerance`, unless that of the case is larger: displacements are then about that share of the largest
-  /// one from the equilibrium. Throws ComputationError if there is no answer.
-  RefinedAnswer(Scene scene, double tolerance, int threads, const NodalField* near = nullptr);
+  /// Starts on the mesh of a quasi-static scene, near u (m) if that is given. Searches end at a residual of a
+  /// tenth of `accuracy`, unless that of the case is larger: more would be lost in the error. Throws
+  /// ComputationError if there is no answer.
+  RefinedAnswer(Scene scene, double accuracy, int threads, const NodalField* near = nullptr);
 
   /// Refines the mesh once more. Throws ComputationError if the finer mesh has no answer; nothing has changed
   /// then.

@@ -90,7 +90,7 @@ class Meshes {
       }
     };
     std::optional<RefinedAnswer> answer;
-    if (!done([&] { answer.emplace(start, 0.1 * choice_.demand.tolerance, choice_.demand.threads); })) return;
+    if (!done([&] { answer.emplace(start, choice_.demand.tolerance, choice_.demand.threads); })) return;
     double before = std::numeric_limits<double>::infinity();
     for (int n = 0; n < most_refinements; ++n) {
       if (!done([&] { answer->refine(); })) return;
