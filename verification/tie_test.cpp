@@ -6,6 +6,7 @@
 #include "io/case_file.hpp"
 #include "problem/scene_ties.hpp"
 #include "solve/relaxation.hpp"
+#include "support/at_rest.hpp"
 #include "support/case_text.hpp"
 #include "support/scenes.hpp"
 
@@ -63,14 +64,6 @@ Scene tied_boxes(const std::array<int, 3>& lower, const std::array<int, 3>& uppe
   return scene_of(two_boxes(lower, upper), more);
 }
 
-Relaxation at_rest(const Scene& scene, const std::string& method) {
-  const Model model(scene, {method});
-  Observer quiet;
-  Relaxation found = relax(model, quiet);
-  EXPECT_TRUE(found.converged);
-  return found;
-}
-
 /// Every node of the upper part at the face, and no other, follows the face below it, as a linear field does.
 TEST(Tie, follows_linear_fields) {
   const Scene scene = tied_boxes({2, 2, 2}, {3, 3, 3});
@@ -96,7 +89,7 @@ TEST(Tie, has_the_answer_of_hanging_nodes) {
   const Scene scene = tied_boxes({2, 2, 2}, {4, 4, 4});
   const Scene refined = scene_of(box({1, 1, 2}, {2, 2, 4}), "[[refine]]\nelements = \"upper\"\n");
   for (const auto* method : {"tl-mean-dilatation", "tl-perturbation"}) {
-    const NodalField u = at_rest(scene, method).u, expected = at_rest(refined, method).u;
+    const NodalField u = at_rest(scene, {method}).u, expected = at_rest(refined, {method}).u;
     double largest = 0.0;
     int compared = 0;
     for (std::size_t n = 0; n < u.size(); ++n) {
@@ -116,7 +109,8 @@ TEST(Tie, has_the_answer_of_hanging_nodes) {
 TEST(Tie, joins_parts_that_do_not_match) {
   const Scene scene = tied_boxes({4, 4, 4}, {5, 5, 5});
   const Scene whole = scene_of(box({1, 1, 2}, {4, 4, 8}), "");
-  const Relaxation joined = at_rest(scene, "tl-mean-dilatation"), one = at_rest(whole, "tl-mean-dilatation");
+  const Relaxation joined = at_rest(scene, {"tl-mean-dilatation"}),
+                   one = at_rest(whole, {"tl-mean-dilatation"});
   EXPECT_NEAR(joined.energies.strain / one.energies.strain, 1.0, 0.01);
 }
 

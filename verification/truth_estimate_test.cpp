@@ -10,6 +10,7 @@
 #include "io/case_file.hpp"
 #include "problem/scene_refinement.hpp"
 #include "solve/relaxation.hpp"
+#include "support/at_rest.hpp"
 #include "support/case_text.hpp"
 #include "support/scenes.hpp"
 
@@ -56,14 +57,6 @@ value = [0.1, 0.0, -0.1]
 
 Scene case_named(const std::string& name) {
   return read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / (name + ".toml"));
-}
-
-NodalField at_rest(const Scene& scene, const std::string& method) {
-  const Model model(scene, {method});
-  Observer quiet;
-  const Relaxation found = relax(model, quiet);
-  EXPECT_TRUE(found.converged);
-  return found.u;
 }
 
 /// A displacement that is linear in each material has no error, though its gradient jumps where they meet and
@@ -183,7 +176,7 @@ TEST(TruthEstimate, is_about_the_error) {
     const Scene scene = case_named(name);
     const NodalField truth = read_reference(read_comparison(scene).truth, scene).front();
     for (const auto* method : {"tl-mean-dilatation", "tl-perturbation"}) {
-      const NodalField u = at_rest(scene, method);
+      const NodalField u = at_rest(scene, {method}).u;
       const Accuracy told = accuracy(u, truth, nullptr, 1.0);
       const TruthEstimate estimate = estimate_truth_error(Model(scene, {method}), u);
       EXPECT_EQ(estimate.remark, "") << name;
@@ -221,7 +214,7 @@ TEST(RefineUntilWithin, refines_no_more_than_is_asked) {
 TEST(RefineUntilWithin, searches_as_long_as_the_accuracy_needs) {
   const Scene scene = case_named("ellipsoid-touch");
   const AccurateMesh found = refine_until_within(0.1, scene, 1);
-  const NodalField exact = at_rest(remade(found.scene, found.scene.description), "tl-mean-dilatation");
+  const NodalField exact = at_rest(remade(found.scene, found.scene.description), {"tl-mean-dilatation"}).u;
   const double left = largest_distance(exact, found.u) / displacement_unit(scene, exact);
   EXPECT_LT(left, 0.2 * 0.1);
   EXPECT_GT(left, 1e-4);

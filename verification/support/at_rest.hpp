@@ -1,0 +1,17 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "solve/relaxation.hpp"
+
+namespace sandglass::verification {
+
+/// The answer of a quasi-static scene by a method, which must be found.
+inline Relaxation at_rest(const Scene& scene, const MethodChoice& choice) {
+  Observer quiet;
+  Relaxation found = relax(Model(scene, choice), quiet);
+  EXPECT_TRUE(found.converged);
+  return found;
+}
+
+}  // namespace sandglass::verification
