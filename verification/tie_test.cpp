@@ -132,7 +132,7 @@ TEST(Tie, wrong_input_is_refused) {
   has("[[tie]]\nset = \"middle\"\n", "elements");
   has(tied + tied, "is tied by two tables");
   has(tied + "[[refine]]\nelements = \"lower\"\n", "leave out refine");
-  has(tied + "[[displacement]]\nset = \"middle\"\nvalue = [0.0, 0.0, 0.0]\n", "is driven, too");
+  has(tied + "[[displacement]]\nset = \"middle\"\nvalue = [0.0, 0.0, 0.0]\n", "is driven as well");
 }
 
 }  // namespace

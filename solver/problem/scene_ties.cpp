@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -47,11 +48,18 @@ void add_ties(const Scene& scene, const NodeTie& rule, std::map<int, Tie>& ties)
     nodes.push_back(node);
     points.push_back(mesh.points[static_cast<std::size_t>(node)]);
   }
+  const auto is_driven = [&](int node) {
+    const auto first = std::lower_bound(scene.constraints.begin(), scene.constraints.end(), node,
+                                        [](const Constraint& c, int n) { return c.node < n; });
+    return first != scene.constraints.end() && first->node == node;
+  };
   const auto places = element_points(mesh, points);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const auto& [element, parent] = places[n];
     if (parent_distance(parent) > 1.0 + tolerance)
       refuse(scene, rule, nodes[n], fmt::format("is in no element of '{}'; it must be", rule.elements));
+    if (is_driven(nodes[n]))
+      refuse(scene, rule, nodes[n], "is driven as well; a tied node follows the elements alone");
     Tie tie{nodes[n], shares_of(mesh.cells[element], parent)};
     if (!ties.emplace(nodes[n], std::move(tie)).second)
       refuse(scene, rule, nodes[n], "is tied by two tables; one must do");
@@ -68,13 +76,7 @@ void tie(Scene& scene) {
                                  description.file.string()));
   }
   std::map<int, Tie> ties;
-  for (const NodeTie& rule : description.ties) {
-    add_ties(scene, rule, ties);
-    for (const Constraint& constraint : scene.constraints) {
-      if (ties.count(constraint.node) > 0)
-        refuse(scene, rule, constraint.node, "is driven, too; a tied node follows the elements alone");
-    }
-  }
+  for (const NodeTie& rule : description.ties) add_ties(scene, rule, ties);
   for (auto& [node, tie] : ties) scene.ties.push_back(std::move(tie));
   scene.ties = to_free_nodes(scene.ties);
 }
