@@ -32,6 +32,9 @@ class Equilibrium {
   /// Sets the pressures to those that belong to the displacements.
   void take_own_pressures();
 
+  /// See MixedBody::average_pressures.
+  void average_pressures(const std::vector<int>& element_of) { mixed_.average_pressures(element_of); }
+
   /// Imposes a load and moves the body by the linear answer to its increase, or by as much of both as changes
   /// no element's displacement gradient by more than `most`. Returns the load.
   double extend(double load, double most);

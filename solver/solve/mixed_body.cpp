@@ -227,6 +227,19 @@ void MixedBody<Real>::take_own_pressures() {
 }
 
 template <class Real>
+void MixedBody<Real>::average_pressures(const std::vector<int>& element_of) {
+  std::vector<double> volumes(p_.size(), 0.0), sums(p_.size(), 0.0);  // of the coarser mesh, which is smaller
+  for (std::size_t e = 0; e < p_.size(); ++e) {
+    volumes[static_cast<std::size_t>(element_of[e])] += volume(e);
+    sums[static_cast<std::size_t>(element_of[e])] += volume(e) * static_cast<double>(p_[e]);
+  }
+  for (std::size_t e = 0; e < p_.size(); ++e) {
+    const auto whole = static_cast<std::size_t>(element_of[e]);
+    p_[e] = static_cast<Real>(sums[whole] / volumes[whole]);
+  }
+}
+
+template <class Real>
 void MixedBody<Real>::evaluate(const Multipliers* multipliers, Rows<Real>& f) {
   body_.evaluate_forces();
   ++evaluations_;

@@ -70,6 +70,11 @@ class MixedBody {
   /// Sets the pressures to those that belong to the displacements, lambda (J - 1).
   void take_own_pressures();
 
+  /// Sets the pressures to their means over the elements of a coarser mesh, element_of those it was split
+  /// into. Where displacements were interpolated, the parts of an element change their volumes as no answer
+  /// does, but the whole does not.
+  void average_pressures(const std::vector<int>& element_of);
+
   /// Instead of an element's own resistance to volume changes, lambda (J - 1), a constant pressure and
   /// what remains of lambda with a penalty of so many shear moduli beside it: 1 / (1 / lambda + 1 / penalty).
   /// The forces are those of an augmented Lagrangian.

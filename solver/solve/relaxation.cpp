@@ -69,6 +69,8 @@ class Search {
     body().impose(load_levels_.load());
     if (!body().healthy()) return std::nullopt;
     equilibrium_.take_own_pressures();
+    const auto& coarser = model_.scene().coarser;
+    if (!coarser.empty()) equilibrium_.average_pressures(coarser.front().element_of);
     if (!solve() || result_.stagnated) return std::nullopt;
     observer_.frame(rest);
     finish_load_level();
