@@ -140,10 +140,11 @@ class LoadLevels {
     body.impose(load_);
   }
 
-  /// Goes to the full load at once.
+  /// Goes to the full load at once, which is worth every effort: there is no shorter increment to try.
   void skip_to_end() {
     leg_ = turns_.size() - 1;
     load_ = turns_.back();
+    failures_ = few_failures;
   }
 
   /// Whether a search below the full load has come far enough for predictions.
