@@ -4,10 +4,10 @@
 
 #include "choice/case_writer.hpp"
 #include "choice/evaluation.hpp"
+#include "choice/variations.hpp"
 #include "comparison/comparison.hpp"
 #include "io/case_file.hpp"
 #include "io/toml_text.hpp"
-#include "mesh/variations.hpp"
 #include "problem/scene_refinement.hpp"
 #include "support/temporary_folder.hpp"
 

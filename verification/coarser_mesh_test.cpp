@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "choice/variations.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/interpolation.hpp"
-#include "mesh/variations.hpp"
 #include "support/plain_generators.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"

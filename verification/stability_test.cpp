@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "mesh/variations.hpp"
+#include "choice/variations.hpp"
 #include "stability/cell.hpp"
 #include "stability/cell_files.hpp"
 #include "support/scenes.hpp"

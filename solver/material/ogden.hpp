@@ -20,8 +20,7 @@ namespace sandglass {
 /// Pa, per reference volume.
 ///
 /// It is written in logarithmic stretches x_a = ln lbar_a, which sum to zero, so that nothing cancels near
-/// the undeformed state. With b = F F^T = m (I + S), where m is its mean and S its relative deviator, x_a is
-/// half the deviator of log1p(S_a), independent of the change of volume.
+/// the undeformed state. With b = F F^T = I + e, x_a is half the deviator of log1p(e_a).
 struct Ogden : QuadraticVolume<Ogden> {
   static constexpr std::string_view name = "ogden";
   static constexpr std::string_view summary = "two powers of the isochoric principal stretches";
@@ -48,7 +47,7 @@ struct Ogden : QuadraticVolume<Ogden> {
   /// be subtracted, which leaves only positive terms.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
-    const auto x = logarithmic_stretches(spectrum(relative_deviator(H)).values);
+    const auto x = logarithmic_stretches(spectrum(left_cauchy_green_minus_identity(H)).values);
     T W = T(0);
     for (const T& x_a : x) {
       W = W + x_a * x_a * sum_of_terms(x_a, [](const T& y) { return relative_exponential_remainder(y); });
@@ -80,8 +79,8 @@ struct Ogden : QuadraticVolume<Ogden> {
   /// Bound of the isochoric tangent in the current configuration; see TangentBound. In the principal frame
   /// (Ogden, Non-linear Elastic Deformations, section 6.1.4) d^2 W has uncoupled parts.
   ///
-  /// Shear in the plane of two axes, with the secant g = (t_a - t_b)/(S_a - S_b) of the principal stresses t,
-  /// is a form of (L_ab, L_ba) with g (1 + S_b) and g (1 + S_a) on its diagonal and c = g (1 + S_a) - t_a off
+  /// Shear in the plane of two axes, with the secant g = (t_a - t_b)/(e_a - e_b) of the principal stresses t,
+  /// is a form of (L_ab, L_ba) with g (1 + e_b) and g (1 + e_a) on its diagonal and c = g (1 + e_a) - t_a off
   /// it. Its larger eigenvalue bounds `gradient`.
   ///
   /// Stretch along the axes, l_a = L_aa: sum_a (k_a (dev l)_a^2 - t_a l_a^2) with k_a = sum_p 2 mu_p
@@ -91,14 +90,14 @@ struct Ogden : QuadraticVolume<Ogden> {
   /// s^2 = (tr L)^2 / 3 and |w|^2.
   template <class T>
   TangentBound<T> isochoric_tangent_bound(const Tensor<T>& H) const {
-    const std::array<T, 3> S = spectrum(relative_deviator(H)).values;
-    const std::array<T, 3> x = logarithmic_stretches(S);
+    const std::array<T, 3> e = spectrum(left_cauchy_green_minus_identity(H)).values;
+    const std::array<T, 3> x = logarithmic_stretches(e);
     const std::array<T, 3> t = principal_stresses(x);
-    const std::array<T, 3> g = stress_secants(S);
+    const std::array<T, 3> g = stress_secants(e);
     T gradient = T(0);
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t a = (c + 1) % 3, b = (c + 2) % 3;
-      const T half = T(0.5) * g[c] * (T(2) + S[a] + S[b]);
+      const T half = T(0.5) * g[c] * (T(2) + e[a] + e[b]);
       const T mixed = half - T(0.5) * (t[a] + t[b]);
       const T apart = T(0.5) * (t[a] - t[b]);
       gradient = max(gradient, half + sqrt(apart * apart + mixed * mixed));
@@ -115,13 +114,6 @@ struct Ogden : QuadraticVolume<Ogden> {
   }
 
  private:
-  /// S = b/m - I with b = F F^T and m = tr b / 3.
-  template <class T>
-  static Tensor<T> relative_deviator(const Tensor<T>& H) {
-    const Tensor<T> e = left_cauchy_green_minus_identity(H);
-    return (T(1) / (T(1) + T(1.0 / 3.0) * trace(e))) * deviator(e);
-  }
-
   template <class T>
   static std::array<T, 3> without_mean(const std::array<T, 3>& a) {
     const T mean = T(1.0 / 3.0) * (a[0] + a[1] + a[2]);
@@ -132,10 +124,12 @@ struct Ogden : QuadraticVolume<Ogden> {
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
   }
 
-  /// x_a = ln lbar_a from the principal values of the relative deviator.
+  /// x_a = ln lbar_a from the principal values of e. The ratios of stretches do without their mean.
   template <class T>
-  static std::array<T, 3> logarithmic_stretches(const std::array<T, 3>& S) {
-    return without_mean(std::array<T, 3>{T(0.5) * log1p(S[0]), T(0.5) * log1p(S[1]), T(0.5) * log1p(S[2])});
+  static std::array<T, 3> logarithmic_stretches(const std::array<T, 3>& e) {
+    const T inverse = T(1) / (T(1) + e[2]);
+    const T x0 = T(0.5) * log1p(inverse * (e[0] - e[2])), x1 = T(0.5) * log1p(inverse * (e[1] - e[2]));
+    return without_mean(std::array<T, 3>{x0, x1, T(0)});
   }
 
   /// sum_p mu_p f(alpha_p x).
@@ -144,28 +138,52 @@ struct Ogden : QuadraticVolume<Ogden> {
     return T(mu1) * f(T(alpha1) * x) + T(mu2) * f(T(alpha2) * x);
   }
 
-  /// t_a = dW/dx_a (Pa): the deviator of 2 mu / alpha (e^(alpha x_a) - 1), also for alpha = 0.
+  /// 2 mu/alpha (e^(alpha x_a) - 1) (Pa) of one term. The product of the exponentials is one, so that the
+  /// smallest follows from the others, whose digits are all significant.
   template <class T>
-  std::array<T, 3> principal_stresses(const std::array<T, 3>& x) const {
-    std::array<T, 3> t;
-    for (std::size_t a = 0; a < 3; ++a) {
-      t[a] = T(2) * x[a] * sum_of_terms(x[a], [](const T& y) { return relative_expm1(y); });
-    }
-    return without_mean(t);
+  static std::array<T, 3> stresses_of_term(double mu, double alpha, const std::array<T, 3>& x) {
+    if (std::abs(alpha) < 1e-20) return {T(2.0 * mu) * x[0], T(2.0 * mu) * x[1], T(2.0 * mu) * x[2]};
+    T a = T(alpha) * x[0], b = T(alpha) * x[1], c = T(alpha) * x[2];
+    const auto swap_if = [](const auto& mask, T& left, T& right) {
+      const T old = left;
+      left = select(mask, right, left);
+      right = select(mask, old, right);
+    };
+    const auto b_is_less = b < c;
+    swap_if(b_is_less, b, c);
+    const auto a_is_least = a < c;
+    swap_if(a_is_least, a, c);
+    a = expm1(a);
+    b = expm1(b);
+    const T product = a + b + a * b;
+    c = -product / (T(1) + product);
+    swap_if(a_is_least, a, c);
+    swap_if(b_is_less, b, c);
+    const T f = T(2.0 * mu / alpha);
+    return {f * a, f * b, f * c};
   }
 
-  /// (t_a - t_b)/(S_a - S_b) for the pairs of axes, each stored at the third axis. With
-  /// l = ln((1 + S_a)/(1 + S_b)) and S_a the larger of both, it is sum_p mu_p e^(alpha x_b) (e^(alpha l/2) -
-  /// 1)/(alpha l/2) times l/(S_a - S_b).
+  /// t_a = dW/dx_a (Pa): the deviator of the terms' sum.
   template <class T>
-  std::array<T, 3> stress_secants(const std::array<T, 3>& S) const {
-    const std::array<T, 3> x = logarithmic_stretches(S);
+  std::array<T, 3> principal_stresses(const std::array<T, 3>& x) const {
+    const std::array<T, 3> t = stresses_of_term(mu1, alpha1, x);
+    if (mu2 == 0.0) return without_mean(t);
+    const std::array<T, 3> second = stresses_of_term(mu2, alpha2, x);
+    return without_mean(std::array<T, 3>{t[0] + second[0], t[1] + second[1], t[2] + second[2]});
+  }
+
+  /// (t_a - t_b)/(e_a - e_b) for the pairs of axes, each stored at the third axis. With
+  /// l = ln((1 + e_a)/(1 + e_b)) and e_a the larger of both, it is sum_p mu_p e^(alpha x_b) (e^(alpha l/2) -
+  /// 1)/(alpha l/2) times l/(e_a - e_b).
+  template <class T>
+  std::array<T, 3> stress_secants(const std::array<T, 3>& e) const {
+    const std::array<T, 3> x = logarithmic_stretches(e);
     std::array<T, 3> secants;
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t a = (c + 1) % 3, b = (c + 2) % 3;
-      const T low = min(S[a], S[b]);
+      const T low = min(e[a], e[b]);
       const T x_low = min(x[a], x[b]);
-      const T z = (max(S[a], S[b]) - low) / (T(1) + low);
+      const T z = (max(e[a], e[b]) - low) / (T(1) + low);
       const T l = log1p(z);
       const auto term = [&](double mu, double alpha) {
         return T(mu) * (T(1) + expm1(T(alpha) * x_low)) * relative_expm1(T(0.5 * alpha) * l);
@@ -178,8 +196,8 @@ struct Ogden : QuadraticVolume<Ogden> {
   /// The isochoric part of the Kirchhoff stress, Pa.
   template <class T>
   Tensor<T> isochoric_kirchhoff(const Tensor<T>& H) const {
-    const Spectrum<T> S = spectrum(relative_deviator(H));
-    return isotropic_tensor(S, principal_stresses(logarithmic_stretches(S.values)),
+    const Spectrum<T> e = spectrum(left_cauchy_green_minus_identity(H));
+    return isotropic_tensor(e, principal_stresses(logarithmic_stretches(e.values)),
                             [this](const auto& values) { return this->stress_secants(values); });
   }
 };

@@ -25,6 +25,27 @@ constexpr Symmetric<T> symmetric_product(const Tensor<T>& a, const Tensor<T>& b)
   return c;
 }
 
+/// The six entries of a symmetric tensor.
+template <class T>
+constexpr Symmetric<T> six_entries(const Tensor<T>& a) {
+  return {{a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(1, 2), a(0, 2)}};
+}
+
+/// x I + s.
+template <class T>
+constexpr Symmetric<T> plus_identity(const T& x, Symmetric<T> s) {
+  for (int i = 0; i < 3; ++i) s(i, 0) = x + s(i, 0);
+  return s;
+}
+
+/// The cofactors, which are the adjugate's entries too.
+template <class T>
+constexpr Symmetric<T> cofactor(const Symmetric<T>& s) {
+  const auto& [x, y, z, xy, yz, xz] = s.entries;
+  return {{y * z - yz * yz, x * z - xz * xz, x * y - xy * xy, yz * xz - xy * z, xy * xz - x * yz,
+           xy * yz - y * xz}};
+}
+
 /// All nine entries.
 template <class T>
 constexpr Tensor<T> full(const Symmetric<T>& s) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "assembly/method_entry.hpp"
+#include "choice/variations.hpp"
 #include "comparison/comparison.hpp"
 #include "io/case_variants.hpp"
 #include "io/toml_text.hpp"
-#include "mesh/variations.hpp"
 
 namespace sandglass {
 

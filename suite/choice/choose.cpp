@@ -9,9 +9,9 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "choice/variations.hpp"
 #include "comparison/comparison.hpp"
 #include "mesh/interpolation.hpp"
-#include "mesh/variations.hpp"
 #include "solve/truth_estimate.hpp"
 
 namespace sandglass {

@@ -10,7 +10,7 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
-#include "mesh/variations.hpp"
+#include "choice/variations.hpp"
 
 namespace sandglass {
 

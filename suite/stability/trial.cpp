@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "assembly/method_entry.hpp"
+#include "choice/variations.hpp"
 #include "comparison/answer.hpp"
 #include "comparison/comparison.hpp"
-#include "mesh/variations.hpp"
 
 namespace sandglass {
 

@@ -1,4 +1,4 @@
-#include "mesh/variations.hpp"
+#include "choice/variations.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
