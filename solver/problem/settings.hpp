@@ -39,6 +39,7 @@ struct DynamicsSettings {
   double step_fraction = 0.9;
   double damping = 0.0;
   int subcycles = 1;
+  int body_frequency = 0;
   int check_interval = 20;
   int frames = 20;
 
@@ -61,11 +62,22 @@ struct DynamicsSettings {
             "small elements may take so many small steps in a step of the others; 1 means that all take "
             "the same",
             false},
+        Parameter{&S::body_frequency, "body_frequency", "-",
+                  Range{.low = 0.0, .high = 1.0, .low_open = false, .high_open = false},
+                  "1 takes the stable step from the largest frequency of the whole body, 0 from bounds of "
+                  "its elements, which is shorter and safer",
+                  false},
         Parameter{&S::damping, "damping", "1/s", Range::at_least(0.0), "mass-proportional damping", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
                   "steps between checks for inversion, divergence and stiffening", false},
         Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written, beside the initial one",
                   false}};
+  }
+
+  std::optional<BrokenRule> broken_rule() const {
+    if (body_frequency == 0 || subcycles == 1) return std::nullopt;
+    return BrokenRule{"body_frequency",
+                      "= 1 is for steps that all elements share; it must be 0 with subcycles"};
   }
 };
 

@@ -238,7 +238,7 @@ class Simulation<Real>::Parts {
 
   void choose_step() {
     Body<Real>& body = leapfrog_.body();
-    step_size_ = step_fraction_ * body.stable_step(problem_->model).step;
+    step_size_ = step_fraction_ * leapfrog_.stable_step(problem_->model).step;
     body.set_step(step_size_);
   }
 

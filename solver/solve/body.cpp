@@ -25,6 +25,7 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
       terms_(angles_.size()),
       ties_(model.scene().ties, elements.layout()),
       loads_(model.scene(), elements.layout()),
+      largest_frequency_(model.scene().mesh.cells.size()),
       state_(elements.undeformed()),
       force_(state_.u.size()),
       reactions_(model.scene().constraints.size(), 0.0),
@@ -153,9 +154,15 @@ const std::vector<double>& Body<Real>::stiffness_bounds() {
 }
 
 template <class Real>
-StableStep Body<Real>::stable_step(const Model& model, double given_step) {
-  if (!subcycling_) return sandglass::stable_step(model, stiffness_bounds());
-  return subcycling_->choose_substeps(stable_steps(model, stiffness_bounds()), given_step);
+StableStep Body<Real>::stable_step(const Model& model, const Rows<Real>& inverse_masses, double given_step) {
+  const std::vector<double>& bounds = stiffness_bounds();
+  if (subcycling_) return subcycling_->choose_substeps(stable_steps(model, bounds), given_step);
+  StableStep stable = sandglass::stable_step(model, bounds);
+  if (model.scene().description.dynamics.body_frequency == 0) return stable;
+  const double square = largest_frequency_.square(model.scene().mesh, elements_, ties_, inverse_masses,
+                                                  state_, bounds, std::pow(2.0 / stable.step, 2));
+  if (std::isfinite(square)) stable.step = std::max(stable.step, stable_step_of(model, square));
+  return stable;
 }
 
 Frame static_frame(const Model& model, double time, const NodalField& u) {

@@ -5,6 +5,7 @@
 #include "assembly/row_ties.hpp"
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
+#include "solve/largest_frequency.hpp"
 #include "solve/loads.hpp"
 #include "solve/subcycling.hpp"
 
@@ -100,8 +101,9 @@ class Body {
   /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
   const std::vector<double>& stiffness_bounds();
 
-  /// The longest stable step. `given_step` (s) is the one that a user demands, or 0.
-  StableStep stable_step(const Model& model, double given_step = 0.0);
+  /// The stable step, by bounds of elements or, where the case says so, by the largest frequency of the body.
+  /// `inverse_masses` as LargestFrequency has them, `given_step` (s) is the one that a user demands, or 0.
+  StableStep stable_step(const Model& model, const Rows<Real>& inverse_masses, double given_step = 0.0);
 
   /// Lets small elements take small steps alone from the next evaluation on, if the case asks for it; see
   /// Subcycling.
@@ -140,6 +142,7 @@ class Body {
     archive("load factor", load_factor_);
     loads_.keep(archive);
     if (subcycling_) subcycling_->keep(archive);
+    largest_frequency_.keep(archive);
   }
 
  private:
@@ -164,6 +167,7 @@ class Body {
   RowTies<Real> ties_;
   Loads<Real> loads_;
   std::optional<Subcycling<Real>> subcycling_;
+  LargestFrequency<Real> largest_frequency_;
   double load_factor_ = 0.0;
   State<Real> state_;
   Rows<Real> force_;

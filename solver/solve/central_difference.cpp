@@ -67,7 +67,7 @@ class CentralDifference {
 
   /// Sets the next step: the user's, rejected if unstable, or a share of the stable one.
   void choose_step() {
-    const StableStep stable = body_.stable_step(model_, settings_.time_step);
+    const StableStep stable = leapfrog_.stable_step(model_, settings_.time_step);
     if (settings_.time_step > 0.0) {
       require_stable(stable);
       next_step_ = settings_.time_step;

@@ -22,6 +22,11 @@ class Leapfrog {
   Body<Real>& body() { return explicit_step_.body(); }
   const Body<Real>& body() const { return explicit_step_.body(); }
 
+  /// See Body::stable_step.
+  StableStep stable_step(const Model& model, double given_step = 0.0) {
+    return body().stable_step(model, explicit_step_.inverse_masses(), given_step);
+  }
+
   double time() const { return time_; }  ///< s, of the displacements
   long step() const { return step_; }
   double step_size() const { return step_size_; }  ///< s, the step that led here

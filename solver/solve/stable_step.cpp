@@ -8,12 +8,15 @@ namespace sandglass {
 
 namespace {
 
+double step_of(double square, const Model::LoadRates& rates) {
+  const auto& [added, a] = rates;
+  const double sum = square + added;
+  return a == 0.0 ? 2.0 / std::sqrt(sum) : (std::sqrt(a * a + 4.0 * sum) - a) / sum;
+}
+
 double step_of(const Model& model, std::size_t element, double stiffness) {
   const double square = stiffness / (model.element_masses()[element] / 8.0);
-  if (model.load_rates().empty()) return 2.0 / std::sqrt(square);
-  const auto& [added, a] = model.load_rates()[element];
-  const double sum = square + added;
-  return (std::sqrt(a * a + 4.0 * sum) - a) / sum;
+  return step_of(square, model.load_rates().empty() ? Model::LoadRates{} : model.load_rates()[element]);
 }
 
 std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
@@ -51,6 +54,15 @@ StableStep stable_step(const Model& model, std::span<const double> bounds) {
     if (!(step >= smallest.step)) smallest = {step, static_cast<int>(e)};
   }
   return smallest;
+}
+
+double stable_step_of(const Model& model, double square) {
+  Model::LoadRates most;
+  for (const auto& [added, damping] : model.load_rates()) {
+    most.square = std::max(most.square, added);
+    most.damping = std::max(most.damping, damping);
+  }
+  return step_of(square, most);
 }
 
 }  // namespace sandglass

@@ -28,4 +28,7 @@ StableStep stable_step(const Model& model, const NodalField& u);
 /// The same from bounds of the elements' stiffness (N/m).
 StableStep stable_step(const Model& model, std::span<const double> stiffness_bounds);
 
+/// The stable step (s) of a body whose elements alone have frequencies up to a square (1/s^2).
+double stable_step_of(const Model& model, double square);
+
 }  // namespace sandglass
