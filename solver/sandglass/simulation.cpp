@@ -237,9 +237,8 @@ class Simulation<Real>::Parts {
   }
 
   void choose_step() {
-    Body<Real>& body = leapfrog_.body();
     step_size_ = step_fraction_ * leapfrog_.stable_step(problem_->model).step;
-    body.set_step(step_size_);
+    leapfrog_.body().set_step(step_size_);
   }
 
   std::shared_ptr<const Problem> problem_;
