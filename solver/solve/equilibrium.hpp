@@ -19,7 +19,9 @@ class Equilibrium {
  public:
   /// For the undeformed body of the model; `start` must follow.
   Equilibrium(const Model& model, const InternalForce<Real>& elements)
-      : mixed_(model, elements), acceleration_(model.choice().threads) {}
+      : mixed_(model, elements),
+        acceleration_(model.choice().threads),
+        depends_on_path_(elements.needs_increment()) {}
 
   /// The body; its forces and displacements are those of the last evaluation. Callers that move it must set
   /// its increment.
@@ -94,6 +96,7 @@ class Equilibrium {
 
   MixedBody<Real> mixed_;
   Acceleration acceleration_;
+  bool depends_on_path_;
   MixedVector step_, correction_, reduced_;
   Effort effort_ = Effort::brief;
   Stage stage_ = Stage::acceleration;
