@@ -134,8 +134,7 @@ TEST(Subcycling, averaged_forces_are_of_a_symmetric_operator_in_the_stable_range
   };
   std::vector<int> counts;
   const RefinedMesh straight = bar(6), corner = refined_at_the_origin({3, 3, 2});
-  for (double times = 1.05; times < 3.6; times += 0.05)
-    counts.push_back(check(scene_on(straight, moving_case(1)), times));
+  for (int n = 21; n < 72; ++n) counts.push_back(check(scene_on(straight, moving_case(1)), 0.05 * n));
   EXPECT_EQ(counts.front(), 2);
   EXPECT_EQ(counts.back(), 4);
   EXPECT_TRUE(std::is_sorted(counts.begin(), counts.end()));
