@@ -9,6 +9,7 @@
 #include "comparison/reference_file.hpp"
 #include "io/case_file.hpp"
 #include "problem/scene_refinement.hpp"
+#include "solve/mixed_body.hpp"
 #include "solve/relaxation.hpp"
 #include "support/at_rest.hpp"
 #include "support/case_text.hpp"
@@ -167,6 +168,30 @@ TEST(Relax, starts_near_a_guess) {
   EXPECT_LT(largest_distance(near.u, from_rest.u), tolerance);
   EXPECT_TRUE(from_nonsense.converged);
   EXPECT_LT(largest_distance(from_nonsense.u, from_rest.u), tolerance);
+}
+
+/// Interpolated displacements leave the volume of a split element as it was, so that the mean of its parts'
+/// pressures is its own, to the roundoff of volumes, which are in single precision.
+TEST(MixedBody, averages_to_the_pressures_of_the_mesh_before) {
+  const Scene coarse = case_named("column");
+  const NodalField u = at_rest(coarse, {"tl-mean-dilatation"}).u;
+  const Scene fine = refined(coarse, {0, 5, 60});
+  const auto own_pressures = [](const Scene& scene, const NodalField& at, const std::vector<int>& means_of) {
+    const Model model(scene, {"tl-mean-dilatation"});
+    const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
+    MixedBody<double> body(model, elements);
+    body.body().state() = state_at(elements, at);
+    body.linearize();
+    body.take_own_pressures();
+    if (!means_of.empty()) body.average_pressures(means_of);
+    return body.pressures();
+  };
+  const std::vector<int>& element_of = fine.coarser.front().element_of;
+  const auto before = own_pressures(coarse, u, {});
+  const auto after = own_pressures(fine, prolonged(fine.coarser.front(), u), element_of);
+  const double lambda = lame_lambdas(coarse.materials).front();
+  for (std::size_t e = 0; e < after.size(); ++e)
+    EXPECT_NEAR(after[e], before[index(element_of[e])], 1e-6 * lambda) << e;
 }
 
 /// The answer on the mesh before a split leads to the answer after it, though parts of elements would change
