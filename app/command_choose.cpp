@@ -63,7 +63,7 @@ void print_other_meshes(const Scene& scene, const Choice& choice) {
     fmt::print("the mesh comes from a file: no coarser one was looked at\n");
   }
   for (const auto& [mesh, evaluation, kept] : choice.others) {
-    fmt::print("another mesh, {}: {}{}{}\n", mesh,
+    fmt::print("tried: {}: {}{}{}\n", mesh,
                evaluation.error
                    ? fmt::format("the golden's own element is {:.3g} % off", 100.0 * *evaluation.error)
                    : "",
@@ -74,7 +74,7 @@ void print_other_meshes(const Scene& scene, const Choice& choice) {
 /// The rows that say something: what was tried, and what can never be taken. Rungs of a method that were
 /// refused before any figure was found, for the same reason, are one row.
 void print_attempts(const Choice& choice) {
-  fmt::print("{:<46}{:<34}{:>10}{:>10}{:>11}{:>9}{:>9}{:>8}  {}\n", "method and numbers", "mesh", "us/step",
+  fmt::print("{:<46}{:<50}{:>10}{:>10}{:>11}{:>9}{:>9}{:>8}  {}\n", "method and numbers", "mesh", "us/step",
              "step ms", "s/sim. s", "run", "error %", "det F", "outcome");
   long not_tried = 0;
   std::string last;
@@ -86,7 +86,7 @@ void print_attempts(const Choice& choice) {
     const std::string key = rung.choice.method + evaluation.reason;
     if (!cost && key == last) continue;
     last = cost ? "" : key;
-    fmt::print("{:<46}{:<34}{}{}  {}{}{}\n", name_of(rung), rung.mesh->name(), cost_columns(cost),
+    fmt::print("{:<46}{:<50}{}{}  {}{}{}\n", name_of(rung), rung.mesh->name(), cost_columns(cost),
                answer_columns(evaluation), name_of(outcome), evaluation.reason.empty() ? "" : ": ",
                evaluation.reason);
   }
@@ -120,8 +120,7 @@ void print_choice(const Scene& scene, const Choice& choice, const std::string& o
 
 void write_chosen(const Scene& scene, const Choice& choice, const std::string& output) {
   const Rung& rung = choice.attempts[*choice.chosen].rung;
-  const Case* other = rung.mesh->own() ? nullptr : &rung.mesh->scene.description;
-  write_text_file(output, case_text(scene.description, rung.choice, other, output));
+  write_text_file(output, case_text(scene.description, rung.choice, rung.mesh->scene.description, output));
   fmt::print("wrote {}\n", output);
 }
 

@@ -39,12 +39,14 @@ std::vector<Row> count_methods() {
       // Three columns for each handle, a product and a sum with each for every component of a node.
       add("update", "node", {.add = 9, .mul = 9}, 9 * sizeof(double));
     } else {
-      const OperationCount count = method.operations(kernel_law(Law{}));
+      const OperationCount count = method.operations(kernel_law(Law{}), Shapes::any);
       add("kernel", "gradient", count.gradient);
       add("kernel", "law", count.law);
       add("kernel", "force", count.force);
       if (count.hourglass.total() > 0) add("kernel", "hourglass", count.hourglass);
       add("kernel", "element", count.total, count.bytes);
+      const OperationCount regular = method.operations(kernel_law(Law{}), Shapes::parallelepipeds);
+      if (regular.bytes != count.bytes) add("boxes", "element", regular.total, regular.bytes);
     }
   }
   rows.push_back({"tl-perturbation", Law::name, "paper", "hourglass", count_paper_hourglass_force()});
@@ -56,7 +58,8 @@ std::vector<Row> count_laws() {
   const MethodEntry& plain = method_named("tl-none");
   std::vector<Row> rows;
   for_each_type(Laws{}, [&]<class Law>() {
-    rows.push_back({plain.name, Law::name, "kernel", "law", plain.operations(kernel_law(Law{})).law});
+    rows.push_back(
+        {plain.name, Law::name, "kernel", "law", plain.operations(kernel_law(Law{}), Shapes::any).law});
   });
   return rows;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "app/case_keys.hpp"
 #include "app/checkpoint_keeper.hpp"
 #include "app/commands.hpp"
 #include "app/execution_options.hpp"
@@ -16,7 +17,6 @@
 #include "comparison/comparison.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
-#include "io/case_keys.hpp"
 #include "io/result_file.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/error_estimate.hpp"

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <tuple>
 
 #include "assembly/strips.hpp"
 #include "base/error.hpp"
 #include "element/methods.hpp"
 #include "math/pack.hpp"
 #include "mesh/generators.hpp"
+#include "mesh/quality.hpp"
 #include "solve/central_difference.hpp"
 #include "support/patch_mesh.hpp"
 #include "support/path.hpp"
@@ -42,12 +44,21 @@ Mesh ring(int n) {
   return mesh;
 }
 
+/// A box whose edges are not at right angles, so that no entry of the mean gradients is zero.
+Mesh sheared_box() {
+  Mesh mesh = box({2, 3, 4}, {4, 5, 9});
+  for (auto& [x, y, z] : mesh.points)
+    std::tie(x, y, z) = std::tuple(x + 0.3 * y - 0.2 * z, y + 0.4 * x, z - 0.3 * y);
+  return mesh;
+}
+
 /// Meshes of all kinds whose elements the method accepts.
 template <class Method = TlPerturbation>
 std::vector<Mesh> meshes() {
   return {box({1, 1, 1}, {1, 1, 1}),
           box({1, 2, 9}, {3, 4, 30}),
           box({3, 2, 2.5}, {13, 11, 12}),
+          sheared_box(),
           fitting_patch<FormulationOf<Method, NeoHookean>>(),
           ring(40),
           EllipsoidMesh{{0.10, 0.085, 0.08}, 6, 2}.build(),
@@ -317,6 +328,49 @@ TEST(SubnormalTest, fading_displacements_give_no_force_and_leave_the_processor_a
   EXPECT_EQ(largest_distance(to_field(force, elements->layout()), NodalField(mesh.points.size())), 0.0);
   const volatile float tiny = 1e-30F, less = 1e-10F;
   EXPECT_GT(tiny * less, 0.0F);
+}
+
+/// The compact method does not know the form for parallelepipeds: all that an element tells must be the same
+/// with it, for laws of all kinds. Bounds and energies are sums like the forces, and rounded as they are.
+TEST(ParallelepipedTest, form_for_them_gives_what_the_general_one_gives) {
+  const Mesh mesh = sheared_box();
+  ASSERT_EQ(shapes_in(mesh), Shapes::parallelepipeds);
+  const Ogden ogden{.mu1 = 800.0, .alpha1 = 3.0, .K = 5e4};
+  for (const AnyLaw& any : {AnyLaw(law), AnyLaw(ogden)}) {
+    const auto regular = std::get<0>(make_internal_force(mesh, any, {"tl-perturbation"}));
+    const auto general = std::get<0>(make_internal_force(mesh, any, {"tl-perturbation-compact"}));
+    const NodalField u = wavy(mesh, "tl-perturbation");
+    const auto told = [&](const InternalForce<double>& elements) {
+      State<double> state = state_at(elements, u);
+      Rows<double> force(state.u.size());
+      elements.evaluate(state, force);
+      std::vector<double> bounds(mesh.cells.size()), jacobians(bounds), densities(bounds);
+      elements.stiffness_bounds(state, bounds);
+      elements.smallest_jacobians(state, jacobians);
+      elements.hourglass_energy_densities(state, densities);
+      return std::tuple(to_field(force, elements.layout()), elements.energies(state), bounds, jacobians,
+                        densities);
+    };
+    const auto [f, energies, bounds, jacobians, densities] = told(*regular);
+    const auto [f2, energies2, bounds2, jacobians2, densities2] = told(*general);
+    EXPECT_LT(largest_distance(f, f2), tolerance(mesh, 2.3e-16));
+    EXPECT_NEAR(energies.strain / energies2.strain, 1.0, 1e-12);
+    EXPECT_NEAR(energies.hourglass / energies2.hourglass, 1.0, 1e-12);
+    for (std::size_t e = 0; e < bounds.size(); ++e) {
+      EXPECT_NEAR(bounds[e] / bounds2[e], 1.0, 1e-12);
+      EXPECT_NEAR(jacobians[e] / jacobians2[e], 1.0, 1e-12);
+      EXPECT_NEAR(densities[e] / densities2[e], 1.0, 1e-11);
+    }
+  }
+}
+
+/// A node that has moved by a billionth of an edge is no roundoff: c = 0 would be wrong by as much.
+TEST(ParallelepipedTest, is_not_what_differs_from_one_by_more_than_roundoff) {
+  Mesh mesh = sheared_box();
+  for (auto& X : mesh.points) X[1] += 100.0;  // coordinates are now rounded to 1e-14
+  EXPECT_EQ(shapes_in(mesh), Shapes::parallelepipeds);
+  mesh.points[100][2] += 1e-9;
+  EXPECT_EQ(shapes_in(mesh), Shapes::any);
 }
 
 /// Recomputing the geometry changes only roundoff.

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "assembly/method_entry.hpp"
 #include "choice/candidates.hpp"
 #include "choice/choose.hpp"
+#include "choice/longer_steps.hpp"
 #include "comparison/answer.hpp"
 #include "io/case_file.hpp"
 #include "support/scenes.hpp"
@@ -237,7 +239,7 @@ TEST(Choose, takes_motions) {
     }
     EXPECT_TRUE(rung.unfit.empty()) << name_of(rung);
     ASSERT_TRUE(evaluation.error && evaluation.per_simulated_second) << name_of(rung) << evaluation.reason;
-    if (!rung.mesh->own()) continue;
+    if (!rung.mesh->own() || !rung.mesh->steps.empty()) continue;
     const Displacements u = compute_answer(scene_of_case(description), rung.choice, silent).u;
     double error = 0.0;
     for (std::size_t t = 0; t < 5; ++t)
@@ -248,6 +250,51 @@ TEST(Choose, takes_motions) {
     ++compared;
   }
   EXPECT_EQ(compared, 6 + 2 + 2);
+}
+
+/// Longer steps are rungs like others: all that are left are near enough with the golden's own element, their
+/// steps are longer by what the body's frequency gives on a block (a third at least) and, with softer bulk
+/// moduli, by more; a stricter tolerance leaves fewer.
+TEST(Choose, takes_longer_steps_where_they_suffice) {
+  Case description = cantilever(0.1);
+  description.quasi_static = false;
+  description.dynamics = {.duration = 2.0, .ramp_time = 1.0, .frames = 5};
+  std::get<NeoHookean>(description.materials.front().law).poisson_ratio = 0.49;
+  const auto steps_of = [&](double tolerance) {
+    const Choice choice =
+        choose_quietly(description, {.tolerance = tolerance, .methods = {"tl-mean-dilatation"}, .all = true});
+    std::map<std::string, double> steps;
+    for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
+      if (!rung.mesh->own() || rung.choice.precision != Precision::double_precision) continue;
+      EXPECT_LE(*evaluation.error, tolerance) << rung.mesh->name();
+      steps[rung.mesh->steps] = *cost->step_size;
+    }
+    return steps;
+  };
+  const std::string body = "body_frequency";
+  const auto steps = steps_of(0.05);
+  ASSERT_TRUE(steps.contains(body + ", bulk / 2.5"));
+  EXPECT_GT(steps.at(body), 1.33 * steps.at(""));
+  EXPECT_GT(steps.at(body + ", bulk / 2.5"), 1.4 * steps.at(body));
+  EXPECT_LT(steps_of(1e-5).size(), steps.size());
+}
+
+/// Softened moduli keep what a beam's frequency depends on: E, but for a root, and a Poisson's ratio whose
+/// distance from 1/2 grows by the factor. A law without these parameters only gets the body's steps.
+TEST(LongerSteps, soften_what_can_be_softened) {
+  Case description = cantilever(0.1);
+  description.quasi_static = false;
+  description.materials.front().law = NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49};
+  const auto longer = longer_steps(scene_of_case(description));
+  ASSERT_EQ(longer.size(), 5u);
+  for (const auto& [difference, scene] : longer) EXPECT_EQ(scene.description.dynamics.body_frequency, 1);
+  const auto& law = std::get<NeoHookean>(longer[3].scene.description.materials.front().law);
+  EXPECT_NEAR(law.poisson_ratio, 0.45, 1e-15);
+  EXPECT_NEAR(law.young_modulus, 3000.0 * std::sqrt(1.49 / 1.45), 1e-9);
+  description.materials.front().law = Ogden{.mu1 = 800.0, .alpha1 = 3.0, .K = 5e4};
+  EXPECT_EQ(longer_steps(scene_of_case(description)).size(), 1u);
+  description.dynamics.subcycles = 2;
+  EXPECT_TRUE(longer_steps(scene_of_case(description)).empty());
 }
 
 TEST(Choose, refuses_what_it_cannot_do) {

@@ -6,9 +6,10 @@
 /// The definition of `assemble`, for the source files of each method; see CMakeLists.txt.
 namespace sandglass {
 
+/// The elements of a mesh in the form of the method itself.
 template <class Method, class Number>
-ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
-                         int threads) {
+ForceOf<Number> assemble_form(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
+                              int threads) {
   using Levels = LevelsOf<Method>;
   const KernelLaws laws = kernel_laws(materials);
   if (const auto* known = std::get_if<std::vector<NeoHookean>>(&laws)) {
@@ -24,6 +25,17 @@ ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const Hou
   }
   using Loop = ForceLoop<Levels, CalledLaw, CalledLaw, Number>;
   return std::make_unique<Loop>(mesh, materials, std::get<std::vector<CalledLaw>>(laws), settings, threads);
+}
+
+template <class Method, class Number>
+ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
+                         int threads) {
+  if constexpr (!std::is_same_v<OnParallelepipeds<Method>, Method>) {
+    if (shapes_in(mesh) == Shapes::parallelepipeds) {
+      return assemble_form<OnParallelepipeds<Method>, Number>(mesh, materials, settings, threads);
+    }
+  }
+  return assemble_form<Method, Number>(mesh, materials, settings, threads);
 }
 
 template <class Method>

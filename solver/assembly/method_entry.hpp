@@ -7,6 +7,7 @@
 #include "assembly/internal_force.hpp"
 #include "element/element_work.hpp"
 #include "math/lanes.hpp"
+#include "mesh/quality.hpp"
 
 namespace sandglass {
 
@@ -45,10 +46,10 @@ struct MethodEntry {
 
   /// Operations per element and step, counted by running the kernel. They do not depend on the law's
   /// parameters.
-  OperationCount (*operations)(const KernelLaw&) = nullptr;
+  OperationCount (*operations)(const KernelLaw&, Shapes) = nullptr;
 
   /// The memory traffic of an element in a step.
-  Traffic (*traffic)(const KernelLaw&) = nullptr;
+  Traffic (*traffic)(const KernelLaw&, Shapes) = nullptr;
 
   /// Whether the method chooses the level of each element.
   bool adapts() const { return !levels.empty(); }

@@ -25,16 +25,21 @@ auto with_called_law(const KernelLaw& kernel_law, const Use& use) {
 }
 
 template <class Method>
-OperationCount operations_of(const KernelLaw& kernel_law) {
-  return with_called_law(kernel_law, [](const auto& law) {
-    return count_operations<typename Method::Kinematics, typename Method::Hourglass>(law);
+OperationCount operations_of(const KernelLaw& kernel_law, Shapes shapes) {
+  return with_called_law(kernel_law, [&](const auto& law) {
+    using Regular = OnParallelepipeds<Method>;
+    return shapes == Shapes::any
+               ? count_operations<typename Method::Kinematics, typename Method::Hourglass>(law)
+               : count_operations<typename Regular::Kinematics, typename Regular::Hourglass>(law);
   });
 }
 
 template <class Method>
-Traffic traffic_with(const KernelLaw& kernel_law) {
-  return with_called_law(kernel_law,
-                         []<class Law>(const Law&) { return traffic_of<FormulationOf<Method, Law>>(); });
+Traffic traffic_with(const KernelLaw& kernel_law, Shapes shapes) {
+  return with_called_law(kernel_law, [&]<class Law>(const Law&) {
+    using Regular = FormulationOf<OnParallelepipeds<Method>, Law>;
+    return shapes == Shapes::any ? traffic_of<FormulationOf<Method, Law>>() : traffic_of<Regular>();
+  });
 }
 
 }  // namespace detail

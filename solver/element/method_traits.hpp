@@ -10,7 +10,8 @@
 /// integration_points, Kinematics and Hourglass, and where they apply `zero_energy_modes`, the number of
 /// modes without energy by design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to
 /// the one that it approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for
-/// small strains; `SharesKernelsOf`, a method with the same element.
+/// small strains; `SharesKernelsOf`, a method with the same element; `KinematicsOnParallelepipeds`,
+/// kinematics with the same forces on meshes of parallelepipeds.
 namespace sandglass {
 
 /// An hourglass control that resists only velocities declares `damps_only`: it dissipates energy and gives no
@@ -65,6 +66,20 @@ struct KernelOwner<Method> {
 };
 
 template <class Method>
+struct RegularForm {
+  using type = Method;
+};
+template <class Method>
+requires requires {
+  typename Method::KinematicsOnParallelepipeds;
+}
+struct RegularForm<Method> {
+  struct type : Method {
+    using Kinematics = typename Method::KinematicsOnParallelepipeds;
+  };
+};
+
+template <class Method>
 struct LevelsOf {
   using type = TypeList<Method>;
 };
@@ -79,6 +94,11 @@ struct LevelsOf<Method> {
 /// The method whose kernels a method uses: itself, unless it declares `SharesKernelsOf`.
 template <class Method>
 using KernelOwner = typename detail::KernelOwner<Method>::type;
+
+/// The form of a method for meshes of parallelepipeds: itself, unless it declares
+/// `KinematicsOnParallelepipeds`.
+template <class Method>
+using OnParallelepipeds = typename detail::RegularForm<Method>::type;
 
 /// The levels of a method's elements; for a method that is not adaptive, the method itself.
 template <class Method>

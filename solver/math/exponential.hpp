@@ -13,38 +13,6 @@
 /// normal numbers.
 namespace sandglass {
 
-namespace detail {
-
-/// The layout of a floating-point number in its bits.
-template <class Real>
-struct FloatBits;
-template <>
-struct FloatBits<double> {
-  using Integer = std::int64_t;
-  static constexpr int mantissa = 52;
-  static constexpr int bias = 1023;
-  static constexpr double integers = 0x1p52;           ///< from here on neighbouring numbers differ by one
-  static constexpr double ln2_high = 0x1.62e42feep-1;  ///< few digits: its products with exponents are exact
-  static constexpr double ln2_low = 0x1.a39ef35793c76p-33;
-  static constexpr double largest_logarithm = 710.0;  ///< exp of it overflows
-  static constexpr int exponential_terms = 13;        ///< the next would be 1e-17 of the sum
-  static constexpr int logarithm_terms = 10;          ///< the next would be 2e-17
-};
-template <>
-struct FloatBits<float> {
-  using Integer = std::int32_t;
-  static constexpr int mantissa = 23;
-  static constexpr int bias = 127;
-  static constexpr float integers = 0x1p23F;
-  static constexpr float ln2_high = 0x1.62e3p-1F;
-  static constexpr float ln2_low = 0x1.2fefa2p-17F;
-  static constexpr float largest_logarithm = 89.0F;
-  static constexpr int exponential_terms = 8;  ///< the next would be 6e-10 of the sum
-  static constexpr int logarithm_terms = 5;    ///< the next would be 2e-9
-};
-
-}  // namespace detail
-
 /// 2^n for a whole number n within the range of exponents: n is shifted into the exponent's bits.
 template <std::floating_point Real>
 Real power_of_two(Real n) {

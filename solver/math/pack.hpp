@@ -18,8 +18,6 @@ struct VectorOf {
   using Integer = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
   using Vector __attribute__((vector_size(sizeof(T) * W))) = T;
   using Mask __attribute__((vector_size(sizeof(T) * W))) = Integer;
-  using FloatVector __attribute__((vector_size(sizeof(float) * W))) = float;
-  using IntVector __attribute__((vector_size(sizeof(std::int32_t) * W))) = std::int32_t;
 };
 
 }  // namespace detail
@@ -94,13 +92,11 @@ struct Pack {
 
   /// As for plain numbers, see scalar.hpp.
   friend Pack inverse_cube_root(Pack x) {
-    using FloatVector = typename detail::VectorOf<T, W>::FloatVector;
-    using IntVector = typename detail::VectorOf<T, W>::IntVector;
-    const auto bits = std::bit_cast<IntVector>(__builtin_convertvector(x.lanes, FloatVector));
-    const auto root_bits = __builtin_convertvector(
-        __builtin_convertvector(bits, FloatVector) * cube_root_slope + cube_root_shift, IntVector);
-    return refined_inverse_cube_root(
-        x, of(__builtin_convertvector(std::bit_cast<FloatVector>(root_bits), Vector)));
+    using Guess = RootGuess<T>;
+    const Mask logarithm = (std::bit_cast<Mask>(x.lanes) >> Guess::shift) | Guess::integers;
+    const Vector root = Guess::start + Guess::slope * std::bit_cast<Vector>(logarithm);
+    const Mask bits = std::bit_cast<Mask>(root) << Guess::shift;
+    return refined_inverse_cube_root(x, of(std::bit_cast<Vector>(bits)));
   }
 };
 

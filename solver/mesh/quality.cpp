@@ -42,6 +42,21 @@ double smallest_measure(const NodalVectors<double>& X) {
   return smallest;
 }
 
+Shapes shapes_in(const Mesh& mesh) {
+  const bool regular = std::all_of(mesh.cells.begin(), mesh.cells.end(), [&](const Hexahedron& cell) {
+    const NodalVectors<double> X = gather(mesh.points, cell);
+    const Matrix<double, 3, 4> hourglass = transpose(X) * hourglass_base_vectors();
+    const auto size = [](const auto& matrix) {
+      double largest = 0.0;
+      for (const double entry : matrix.entries) largest = std::max(largest, std::abs(entry));
+      return largest;
+    };
+    // Eight coordinates, each rounded once or twice when it was computed and once more in each sum.
+    return size(hourglass) <= 32.0 * std::numeric_limits<double>::epsilon() * size(X);
+  });
+  return regular ? Shapes::parallelepipeds : Shapes::any;
+}
+
 QualityTable quality_table(const Mesh& mesh) {
   QualityTable table;
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {

@@ -10,6 +10,12 @@ double scaled_jacobian(const NodalVectors<double>& X);
 /// The smallest det(dX/dxi) at the eight Gauss points, m^3.
 double smallest_measure(const NodalVectors<double>& X);
 
+/// What the elements of a mesh have in common.
+enum class Shapes { any, parallelepipeds };
+
+/// Whether all elements are parallelepipeds, up to the roundoff of coordinates.
+Shapes shapes_in(const Mesh& mesh);
+
 /// The quality of the elements of a mesh: the distribution of their scaled Jacobians.
 struct QualityTable {
   struct Element {

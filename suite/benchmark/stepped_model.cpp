@@ -40,7 +40,7 @@ class SteppedModelOf final : public SteppedModel {
     Rows<Real>& increment = body.state().increment;
     std::fill(increment.begin(), increment.end(), Row<Real>{});  // it stands still
     start_ = body.state();
-    stable_step_ = sandglass::stable_step(model_, body.stiffness_bounds()).step;
+    stable_step_ = body.stable_step(model_, step_.inverse_masses()).step;
     constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
     step_size_ = step_fraction * stable_step_;
     keep_ = (1.0 - damping) / (1.0 + damping);
@@ -72,7 +72,7 @@ class SteppedModelOf final : public SteppedModel {
 
   Work work() const override {
     return work_of(model_.choice(), model_.scene().description.materials.front().law, elements_.layout(),
-                   model_.scene().mesh.cells.size());
+                   model_.scene().mesh);
   }
 
  private:

@@ -12,13 +12,14 @@ double bytes_per_element(const Traffic& traffic, std::size_t bytes_of_number, co
   return static_cast<double>(bytes) / static_cast<double>(elements);
 }
 
-Work work_of(const MethodChoice& choice, const AnyLaw& any_law, const Layout& layout, std::size_t elements) {
+Work work_of(const MethodChoice& choice, const AnyLaw& any_law, const Layout& layout, const Mesh& mesh) {
   const MethodEntry& method = method_named(choice.method);
   const KernelLaw law = kernel_law(any_law);
   const bool is_double = choice.precision == Precision::double_precision;
-  return {
-      static_cast<double>(method.operations(law).total.total()),
-      bytes_per_element(method.traffic(law), is_double ? sizeof(double) : sizeof(float), layout, elements)};
+  const Shapes shapes = shapes_in(mesh);
+  return {static_cast<double>(method.operations(law, shapes).total.total()),
+          bytes_per_element(method.traffic(law, shapes), is_double ? sizeof(double) : sizeof(float), layout,
+                            mesh.cells.size())};
 }
 
 }  // namespace sandglass

@@ -17,6 +17,6 @@ double bytes_per_element(const Traffic& traffic, std::size_t bytes_of_number, co
                          std::size_t elements);
 
 /// Operations, as `sandglass flops` counts them, and bytes of one element and step.
-Work work_of(const MethodChoice& choice, const AnyLaw& law, const Layout& layout, std::size_t elements);
+Work work_of(const MethodChoice& choice, const AnyLaw& law, const Layout& layout, const Mesh& mesh);
 
 }  // namespace sandglass

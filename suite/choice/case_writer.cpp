@@ -86,9 +86,29 @@ void add_refinements(toml::table& root, const Case& description, const Case& oth
   if (rules.empty()) root.erase("refine");
 }
 
-/// What the case says of answers on its own mesh.
+/// The steps of the other case, and its moduli, changed where they stand.
+void set_longer_steps(toml::table& root, const Case& description, const Case& other) {
+  if (other.dynamics.body_frequency == description.dynamics.body_frequency) return;
+  table_of(root, "dynamics").insert_or_assign("body_frequency", other.dynamics.body_frequency);
+  for (std::size_t n = 0; n < other.materials.size(); ++n) {
+    toml::table* const several = root["materials"][n].as_table();
+    toml::table& material = several != nullptr ? *several : table_of(root, "material");
+    std::visit(
+        [&]<class Law>(const Law& law) {
+          const Law& softer = std::get<Law>(other.materials[n].law);
+          const auto set = [&](const auto& key) {
+            if (softer.*key.member != law.*key.member)
+              material.insert_or_assign(key.name, softer.*key.member);
+          };
+          std::apply([&](const auto&... key) { (set(key), ...); }, Law::parameters());
+        },
+        description.materials[n].law);
+  }
+}
+
+/// What the case says of answers on its own mesh and with its own materials.
 void forget_answers(toml::table& root, const Case& description) {
-  set_text(table_of(root, "case"), "name", description.name + "-other-mesh");
+  set_text(table_of(root, "case"), "name", description.name + "-chosen");
   root.erase("expect");
   root.erase("published");
   root.erase("comparison");
@@ -97,7 +117,7 @@ void forget_answers(toml::table& root, const Case& description) {
 
 }  // namespace
 
-std::string case_text(const Case& description, const MethodChoice& choice, const Case* other,
+std::string case_text(const Case& description, const MethodChoice& choice, const Case& chosen,
                       const fs::path& place) {
   toml::table root = read_case_tables(description.file, description.variants).root;
   const fs::path folder = fs::absolute(place).parent_path();
@@ -105,12 +125,13 @@ std::string case_text(const Case& description, const MethodChoice& choice, const
   if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
     set_text(table_of(root, "mesh"), "file", path_from(folder, file->path));
   }
-  if (other != nullptr) {
-    if (const auto* generator = std::get_if<AnyGenerator>(&other->mesh))
+  set_longer_steps(root, description, chosen);
+  if (case_hash(chosen) != case_hash(description)) {
+    if (const auto* generator = std::get_if<AnyGenerator>(&chosen.mesh))
       set_counts(table_of(root, "mesh"), *generator);
-    add_refinements(root, description, *other);
+    add_refinements(root, description, chosen);
     forget_answers(root, description);
-    keep_sets(table_of(root, "sets"), *other);
+    keep_sets(table_of(root, "sets"), chosen);
   } else {
     set_references(root, description, folder);
   }

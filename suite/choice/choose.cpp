@@ -9,6 +9,7 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "choice/longer_steps.hpp"
 #include "choice/variations.hpp"
 #include "comparison/comparison.hpp"
 #include "mesh/interpolation.hpp"
@@ -43,9 +44,19 @@ class Meshes {
       const std::string difference = counts_text(coarser);
       try {
         Scene scene = scene_on(coarser, choice_.meshes.front().scene.description);
-        if (!try_out(difference, scene)) too_coarse_.emplace_back(difference, std::move(scene));
+        if (!try_out_mesh(difference, scene)) too_coarse_.emplace_back(difference, std::move(scene));
       } catch (const InputError& error) {
         choice_.others.push_back({difference, {{}, {}, {}, error.what()}});
+      }
+    }
+  }
+
+  /// For a motion: each mesh with longer steps, as long as the golden's own element is near enough.
+  void add_longer_steps() {
+    for (std::size_t n = 0, count = choice_.meshes.size(); n < count; ++n) {
+      for (auto& [steps, scene] : longer_steps(choice_.meshes[n].scene)) {
+        const LadderMesh& mesh = choice_.meshes[n];
+        if (!try_out({mesh.difference, std::move(scene), mesh.reference, steps})) break;
       }
     }
   }
@@ -66,10 +77,14 @@ class Meshes {
   /// Refinements after which a mesh is given up.
   static constexpr int most_refinements = 5;
 
+  /// Whether the golden's own element can answer on another mesh.
+  bool try_out_mesh(const std::string& difference, const Scene& scene) {
+    return try_out({difference, scene, interpolate(scene_.mesh, choice_.reference.u, scene.mesh.points)});
+  }
+
   /// Whether the golden's own element can answer on a mesh; if so, rungs stand on it.
-  bool try_out(const std::string& difference, const Scene& scene) {
-    LadderMesh mesh{difference, scene, interpolate(scene_.mesh, choice_.reference.u, scene.mesh.points)};
-    choice_.others.push_back({difference, evaluator_.evaluate_mesh(mesh)});
+  bool try_out(LadderMesh mesh) {
+    choice_.others.push_back({mesh.name(), evaluator_.evaluate_mesh(mesh)});
     MeshAttempt& attempt = choice_.others.back();
     attempt.kept = attempt.evaluation.reason.empty();
     if (attempt.kept) choice_.meshes.push_back(std::move(mesh));
@@ -97,7 +112,7 @@ class Meshes {
       const std::size_t elements = elements_of(answer->scene());
       if (elements >= enough_elements_) return;
       name = fmt::format("{}{}refined to {} elements", difference, difference.empty() ? "" : ", ", elements);
-      if (try_out(name, answer->scene())) {
+      if (try_out_mesh(name, answer->scene())) {
         enough_elements_ = elements;
         return;
       }
@@ -234,6 +249,7 @@ Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progre
   stage = "other meshes";
   Meshes meshes(scene, choice, evaluator);
   meshes.add_coarser();
+  if (!scene.description.quasi_static) meshes.add_longer_steps();
   if (demand.against == "truth" && scene.description.quasi_static) meshes.add_refined();
   stage = "time of steps";
   auto rungs = make_ladder(choice.meshes, {demand.methods, demand.tolerance, demand.threads});

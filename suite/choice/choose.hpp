@@ -57,7 +57,8 @@ using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 /// of time on this machine, and with a reserve of load. Coarser meshes are looked at first, with the golden's
 /// own element: an answer that is nearer than its mesh allows is so by luck, and not taken. For a static
 /// answer that is measured against the truth, meshes that are too coarse are refined where that element errs,
-/// until it is near enough. Then the rungs are timed, put in the order of their cost per simulated second,
+/// until it is near enough. For a motion, meshes are tried with longer steps in the same way
+/// (longer_steps.hpp). Then the rungs are timed, put in the order of their cost per simulated second,
 /// and climbed. Throws InputError for an unknown method and a stored reference that is not there,
 /// ComputationError where the reference finds no answer or when told to end.
 Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress);

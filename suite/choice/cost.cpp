@@ -10,7 +10,6 @@
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/machine_speed.hpp"
 #include "benchmark/statistics.hpp"
-#include "solve/stable_step.hpp"
 
 namespace sandglass {
 
@@ -60,8 +59,8 @@ std::optional<double> step_size(const Rung& rung, const SteppedModel& model) {
   const auto deformed = model.stable_step();
   if (!deformed) return std::nullopt;
   const Scene& scene = rung.mesh->scene;
-  const Model at_rest(scene, rung.choice);
-  const double stable = std::min(*deformed, stable_step(at_rest, NodalField(scene.mesh.points.size())).step);
+  const NodalField zero(scene.mesh.points.size());
+  const double stable = std::min(*deformed, *make_stepped_model(scene, rung.choice, &zero)->stable_step());
   return scene.description.dynamics.step_fraction * stable;
 }
 

@@ -153,7 +153,9 @@ Evaluation Evaluator::evaluate(const Rung& rung) {
 
 Evaluation Evaluator::evaluate_mesh(const LadderMesh& mesh) {
   Evaluation found = evaluate_answer({golden_element(1), &mesh});
-  if (!found.reason.empty() && found.error) found.reason = "too coarse for any method";
+  if (!found.reason.empty() && found.error) {
+    found.reason = mesh.steps.empty() ? "too coarse for any method" : "too soft for any method";
+  }
   return found;
 }
 

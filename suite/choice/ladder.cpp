@@ -14,6 +14,10 @@ const NodalField& LadderMesh::farthest() const {
   return reference[worst_time(reference, at_rest)];
 }
 
+std::string LadderMesh::name() const {
+  return (own() ? "own mesh" : difference) + (steps.empty() ? "" : ", " + steps);
+}
+
 std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan) {
   std::vector<Rung> rungs;
   const auto asked = [&](std::string_view method) {
@@ -25,7 +29,7 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
       if (!asked(method.name)) continue;
       MethodChoice plain{.method = std::string(method.name), .threads = plan.threads};
       if (const std::string_view why = unfit(method, mesh.scene.description.quasi_static); !why.empty()) {
-        if (mesh.own()) rungs.push_back({plain, &mesh, std::string(why)});
+        if (mesh.own() && mesh.steps.empty()) rungs.push_back({plain, &mesh, std::string(why)});
         continue;
       }
       for (const auto precision : {Precision::double_precision, Precision::single_precision}) {

@@ -10,16 +10,18 @@
 
 namespace sandglass {
 
-/// The user's own mesh, or another one of the same body.
+/// The user's own mesh, or another one of the same body, with the steps of the user's case or longer ones.
 struct LadderMesh {
   std::string difference = {};  ///< the counts of elements of a coarser one, what one is refined to, or both
   Scene scene;
   Displacements reference;  ///< the reference's displacements at its nodes, m
+  std::string steps = {};   ///< how a motion takes longer steps; empty: it does not
 
+  /// Whether the mesh is the user's.
   bool own() const { return difference.empty(); }
 
-  /// "own mesh", or the difference from it.
-  std::string name() const { return own() ? "own mesh" : difference; }
+  /// "own mesh" or the difference from it, and the steps if they are longer.
+  std::string name() const;
 
   /// The reference where it is farthest from rest.
   const NodalField& farthest() const;

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "element/hourglass_perturbation.hpp"
-#include "element/one_point.hpp"
+#include "element/one_point_forms.hpp"
 
 namespace sandglass {
 
@@ -13,6 +13,7 @@ struct TlPerturbation {
       "one point, Total Lagrangian, perturbation hourglass control (the paper)";
   static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
+  using KinematicsOnParallelepipeds = ParallelepipedOnePoint;
   using Hourglass = PerturbationHourglassControl;
 };
 

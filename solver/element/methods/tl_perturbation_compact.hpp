@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-#include "element/compact_one_point.hpp"
 #include "element/hourglass_perturbation.hpp"
+#include "element/one_point_forms.hpp"
 
 namespace sandglass {
 

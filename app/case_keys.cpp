@@ -1,4 +1,4 @@
-#include "io/case_keys.hpp"
+#include "app/case_keys.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,49 @@
+#include "choice/longer_steps.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "problem/scene_refinement.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr double smallest_ratio = 0.25;
+
+/// Softens the law against changes of volume; whether that was possible.
+template <class Law>
+bool soften(Law& law, double factor) {
+  if constexpr (requires { law.young_modulus, law.poisson_ratio; }) {
+    constexpr double digits = 1e9;
+    const double softer = std::round(digits * (0.5 - factor * (0.5 - law.poisson_ratio))) / digits;
+    if (softer < smallest_ratio) return false;
+    law.young_modulus *= std::sqrt((1.0 + law.poisson_ratio) / (1.0 + softer));
+    law.poisson_ratio = softer;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<LongerSteps> longer_steps(const Scene& scene) {
+  Case description = scene.description;
+  if (description.dynamics.subcycles > 1) return {};
+  description.dynamics.body_frequency = 1;
+  std::vector<LongerSteps> found;
+  found.push_back({"body_frequency", remade(scene, description)});
+  for (const double factor : {1.5, 2.5, 5.0, 10.0}) {
+    Case softer = description;
+    bool softened = false;
+    for (auto& material : softer.materials) {
+      softened |= std::visit([&](auto& law) { return soften(law, factor); }, material.law);
+    }
+    if (!softened) break;
+    found.push_back({fmt::format("body_frequency, bulk / {:.2g}", factor), remade(scene, std::move(softer))});
+  }
+  return found;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "problem/scene.hpp"
+
+namespace sandglass {
+
+/// A scene whose motion takes longer steps.
+struct LongerSteps {
+  std::string difference;  ///< "body_frequency", or "body_frequency, bulk / 2.5"
+  Scene scene;
+};
+
+/// Scenes of the same motion with longer steps, from the nearest to the scene on: first steps by the largest
+/// frequency of the body instead of those of its elements, then also softer bulk moduli. A material with
+/// Young's modulus E and Poisson's ratio nu is softened as far as nu is above .25: 1 - 2 nu is multiplied by
+/// 1.5, 2.5, 5 and 10, and E by sqrt((1 + nu) / (1 + nu')). With that root the frequency of a clamped beam
+/// changes by a tenth of what it changes by at a constant E; the motion of a compact body hardly depends on
+/// it (`cases/README.md`).
+std::vector<LongerSteps> longer_steps(const Scene& scene);
+
+}  // namespace sandglass
