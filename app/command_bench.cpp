@@ -30,6 +30,7 @@ constexpr int most_elements = 100'000'000;
 struct BenchOptions {
   std::vector<std::string> names;
   std::vector<int> elements;
+  std::vector<int> cubes;
   std::vector<std::string> methods;
   std::vector<std::string> precisions{"double", "float"};
   std::vector<int> threads;
@@ -65,6 +66,7 @@ BenchPlan make_plan(const BenchOptions& options) {
 struct Subject {
   std::optional<Case> description;  ///< none for a box
   int elements = 0;
+  Shapes shapes = Shapes::any;  ///< of a box
 };
 
 std::vector<Subject> find_subjects(const BenchOptions& options) {
@@ -73,6 +75,10 @@ std::vector<Subject> find_subjects(const BenchOptions& options) {
   for (const int elements : options.elements) {
     require_count("--elements", elements, most_elements);
     subjects.push_back({{}, elements});
+  }
+  for (const int cubes : options.cubes) {
+    require_count("--cubes", cubes, most_elements);
+    subjects.push_back({{}, cubes, Shapes::parallelepipeds});
   }
   if (subjects.empty()) subjects.push_back({find_case("ellipsoid-indentation")});
   return subjects;
@@ -86,7 +92,8 @@ int run_bench(const BenchOptions& options) {
   std::vector<BenchRecord> records;
   for (std::size_t n = 0; n < subjects.size(); ++n) {
     const Subject& subject = subjects[n];
-    const Scene scene = subject.description ? read_scene(*subject.description) : box_scene(subject.elements);
+    const Scene scene =
+        subject.description ? read_scene(*subject.description) : box_scene(subject.elements, subject.shapes);
     std::vector<BenchRecord> found;
     {
       Progress progress("bench");
@@ -168,10 +175,14 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "and 0.1 % of the largest imposed one from those at rest; their seconds are that share of the median");
   command->add_option(
       "CASE", options->names,
-      "names or files of cases; ellipsoid-indentation when neither case nor --elements is given, with --rest "
+      "names or files of cases; ellipsoid-indentation when neither case nor box is given, with --rest "
       "all canonical quasi-static ones");
   auto* rest = command->add_flag("--rest", options->rest, "time quasi-static cases until they are at rest");
   command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides")
+      ->excludes(rest);
+  command
+      ->add_option("-c,--cubes", options->cubes,
+                   "boxes of about so many cubes, which some methods compute in less time, besides")
       ->excludes(rest);
   command->add_option("-t,--threads", options->threads,
                       "numbers of threads; 1 and 2 where there are two, with --rest 1");

@@ -139,6 +139,8 @@ TEST(BoxScene, has_about_the_elements_asked_for) {
     EXPECT_NEAR(found, elements, 0.15 * elements) << elements;
   }
   EXPECT_EQ(box_scene(64).mesh.cells.size(), 64U);
+  EXPECT_EQ(shapes_in(box_scene(64).mesh), Shapes::any);
+  EXPECT_EQ(shapes_in(box_scene(64, Shapes::parallelepipeds).mesh), Shapes::parallelepipeds);
 }
 
 TEST(WavyField, strains_elements_without_inverting_them) {

@@ -52,6 +52,18 @@ def tiny(tmp_path_factory):
     return outcome.stdout, json.loads(file.read_text())
 
 
+def test_cubes_take_fewer_operations_and_bytes_than_other_bricks(tmp_path):
+    file = tmp_path / "bench.json"
+    command = "bench --elements 64 --cubes 64 --repetitions 1 --threads 1 --json".split()
+    outcome = sandglass(*command, file, "--methods", "tl-perturbation", "tl-full")
+    assert outcome.returncode == 0, outcome.stderr
+    found = {(r["case"], r["method"]): r for r in json.loads(file.read_text())["records"]}
+    assert set(found) == {(c, m) for c in ("box", "cubes") for m in ("tl-perturbation", "tl-full")}
+    for figure in ("operations_per_element_step", "bytes_per_element_step"):
+        assert found["cubes", "tl-perturbation"][figure] < found["box", "tl-perturbation"][figure]
+        assert found["cubes", "tl-full"][figure] == found["box", "tl-full"][figure]
+
+
 def test_every_method_in_every_variant(tiny):
     found = {(r["method"], r["kernel"], r["precision"], r["threads"]) for r in tiny[1]["records"]}
     numbers = [("pack", "double"), ("pack", "float"), ("scalar", "double")]

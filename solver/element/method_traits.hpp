@@ -74,9 +74,10 @@ requires requires {
   typename Method::KinematicsOnParallelepipeds;
 }
 struct RegularForm<Method> {
-  struct type : Method {
+  struct Form : Method {
     using Kinematics = typename Method::KinematicsOnParallelepipeds;
   };
+  using type = Form;
 };
 
 template <class Method>

@@ -32,9 +32,9 @@ constexpr std::size_t steps_between_updates = 8;
 constexpr double close_enough = 1e-4;
 
 /// The norm after an accelerated step may be at most so many times the largest of the last ones; longer steps
-/// are shortened. More lets bodies that bend and stretch far wander off; where forces depend on the path,
-/// which remembers every detour, less ends some searches that would recover.
-constexpr double most_growth = 1.5, most_growth_on_a_path = 3.0;
+/// are shortened. More lets bodies that bend and stretch far wander off. With full effort, and where forces
+/// depend on the path, which remembers every detour, less ends some searches that would recover.
+constexpr double most_growth = 1.5, most_growth_of_the_last_try = 3.0;
 
 }  // namespace
 
@@ -134,7 +134,8 @@ bool Equilibrium<Real>::linearized_step() {
   mixed_.correct(reduced_, correction_);
   add(1.0f, correction_, step_, body().threads());
   const std::size_t recent = std::min<std::size_t>(norms_.size(), 3);
-  const double growth = depends_on_path_ ? most_growth_on_a_path : most_growth;
+  const bool last_try = depends_on_path_ || effort_ == Effort::full;
+  const double growth = last_try ? most_growth_of_the_last_try : most_growth;
   const double allowed = growth * *std::max_element(norms_.end() - static_cast<long>(recent), norms_.end());
   constexpr int most_trials = 7;
   double share = 1.0, done = 0.0;

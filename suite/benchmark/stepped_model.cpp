@@ -112,15 +112,15 @@ NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalFie
 template NodalField forces_on_the_way(const InternalForce<double>&, const NodalField&);
 template NodalField forces_on_the_way(const InternalForce<float>&, const NodalField&);
 
-Scene box_scene(int elements) {
+Scene box_scene(int elements, Shapes shapes) {
   const int edge = std::max(1, static_cast<int>(std::lround(std::cbrt(elements))));
   const int height =
       std::max(1, static_cast<int>(std::lround(static_cast<double>(elements) / (edge * edge))));
   constexpr double width = 0.1;
   const double z = width * height / edge;
   Case description;
-  description.file = "box";
-  description.name = "box";
+  description.name = shapes == Shapes::any ? "box" : "cubes";
+  description.file = description.name;
   description.mesh = BoxMesh{{width, width, z}, {edge, edge, height}};
   description.materials.front().law = NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49};
   description.materials.front().density = 1000.0;
@@ -128,6 +128,17 @@ Scene box_scene(int elements) {
                       {.name = "head", .within = {{{}, {}, Interval{z, z}}}}};
   description.displacements = {{.set = "foot"}, {.set = "head", .value = {0.0, 0.0, -0.1 * z}}};
   Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
+  if (shapes == Shapes::any) {
+    const double size = width / edge;
+    const Vector far{width, width, z};
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+      Vector& X = mesh.points[n];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const bool inside = X[i] > 0.5 * size && X[i] < far[i] - 0.5 * size;
+        if (inside) X[i] += 0.1 * size * std::sin(static_cast<double>(7 * n + 3 * i));
+      }
+    }
+  }
   return make_scene(std::move(description), std::move(mesh));
 }
 

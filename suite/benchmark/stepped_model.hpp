@@ -5,13 +5,15 @@
 
 #include "benchmark/measure.hpp"
 #include "benchmark/roofline.hpp"
+#include "mesh/quality.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
 
-/// A box of about this number of cubes with the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3),
-/// clamped at z = 0 and moved at its other end.
-Scene box_scene(int elements);
+/// A box of about this number of elements with the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3),
+/// clamped at z = 0 and moved at its other end. The elements are cubes, or, for `Shapes::any`, cubes whose
+/// nodes inside the box have moved by up to a tenth of an edge.
+Scene box_scene(int elements, Shapes shapes = Shapes::any);
 
 /// The shortest distance between two nodes of an element, m.
 double element_size(const Scene& scene);
