@@ -291,6 +291,9 @@ TEST(LongerSteps, soften_what_can_be_softened) {
   const auto& law = std::get<NeoHookean>(longer[3].scene.description.materials.front().law);
   EXPECT_NEAR(law.poisson_ratio, 0.45, 1e-15);
   EXPECT_NEAR(law.young_modulus, 3000.0 * std::sqrt(1.49 / 1.45), 1e-9);
+  description.dynamics.body_frequency = 1;
+  EXPECT_EQ(longer_steps(scene_of_case(description)).size(), 4u);  // it has these steps
+  description.dynamics.body_frequency = 0;
   description.materials.front().law = Ogden{.mu1 = 800.0, .alpha1 = 3.0, .K = 5e4};
   EXPECT_EQ(longer_steps(scene_of_case(description)).size(), 1u);
   description.dynamics.subcycles = 2;

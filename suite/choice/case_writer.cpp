@@ -88,8 +88,8 @@ void add_refinements(toml::table& root, const Case& description, const Case& oth
 
 /// The steps of the other case, and its moduli, changed where they stand.
 void set_longer_steps(toml::table& root, const Case& description, const Case& other) {
-  if (other.dynamics.body_frequency == description.dynamics.body_frequency) return;
-  table_of(root, "dynamics").insert_or_assign("body_frequency", other.dynamics.body_frequency);
+  if (other.dynamics.body_frequency != description.dynamics.body_frequency)
+    table_of(root, "dynamics").insert_or_assign("body_frequency", other.dynamics.body_frequency);
   for (std::size_t n = 0; n < other.materials.size(); ++n) {
     toml::table* const several = root["materials"][n].as_table();
     toml::table& material = several != nullptr ? *several : table_of(root, "material");

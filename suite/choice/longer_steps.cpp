@@ -31,9 +31,11 @@ bool soften(Law& law, double factor) {
 std::vector<LongerSteps> longer_steps(const Scene& scene) {
   Case description = scene.description;
   if (description.dynamics.subcycles > 1) return {};
-  description.dynamics.body_frequency = 1;
   std::vector<LongerSteps> found;
-  found.push_back({"body_frequency", remade(scene, description)});
+  if (description.dynamics.body_frequency == 0) {
+    description.dynamics.body_frequency = 1;
+    found.push_back({"body_frequency", remade(scene, description)});
+  }
   for (const double factor : {1.5, 2.5, 5.0, 10.0}) {
     Case softer = description;
     bool softened = false;
