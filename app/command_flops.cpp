@@ -46,7 +46,7 @@ std::vector<Row> count_methods() {
       if (count.hourglass.total() > 0) add("kernel", "hourglass", count.hourglass);
       add("kernel", "element", count.total, count.bytes);
       const OperationCount regular = method.operations(kernel_law(Law{}), Shapes::parallelepipeds);
-      if (regular.bytes != count.bytes) add("boxes", "element", regular.total, regular.bytes);
+      if (regular.bytes != count.bytes) add("parallelepipeds", "element", regular.total, regular.bytes);
     }
   }
   rows.push_back({"tl-perturbation", Law::name, "paper", "hourglass", count_paper_hourglass_force()});
@@ -103,10 +103,10 @@ void add_flops_command(CLI::App& app) {
         "operations per element and step with the law {}; bytes: constants in double, places of nodes, "
         "history;\n"
         "of a condensed method, what an update takes per node and driven set\n"
-        "{:<25}{:<8}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n",
+        "{:<25}{:<16}{:<10}{:>6}{:>6}{:>6}{:>9}{:>7}{:>7}\n",
         NeoHookean::name, "method", "form", "part", "add", "mul", "div", "special", "total", "bytes");
     for (const auto& row : rows) {
-      fmt::print("{:<25}{:<8}{:<10}{}{:>7}\n", row.method, row.form, row.part, columns(row.operations),
+      fmt::print("{:<25}{:<16}{:<10}{}{:>7}\n", row.method, row.form, row.part, columns(row.operations),
                  row.bytes > 0 ? fmt::to_string(row.bytes) : "");
     }
     const auto laws = count_laws();
