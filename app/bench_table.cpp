@@ -108,6 +108,25 @@ std::string rest_table(const Scene& scene, const std::vector<RestRecord>& record
   return table;
 }
 
+std::string side_by_side_table(const std::vector<SideBySide>& records) {
+  std::string table = fmt::format(
+      "{}: {} bodies of {} elements, ns per element and step, median and quartiles\n"
+      "{:<20}{:<8}{:>4}{:>26}{:>26}{:>8}\n",
+      records.front().case_name, records.front().bodies, records.front().elements, "method", "number", "thr",
+      "one by one", "side by side", "ratio");
+  const auto text = [](const Spread& ns) {
+    return fmt::format("{:.2f} ({:.2f} to {:.2f})", ns.median, ns.lower_quartile, ns.upper_quartile);
+  };
+  for (const auto& record : records) {
+    table += fmt::format("{:<20}{:<8}{:>4}", record.choice.method, name_of(record.choice.precision),
+                         record.choice.threads);
+    table += record.status == "ok" ? fmt::format("{:>26}{:>26}{:>8.2f}\n", text(record.one_by_one),
+                                                 text(record.batch), record.ratio)
+                                   : fmt::format("  {}\n", record.status);
+  }
+  return table;
+}
+
 std::string machine_lines(const BenchPlan& plan, MachineSpeed& machine) {
   std::string lines;
   for (const int threads : plan.threads) {

@@ -5,6 +5,7 @@
 
 #include "benchmark/bench.hpp"
 #include "benchmark/rest.hpp"
+#include "benchmark/side_by_side.hpp"
 
 namespace sandglass {
 
@@ -13,6 +14,9 @@ std::string bench_table(const std::vector<BenchRecord>& records);
 
 /// The times to rest of one scene as a table.
 std::string rest_table(const Scene& scene, const std::vector<RestRecord>& records);
+
+/// The times of many bodies of one case as a table.
+std::string side_by_side_table(const std::vector<SideBySide>& records);
 
 /// What the machine can do, one line per number of threads.
 std::string machine_lines(const BenchPlan& plan, MachineSpeed& machine);

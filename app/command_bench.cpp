@@ -15,6 +15,7 @@
 #include "benchmark/bench.hpp"
 #include "benchmark/bench_json.hpp"
 #include "benchmark/rest.hpp"
+#include "benchmark/side_by_side.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "comparison/comparison.hpp"
 #include "io/case_file.hpp"
@@ -36,6 +37,7 @@ struct BenchOptions {
   std::vector<int> threads;
   int repetitions = MeasureSettings{}.repetitions;
   bool rest = false;
+  int bodies = 0;
   std::string json;
 };
 
@@ -156,6 +158,48 @@ int run_rest(const BenchOptions& options) {
   return 0;
 }
 
+/// The methods that compute bodies side by side, where none is named.
+std::vector<MethodChoice> variants_of_bodies(BenchOptions options) {
+  if (options.methods.empty()) {
+    for (const MethodEntry& method : methods()) {
+      if (method.assemble_batch_double != nullptr) options.methods.emplace_back(method.name);
+    }
+  }
+  if (options.threads.empty()) options.threads = {1};
+  auto variants = variants_of(make_plan(options));
+  std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });
+  return variants;
+}
+
+int run_bodies(const BenchOptions& options) {
+  require_count("--bodies", options.bodies, 1'000'000);
+  const auto variants = variants_of_bodies(options);
+  watch_for_interrupt();
+  std::vector<SideBySide> records;
+  const std::vector<std::string> names =
+      options.names.empty() ? std::vector<std::string>{"column"} : options.names;
+  for (const auto& name : names) {
+    const Case description = find_case(name);
+    std::vector<SideBySide> found;
+    {
+      Progress progress("bench");
+      for (const auto& choice : variants) {
+        const auto proceed = [&](double share) {
+          progress.show((static_cast<double>(found.size()) + share) / static_cast<double>(variants.size()),
+                        fmt::format("{}, {}", description.name, choice.method));
+          return !interrupted();
+        };
+        found.push_back(time_side_by_side(description, choice, static_cast<std::size_t>(options.bodies),
+                                          options.repetitions, proceed));
+      }
+    }
+    fmt::print("{}\n", side_by_side_table(found));
+    records.insert(records.end(), found.begin(), found.end());
+  }
+  if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), records));
+  return std::all_of(records.begin(), records.end(), [](const auto& r) { return r.status == "ok"; }) ? 0 : 1;
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code) {
@@ -184,11 +228,15 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->add_option("-c,--cubes", options->cubes,
                    "boxes of about so many cubes, which some methods compute in less time, besides")
       ->excludes(rest);
+  auto* bodies = command->add_option(
+      "--bodies", options->bodies,
+      "time so many bodies of each case, column when none is given, side by side and one by one");
+  bodies->excludes(rest);
   command->add_option("-t,--threads", options->threads,
-                      "numbers of threads; 1 and 2 where there are two, with --rest 1");
+                      "numbers of threads; 1 and 2 where there are two, with --rest or --bodies 1");
   command->add_option("-m,--methods", options->methods,
                       "methods, see `sandglass methods`; all when left out, with --rest tl-perturbation and "
-                      "tl-mean-dilatation");
+                      "tl-mean-dilatation, with --bodies those that run side by side");
   command->add_option("-p,--precision", options->precisions, "double, float or both")->capture_default_str();
   command
       ->add_option("-r,--repetitions", options->repetitions,
@@ -196,9 +244,11 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->excludes(rest)
       ->capture_default_str();
   command->add_option("--json", options->json, "write every figure to this file");
-  command->callback([options, &exit_code] {
+  command->callback([options, bodies, &exit_code] {
     if (!options->json.empty()) require_place(options->json);
-    exit_code = options->rest ? run_rest(*options) : run_bench(*options);
+    exit_code = options->rest         ? run_rest(*options)
+                : bodies->count() > 0 ? run_bodies(*options)
+                                      : run_bench(*options);
   });
 }
 

@@ -6,8 +6,8 @@
 #include "app/commands.hpp"
 #include "app/machine.hpp"
 #include "assembly/method_entry.hpp"
-#include "element/operation_count.hpp"
-#include "element/paper_hourglass_force.hpp"
+#include "counting/method_work.hpp"
+#include "counting/paper_hourglass_force.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "material/laws.hpp"
@@ -39,13 +39,13 @@ std::vector<Row> count_methods() {
       // Three columns for each handle, a product and a sum with each for every component of a node.
       add("update", "node", {.add = 9, .mul = 9}, 9 * sizeof(double));
     } else {
-      const OperationCount count = method.operations(kernel_law(Law{}), Shapes::any);
+      const OperationCount count = work_of(method, kernel_law(Law{}), Shapes::any).operations;
       add("kernel", "gradient", count.gradient);
       add("kernel", "law", count.law);
       add("kernel", "force", count.force);
       if (count.hourglass.total() > 0) add("kernel", "hourglass", count.hourglass);
       add("kernel", "element", count.total, count.bytes);
-      const OperationCount regular = method.operations(kernel_law(Law{}), Shapes::parallelepipeds);
+      const OperationCount regular = work_of(method, kernel_law(Law{}), Shapes::parallelepipeds).operations;
       if (regular.bytes != count.bytes) add("parallelepipeds", "element", regular.total, regular.bytes);
     }
   }
@@ -58,8 +58,8 @@ std::vector<Row> count_laws() {
   const MethodEntry& plain = method_named("tl-none");
   std::vector<Row> rows;
   for_each_type(Laws{}, [&]<class Law>() {
-    rows.push_back(
-        {plain.name, Law::name, "kernel", "law", plain.operations(kernel_law(Law{}), Shapes::any).law});
+    rows.push_back({plain.name, Law::name, "kernel", "law",
+                    work_of(plain, kernel_law(Law{}), Shapes::any).operations.law});
   });
   return rows;
 }

@@ -15,6 +15,7 @@
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "comparison/comparison.hpp"
+#include "comparison/truth_estimate.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
@@ -22,7 +23,6 @@
 #include "solve/error_estimate.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/sleep.hpp"
-#include "solve/truth_estimate.hpp"
 
 namespace sandglass {
 

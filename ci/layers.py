@@ -22,7 +22,7 @@ TARGETS = {
         "solve",
         "sandglass",
     ],
-    "suite": ["comparison", "benchmark", "choice", "stability"],
+    "suite": ["counting", "comparison", "benchmark", "choice", "stability"],
     "app": ["app"],
 }
 LAYERS = [layer for layers in TARGETS.values() for layer in layers]

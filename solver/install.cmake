@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 
 install(TARGETS sandglass_library EXPORT sandglassTargets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)
-install(FILES sandglass/simulation.hpp DESTINATION include/sandglass)
+install(FILES sandglass/simulation.hpp sandglass/batch.hpp DESTINATION include/sandglass)
 install(FILES base/error.hpp DESTINATION include/sandglass/base)  # the errors that it throws
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cases DESTINATION ${SANDGLASS_SHARE} FILES_MATCHING PATTERN "*.toml")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/reference/golden ${PROJECT_SOURCE_DIR}/reference/truth

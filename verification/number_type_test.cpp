@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "counting/counted.hpp"
+#include "counting/operation_count.hpp"
+#include "counting/paper_hourglass_force.hpp"
 #include "element/methods.hpp"
-#include "element/operation_count.hpp"
-#include "element/paper_hourglass_force.hpp"
-#include "math/counted.hpp"
 #include "math/pack.hpp"
 #include "support/fitting_elements.hpp"
 #include "support/sample_law.hpp"

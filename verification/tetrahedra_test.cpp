@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "element/operation_count.hpp"
+#include "counting/operation_count.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
 #include "support/derivatives.hpp"

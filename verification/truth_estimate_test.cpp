@@ -1,7 +1,7 @@
 /// The estimate against the truth: its indicators, the meshes that follow from them, and its distance from
 /// stored truths.
 
-#include "solve/truth_estimate.hpp"
+#include "comparison/truth_estimate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 
 #include "assembly/element_assembly.hpp"
 #include "assembly/method_entry.hpp"
+#include "mesh/quality.hpp"
 
 /// The definition of `assemble`, for the source files of each method; see CMakeLists.txt.
 namespace sandglass {

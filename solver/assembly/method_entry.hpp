@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "assembly/internal_force.hpp"
-#include "element/element_work.hpp"
 #include "math/lanes.hpp"
-#include "mesh/quality.hpp"
 
 namespace sandglass {
 
@@ -18,6 +16,14 @@ using ForceOf = std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>>;
 /// Makes the elements of a mesh with materials whose laws the method supports.
 template <class Number>
 using Assemble = ForceOf<Number>(const Mesh&, const Materials&, const HourglassSettings&, int threads);
+
+template <class Number>
+class BatchForce;
+
+/// Makes the elements of as many bodies of one mesh as `Number` has lanes.
+template <class Number>
+using AssembleBatch = std::unique_ptr<BatchForce<Number>>(const Mesh&, const Materials&,
+                                                          const HourglassSettings&);
 
 /// A method at run time. Its definition at compile time is in `element/methods/`; its kernels are called
 /// through the functions here and compiled in source files of their own, so that a change of one method
@@ -41,15 +47,11 @@ struct MethodEntry {
   Assemble<Pack<float>>* assemble_packed_float = nullptr;
   Assemble<double>* assemble_scalar_double = nullptr;  ///< none unless a program links `sandglass_scalar`
 
+  AssembleBatch<Pack<double>>* assemble_batch_double = nullptr;  ///< none unless the method declares it
+  AssembleBatch<Pack<float>>* assemble_batch_float = nullptr;
+
   /// The value of `auto` for kappa; none if the method takes no kappa.
   std::optional<double> (*auto_kappa)(const CalledLaw&, KappaModulus) = nullptr;
-
-  /// Operations per element and step, counted by running the kernel. They do not depend on the law's
-  /// parameters.
-  OperationCount (*operations)(const KernelLaw&, Shapes) = nullptr;
-
-  /// The memory traffic of an element in a step.
-  Traffic (*traffic)(const KernelLaw&, Shapes) = nullptr;
 
   /// Whether the method chooses the level of each element.
   bool adapts() const { return !levels.empty(); }
@@ -65,6 +67,11 @@ ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const Hou
 template <class Method>
 [[gnu::weak]] ForceOf<double> assemble_scalar(const Mesh& mesh, const Materials& materials,
                                               const HourglassSettings& settings, int threads);
+
+/// The elements of bodies side by side, for `MethodEntry`. Defined in `assembly/batch_force.hpp`.
+template <class Method, class Number>
+std::unique_ptr<BatchForce<Number>> assemble_batch(const Mesh& mesh, const Materials& materials,
+                                                   const HourglassSettings& settings);
 
 /// The entry of a method. Defined in `assembly/method_entry_of.hpp`.
 template <class Method>

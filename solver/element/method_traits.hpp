@@ -11,7 +11,8 @@
 /// modes without energy by design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to
 /// the one that it approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for
 /// small strains; `SharesKernelsOf`, a method with the same element; `KinematicsOnParallelepipeds`,
-/// kinematics with the same forces on meshes of parallelepipeds.
+/// kinematics with the same forces on meshes of parallelepipeds; `batches`, true for kernels that are also
+/// compiled for bodies side by side.
 namespace sandglass {
 
 /// An hourglass control that resists only velocities declares `damps_only`: it dissipates energy and gives no
@@ -43,6 +44,12 @@ inline constexpr bool is_linear = requires {
 template <class Method>
 inline constexpr bool is_condensed = requires {
   requires Method::condensed;
+};
+
+/// Whether a method computes bodies side by side; see BatchForce.
+template <class Method>
+inline constexpr bool batches = requires {
+  requires Method::batches;
 };
 
 /// Whether a method chooses a level for each of its elements.

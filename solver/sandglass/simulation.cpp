@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "base/names.hpp"
 #include "io/case_file.hpp"
+#include "sandglass/driven_sets.hpp"
 #include "sandglass/mesh_arrays.hpp"
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
@@ -14,131 +13,42 @@
 
 namespace sandglass {
 
-namespace {
-
-/// A driven component of a set.
-struct Driven {
-  std::size_t constraint;  ///< into those of the scene
-  std::size_t node;        ///< into those of the set
-  std::size_t component;
-};
-
-using DrivenSets = std::map<std::string, std::vector<Driven>>;
-
-DrivenSets driven_sets(const Scene& scene) {
-  DrivenSets driven;
-  const auto& constraints = scene.constraints;
-  for (const auto& [name, nodes] : scene.sets) {
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      const auto first = std::lower_bound(constraints.begin(), constraints.end(), nodes[n],
-                                          [](const Constraint& c, int node) { return c.node < node; });
-      for (auto c = first; c != constraints.end() && c->node == nodes[n]; ++c) {
-        driven[name].push_back({static_cast<std::size_t>(std::distance(constraints.begin(), c)), n,
-                                static_cast<std::size_t>(c->component)});
-      }
-    }
-  }
-  return driven;
-}
-
-template <class Sets>
-const typename Sets::mapped_type& find(const Sets& sets, const std::string& name, const char* rule) {
-  const auto found = sets.find(name);
-  if (found != sets.end()) return found->second;
-  std::vector<std::string> known;
-  for (const auto& [set, entry] : sets) known.push_back(set);
-  throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, known)));
-}
-
-void require_in_range(const char* name, double value, const Range& range) {
-  if (!range.contains(value))
-    throw InputError(fmt::format("{} = {} must be in {}", name, value, range.text()));
-}
-
-MethodChoice choice_of(const Case& description, const SimulationSettings& settings, Precision precision) {
-  require_in_range("step_fraction", settings.step_fraction, {.low = 0.0, .high = 1.0, .high_open = false});
-  require_in_range("damping", settings.damping.value_or(0.0), Range::at_least(0.0));
-  MethodChoice choice = method_of(description, settings.method);
-  if (settings.kappa) choice.kappa = settings.kappa;
-  choice.precision = precision;
-  choice.threads = settings.threads;
-  return choice;
-}
-
-/// What does not change: a simulation shares it with its copies.
-struct Problem {
-  Problem(Scene the_scene, const SimulationSettings& settings, Precision precision)
-      : scene(std::move(the_scene)),
-        model(scene, choice_of(scene.description, settings, precision)),
-        driven(driven_sets(scene)) {
-    require_steps(model);
-  }
-
-  const Scene scene;
-  const Model model;
-  const DrivenSets driven;
-};
-
-}  // namespace
-
 template <class Real>
 class Simulation<Real>::Parts {
  public:
   Parts(Scene the_scene, const SimulationSettings& settings)
-      : problem_(std::make_shared<const Problem>(
-            std::move(the_scene), settings,
-            std::is_same_v<Real, double> ? Precision::double_precision : Precision::single_precision)),
-        leapfrog_(problem_->model, elements(),
-                  settings.damping.value_or(scene().description.dynamics.damping)),
-        adaption_(problem_->model, body()),
-        step_fraction_(settings.step_fraction),
+      : problem_(std::make_shared<const DrivenProblem>(std::move(the_scene), settings, precision_of<Real>)),
+        leapfrog_(model(), elements(), problem_->damping()),
+        adaption_(model(), body()),
         from_(scene().constraints.size(), 0.0),
         to_(from_),
-        imposed_(from_),
-        terms_(scene().angles.size()) {
+        imposed_(from_) {
     choose_step();
     leapfrog_.body().evaluate_forces();
     leapfrog_.set_initial_velocities(scene().initial_velocities);
   }
 
-  const Scene& scene() const { return problem_->scene; }
+  const DrivenProblem& problem() const { return *problem_; }
+  const Scene& scene() const { return problem_->scene(); }
   const Body<Real>& body() const { return leapfrog_.body(); }
   double time() const { return leapfrog_.time(); }
   double step_size() const { return step_size_; }
 
-  const std::vector<Driven>& driven(const std::string& set) const {
-    return find(problem_->driven, set, "has no driven node: the case imposes no displacement to it");
-  }
-
-  /// `displacement(n)` is that of the n-th node of the set.
   template <class Displacement>
   void move(const std::string& set, const Displacement& displacement) {
-    const std::vector<Driven>& components = driven(set);
-    for (const auto& [constraint, node, component] : components) {
-      require_in_range("displacement", displacement(node)[component], Range::any());
-    }
-    for (const auto& [constraint, node, component] : components) {
-      to_[constraint] = displacement(node)[component];
-    }
+    problem_->move(set, displacement, [&](std::size_t k, double u) { to_[k] = u; });
   }
 
   void impose(double factor) {
-    require_in_range("factor", factor, Range::any());
+    problem_->impose(factor, [&](std::size_t k, double u) { to_[k] = u; });
     factor_to_ = factor;
-    for (std::size_t m = 0; m < terms_.size(); ++m) terms_[m] = path_terms(scene().angles[m], factor);
-    const auto& constraints = scene().constraints;
-    for (std::size_t k = 0; k < to_.size(); ++k) {
-      const ImposedPath& path = constraints[k].path;
-      to_[k] = path.along(terms_[path.angle]);
-    }
   }
 
   void advance(double seconds) {
     require_in_range("seconds", seconds, Range::positive());
     double left = seconds;
     while (left > 0.0) {
-      constexpr double rounding = 1e-9;  // of a step: n steps of a size that was asked for are n steps
-      const double steps = std::max(1.0, std::ceil(left / step_size_ - rounding));
+      const double steps = steps_in(left, step_size_);
       const double step = left / steps;
       left = steps > 1.0 ? left - step : 0.0;
       take(step, 1.0 - left / seconds);
@@ -148,12 +58,12 @@ class Simulation<Real>::Parts {
 
   long settle() {
     const Scene present = scene_at_present();
-    const Model model(present, problem_->model.choice());
+    const Model at_present(present, model().choice());
     LevelsObserver observer;
-    const Relaxation answer = relax(model, observer);
-    if (!in_equilibrium(answer, model.choice().precision)) {
+    const Relaxation answer = relax(at_present, observer);
+    if (!in_equilibrium(answer, model().choice().precision)) {
       throw ComputationError(fmt::format("no equilibrium: {} after {} evaluations, residual {:.1e}",
-                                         outcome(answer, model.choice().precision), answer.steps,
+                                         outcome(answer, model().choice().precision), answer.steps,
                                          answer.residual));
     }
     Body<Real>& body = leapfrog_.body();
@@ -177,8 +87,10 @@ class Simulation<Real>::Parts {
     std::vector<double> levels;
   };
 
+  const Model& model() const { return problem_->model(); }
+
   const InternalForce<Real>& elements() const {
-    return *std::get<std::unique_ptr<InternalForce<Real>>>(problem_->model.internal_force());
+    return *std::get<std::unique_ptr<InternalForce<Real>>>(model().internal_force());
   }
 
   /// The scene whose full load is where driven nodes and forces are to be.
@@ -237,18 +149,16 @@ class Simulation<Real>::Parts {
   }
 
   void choose_step() {
-    step_size_ = step_fraction_ * leapfrog_.stable_step(problem_->model).step;
+    step_size_ = problem_->step_fraction() * leapfrog_.stable_step(model()).step;
     leapfrog_.body().set_step(step_size_);
   }
 
-  std::shared_ptr<const Problem> problem_;
+  std::shared_ptr<const DrivenProblem> problem_;
   Leapfrog<Real> leapfrog_;
   Adaption<Real> adaption_;
-  double step_fraction_;
   double step_size_ = 0.0;
   AdaptionSchedule adaption_schedule_;
   std::vector<double> from_, to_, imposed_;  // m, in the order of the scene's constraints
-  std::vector<PathTerms> terms_;             // of paths of each angle
   double factor_from_ = 0.0, factor_to_ = 0.0;
 };
 
@@ -332,7 +242,7 @@ std::span<const int> Simulation<Real>::row_of_node() const {
 template <class Real>
 std::array<double, 3> Simulation<Real>::reaction(const std::string& set) const {
   std::array<double, 3> sum{};
-  for (const auto& [constraint, node, component] : parts_->driven(set)) {
+  for (const auto& [constraint, node, component] : parts_->problem().driven(set)) {
     sum[component] += parts_->body().reactions()[constraint];
   }
   return sum;
@@ -350,7 +260,7 @@ std::span<const std::array<int, 8>> Simulation<Real>::cells() const {
 
 template <class Real>
 std::span<const int> Simulation<Real>::nodes(const std::string& set) const {
-  return find(parts_->scene().sets, set, "is not known");
+  return parts_->problem().nodes(set);
 }
 
 template class Simulation<double>;

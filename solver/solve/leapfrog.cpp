@@ -30,16 +30,16 @@ void Leapfrog<Real>::set_initial_velocities(const NodalField& v) {
 
 template <class Real>
 NodalField Leapfrog<Real>::free_velocities() const {
-  const double half = 0.5 * step_size_;
+  const double half = 0.5 * clock_.step_size;
   const Rows<Real>& increment = body().state().increment;
   const Rows<Real>& force = body().free_forces();
   const Rows<Real>& inverse_masses = explicit_step_.inverse_masses();
   Rows<Real> rows(increment.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const double v_half = static_cast<double>(increment[r][i]) / increment_time_;
+      const double v_half = static_cast<double>(increment[r][i]) / clock_.increment_time;
       const double acceleration = -static_cast<double>(inverse_masses[r][i] * force[r][i]);
-      rows[r][i] = static_cast<Real>((v_half + half * acceleration) / (1.0 + half * damping_));
+      rows[r][i] = static_cast<Real>((v_half + half * acceleration) / (1.0 + half * clock_.damping));
     }
   }
   return body().field(rows);

@@ -7,15 +7,44 @@ namespace sandglass {
 /// Throws InputError if the model's method superposes static answers instead of taking steps.
 void require_steps(const Model& model);
 
+/// The time of central differences with variable steps and mass-proportional damping. Velocities are those
+/// half a step before, stored as increments of the displacements over `increment_time`.
+struct LeapfrogClock {
+  double damping;               ///< 1/s
+  double time = 0.0;            ///< s, of the displacements
+  long step = 0;                ///< taken so far
+  double step_size = 0.0;       ///< s, of the last step
+  double increment_time = 1.0;  ///< s
+
+  /// What becomes of increments in a step: keep * increment - gain * force / mass, gain in s^2.
+  struct Coefficients {
+    double keep;
+    double gain;
+  };
+
+  /// Advances by `next_step` (s): v(t + dt/2) from v(t - dt_old/2). Both half steps use the acceleration and
+  /// the damping at t.
+  Coefficients advance(double next_step) {
+    const double dt = 0.5 * (step_size + next_step);
+    const double c = 0.5 * damping * dt;
+    const Coefficients coefficients{(1.0 - c) / (1.0 + c) * next_step / increment_time,
+                                    dt / (1.0 + c) * next_step};
+    step_size = next_step;
+    increment_time = next_step;
+    time += step_size;
+    ++step;
+    return coefficients;
+  }
+};
+
 /// Central differences with lumped masses and variable steps. Displacements are those at `time`, velocities
-/// those half a step before, stored as increments over `increment_time_`. A copy is an independent simulation
-/// of the same model.
+/// those half a step before. A copy is an independent simulation of the same model.
 template <class Real>
 class Leapfrog {
  public:
   /// Undeformed and at rest, with the subcycles of the case. `damping` is mass-proportional, 1/s.
   Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping)
-      : explicit_step_(model, elements), damping_(damping) {
+      : explicit_step_(model, elements), clock_{.damping = damping} {
     body().subcycle(model, explicit_step_.inverse_masses());
   }
 
@@ -27,28 +56,20 @@ class Leapfrog {
     return body().stable_step(model, explicit_step_.inverse_masses(), given_step);
   }
 
-  double time() const { return time_; }  ///< s, of the displacements
-  long step() const { return step_; }
-  double step_size() const { return step_size_; }  ///< s, the step that led here
+  double time() const { return clock_.time; }  ///< s, of the displacements
+  long step() const { return clock_.step; }
+  double step_size() const { return clock_.step_size; }  ///< s, the step that led here
 
   /// Sets velocities (m/s) before the first step, stored as increments over 1 s; an empty field means at
   /// rest. They do not apply to constrained components.
   void set_initial_velocities(const NodalField& v);
 
-  /// Advances by `next_step` (s): v(t + dt/2) from v(t - dt_old/2), then u(t + dt) and its forces. Both half
-  /// steps use the acceleration and the damping at t. `impose(body)` sets constrained components and loads at
-  /// the new time.
+  /// Advances by `next_step` (s), then evaluates the forces. `impose(body)` sets constrained components and
+  /// loads at the new time.
   template <class Impose>
   void advance(double next_step, const Impose& impose) {
-    const double dt = 0.5 * (step_size_ + next_step);
-    const double c = 0.5 * damping_ * dt;
-    const double keep = (1.0 - c) / (1.0 + c) * next_step / increment_time_;
-    const double gain = dt / (1.0 + c) * next_step;
-    step_size_ = next_step;
-    increment_time_ = next_step;
-    time_ += step_size_;
-    ++step_;
-    explicit_step_.take(step_size_, keep, gain, impose);
+    const auto [keep, gain] = clock_.advance(next_step);
+    explicit_step_.take(next_step, keep, gain, impose);
   }
 
   /// Velocities (m/s) at the time of the displacements: the mean of those half a step before and after,
@@ -59,19 +80,15 @@ class Leapfrog {
   template <class Archive>
   void keep(Archive& archive) {
     body().keep(archive);
-    archive("time", time_);
-    archive("step", step_);
-    archive("step size", step_size_);
-    archive("increment time", increment_time_);
+    archive("time", clock_.time);
+    archive("step", clock_.step);
+    archive("step size", clock_.step_size);
+    archive("increment time", clock_.increment_time);
   }
 
  private:
   ExplicitStep<Real> explicit_step_;
-  double damping_;
-  double time_ = 0.0;
-  long step_ = 0;
-  double step_size_ = 0.0;
-  double increment_time_ = 1.0;  // s
+  LeapfrogClock clock_;
 };
 
 extern template class Leapfrog<double>;

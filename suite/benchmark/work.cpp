@@ -16,10 +16,10 @@ Work work_of(const MethodChoice& choice, const AnyLaw& any_law, const Layout& la
   const MethodEntry& method = method_named(choice.method);
   const KernelLaw law = kernel_law(any_law);
   const bool is_double = choice.precision == Precision::double_precision;
-  const Shapes shapes = shapes_in(mesh);
-  return {static_cast<double>(method.operations(law, shapes).total.total()),
-          bytes_per_element(method.traffic(law, shapes), is_double ? sizeof(double) : sizeof(float), layout,
-                            mesh.cells.size())};
+  const MethodWork work = work_of(method, law, shapes_in(mesh));
+  return {
+      static_cast<double>(work.operations.total.total()),
+      bytes_per_element(work.traffic, is_double ? sizeof(double) : sizeof(float), layout, mesh.cells.size())};
 }
 
 }  // namespace sandglass

@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "assembly/layout.hpp"
-#include "assembly/method_entry.hpp"
 #include "benchmark/roofline.hpp"
+#include "counting/method_work.hpp"
 
 namespace sandglass {
 

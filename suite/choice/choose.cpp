@@ -12,8 +12,8 @@
 #include "choice/longer_steps.hpp"
 #include "choice/variations.hpp"
 #include "comparison/comparison.hpp"
+#include "comparison/truth_estimate.hpp"
 #include "mesh/interpolation.hpp"
-#include "solve/truth_estimate.hpp"
 
 namespace sandglass {
 

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "comparison/answer.hpp"
 #include "comparison/reference_file.hpp"
+#include "counting/method_work.hpp"
 #include "solve/stable_step.hpp"
 
 namespace sandglass {
@@ -90,7 +91,7 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
       .kappa = choice.kappa ? choice.kappa : method.auto_kappa(elastic_law(law), choice.kappa_modulus),
       .kappa_is_auto = method.takes_kappa && !choice.kappa,
       .precision = std::string(name_of(choice.precision)),
-      .operations = method.operations(law, shapes_in(scene.mesh)).total.total(),
+      .operations = work_of(method, law, shapes_in(scene.mesh)).operations.total.total(),
       .family = scene.description.family,
       .variants = scene.description.variants,
       .published = published_results(scene, references.comparison.published, last(references.truth))};

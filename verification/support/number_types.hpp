@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/type_list.hpp"
-#include "math/counted.hpp"
+#include "counting/counted.hpp"
 #include "math/dual.hpp"
 #include "math/pack.hpp"
 

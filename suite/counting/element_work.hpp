@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "math/counted.hpp"
+#include "counting/counted.hpp"
 
 /// The cost of one element in one step.
 namespace sandglass {

@@ -3,7 +3,7 @@
 #include <array>
 #include <bit>
 
-#include "element/element_work.hpp"
+#include "counting/element_work.hpp"
 #include "element/formulation.hpp"
 #include "element/hourglass_none.hpp"
 #include "material/material_axes.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "math/counted.hpp"
+#include "counting/counted.hpp"
 #include "math/matrix.hpp"
 
 namespace sandglass {

@@ -1,4 +1,4 @@
-#include "solve/truth_estimate.hpp"
+#include "comparison/truth_estimate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,199 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "assembly/element_block.hpp"
+#include "assembly/method_entry.hpp"
+#include "element/method_traits.hpp"
+#include "material/material_axes.hpp"
+#include "material/memory.hpp"
+#include "mesh/quality.hpp"
+
+namespace sandglass {
+
+/// The elements of one mesh in as many bodies as `Number` has lanes, body l in lane l. Bodies share the
+/// constants of an element, which are read once, and a node's values stand side by side, so that nothing is
+/// gathered or transposed.
+template <class Number>
+class BatchForce {
+ public:
+  BatchForce() = default;
+  BatchForce(const BatchForce&) = delete;
+  BatchForce& operator=(const BatchForce&) = delete;
+  virtual ~BatchForce() = default;
+
+  /// The order of rows, for one element at a time.
+  virtual const Layout& layout() const = 0;
+
+  /// Sets `force` to the internal forces (N) of displacements u (m): three numbers for each row. Allocates
+  /// nothing.
+  virtual void evaluate(std::span<const Number> u, std::span<Number> force) const = 0;
+
+  /// What limits the step of each body.
+  struct Extremes {
+    Number frequency_square;  ///< an upper bound of the largest, 1/s^2
+    Number jacobian;          ///< the smallest det F; not a number if one is not finite
+  };
+
+  /// At displacements u (m). Allocates nothing.
+  virtual Extremes extremes(std::span<const Number> u) const = 0;
+};
+
+/// The loop of a time step, for kernels whose forces follow from displacements alone. The mesh has no
+/// material axes.
+template <class Method, class Law, class Number>
+class BatchLoop final : public BatchForce<Number> {
+  using Kernel = FormulationOf<Method, Law>;
+  using Element = typename Kernel::template Element<Number>;
+  using Real = typename Lanes<Number>::Scalar;
+  static constexpr std::size_t numbers = sizeof(Element) / sizeof(Number);
+  static constexpr const MaterialAxes<Number>* no_axes = nullptr;
+  static_assert(!Kernel::needs_increment && !Kernel::needs_coordinates && !Kernel::averages_over_nodes &&
+                !Kernel::remembers);
+
+ public:
+  BatchLoop(const Mesh& mesh, const Materials& materials, const std::vector<Law>& laws,
+            const HourglassSettings& settings)
+      : layout_(make_layout(mesh, 1, SpareRows::where_needed, materials.of_element)), laws_(laws) {
+    for (const Material& material : materials.list) densities_.push_back(material.density);
+    constants_.reserve(layout_.ranks());
+    for (const auto& group : layout_.groups) {
+      const CalledLaw law = elastic_law(kernel_law(materials.list[group.material]));
+      for (std::size_t k = 0; k < group.ranks; ++k) {
+        const auto element = element_block<FormulationOf<Method, CalledLaw>, double>(
+            mesh, layout_, layout_.node_of_row, group.first_face + k, [&](int) { return law; }, settings);
+        const auto plain = std::bit_cast<std::array<double, numbers>>(element);
+        auto& rounded = constants_.emplace_back();
+        for (std::size_t n = 0; n < numbers; ++n) rounded[n] = static_cast<Real>(plain[n]);
+      }
+    }
+  }
+
+  const Layout& layout() const override { return layout_; }
+
+  void evaluate(std::span<const Number> u, std::span<Number> force) const override {
+    std::fill(force.begin(), force.end(), Number(Real(0)));
+    const auto& groups = layout_.groups;
+    for (std::size_t first = 0, last = 0; first < groups.size(); first = last) {
+      while (last < groups.size() && groups[last].material == groups[first].material) ++last;
+      add_forces(first, last, u.data(), force.data());
+    }
+  }
+
+  typename BatchForce<Number>::Extremes extremes(std::span<const Number> u) const override {
+    typename BatchForce<Number>::Extremes all{Number(Real(0)), Number(std::numeric_limits<Real>::max())};
+    for (const auto& group : layout_.groups) widen(all, group, u.data());
+    return all;
+  }
+
+ private:
+  /// Adds the forces of groups `first` to `last` - 1, which are of one material.
+  [[gnu::flatten]] void add_forces(std::size_t first, std::size_t last, const Number* u,
+                                   Number* force) const {
+    const auto law = law_of(layout_.groups[first].material);
+    for (std::size_t g = first; g < last; ++g) {
+      FaceModes<Number> carried{};
+      std::size_t face = layout_.groups[g].first_face;
+      for_each_element(layout_.groups[g], u, [&](const auto& motion, const Element& element) {
+        typename Kernel::template History<Number> none;
+        const Modes<Number> f =
+            Kernel::force(Kernel::deformation(motion, element), element, none, with_axes(law, no_axes));
+        add_to_face(carried + lower_face(f), force, face++);
+        carried = upper_face(f);
+      });
+      add_to_face(carried, force, face);
+    }
+  }
+
+  [[gnu::flatten]] void widen(typename BatchForce<Number>::Extremes& all, const ElementGroups::Group& group,
+                              const Number* u) const {
+    const auto law = law_of(group.material);
+    const Number eighth_of_density(static_cast<Real>(densities_[group.material] / 8.0));
+    for_each_element(group, u, [&](const auto& motion, const Element& element) {
+      const typename Kernel::template History<Number> none;
+      const Number mass = eighth_of_density * Kernel::volume(motion, element);
+      all.frequency_square =
+          max(all.frequency_square,
+              Kernel::stiffness_bound(motion, element, none, with_axes(law, no_axes)) / mass);
+      const Number jacobian = Kernel::smallest_jacobian(motion, element);
+      all.jacobian = min(all.jacobian, jacobian) + Number(Real(0)) * jacobian;
+    });
+  }
+
+  /// A copy that no store can alias, so that moduli are computed once.
+  auto law_of(std::size_t material) const {
+    return at_step(laws_[material], std::numeric_limits<double>::infinity());
+  }
+
+  /// Calls use(motion, element) for the elements of a group, from strip to strip.
+  template <class Use>
+  void for_each_element(const ElementGroups::Group& group, const Number* u, const Use& use) const {
+    FaceModes<Number> lower = face_at(u, group.first_face);
+    for (std::size_t k = 0; k < group.ranks; ++k) {
+      const FaceModes<Number> upper = face_at(u, group.first_face + k + 1);
+      ElementMotion<Number> motion;
+      motion.u = modes_between(lower, upper);
+      use(motion, in_all_lanes(constants_[group.first_rank + k]));
+      lower = upper;
+    }
+  }
+
+  /// The constants of an element, the same in all lanes. An element consists of numbers alone; through a
+  /// pointer, for GCC would copy the result of a bit_cast to the stack.
+  static Element in_all_lanes(const std::array<Real, numbers>& constants) {
+    Element element;
+    auto* const lanes = reinterpret_cast<Number*>(&element);
+    for (std::size_t n = 0; n < numbers; ++n) lanes[n] = Number(constants[n]);
+    return element;
+  }
+
+  /// The first number of a corner of a face: a place counts four numbers for each row.
+  std::size_t at(std::size_t face, int corner) const {
+    return std::size_t{*layout_.places(face, static_cast<std::size_t>(corner))} / 4 * 3;
+  }
+
+  FaceModes<Number> face_at(const Number* u, std::size_t face) const {
+    FaceVectors<Number> corners;
+    for (int c = 0; c < 4; ++c) {
+      const Number* at_corner = u + at(face, c);
+      for (int i = 0; i < 3; ++i) corners(c, i) = at_corner[i];
+    }
+    return to_face_modes(corners);
+  }
+
+  void add_to_face(const FaceModes<Number>& modes, Number* force, std::size_t face) const {
+    const FaceVectors<Number> corners = from_face_modes(modes);
+    for (int c = 0; c < 4; ++c) {
+      Number* at_corner = force + at(face, c);
+      for (int i = 0; i < 3; ++i) at_corner[i] = at_corner[i] + corners(c, i);
+    }
+  }
+
+  Layout layout_;
+  std::vector<double> densities_;                     // kg/m^3, of each material
+  std::vector<Law> laws_;                             // of each material
+  std::vector<std::array<Real, numbers>> constants_;  // of each element, in the order of the loop
+};
+
+template <class Method, class Number>
+std::unique_ptr<BatchForce<Number>> assemble_batch(const Mesh& mesh, const Materials& materials,
+                                                   const HourglassSettings& settings) {
+  const auto with = [&]<class Form>(std::type_identity<Form>) -> std::unique_ptr<BatchForce<Number>> {
+    const KernelLaws laws = kernel_laws(materials);
+    if (const auto* known = std::get_if<std::vector<NeoHookean>>(&laws)) {
+      return std::make_unique<BatchLoop<Form, NeoHookean, Number>>(mesh, materials, *known, settings);
+    }
+    const auto& called = std::get<std::vector<CalledLaw>>(laws);
+    return std::make_unique<BatchLoop<Form, CalledLaw, Number>>(mesh, materials, called, settings);
+  };
+  if (shapes_in(mesh) == Shapes::parallelepipeds)
+    return with(std::type_identity<OnParallelepipeds<Method>>{});
+  return with(std::type_identity<Method>{});
+}
+
+}  // namespace sandglass

@@ -1,0 +1,331 @@
+#include "sandglass/batch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "assembly/batch_force.hpp"
+#include "base/parallel.hpp"
+#include "io/case_file.hpp"
+#include "sandglass/driven_sets.hpp"
+#include "sandglass/mesh_arrays.hpp"
+#include "solve/health.hpp"
+#include "solve/leapfrog.hpp"
+#include "solve/stable_step.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Throws InputError if a batch does not support the case.
+void require_supported(const Scene& scene) {
+  const auto refuse_if = [&](bool condition, std::string_view rule) {
+    if (!condition) return;
+    throw InputError(
+        fmt::format("{}: {}, or simulate one body at a time", scene.description.file.string(), rule));
+  };
+  const bool remembers = std::ranges::any_of(scene.materials.list, is_viscoelastic, &Material::law);
+  refuse_if(remembers || !scene.materials.axes.empty(), "a batch takes isotropic elastic laws; choose one");
+  refuse_if(!scene.pressures.empty() || !scene.supports.empty(),
+            "a batch takes [[force]] only; remove pressures and supports");
+  refuse_if(!scene.ties.empty(), "a batch takes no ties; choose a mesh without them");
+  refuse_if(scene.description.dynamics.subcycles > 1 || scene.description.dynamics.body_frequency > 0,
+            "a batch takes the step of its stiffest element; set subcycles = 1 and body_frequency = 0");
+}
+
+/// Throws InputError, which names those that have some, if the method has no such kernels.
+template <class Number>
+std::unique_ptr<BatchForce<Number>> make_batch_force(const Model& model) {
+  const auto kernel = [](const MethodEntry& method) {
+    if constexpr (std::is_same_v<Number, Pack<double>>)
+      return method.assemble_batch_double;
+    else
+      return method.assemble_batch_float;
+  };
+  require_supported(model.scene());
+  const MethodChoice& choice = model.choice();
+  if (const auto assemble = kernel(method_named(choice.method))) {
+    return assemble(model.scene().mesh, model.scene().materials,
+                    {.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus});
+  }
+  std::vector<std::string_view> known;
+  for (const MethodEntry& method : methods()) {
+    if (kernel(method) != nullptr) known.push_back(method.name);
+  }
+  throw InputError(fmt::format("method = '{}' does not run in a batch; choose one of {}", choice.method,
+                               fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+/// Values of nodes are three numbers for each row of the layout; body b is in lane b % lanes of pack b /
+/// lanes.
+template <class Real>
+class Batch<Real>::Parts {
+  using Number = Pack<Real>;
+  using Numbers = std::vector<Number>;
+  static constexpr std::size_t lanes = Number::width;
+
+ public:
+  Parts(Scene scene, std::size_t bodies, const SimulationSettings& settings)
+      : problem_(std::move(scene), settings, precision_of<Real>),
+        elements_(make_batch_force<Number>(problem_.model())),
+        clock_{.damping = problem_.damping()},
+        frequency_squares_(bodies) {
+    if (bodies == 0) throw InputError("bodies = 0 must be at least 1");
+    const Number zero(Real(0));
+    const Numbers of_rows(3 * elements_->layout().rows(), zero), of_constraints(constraints().size(), zero);
+    packs_.assign((bodies + lanes - 1) / lanes,
+                  {of_rows, of_rows, of_rows, of_constraints, of_constraints, zero, zero, Number(Real(1))});
+    inverse_masses_.resize(of_rows.size());
+    const NodalField& v = this->scene().initial_velocities;
+    for (std::size_t n = 0; n < elements_->layout().nodes; ++n) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        inverse_masses_[at(n, i)] = static_cast<Real>(1.0 / problem_.model().masses()[n]);
+        if (v.empty()) continue;
+        for (auto& pack : packs_) pack.increment[at(n, i)] = Number(v[n][i]);
+      }
+    }
+    for (const Constraint& c : constraints()) {
+      constrained_.push_back(at(static_cast<std::size_t>(c.node), static_cast<std::size_t>(c.component)));
+      inverse_masses_[constrained_.back()] = Real(0);
+      for (auto& pack : packs_) pack.increment[constrained_.back()] = zero;
+    }
+    check();
+    const Step start = step_at(1.0, {});
+    for (auto& pack : packs_) evaluate_forces(pack, start);
+  }
+
+  const DrivenProblem& problem() const { return problem_; }
+  std::size_t size() const { return frequency_squares_.size(); }
+  double time() const { return clock_.time; }
+  double step_size() const { return step_size_; }
+
+  void scale_stiffness(std::size_t body, double factor) {
+    require_in_range("factor", factor, Range::positive());
+    set_lane(side(body).stiffness, body, factor);
+    evaluate_forces(side(body), step_at(0.0, {}));
+    choose_step();
+  }
+
+  void move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement) {
+    problem_.move(
+        set, [&](std::size_t /*node*/) { return displacement; },
+        [&](std::size_t k, double u) { set_lane(side(body).to[k], body, u); });
+  }
+
+  void impose(std::size_t body, double factor) {
+    problem_.impose(factor, [&](std::size_t k, double u) { set_lane(side(body).to[k], body, u); });
+    set_lane(side(body).factor_to, body, factor);
+  }
+
+  void advance(double seconds) {
+    require_in_range("seconds", seconds, Range::positive());
+    const long interval = scene().description.dynamics.check_interval;
+    double left = seconds;
+    while (left > 0.0) {
+      std::vector<Step> steps;
+      do {
+        const double count = steps_in(left, step_size_);
+        const double step = left / count;
+        left = count > 1.0 ? left - step : 0.0;
+        const auto coefficients = clock_.advance(step);
+        steps.push_back(step_at(1.0 - left / seconds, coefficients));
+      } while (left > 0.0 && clock_.step % interval != 0);
+      in_parallel(packs_.size(), problem_.model().choice().threads, [&](std::size_t p) {
+        for (const Step& step : steps) take(packs_[p], step);
+      });
+      if (clock_.step % interval == 0) check();
+    }
+    for (auto& pack : packs_) {
+      pack.from = pack.to;
+      pack.factor_from = pack.factor_to;
+    }
+  }
+
+  /// The displacement (m) of a body at a component of a node.
+  double displacement(std::size_t body, std::size_t node, std::size_t component) {
+    return lane(side(body).u[at(node, component)], body);
+  }
+
+  /// The force (N) that drives a component.
+  double reaction(std::size_t body, std::size_t constraint) {
+    return lane(side(body).force[constrained_[constraint]] * side(body).stiffness, body);
+  }
+
+ private:
+  /// The bodies of one pack.
+  struct Side {
+    Numbers u;           // m
+    Numbers increment;   // m, in the last step
+    Numbers force;       // internal forces minus loads, N, over the stiffness
+    Numbers from, to;    // m, of each constraint, at the start and the end of a frame
+    Number factor_from;  // of loads
+    Number factor_to;
+    Number stiffness;  // over that of the case
+  };
+
+  /// A step that all bodies take.
+  struct Step {
+    double share;  // of the way from `from` to `to`
+    LeapfrogClock::Coefficients coefficients;
+    std::vector<std::array<double, 2>> curves;  // factors of loads at a load factor f: [0] + [1] f
+  };
+
+  const Scene& scene() const { return problem_.scene(); }
+  const std::vector<Constraint>& constraints() const { return problem_.scene().constraints; }
+
+  std::size_t at(std::size_t node, std::size_t component) const {
+    return 3 * static_cast<std::size_t>(elements_->layout().row_of_node[node]) + component;
+  }
+
+  static double lane(const Number& number, std::size_t body) {
+    return static_cast<double>(Lanes<Number>::get(number, static_cast<int>(body % lanes)));
+  }
+
+  static void set_lane(Number& number, std::size_t body, double value) {
+    Lanes<Number>::set(number, static_cast<int>(body % lanes), static_cast<Real>(value));
+  }
+
+  /// The pack of a body. Throws InputError if there is no such body.
+  Side& side(std::size_t body) {
+    if (body >= size()) throw InputError(fmt::format("body = {} must be below {}", body, size()));
+    return packs_[body / lanes];
+  }
+
+  Step step_at(double share, LeapfrogClock::Coefficients coefficients) const {
+    Step step{share, coefficients, {}};
+    for (const LoadCurve& curve : scene().curves) {
+      const double none = curve.at(clock_.time, 0.0);
+      step.curves.push_back({none, curve.at(clock_.time, 1.0) - none});
+    }
+    return step;
+  }
+
+  void take(Side& pack, const Step& step) const {
+    const Number keep(step.coefficients.keep), gain = Number(-step.coefficients.gain) * pack.stiffness;
+    for (std::size_t n = 0; n < pack.u.size(); ++n) {
+      pack.increment[n] = keep * pack.increment[n] + gain * Number(inverse_masses_[n]) * pack.force[n];
+      pack.u[n] = pack.u[n] + pack.increment[n];
+    }
+    const Number share(step.share), rest(1.0 - step.share);
+    for (std::size_t k = 0; k < constrained_.size(); ++k) {
+      pack.u[constrained_[k]] = share * pack.to[k] + rest * pack.from[k];
+    }
+    evaluate_forces(pack, step);
+  }
+
+  void evaluate_forces(Side& pack, const Step& step) const {
+    elements_->evaluate(pack.u, pack.force);
+    const Number factor = Number(step.share) * pack.factor_to + Number(1.0 - step.share) * pack.factor_from;
+    for (const NodalLoad& load : scene().loads) {
+      const auto& [constant, slope] = step.curves[load.curve];
+      const Number share = (Number(constant) + Number(slope) * factor) / pack.stiffness;
+      for (std::size_t i = 0; i < 3; ++i) {
+        Number& force = pack.force[at(static_cast<std::size_t>(load.node), i)];
+        force = force - share * Number(load.force[i]);
+      }
+    }
+  }
+
+  void check() {
+    std::vector<typename BatchForce<Number>::Extremes> extremes(packs_.size());
+    in_parallel(packs_.size(), problem_.model().choice().threads,
+                [&](std::size_t p) { extremes[p] = elements_->extremes(packs_[p].u); });
+    for (std::size_t b = 0; b < size(); ++b) {
+      const double jacobian = lane(extremes[b / lanes].jacobian, b);
+      if (!is_healthy(jacobian)) {
+        throw ComputationError(fmt::format(
+            "body {}, step {}: an element is inverted or not finite (det F = {:.3g}); move it less far or "
+            "more slowly, or take smaller steps (step_fraction)",
+            b, clock_.step, jacobian));
+      }
+      frequency_squares_[b] = lane(extremes[b / lanes].frequency_square, b);
+    }
+    choose_step();
+  }
+
+  void choose_step() {
+    double square = 0.0;
+    for (std::size_t b = 0; b < size(); ++b) {
+      square = std::max(square, frequency_squares_[b] * lane(packs_[b / lanes].stiffness, b));
+    }
+    step_size_ = problem_.step_fraction() * stable_step_of(problem_.model(), square);
+  }
+
+  const DrivenProblem problem_;
+  std::unique_ptr<BatchForce<Number>> elements_;
+  LeapfrogClock clock_;
+  double step_size_ = 0.0;
+  std::vector<double>
+      frequency_squares_;  // 1/s^2, of each body at the last check and the stiffness of the case
+  std::vector<Side> packs_;
+  std::vector<Real> inverse_masses_;      // 1/kg, of each component; zero on constrained ones
+  std::vector<std::size_t> constrained_;  // components, in the order of the scene's constraints
+};
+
+template <class Real>
+Batch<Real>::Batch(const std::filesystem::path& case_file, std::size_t bodies,
+                   const SimulationSettings& settings)
+    : parts_(std::make_unique<Parts>(read_scene(case_file), bodies, settings)) {}
+
+template <class Real>
+Batch<Real>::Batch(MeshArrays mesh, const std::string& case_text, std::size_t bodies,
+                   const SimulationSettings& settings)
+    : parts_(std::make_unique<Parts>(read_scene(case_text, checked(std::move(mesh))), bodies, settings)) {}
+
+template <class Real>
+Batch<Real>::~Batch() = default;
+
+template <class Real>
+void Batch<Real>::scale_stiffness(std::size_t body, double factor) {
+  parts_->scale_stiffness(body, factor);
+}
+
+template <class Real>
+void Batch<Real>::move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement) {
+  parts_->move(body, set, displacement);
+}
+
+template <class Real>
+void Batch<Real>::impose(std::size_t body, double factor) {
+  parts_->impose(body, factor);
+}
+
+template <class Real>
+void Batch<Real>::advance(double seconds) {
+  parts_->advance(seconds);
+}
+
+template <class Real>
+double Batch<Real>::time() const {
+  return parts_->time();
+}
+
+template <class Real>
+double Batch<Real>::step_size() const {
+  return parts_->step_size();
+}
+
+template <class Real>
+std::array<double, 3> Batch<Real>::displacement(std::size_t body, std::size_t node) const {
+  const std::size_t nodes = parts_->problem().scene().mesh.points.size();
+  if (node >= nodes) throw InputError(fmt::format("node = {} must be below {}", node, nodes));
+  std::array<double, 3> u{};
+  for (std::size_t i = 0; i < 3; ++i) u[i] = parts_->displacement(body, node, i);
+  return u;
+}
+
+template <class Real>
+std::array<double, 3> Batch<Real>::reaction(std::size_t body, const std::string& set) const {
+  std::array<double, 3> sum{};
+  for (const auto& [constraint, node, component] : parts_->problem().driven(set)) {
+    sum[component] += parts_->reaction(body, constraint);
+  }
+  return sum;
+}
+
+template class Batch<double>;
+template class Batch<float>;
+
+}  // namespace sandglass

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "sandglass/simulation.hpp"
+
+namespace sandglass {
+
+/// Many bodies of one case that move side by side, in `double` or `float`: for identification, training data
+/// and studies of uncertainty. They share mesh, materials, method, damping and step; each has a stiffness and
+/// driven nodes and forces of its own. A register holds one body in each lane, which takes half the time of
+/// as many simulations or less.
+///
+/// Methods that declare `batches`; isotropic elastic laws; imposed displacements, dead forces
+/// and initial velocities. Steps follow from the stiffest element of all bodies, see Simulation.
+template <class Real>
+class Batch {
+ public:
+  /// `bodies` times the case of a file, at rest or with its initial velocities. Throws InputError for a case
+  /// that a batch does not support.
+  Batch(const std::filesystem::path& case_file, std::size_t bodies, const SimulationSettings& settings = {});
+
+  /// The same with a mesh of yours, see Simulation.
+  Batch(MeshArrays mesh, const std::string& case_text, std::size_t bodies,
+        const SimulationSettings& settings = {});
+
+  ~Batch();
+
+  // Bodies count from 0; a number that is too large is an InputError.
+
+  /// Makes all moduli of a body `factor` times those of the case. The step adapts at once.
+  void scale_stiffness(std::size_t body, double factor);
+
+  /// Where the driven nodes of a set of a body shall be when the next `advance` ends; see Simulation::move.
+  void move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement);
+
+  /// The same for all driven nodes of a body, and its forces; see Simulation::impose.
+  void impose(std::size_t body, double factor);
+
+  /// Goes on for `seconds` with all bodies, see Simulation::advance. With several threads each computes
+  /// bodies of its own; the bits do not depend on their number. Throws ComputationError, which names the
+  /// body, for inverted elements and not-a-number.
+  void advance(double seconds);
+
+  double time() const;       ///< s
+  double step_size() const;  ///< s, the longest step at present
+
+  /// The displacement (m) of a node of a body, in the numbering of the mesh.
+  std::array<double, 3> displacement(std::size_t body, std::size_t node) const;
+
+  /// See Simulation::reaction, N.
+  std::array<double, 3> reaction(std::size_t body, const std::string& set) const;
+
+ private:
+  class Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+extern template class Batch<double>;
+extern template class Batch<float>;
+
+}  // namespace sandglass

@@ -1,0 +1,81 @@
+#include "sandglass/driven_sets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/names.hpp"
+#include "io/case_file.hpp"
+#include "solve/leapfrog.hpp"
+
+namespace sandglass {
+
+namespace {
+
+std::map<std::string, std::vector<Driven>> driven_sets(const Scene& scene) {
+  std::map<std::string, std::vector<Driven>> driven;
+  const auto& constraints = scene.constraints;
+  for (const auto& [name, nodes] : scene.sets) {
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const auto first = std::lower_bound(constraints.begin(), constraints.end(), nodes[n],
+                                          [](const Constraint& c, int node) { return c.node < node; });
+      for (auto c = first; c != constraints.end() && c->node == nodes[n]; ++c) {
+        driven[name].push_back({static_cast<std::size_t>(std::distance(constraints.begin(), c)), n,
+                                static_cast<std::size_t>(c->component)});
+      }
+    }
+  }
+  return driven;
+}
+
+template <class Sets>
+const typename Sets::mapped_type& find(const Sets& sets, const std::string& name, const char* rule) {
+  const auto found = sets.find(name);
+  if (found != sets.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [set, entry] : sets) known.push_back(set);
+  throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, known)));
+}
+
+MethodChoice choice_of(const Case& description, const SimulationSettings& settings, Precision precision) {
+  require_in_range("step_fraction", settings.step_fraction, {.low = 0.0, .high = 1.0, .high_open = false});
+  require_in_range("damping", settings.damping.value_or(0.0), Range::at_least(0.0));
+  MethodChoice choice = method_of(description, settings.method);
+  if (settings.kappa) choice.kappa = settings.kappa;
+  choice.precision = precision;
+  choice.threads = settings.threads;
+  return choice;
+}
+
+}  // namespace
+
+DrivenProblem::DrivenProblem(Scene scene, const SimulationSettings& settings, Precision precision)
+    : scene_(std::move(scene)),
+      model_(scene_, choice_of(scene_.description, settings, precision)),
+      driven_(driven_sets(scene_)),
+      damping_(settings.damping.value_or(scene_.description.dynamics.damping)),
+      step_fraction_(settings.step_fraction) {
+  require_steps(model_);
+}
+
+const std::vector<Driven>& DrivenProblem::driven(const std::string& set) const {
+  return find(driven_, set, "has no driven node: the case imposes no displacement to it");
+}
+
+const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
+  return find(scene_.sets, set, "is not known");
+}
+
+void require_in_range(const char* name, double value, const Range& range) {
+  if (!range.contains(value))
+    throw InputError(fmt::format("{} = {} must be in {}", name, value, range.text()));
+}
+
+double steps_in(double seconds, double step) {
+  constexpr double rounding = 1e-9;  // of a step
+  return std::max(1.0, std::ceil(seconds / step - rounding));
+}
+
+}  // namespace sandglass

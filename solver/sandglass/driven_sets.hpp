@@ -1,0 +1,80 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/parameter.hpp"
+#include "problem/model.hpp"
+#include "sandglass/simulation.hpp"
+
+/// What simulations and batches share.
+namespace sandglass {
+
+template <class Real>
+inline constexpr Precision precision_of =
+    std::is_same_v<Real, double> ? Precision::double_precision : Precision::single_precision;
+
+/// Throws InputError, which names what `name` is, if the value is out of range.
+void require_in_range(const char* name, double value, const Range& range);
+
+/// The number of equal steps of at most `step` (s) that a time (s) needs; n steps of a size that was asked
+/// for are n steps.
+double steps_in(double seconds, double step);
+
+/// A driven component of a set.
+struct Driven {
+  std::size_t constraint;  ///< into those of the scene
+  std::size_t node;        ///< into those of the set
+  std::size_t component;
+};
+
+/// A case with a method, and the sets that a program drives. It does not change.
+class DrivenProblem {
+ public:
+  /// Throws InputError for settings out of range and a method without steps.
+  DrivenProblem(Scene scene, const SimulationSettings& settings, Precision precision);
+
+  const Scene& scene() const { return scene_; }
+  const Model& model() const { return model_; }
+  double damping() const { return damping_; }  ///< 1/s
+  double step_fraction() const { return step_fraction_; }
+
+  /// The driven components of a set. Throws InputError for a set without any, naming those with.
+  const std::vector<Driven>& driven(const std::string& set) const;
+
+  /// Throws InputError for an unknown set.
+  const std::vector<int>& nodes(const std::string& set) const;
+
+  /// Calls set(constraint, u) for the driven components of a set, u (m) that of `displacement(n)` for the
+  /// n-th node of the set; before, throws InputError for numbers that are not finite.
+  template <class Displacement, class Set>
+  void move(const std::string& name, const Displacement& displacement, const Set& set) const {
+    const std::vector<Driven>& components = driven(name);
+    for (const auto& [constraint, node, component] : components) {
+      require_in_range("displacement", displacement(node)[component], Range::any());
+    }
+    for (const auto& [constraint, node, component] : components) {
+      set(constraint, displacement(node)[component]);
+    }
+  }
+
+  /// Calls set(constraint, u) with where the case has driven components (m) at a factor of its loads.
+  template <class Set>
+  void impose(double factor, const Set& set) const {
+    require_in_range("factor", factor, Range::any());
+    for (std::size_t k = 0; k < scene_.constraints.size(); ++k) {
+      const ImposedPath& path = scene_.constraints[k].path;
+      set(k, path.along(path_terms(scene_.angles[path.angle], factor)));
+    }
+  }
+
+ private:
+  const Scene scene_;
+  const Model model_;
+  const std::map<std::string, std::vector<Driven>> driven_;
+  double damping_;
+  double step_fraction_;
+};
+
+}  // namespace sandglass

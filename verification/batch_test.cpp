@@ -1,0 +1,233 @@
+// Bodies side by side move as each would alone.
+#include "sandglass/batch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/scenes.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+constexpr double step = 1e-3;  // s; stable for all bodies below
+constexpr int steps = 100;
+
+/// A block of two materials on a foot. Its head is driven, a side is pushed by a force with a curve of its
+/// own; it starts with a velocity and is damped.
+std::string text_of(double stiffness, const std::string& law = "neo-hookean") {
+  const auto material = [&](double modulus) {
+    const std::string E = std::to_string(stiffness * modulus);
+    return "law = \"" + law + "\"\ndensity = 1000.0\n" +
+           (law == "neo-hookean" ? "young_modulus = " + E + "\npoisson_ratio = 0.45\n"
+                                 : "c1 = " + E + "\nc2 = " + E + "\nc3 = 0.0\nbulk_modulus = " + E + "0\n");
+  };
+  return std::string(
+             "[case]\nname = \"block\"\nrequirement = \"A block is moved.\"\nanswer = \"dynamic\"\n") +
+         "[[materials]]\nelements = \"low\"\n" + material(2000.0) + "[[materials]]\n" + material(1000.0) +
+         "[element_sets]\nlow = { z = [0.0, 0.1] }\n"
+         "[sets]\nfoot = { z = [0.0, 0.0] }\nside = { x = [0.1, 0.1] }\nmiddle = { z = [0.1, 0.1] }\n"
+         "[[displacement]]\nset = \"foot\"\nvalue = [0.0, 0.0, 0.0]\n"
+         "[[displacement]]\nset = \"head\"\nvalue = [0.02, 0.01, 0.03]\ncomponents = \"xz\"\n"
+         "[[force]]\nset = \"side\"\ntotal = [0.05, 0.0, 0.0]\n"
+         "[[force]]\nset = \"side\"\ntotal = [0.0, 0.02, 0.0]\ntimes = [0.0, 0.05]\nfactors = "
+         "[0.5, 1.5]\n"
+         "[[velocity]]\nvalue = [0.0, 0.1, 0.0]\n"
+         "[dynamics]\nduration = 0.2\ndamping = 3.0\n";
+}
+
+MeshArrays block(bool skewed) {
+  Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
+  for (Vector& X : mesh.points) {  // away from the sets of the case
+    if (skewed && X[0] > 0.01 && X[0] < 0.09 && X[2] > 0.01 && X[2] < 0.19) X[1] += 0.1 * X[0] * X[1];
+  }
+  return {mesh.points,
+          mesh.cells,
+          {{"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}}};
+}
+
+/// What body b does: its stiffness, its factor of the case's loads, its head's way.
+double stiffness_of(std::size_t b) {
+  return 0.5 + 0.1 * static_cast<double>(b);
+}
+double factor_of(std::size_t b) {
+  return 0.2 + 0.05 * static_cast<double>(b);
+}
+Vector head_of(std::size_t b) {
+  return {1e-3 * static_cast<double>(b), 0.0, 0.01 - 2e-3 * static_cast<double>(b)};
+}
+
+/// The largest distance between bodies of a batch and their simulations, over 0.03 m, and between the forces
+/// on their heads, over the largest.
+template <class Real>
+std::pair<double, double> distance_from_simulations(bool skewed, const std::string& law,
+                                                    const SimulationSettings& settings) {
+  constexpr std::size_t bodies = 2 * native_width<Real> + 3;  // the last pack is not full
+  Batch<Real> batch(block(skewed), text_of(1.0, law), bodies, settings);
+  std::vector<Simulation<Real>> alone;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    batch.scale_stiffness(b, stiffness_of(b));
+    alone.emplace_back(block(skewed), text_of(stiffness_of(b), law), settings);
+  }
+  for (int n = 1; n <= steps; ++n) {
+    for (std::size_t b = 0; b < bodies; ++b) {
+      const double share = static_cast<double>(n) / steps;
+      const Vector head{share * head_of(b)[0], 0.0, share * head_of(b)[2]};
+      batch.impose(b, share * factor_of(b));
+      batch.move(b, "head", head);
+      alone[b].impose(share * factor_of(b));
+      alone[b].move("head", head);
+      alone[b].advance(step);
+      EXPECT_LT(step, std::min(batch.step_size(), alone[b].step_size()));
+    }
+    batch.advance(step);
+  }
+  double apart = 0.0, forces_apart = 0.0, largest_force = 0.0;
+  for (std::size_t b = 0; b < bodies; ++b) {
+    const NodalView<Real> u = alone[b].displacements();
+    const auto rows = alone[b].row_of_node();
+    for (std::size_t node = 0; node < rows.size(); ++node) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double difference =
+            batch.displacement(b, node)[i] - static_cast<double>(u[index(rows[node])][i]);
+        apart = std::max(apart, std::abs(difference) / 0.03);
+      }
+    }
+    const auto one = batch.reaction(b, "head"), other = alone[b].reaction("head");
+    for (std::size_t i = 0; i < 3; ++i) {
+      forces_apart = std::max(forces_apart, std::abs(one[i] - other[i]));
+      largest_force = std::max(largest_force, std::abs(other[i]));
+    }
+    EXPECT_NEAR(batch.time(), alone[b].time(), 1e-14);
+  }
+  return {apart, forces_apart / largest_force};
+}
+
+struct Setting {
+  const char* method;
+  bool skewed;
+  const char* law;
+};
+
+class BatchTest : public ::testing::TestWithParam<Setting> {};
+
+// Both take 100 equal steps; forces are summed in another order, and stiffness multiplies them afterwards. A
+// rounding of a force, of which 24 numbers are added at a node, is a displacement of at most that share of
+// the motion, and at most grows with the square of the steps. Other mistakes show in the first digits.
+TEST_P(BatchTest, bodies_move_as_each_would_alone) {
+  const auto& [method, skewed, law] = GetParam();
+  constexpr double growth = 24.0 * steps * steps;
+  const auto [u, force] = distance_from_simulations<double>(skewed, law, {.method = method});
+  EXPECT_LT(u, growth * 0x1p-53);
+  EXPECT_LT(force, 10.0 * growth * 0x1p-53);
+}
+
+// In single precision the same bound is .014; the error of a random walk, its root, is what is met.
+TEST_P(BatchTest, in_single_precision_too) {
+  const auto& [method, skewed, law] = GetParam();
+  const auto [u, force] = distance_from_simulations<float>(skewed, law, {.method = method});
+  EXPECT_LT(u, 24.0 * steps * 0x1p-24);
+  EXPECT_LT(force, 240.0 * steps * 0x1p-24);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, BatchTest,
+                         ::testing::Values(Setting{"tl-perturbation", false, "neo-hookean"},
+                                           Setting{"tl-perturbation", true, "neo-hookean"},
+                                           Setting{"tl-perturbation", true, "yeoh"},
+                                           Setting{"tl-mean-dilatation", true, "neo-hookean"},
+                                           Setting{"tl-mean-dilatation", false, "yeoh"}));
+
+// Frames of many steps, in which the step is chosen anew.
+TEST(Batch, driven_nodes_and_forces_go_straight) {
+  Batch<double> batch(block(true), text_of(1.0), 9);
+  Simulation<double> alone(block(true), text_of(1.0));
+  for (const double end : {0.5, 1.0}) {
+    for (std::size_t b = 0; b < 9; ++b) batch.impose(b, end);
+    alone.impose(end);
+    batch.advance(0.1);
+    alone.advance(0.1);
+  }
+  const NodalView<double> u = alone.displacements();
+  for (std::size_t node = 0; node < 45; ++node) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      // About 60 steps; a step that follows from bounds of the same elements differs by rounding only.
+      EXPECT_NEAR(batch.displacement(8, node)[i], u[index(alone.row_of_node()[node])][i], 1e-11);
+    }
+  }
+}
+
+TEST(Batch, bits_do_not_depend_on_threads) {
+  const auto moved = [](int threads) {
+    Batch<double> batch(block(true), text_of(1.0), 19, {.threads = threads});
+    for (std::size_t b = 0; b < 19; ++b) batch.move(b, "head", head_of(b));
+    batch.advance(0.05);
+    std::vector<Vector> u;
+    for (std::size_t b = 0; b < 19; ++b) u.push_back(batch.displacement(b, 20));
+    return u;
+  };
+  EXPECT_EQ(moved(1), moved(2));
+}
+
+TEST(Batch, the_step_is_that_of_the_stiffest_body) {
+  Batch<double> batch(block(false), text_of(1.0), 10);
+  const double as_the_case = batch.step_size();
+  EXPECT_NEAR(as_the_case, Simulation<double>(block(false), text_of(1.0)).step_size(), 1e-12 * as_the_case);
+  batch.scale_stiffness(9, 4.0);
+  EXPECT_NEAR(batch.step_size(), as_the_case / 2.0, 1e-12 * as_the_case);
+}
+
+// As in Simulation, the step shortens while one body is pressed to half its height.
+TEST(Batch, the_step_shortens_as_one_body_stiffens) {
+  Batch<double> batch(block(false), text_of(1.0), 10, {.damping = 15.0});
+  Simulation<double> alone(block(false), text_of(1.0), {.damping = 15.0});
+  const double at_rest = batch.step_size();
+  batch.move(7, "head", {0.0, 0.0, -0.08});
+  alone.move("head", {0.0, 0.0, -0.08});
+  batch.advance(1.0);
+  alone.advance(1.0);
+  EXPECT_LT(batch.step_size(), 0.9 * at_rest);
+  EXPECT_NEAR(batch.step_size(), alone.step_size(), 0.02 * at_rest);
+}
+
+TEST(Batch, an_inverted_body_is_named) {
+  Batch<double> batch(block(false), text_of(1.0), 12);
+  batch.move(9, "head", {0.0, 0.0, -0.5});
+  try {
+    batch.advance(0.5);
+    FAIL() << "an element is inverted";
+  } catch (const ComputationError& error) {
+    EXPECT_NE(std::string(error.what()).find("body 9"), std::string::npos) << error.what();
+  }
+}
+
+/// The message of the InputError that `make` throws.
+template <class Make>
+std::string refusal(const Make& make) {
+  try {
+    make();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Batch, what_it_does_not_support_is_refused) {
+  const auto with = [](const std::string& more, const SimulationSettings& settings = {}) {
+    return refusal([&] { Batch<double>(block(false), text_of(1.0) + more, 3, settings); });
+  };
+  EXPECT_NE(with("", {.method = "ul-perturbation"}).find("choose one of tl-perturbation, tl-mean-dilatation"),
+            std::string::npos);
+  EXPECT_NE(with("subcycles = 4\n").find("subcycles = 1"), std::string::npos);
+  EXPECT_NE(with("body_frequency = 1\n").find("body_frequency = 0"), std::string::npos);
+  EXPECT_NE(with("[[pressure]]\nset = \"side\"\nvalue = 1.0\n").find("[[force]] only"), std::string::npos);
+  Batch<double> batch(block(false), text_of(1.0), 3);
+  EXPECT_EQ(refusal([&] { batch.impose(3, 1.0); }), "body = 3 must be below 3");
+  EXPECT_EQ(refusal([&] { batch.displacement(0, 45); }), "node = 45 must be below 45");
+  EXPECT_NE(refusal([&] { batch.scale_stiffness(0, 0.0); }).find("factor = 0"), std::string::npos);
+  EXPECT_NE(refusal([&] { Batch<double>(block(false), text_of(1.0), 0); }).find("bodies = 0"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { batch.move(0, "middle", {}); }).find("no driven node"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sandglass::verification
