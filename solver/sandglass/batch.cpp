@@ -7,7 +7,7 @@
 #include "assembly/batch_force.hpp"
 #include "base/parallel.hpp"
 #include "io/case_file.hpp"
-#include "sandglass/driven_sets.hpp"
+#include "sandglass/driven_problem.hpp"
 #include "sandglass/mesh_arrays.hpp"
 #include "solve/health.hpp"
 #include "solve/leapfrog.hpp"

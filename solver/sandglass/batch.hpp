@@ -22,6 +22,8 @@ class Batch {
   Batch(MeshArrays mesh, const std::string& case_text, std::size_t bodies,
         const SimulationSettings& settings = {});
 
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
   ~Batch();
 
   // Bodies count from 0; a number that is too large is an InputError.
@@ -35,9 +37,8 @@ class Batch {
   /// The same for all driven nodes of a body, and its forces; see Simulation::impose.
   void impose(std::size_t body, double factor);
 
-  /// Goes on for `seconds` with all bodies, see Simulation::advance. With several threads each computes
-  /// bodies of its own; the bits do not depend on their number. Throws ComputationError, which names the
-  /// body, for inverted elements and not-a-number.
+  /// Goes on for `seconds` with all bodies, see Simulation::advance. Threads compute bodies of their own.
+  /// Throws ComputationError, which names the body, for inverted elements and not-a-number.
   void advance(double seconds);
 
   double time() const;       ///< s

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "io/case_file.hpp"
-#include "sandglass/driven_sets.hpp"
+#include "sandglass/driven_problem.hpp"
 #include "sandglass/mesh_arrays.hpp"
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"

@@ -18,8 +18,7 @@ inline constexpr Precision precision_of =
 /// Throws InputError, which names what `name` is, if the value is out of range.
 void require_in_range(const char* name, double value, const Range& range);
 
-/// The number of equal steps of at most `step` (s) that a time (s) needs; n steps of a size that was asked
-/// for are n steps.
+/// The number of equal steps of at most `step` (s) in a time (s); of n times `step` it is n.
 double steps_in(double seconds, double step);
 
 /// A driven component of a set.

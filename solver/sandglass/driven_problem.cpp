@@ -1,4 +1,4 @@
-#include "sandglass/driven_sets.hpp"
+#include "sandglass/driven_problem.hpp"
 
 #include <fmt/format.h>
 
