@@ -222,16 +222,18 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "names or files of cases; ellipsoid-indentation when neither case nor box is given, with --rest "
       "all canonical quasi-static ones");
   auto* rest = command->add_flag("--rest", options->rest, "time quasi-static cases until they are at rest");
-  command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides")
-      ->excludes(rest);
-  command
-      ->add_option("-c,--cubes", options->cubes,
-                   "boxes of about so many cubes, which some methods compute in less time, besides")
-      ->excludes(rest);
   auto* bodies = command->add_option(
       "--bodies", options->bodies,
       "time so many bodies of each case, column when none is given, side by side and one by one");
   bodies->excludes(rest);
+  command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides")
+      ->excludes(rest)
+      ->excludes(bodies);
+  command
+      ->add_option("-c,--cubes", options->cubes,
+                   "boxes of about so many cubes, which some methods compute in less time, besides")
+      ->excludes(rest)
+      ->excludes(bodies);
   command->add_option("-t,--threads", options->threads,
                       "numbers of threads; 1 and 2 where there are two, with --rest or --bodies 1");
   command->add_option("-m,--methods", options->methods,
