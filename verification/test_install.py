@@ -78,7 +78,8 @@ def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):
 def test_only_public_headers_are_installed(prefix):
     """Kernels need the flags of the library; with others, packs of one name would differ."""
     headers = {str(f.relative_to(prefix / "include")) for f in (prefix / "include").rglob("*.hpp")}
-    assert headers == {"sandglass/simulation.hpp", "sandglass/base/error.hpp"}
+    public = {"sandglass/simulation.hpp", "sandglass/batch.hpp", "sandglass/base/error.hpp"}
+    assert headers == public
 
 
 def test_the_installed_program_has_its_cases(prefix, tmp_path):

@@ -96,7 +96,7 @@ class Follower:
         names = [added for path in paths for added in self.only_what_was_added(path)]
         assert names, "nothing was added to a list"
         compiler = "c++ -std=c++20 -O0 -fno-math-errno -Wno-psabi"
-        compiler += " -Isolver -Iverification -isystem /usr/include/eigen3"
+        compiler += " -Isolver -Isuite -Iverification -isystem /usr/include/eigen3"
         compiler = f"ccache {compiler}" if shutil.which("ccache") else compiler
         for source in (f"verification/{name}.cpp", "verification/support/eigenvalues.cpp"):
             self.run(f"{compiler} -c {source} -o {Path(source).stem}.o")
