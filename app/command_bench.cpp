@@ -115,14 +115,19 @@ int run_bench(const BenchOptions& options) {
   return std::none_of(records.begin(), records.end(), is_wrong) ? 0 : 1;
 }
 
-/// The variants that --rest times: packs only, and by default one thread and the two methods to compare, with
-/// one point and with eight.
-std::vector<MethodChoice> rest_variants(BenchOptions options) {
-  if (options.methods.empty()) options.methods = {"tl-perturbation", std::string(golden_method)};
+/// Packs only, by default on one thread.
+std::vector<MethodChoice> packed_variants(BenchOptions options) {
   if (options.threads.empty()) options.threads = {1};
   auto variants = variants_of(make_plan(options));
   std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });
   return variants;
+}
+
+/// The variants that --rest times: packs only, and by default one thread and the two methods to compare, with
+/// one point and with eight.
+std::vector<MethodChoice> rest_variants(BenchOptions options) {
+  if (options.methods.empty()) options.methods = {"tl-perturbation", std::string(golden_method)};
+  return packed_variants(std::move(options));
 }
 
 int run_rest(const BenchOptions& options) {
@@ -165,10 +170,7 @@ std::vector<MethodChoice> variants_of_bodies(BenchOptions options) {
       if (method.assemble_batch_double != nullptr) options.methods.emplace_back(method.name);
     }
   }
-  if (options.threads.empty()) options.threads = {1};
-  auto variants = variants_of(make_plan(options));
-  std::erase_if(variants, [](const MethodChoice& choice) { return choice.kernel == KernelWidth::scalar; });
-  return variants;
+  return packed_variants(std::move(options));
 }
 
 int run_bodies(const BenchOptions& options) {

@@ -1,11 +1,10 @@
 # Sources that are made from the lists of methods and number types, so that a build costs methods + laws: a change of one method
 # compiles its own.
-set(GENERATED ${CMAKE_CURRENT_BINARY_DIR}/kernels)
 
-# Makes `output` from a template and adds it to a target.
+# Makes `output` from a template, in the folder `kernels` of the caller's build folder, and adds it to a target.
 function(add_generated target template output)
-  configure_file(${template} ${GENERATED}/${output} @ONLY)
-  target_sources(${target} PRIVATE ${GENERATED}/${output})
+  configure_file(${template} ${CMAKE_CURRENT_BINARY_DIR}/kernels/${output} @ONLY)
+  target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/kernels/${output})
 endfunction()
 
 # Kernels that compute one element at a time, for the tests and benchmarks that compare with them.
@@ -32,7 +31,7 @@ foreach(HEADER IN LISTS METHODS)
   list(GET TYPES 0 TYPE)
   list(JOIN TYPES ">();\ntemplate MethodEntry method_entry<" ENTRIES)
   add_generated(sandglass_library assembly/method_entry_source.cpp.in ${METHOD}/method_entry.cpp)
-  set_source_files_properties(${GENERATED}/${METHOD}/method_entry.cpp PROPERTIES COMPILE_OPTIONS "${QUICKLY}")
+  set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/kernels/${METHOD}/method_entry.cpp PROPERTIES COMPILE_OPTIONS "${QUICKLY}")
   foreach(REAL double float)
     set(NUMBER "Pack<${REAL}>")
     set(ASSEMBLE "assemble<${TYPE}, ${NUMBER}>")

@@ -321,17 +321,6 @@ TEST(Simulation, tells_when_an_element_turns_inside_out) {
   EXPECT_THROW(simulation.advance(0.25), ComputationError);  // 31 steps: looked at after the 20th
 }
 
-/// The message of the InputError that `act` throws.
-template <class Act>
-std::string refusal(const Act& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
 TEST(Simulation, refuses_what_makes_no_sense) {
   using ::testing::IsSubstring;
   Simulation<double> simulation(block(), text_of(pulled + "[sets.side]\nx = [0.1, 0.1]\ny = [0.05, 0.05]\n"
@@ -340,18 +329,18 @@ TEST(Simulation, refuses_what_makes_no_sense) {
     EXPECT_PRED_FORMAT2(IsSubstring, part, text);
   };
   const Vector up{0.0, 0.0, 0.01};
-  says("did you mean 'head'", refusal([&] { simulation.move("haed", up); }));
-  says("imposes no displacement", refusal([&] { simulation.move("side", up); }));
-  says("imposes no displacement", refusal([&] { simulation.reaction("side"); }));
-  says("is not known", refusal([&] { simulation.nodes("haed"); }));
-  says("one for each of its 9 nodes", refusal([&] { simulation.move("head", std::vector<Vector>(8)); }));
-  says("must be in", refusal([&] { simulation.move("head", {0.0, std::nan(""), 0.0}); }));
-  says("must be in", refusal([&] { simulation.impose(std::nan("")); }));
+  says("did you mean 'head'", input_error([&] { simulation.move("haed", up); }));
+  says("imposes no displacement", input_error([&] { simulation.move("side", up); }));
+  says("imposes no displacement", input_error([&] { simulation.reaction("side"); }));
+  says("is not known", input_error([&] { simulation.nodes("haed"); }));
+  says("one for each of its 9 nodes", input_error([&] { simulation.move("head", std::vector<Vector>(8)); }));
+  says("must be in", input_error([&] { simulation.move("head", {0.0, std::nan(""), 0.0}); }));
+  says("must be in", input_error([&] { simulation.impose(std::nan("")); }));
   for (const double seconds : {0.0, -1.0, std::nan("")}) {
-    says("seconds", refusal([&] { simulation.advance(seconds); }));
+    says("seconds", input_error([&] { simulation.advance(seconds); }));
   }
   const auto made = [](const SimulationSettings& settings) {
-    return refusal([&] { Simulation<double>(block(), text_of(pulled), settings); });
+    return input_error([&] { Simulation<double>(block(), text_of(pulled), settings); });
   };
   says("step_fraction", made({.step_fraction = 1.5}));
   says("damping", made({.damping = -1.0}));
@@ -365,7 +354,7 @@ TEST(Simulation, refuses_meshes_that_are_none) {
   const auto refused = [](const std::string& part, const auto& spoil, const std::string& text) {
     MeshArrays mesh = block();
     spoil(mesh);
-    EXPECT_PRED_FORMAT2(IsSubstring, part, refusal([&] { Simulation<double>(mesh, text); }));
+    EXPECT_PRED_FORMAT2(IsSubstring, part, input_error([&] { Simulation<double>(mesh, text); }));
   };
   const std::string text = text_of(pulled);
   refused(

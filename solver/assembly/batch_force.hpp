@@ -65,11 +65,9 @@ class BatchLoop final : public BatchForce<Number> {
     for (const auto& group : layout_.groups) {
       const CalledLaw law = elastic_law(kernel_law(materials.list[group.material]));
       for (std::size_t k = 0; k < group.ranks; ++k) {
-        const auto element = element_block<FormulationOf<Method, CalledLaw>, double>(
+        const auto element = element_block<FormulationOf<Method, CalledLaw>, Real>(
             mesh, layout_, layout_.node_of_row, group.first_face + k, [&](int) { return law; }, settings);
-        const auto plain = std::bit_cast<std::array<double, numbers>>(element);
-        auto& rounded = constants_.emplace_back();
-        for (std::size_t n = 0; n < numbers; ++n) rounded[n] = static_cast<Real>(plain[n]);
+        constants_.push_back(std::bit_cast<std::array<Real, numbers>>(element));
       }
     }
   }
