@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/deck_file.hpp"
+#include "app/foreign_files.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "io/case_file.hpp"
-#include "io/foreign_file.hpp"
 #include "io/mesh_file.hpp"
 #include "mesh/quality.hpp"
 
@@ -18,12 +18,13 @@ namespace {
 struct MeshOptions {
   std::string name;
   std::string output;
-  ForeignFormat format;
+  std::string format;
+  DeckOptions deck;
 };
 
-/// The format asked for, by name or else by the ending of the file; throws InputError where it is none.
+/// The format asked for, by name or else by the ending of the file. Throws InputError for an unknown one.
 std::string format_of(const MeshOptions& options) {
-  std::string name = options.format.name;
+  std::string name = options.format;
   if (name.empty()) {
     name = std::filesystem::path(options.output).extension().string();
     name.erase(0, 1);
@@ -50,17 +51,11 @@ void print_quality(const QualityTable& table) {
   }
 }
 
-void write(const Scene& scene, MeshOptions options) {
-  options.format.name = format_of(options);
-  if (options.format.deck && options.format.name != "inp") {
-    throw InputError(
-        fmt::format("--deck: for format inp alone; {} is {}", options.output, options.format.name));
-  }
-  if (options.format.name == "h5") {
-    write_mesh_file(scene, options.output);
-  } else {
-    write_foreign_mesh(scene, options.output, options.format);
-  }
+void write(const Scene& scene, const MeshOptions& options) {
+  if (!options.deck.program.empty()) return write_deck(scene, options.output, options.deck);
+  const std::string format = format_of(options);
+  if (format == "h5") return write_mesh_file(scene, options.output);
+  write_foreign_mesh(scene, options.output, format);
 }
 
 }  // namespace
@@ -70,14 +65,21 @@ void add_mesh_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("mesh", "write the mesh and node sets of a case, and how good it is");
   command->add_option("CASE", options->name, "name or file of the case")->required();
-  command->add_option("-o,--output", options->output, "file to write: .h5, .vtu, .xdmf or .inp")->required();
-  command->add_option("--format", options->format.name,
-                      "h5, vtu, xdmf or inp, where the ending does not say it");
-  command->add_flag("--deck", options->format.deck,
-                    "of inp: a whole input deck for CalculiX, with material, displacements and forces");
-  command->add_option("--element", options->format.element, "of inp: the type of its bricks")
-      ->check(CLI::IsMember({"C3D8", "C3D8R", "C3D8I"}))
-      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "file to write: .h5, .vtu, .xdmf, .inp, or a deck")
+      ->required();
+  auto* format = command->add_option("--format", options->format,
+                                     "h5, vtu, xdmf or inp, where the ending does not say it");
+  auto* deck = command
+                   ->add_option("--deck", options->deck.program,
+                                "write the whole input of this program: calculix, febio, niftysim, "
+                                "openradioss or sofa (exchange/README.md)")
+                   ->excludes(format);
+  command->add_option("--element", options->deck.element, "of a deck: the program's name of its element")
+      ->needs(deck);
+  command
+      ->add_option("--hourglass", options->deck.hourglass,
+                   "of a deck: the program's hourglass coefficient; its usual one when left out")
+      ->needs(deck);
   command->callback([options] {
     const Scene scene = read_scene(find_case(options->name));
     write(scene, *options);

@@ -6,6 +6,7 @@
 
 #include "app/accuracy_text.hpp"
 #include "app/commands.hpp"
+#include "app/foreign_files.hpp"
 #include "app/machine.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
@@ -15,7 +16,6 @@
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
 #include "io/case_file.hpp"
-#include "io/foreign_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
@@ -141,7 +141,10 @@ void add_score_command(CLI::App& app) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App* command =
       app.add_subcommand("score", "how near displacements of any program are to the references");
-  command->add_option("FILE", options->file, "displacements: .h5, .vtu, .csv or .frd (CalculiX)")->required();
+  command
+      ->add_option("FILE", options->file,
+                   "displacements, of Sandglass or of another program; exchange/README.md lists the formats")
+      ->required();
   command->add_option("--case", options->case_name, "name or file of the case that they answer")->required();
   command->add_option("--name", options->name, "what the method is called; the file's name when left out");
   command->add_option("--field", options->matching.field, "name of the displacements in the file");

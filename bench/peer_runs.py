@@ -8,40 +8,27 @@ import json
 import math
 import os
 import re
-from dataclasses import dataclass
+import subprocess
+import sys
 from pathlib import Path
 
-import calculix
 import clock
 from case_file import read_case, read_tables
 from common.errors import ComputationError, InputError
-from common.program import binary
-from common.result_file import last_displacement
-from exchange.calculix_deck import Explicit
+from common.program import ROOT, binary
+from exchange.decks import PROGRAMS as DECKS
+from exchange.hdf5_file import read_displacement
 from mesh_file import load_case_mesh, make_mesh
+from rivals.program import Run
 
 # Largest speed of imposed displacements over the shear wave speed; strains are of this order.
 SPEED = 0.1
 CURVE_RATE = 15 / 8  # the steepest that the loading curve of eq. 15 is
-STEP_FRACTION = 0.8  # of the smallest stable step of all programs and methods
-# The longer run of a motion has at least three times the steps and, in Sandglass, enough elements
-# times steps for half a second, so that its excess is clear of the start-up time.
-ELEMENT_STEPS = {"CalculiX": 0, "Sandglass": 4e6}
-
-
-@dataclass(frozen=True)
-class Run:
-    """Wall and processor time of a process (s), its steps and its displacement.
-
-    steps: increments of CalculiX, force evaluations of Sandglass. iterations: of Newton's method,
-    or 0. answer: a file of displacements for `sandglass score`, or the displacement (n, 3) in m.
-    """
-
-    seconds: float
-    processor_seconds: float
-    steps: int
-    iterations: int
-    answer: object
+STEP_FRACTION = 0.8  # of the smallest stable step of the methods of Sandglass
+# The longer run of a motion has at least three times the steps and, in programs that step quickly,
+# enough elements times steps for half a second, so that its excess is clear of the start-up time.
+ELEMENT_STEPS = {"calculix": 0, "febio": 0}
+MANY = 4e6
 
 
 class Bench:
@@ -53,12 +40,10 @@ class Bench:
         self.mesh_path = self.folder / "mesh.h5"
         make_mesh(path, self.mesh_path)
         self.mesh, self.mesh_file = load_case_mesh(self.case, self.mesh_path)
+        self.tables = next(iter(read_tables(path).values()))
         self.binary = binary()
         self.environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
         self.processor = max(os.sched_getaffinity(0))
-        self.versions = {
-            "sandglass": self.sandglass("--version").output.split(maxsplit=1)[1].strip()
-        }
         self._fresh = itertools.count()
 
     def fresh_folder(self):
@@ -79,6 +64,33 @@ class Bench:
             raise kind(f"sandglass {arguments[0]}: {told[-1].removeprefix('error: ')}")
         return done
 
+    def version(self):
+        """Of Sandglass."""
+        return self.sandglass("--version").output.split(maxsplit=1)[1].strip()
+
+    def build(self):
+        """Compiler and flags of Sandglass, in words."""
+        output = self.folder / "provenance.json"
+        self.sandglass("flops", "--json", output)
+        found = json.loads(output.read_text(encoding="utf-8"))
+        return f"{found['compiler']}, {found['build_flags']}"
+
+    @property
+    def kappa(self):
+        """The hourglass stiffness of eq. 12 that tl-perturbation takes for a neo-Hookean material:
+        E / 9 over lambda + 2 mu."""
+        poisson = self.tables["material"]["poisson_ratio"]
+        return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson) / 9
+
+    def deck(self, case, program, element):
+        """The path of a case's deck for a program and one of its Elements, in a new folder."""
+        output = self.fresh_folder() / f"deck{DECKS[program.deck].ENDING}"
+        words = ["mesh", case, "--deck", program.deck, "--element", element.name, "-o", output]
+        if element.hourglass is not None:
+            words += ["--hourglass", repr(element.hourglass)]
+        self.sandglass(*words)
+        return output
+
     def score(self, answer):
         """Max errors of a file of displacements, as fractions.
 
@@ -90,28 +102,69 @@ class Bench:
         found = {name: record.get(name) for name in ("golden", "truth", "twin")}
         return {name: errors and errors["max_relative_error"] for name, errors in found.items()}
 
+    def displacement(self, answer):
+        """The displacements (n, 3), m, of any answer that `sandglass score` reads."""
+        output = self.folder / "displacement.h5"
+        convert = [sys.executable, ROOT / "exchange/convert.py", "displacement", answer]
+        words = [*convert, self.mesh_path, output, "--tolerance", "1e-5"]
+        done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+        if done.returncode:
+            raise ComputationError(done.stdout.strip())
+        return read_displacement(output, lambda text: None)[1]
 
-def calculix_at_rest(bench, element):
-    """A run: ccx on the static deck of `sandglass mesh --deck`."""
+    @property
+    def shear_wave_speed(self):
+        """Of the undeformed material, m/s."""
+        material = self.tables["material"]
+        shear = material["young_modulus"] / 2 / (1 + material["poisson_ratio"])
+        return math.sqrt(shear / material["density"])
+
+    def write_case(self, share, **dynamics):
+        """Writes the case as a dynamic one, with a share of its displacements; returns its path.
+
+        dynamics: entries of [dynamics]. Raises InputError for a case that cannot be moved.
+        """
+        if self.case.rotations or self.case.forces:
+            raise InputError(f"{self.path}: explicit runs support only [[displacement]]")
+        if not isinstance(self.tables["material"], dict):
+            raise InputError(f"{self.path}: explicit runs support only one [material]")
+        case = {"name": self.case.name, "requirement": "It moves.", "answer": "dynamic"}
+        lines = _table("[case]", case) + _table("[mesh]", {"file": str(self.mesh_path)})
+        lines += _table("[material]", self.tables["material"])
+        lines += _table("[dynamics]", {"frames": 1, **dynamics})
+        for entry in self.case.displacements:
+            value = [share * component for component in entry.value]
+            axes = "".join("xyz"[axis] for axis in entry.components)
+            moved = {"set": entry.set_name, "value": value, "components": axes}
+            lines += _table("[[displacement]]", moved)
+        path = self.fresh_folder() / f"{self.case.name}.toml"
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        return path
+
+    def own_step(self, method="tl-perturbation"):
+        """The step, s, that a method of Sandglass takes by default near the undeformed state."""
+        span = self.mesh.largest_imposed() / self.shear_wave_speed
+        done = self.sandglass("run", self.write_case(1e-6, duration=span), "-m", method)
+        return span / int(_said(r"in (\d+) steps of", done.output))
+
+
+def at_rest(bench, program, element):
+    """A run: a program's static solution."""
 
     def run():
-        folder = bench.fresh_folder()
-        deck = folder / "deck.inp"
-        bench.sandglass("mesh", bench.path, "--deck", "--element", element, "-o", deck)
-        text, nodes = deck.read_text(encoding="utf-8"), len(bench.mesh.points)
-        found = calculix.solve(text, nodes, folder, bench.environment, bench.processor)
-        return _of_calculix(bench, found, folder / "case.frd")
+        return program.run(bench.deck(bench.path, program, element), None)
 
     return run
 
 
-def sandglass_at_rest(bench, method):
-    """A run: `sandglass run`, dynamic relaxation to rest."""
+def sandglass_at_rest(bench, method, precision):
+    """A run: `sandglass run`, its search for rest. precision: "double" or "float"."""
 
     def run():
         output = bench.fresh_folder() / "result.h5"
-        done = bench.sandglass("run", bench.path, "-m", method, "-t", 1, "-o", output)
-        steps = int(_said(r"at rest after (\d+) steps", done.output))
+        words = ["run", bench.path, "-m", method, "--precision", precision, "-t", 1, "-o", output]
+        done = bench.sandglass(*words)
+        steps = int(_said(r"at rest .*?after (\d+) steps", done.output))
         return Run(done.seconds, done.processor_seconds, steps, 0, output)
 
     return run
@@ -121,106 +174,54 @@ class Motion:
     """A share of a case's displacements, imposed with inertia within a number of steps.
 
     share: that for which they move at SPEED, at most one. Raises InputError for a case that cannot
-    be run like this, ComputationError if a program cannot take a step.
+    be run like this.
     """
 
     def __init__(self, bench, steps, methods):
         self.bench, self.steps = bench, steps
-        if bench.case.rotations or bench.case.forces:
-            raise InputError(f"{bench.path}: explicit runs support only [[displacement]]")
-        self.material = next(iter(read_tables(bench.path).values()))["material"]
-        shear = self.material["young_modulus"] / 2 / (1 + self.material["poisson_ratio"])
-        self.speed = SPEED * math.sqrt(shear / self.material["density"])
-        self._set_step(1e-9)  # shorter than the step of any program
-        folder = bench.fresh_folder()
-        calculix_step = calculix.stable_step(self.deck("C3D8", 1), folder, bench.environment)
-        self._set_step(calculix_step)
-        self._set_step(STEP_FRACTION * min([calculix_step, *map(self._own_step, methods)]))
+        step = STEP_FRACTION * min(map(bench.own_step, methods))
+        self.time_step = float(f"{step:.3g}")
+        way = SPEED * bench.shear_wave_speed * self.time_step * steps / CURVE_RATE
+        self.share = min(1.0, way / bench.mesh.largest_imposed())
 
-    def _set_step(self, seconds):
-        """Sets the step, rounded to three digits, and the share of the displacements that fits."""
-        self.time_step = float(f"{seconds:.3g}")
-        way = self.speed * self.time_step * self.steps / CURVE_RATE
-        self.share = min(1.0, way / self.bench.mesh.largest_imposed())
-
-    def _own_step(self, method):
-        """The mean step, s, that a method of Sandglass chooses by default."""
-        done = self.bench.sandglass("run", self.write_case(1, time_step=0.0), "-m", method)
-        return self.time_step * self.steps / int(_said(r"in (\d+) steps of", done.output))
-
-    def explicit(self, longer):
-        """The motion for CalculiX. longer: factor for the number of steps."""
-        steps = longer * self.steps
-        return Explicit(self.material["density"], self.time_step, steps, self.steps)
-
-    def deck(self, element, longer):
-        """CalculiX's deck."""
-        case, mesh = self.bench.case, self.bench.mesh
-        options = {"explicit": self.explicit(longer), "share": self.share}
-        material = calculix.material_of(case)
-        return calculix.deck(case.name, mesh, material, element, **options)
-
-    def write_case(self, longer, time_step=None):
-        """Writes the motion as a case of Sandglass; returns its path. time_step: 0: default."""
-        ramp = self.time_step * self.steps
-        case = {"name": self.bench.case.name, "requirement": "It moves.", "answer": "dynamic"}
-        dynamics = {
-            "duration": longer * ramp,
-            "ramp_time": ramp,
-            "time_step": self.time_step if time_step is None else time_step,
-            "frames": 1,
-        }
-        lines = _table("[case]", case) + _table("[mesh]", {"file": str(self.bench.mesh_path)})
-        lines += _table("[material]", self.material) + _table("[dynamics]", dynamics)
-        for entry in self.bench.case.displacements:
-            value = [self.share * component for component in entry.value]
-            axes = "".join("xyz"[axis] for axis in entry.components)
-            moved = {"set": entry.set_name, "value": value, "components": axes}
-            lines += _table("[[displacement]]", moved)
-        path = self.bench.fresh_folder() / f"{self.bench.case.name}.toml"
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        return path
+    def write_case(self, longer):
+        """Writes the motion as a case; returns its path. longer: factor for its steps."""
+        duration = self.time_step * self.steps * longer
+        return self.bench.write_case(self.share, duration=duration, time_step=self.time_step)
 
     def longer(self, program):
         """The number of steps in the longer run of a program over that in the shorter one."""
-        return max(3, round(ELEMENT_STEPS[program] / len(self.bench.mesh.cells) / self.steps))
+        least = ELEMENT_STEPS.get(program, MANY) / len(self.bench.mesh.cells) / self.steps
+        return max(3, round(least))
 
     def largest_imposed(self):
         """Of the displacements, m."""
         return self.share * self.bench.mesh.largest_imposed()
 
 
-def calculix_in_motion(motion, element, longer=1):
-    """A run: ccx by *DYNAMIC, EXPLICIT. longer: factor for the number of steps."""
-    bench = motion.bench
+def in_motion(motion, program, element, longer=1):
+    """A run: a program's central differences. longer: factor for the number of steps."""
+    case = motion.write_case(longer)
 
     def run():
-        explicit, folder = motion.explicit(longer), bench.fresh_folder()
-        text, nodes = motion.deck(element, longer), len(bench.mesh.points)
-        found = calculix.move(text, nodes, folder, explicit, bench.environment, bench.processor)
-        return _of_calculix(bench, found, found.displacement)
+        deck = motion.bench.deck(case, program, element)
+        return program.run(deck, (motion.time_step, longer * motion.steps))
 
     return run
 
 
-def sandglass_in_motion(motion, method, longer=1):
-    """A run: `sandglass run` of the motion as a dynamic case."""
+def sandglass_in_motion(motion, method, precision, longer=1):
+    """A run: `sandglass run` of the motion as a dynamic case. precision: "double" or "float"."""
     path = motion.write_case(longer)
 
     def run():
         output = motion.bench.fresh_folder() / "result.h5"
-        done = motion.bench.sandglass("run", path, "-m", method, "-t", 1, "-o", output)
+        words = ["run", path, "-m", method, "--precision", precision, "-t", 1, "-o", output]
+        done = motion.bench.sandglass(*words)
         steps = int(_said(r"in (\d+) steps of", done.output))
-        return Run(done.seconds, done.processor_seconds, steps, 0, last_displacement(output))
+        return Run(done.seconds, done.processor_seconds, steps, 0, output)
 
     return run
-
-
-def _of_calculix(bench, found, answer):
-    """The Run of a calculix.Solution, with its answer."""
-    bench.versions["ccx"] = found.version
-    times = found.process_seconds, found.processor_seconds
-    return Run(*times, found.increments, found.iterations, answer)
 
 
 def _said(pattern, text):

@@ -1,13 +1,14 @@
-"""CalculiX and Sandglass on the same mesh, in turn, on one thread each: seconds and errors.
+"""Other programs and Sandglass on the same mesh, in turn, on one thread each: seconds and errors.
 
-Usage: /usr/bin/python3 bench/peers.py [CASE] [--json FILE] [--markdown FILE]
-Needs CalculiX (ci/setup bench) and the solver's binary: build/release/sandglass, or the one given
-by SANDGLASS_BINARY.
+Usage: /usr/bin/python3 bench/peers.py [CASE] --program NAME[:BUILD]=PATH... [--json FILE]
+`ci/peers` calls it. Needs the programs (bench/README.md tells how to build them) and the solver's
+binary: build/release/sandglass, or the one given by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """
 
 import argparse
 import os
+import re
 import shutil
 import statistics
 import sys
@@ -20,34 +21,39 @@ if __name__ == "__main__":
 
 import time_to_rest  # first: reference/ may do without UFL afterwards
 
-import calculix
 import peer_runs
 from common.accuracy import relative_errors
 from common.command import exit_code, whole_number
-from common.errors import ComputationError, InputError
+from common.errors import ComputationError, InputError, suggestion
 from common.files import require_writable, write_json, write_whole
 from rest_records import table
+from rest_search import WITHIN, RestSearch
+from rivals import PROGRAMS
 
-ELEMENTS = ("C3D8", "C3D8R", "C3D8I")
 METHODS = ("tl-perturbation", "tl-four-point", "tl-mean-dilatation", "tl-full")
 AT_REST = (*METHODS, "tl-energy-sampling")
 IN_MOTION = (*METHODS, "ul-perturbation")
+# Computed in single precision as well, for programs that do so.
+IN_FLOAT = ("tl-perturbation", "tl-mean-dilatation")
 # The golden element's explicit twin, the reference for motions.
 TWIN = "tl-mean-dilatation"
-NEWTON, RELAXATION, EXPLICIT = "Newton", "relaxation", "central differences"
+NEWTON, RELAXATION, EXPLICIT = "Newton", "search for rest", "central differences"
+DAMPED = "damped motion"
 
 NOTES_AT_REST = """
-The same answer by different methods: CalculiX uses *STATIC, NLGEOM, Newton's method with a direct
-solver, Sandglass uses dynamic relaxation, both until their residuals are below 1e-8. Seconds and
-errors of any two rows are comparable, times per step are not: a step of CalculiX is an increment of
-several iterations, one of Sandglass an evaluation of the forces.
-seconds: wall time of the whole process. CPU: its processor time. max to golden, to truth: largest
-error at any node over the largest imposed displacement, by `sandglass score`; to twin: for a case
-without a golden, to tl-mean-dilatation.
+The same answer by different methods. CalculiX and FEBio use Newton's method with a direct solver,
+Sandglass its search for rest, all until their residuals are below 1e-8. Programs that only
+integrate in time find it by a damped motion. Its step, duration and damping were searched for
+beforehand: it is the quickest whose end differs by less than {within:g} of the imposed displacement
+from that of a long one. The search is not part of the seconds. Seconds and errors of any two rows
+are comparable, times per step are not.
+seconds: wall time of the whole process; of OpenRadioss, of its engine. CPU: processor time. max to
+golden, to truth: largest error at any node over the largest imposed displacement, by `sandglass
+score`; to twin: for a case without a golden, to tl-mean-dilatation.
 """
 NOTES_IN_MOTION = """
 The same motion by the same method: central differences with lumped masses and the same step,
-{step:.3g} s, or a shorter one if CalculiX considers that unstable; {share:.3g} of the case's
+{step:.3g} s, or a shorter one if the program considers that unstable; {share:.3g} of the case's
 displacements, imposed in {steps} steps. The comparable figure is the time per element and step: the
 additional processor time of a longer run over its additional steps, so start-up does not count.
 There is no golden for a motion. to {twin}: largest difference from its final displacement over the
@@ -68,7 +74,9 @@ def spread(seconds):
 
 SHARED = (
     ("program", "program", str),
+    ("build", "build", str),
     ("element", "element", str),
+    ("numbers", "precision", str),
     ("solve", "solve", str),
     ("seconds (range)", "seconds_of_runs", spread),
     ("CPU, s (range)", "processor_seconds_of_runs", spread),
@@ -77,6 +85,7 @@ SHARED = (
 COLUMNS_AT_REST = (
     *SHARED,
     ("iterations", "iterations", str),
+    ("step, ms", "time_step", lambda seconds: f"{1e3 * seconds:.3g}"),
     ("ms a step", "seconds_per_step", lambda seconds: f"{1e3 * seconds:.3g}"),
     ("max to golden", "golden", percent),
     ("max to truth", "truth", percent),
@@ -96,13 +105,26 @@ COLUMNS_IN_MOTION = (
 class Row:
     """A program with an element, and its timed runs.
 
-    runs: name -> function that returns a Run; timed in this order in every round.
+    runs: name -> function that returns a Run; timed in this order in every round. more: figures of
+    the record that are known beforehand.
     """
 
-    def __init__(self, program, element, solve, runs):
+    def __init__(self, program, element, solve, runs, **more):
         self.program, self.element, self.solve, self.runs = program, element, solve, runs
         self.clocked = {name: [] for name in runs}
-        self.failure = None
+        self.more, self.failure = more, None
+
+    @property
+    def sound(self):
+        """Whether it has an answer."""
+        return self.failure is None
+
+    def answer_name(self):
+        """A name for a copy of the answer."""
+        words = [self.program, self.more["build"], self.element, self.more["precision"]]
+        name = "-".join(word.lower().replace(" ", "-") for word in words if word)
+        answer = self.clocked["answer"][0].answer
+        return name + (answer.suffix or answer.name[-4:])  # an animation file has no ending
 
     def round(self):
         """Time every run once more; a row that failed is skipped."""
@@ -119,7 +141,8 @@ class Row:
         """The row as a dict of plain figures; None for unknown ones."""
         record = {key: None for _, key, _ in (*COLUMNS_AT_REST, *COLUMNS_IN_MOTION)}
         record |= {"program": self.program, "element": self.element, "solve": self.solve}
-        record |= dict.fromkeys(("seconds", "processor_seconds", "ns_per_element_step"))
+        known = ("seconds", "processor_seconds", "ns_per_element_step", "time_step")
+        record |= dict.fromkeys((*known, "precision", "build")) | self.more
         record["failure"] = self.failure
         if not self.failure:
             answers = self.clocked["answer"]
@@ -141,31 +164,72 @@ class Row:
         ]
 
 
-def rows_at_rest(bench, options):
-    """The rows of the case's answer at rest."""
+def rows_at_rest(bench, programs, options):
+    """A row for each program, element and method, at rest."""
     rows = []
-    for element in options.elements:
-        run = peer_runs.calculix_at_rest(bench, element)
-        rows.append(Row("CalculiX", element, NEWTON, {"answer": run}))
+    for program, element in elements_of(bench, programs, options):
+        more = {"precision": program.precision, "build": program.build}
+        if not program.explicit:
+            runs = {"answer": peer_runs.at_rest(bench, program, element)}
+            rows.append(Row(program.name, str(element), NEWTON, runs, **more))
+            continue
+        search, row = RestSearch(bench, program, element), None
+        print(f"{program} {element}, quickest way to rest", file=sys.stderr, flush=True)
+        try:
+            way = search.quickest()
+            more |= {"time_step": way.time_step, "duration": way.duration, "damping": way.damping}
+            runs = {"answer": lambda search=search, way=way: search.run(way)}
+            row = Row(program.name, str(element), DAMPED, runs, **more)
+        except ComputationError as error:
+            row = Row(program.name, str(element), DAMPED, {}, **more)
+            row.failure = str(error)
+        rows.append(row)
     for method in options.methods or AT_REST:
-        run = peer_runs.sandglass_at_rest(bench, method)
-        rows.append(Row("Sandglass", method, RELAXATION, {"answer": run}))
+        step = bench.own_step(method)
+        for precision in precisions_of(method):
+            runs = {"answer": peer_runs.sandglass_at_rest(bench, method, precision)}
+            more = {"precision": precision, "build": "", "time_step": step}
+            rows.append(Row("Sandglass", method, RELAXATION, runs, **more))
     return rows
 
 
-def rows_in_motion(motion, options):
-    """The rows for the same displacements imposed with inertia."""
+def rows_in_motion(motion, programs, options):
+    """A row for each program, element and method, in motion."""
     rows = []
-    makers = {
-        "CalculiX": (peer_runs.calculix_in_motion, options.elements),
-        "Sandglass": (peer_runs.sandglass_in_motion, motion_methods(options)),
-    }
-    for program, (make, names) in makers.items():
-        for name in names:
-            longer = make(motion, name, motion.longer(program))
-            runs = {"answer": make(motion, name), "longer": longer}
-            rows.append(Row(program, name, EXPLICIT, runs))
+    for program, element in elements_of(motion.bench, programs, options):
+        make = peer_runs.in_motion
+        runs = {
+            "answer": make(motion, program, element),
+            "longer": make(motion, program, element, motion.longer(program.deck)),
+        }
+        more = {"precision": program.precision, "build": program.build}
+        rows.append(Row(program.name, str(element), EXPLICIT, runs, **more))
+    for method in motion_methods(options):
+        for precision in precisions_of(method):
+            make, longer = peer_runs.sandglass_in_motion, motion.longer("sandglass")
+            runs = {
+                "answer": make(motion, method, precision),
+                "longer": make(motion, method, precision, longer),
+            }
+            rows.append(Row("Sandglass", method, EXPLICIT, runs, precision=precision, build=""))
     return rows
+
+
+def precisions_of(method):
+    """The numbers in which a method of Sandglass is timed."""
+    return ("double", "float") if method in IN_FLOAT else ("double",)
+
+
+def elements_of(bench, programs, options):
+    """(program, Element) of all that are asked for."""
+    pairs = [(p, e) for p in programs for e in p.elements(bench.kappa)]
+    if not options.elements:
+        return pairs
+    names = list(dict.fromkeys(str(element) for _, element in pairs))
+    for name in options.elements:
+        if name not in names:
+            raise InputError(f"--elements {name}: {suggestion(name, names)}")
+    return [pair for pair in pairs if str(pair[1]) in options.elements]
 
 
 def motion_methods(options):
@@ -176,24 +240,29 @@ def motion_methods(options):
 def records_at_rest(bench, rows):
     """The rows with their errors. Raises InputError."""
     return [
-        row.record() if row.failure else row.record(**bench.score(row.clocked["answer"][0].answer))
+        (
+            row.record(answer=row.answer_name(), **bench.score(row.clocked["answer"][0].answer))
+            if row.sound
+            else row.record()
+        )
         for row in rows
     ]
 
 
 def records_in_motion(bench, motion, rows):
     """The rows with their differences from each other."""
+    moved = {row: bench.displacement(row.clocked["answer"][0].answer) for row in rows if row.sound}
     own = {
-        row.element: row.clocked["answer"][0].answer
-        for row in rows
-        if row.program == "Sandglass" and not row.failure
+        row.element: u
+        for row, u in moved.items()
+        if row.program == "Sandglass" and row.more["precision"] == "double"
     }
     records = []
     for row in rows:
         more = {}
-        if not row.failure:
-            moved, scale = row.clocked["answer"][0].answer, motion.largest_imposed()
-            far = {name: float(relative_errors(moved, u, scale)[0]) for name, u in own.items()}
+        if row.sound:
+            scale = motion.largest_imposed()
+            far = {name: float(relative_errors(moved[row], u, scale)[0]) for name, u in own.items()}
             others = {name: error for name, error in far.items() if name != row.element}
             if others:
                 method = min(others, key=others.get)
@@ -206,27 +275,48 @@ def records_in_motion(bench, motion, rows):
     return records
 
 
+def programs_of(options):
+    """The programs that are asked for, by --program and --about."""
+    about = {}
+    for text in options.about or ():
+        key, separator, words = text.partition("=")
+        if not separator:
+            raise InputError(f"--about {text}: must be NAME[:BUILD]=TEXT")
+        about[key] = words
+    programs = []
+    for text in options.program:
+        found = re.fullmatch(r"(\w+)(?::([^=]+))?=(.+)", text)
+        if not found:
+            raise InputError(f"--program {text}: must be NAME[:BUILD]=PATH")
+        name, build, paths = found[1], found[2] or "", found[3].split(",")
+        if name not in PROGRAMS:
+            raise InputError(f"--program {name}: {suggestion(name, sorted(PROGRAMS))}")
+        paths = [shutil.which(path) or path for path in paths]
+        key = text.partition("=")[0]
+        programs.append(PROGRAMS[name](paths, build=build, about=about.pop(key, "")))
+    for key in about:
+        raise InputError(f"--about {key}: there is no --program {key}")
+    return programs
+
+
 def measure(options):
     """Measure, print, store. Returns the exit code. Raises InputError."""
     for path in filter(None, (options.json, options.markdown)):
         require_writable(path)
-    if shutil.which(calculix.PROGRAM) is None:
-        raise InputError(
-            f"{calculix.PROGRAM} is not installed; this comparison needs package "
-            f"{calculix.PACKAGE}: bash ci/setup bench"
-        )
+    programs = programs_of(options)
     path = time_to_rest.case_path(options.case)
     time_to_rest.require_quasi_static(path)
     place = time_to_rest.machine(1)
     with tempfile.TemporaryDirectory() as folder:
         bench = peer_runs.Bench(path, folder)
-        calculix.material_of(bench.case)
+        for program in programs:
+            program.environment, program.processor = bench.environment, bench.processor
         at_rest, in_motion, motion = [], [], None
         if "rest" in options.solves:
-            at_rest = rows_at_rest(bench, options)
+            at_rest = rows_at_rest(bench, programs, options)
         if "motion" in options.solves:
             motion = peer_runs.Motion(bench, options.steps, motion_methods(options))
-            in_motion = rows_in_motion(motion, options)
+            in_motion = rows_in_motion(motion, programs, options)
         for _ in range(options.repetitions):
             for row in (*at_rest, *in_motion):
                 row.round()
@@ -234,7 +324,9 @@ def measure(options):
         document = {
             **place,
             "processor_of_all_runs": bench.processor,
-            "versions": bench.versions,
+            "sandglass": bench.version(),
+            "build": bench.build(),
+            "programs": [program.provenance() for program in programs],
             "case": bench.case.name,
             "elements": len(bench.mesh.cells),
             "nodes": len(bench.mesh.points),
@@ -245,6 +337,8 @@ def measure(options):
         }
         if motion:
             document |= {"time_step": motion.time_step, "share_of_displacements": motion.share}
+        if options.answers:
+            keep_answers(at_rest, options.answers)
     text = report(document, options)
     print(text)
     if options.json:
@@ -255,6 +349,13 @@ def measure(options):
     for row in failed:
         print(f"error: {row.program} {row.element}, {row.solve}: {row.failure}", file=sys.stderr)
     return 3 if failed else 0
+
+
+def keep_answers(rows, folder):
+    """Copies the answers at rest to a folder, under the names that their records have."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for row in filter(lambda row: row.sound, rows):
+        shutil.copy(row.clocked["answer"][0].answer, folder / row.answer_name())
 
 
 def shown(records, columns):
@@ -268,16 +369,18 @@ def shown(records, columns):
 def report(document, options):
     """The report in Markdown: measurements, machine and notes."""
     loads = "{load_average_before:.2f} to {load_average_after:.2f}".format(**document)
-    versions = ", ".join(f"{name} {version}" for name, version in document["versions"].items())
+    programs = [f"sandglass {document['sandglass']}"]
+    programs += ["{name} {build} {version} {about}".format(**p) for p in document["programs"]]
     lines = [
         "{case}: {nodes} nodes, {elements} elements".format(**document),
         f"on {document['processor']}, {document['cores']} cores, load {loads}; every run on one "
         f"thread of processor {document['processor_of_all_runs']}, in turn, "
         f"medians of {document['repetitions']}",
-        versions,
+        *(" ".join(text.split()) for text in programs),
     ]
     if document["at_rest"]:
-        lines += ["", "## At rest", "", shown(document["at_rest"], COLUMNS_AT_REST), NOTES_AT_REST]
+        lines += ["", "## At rest", "", shown(document["at_rest"], COLUMNS_AT_REST)]
+        lines.append(NOTES_AT_REST.format(within=WITHIN))
     if document["in_motion"]:
         share, step = document["share_of_displacements"], document["time_step"]
         notes = NOTES_IN_MOTION.format(steps=options.steps, step=step, share=share, twin=TWIN)
@@ -289,15 +392,24 @@ def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
         prog="peers.py",
-        description="CalculiX and Sandglass on the same mesh, in turn, on one thread each.",
+        description="Other programs and Sandglass on the same mesh, in turn, on one thread each.",
         epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
     )
     add = parser.add_argument
     add("case", nargs="?", metavar="CASE", default="column", help="name or file; default: column")
+    add(
+        "--program",
+        action="append",
+        default=[],
+        metavar="NAME[:BUILD]=PATH",
+        help=f"of {', '.join(sorted(PROGRAMS))}; several are possible. OpenRadioss: STARTER,ENGINE",
+    )
+    add("--about", action="append", metavar="NAME[:BUILD]=TEXT", help="its revision and flags")
     add("--json", metavar="FILE", help="write the records and where they come from to this file")
     add("--markdown", metavar="FILE", help="write what is printed to this file")
+    add("--answers", type=Path, metavar="FOLDER", help="keep the displacements at rest")
     add("--repetitions", type=whole_number(1), default=5, metavar="N", help="default: 5")
-    add("--elements", nargs="+", choices=ELEMENTS, default=ELEMENTS, help="of CalculiX; all")
+    add("--elements", nargs="+", metavar="ELEMENT", help="of the programs; default: all of a list")
     add("--methods", nargs="+", metavar="METHOD", help="of Sandglass; default: five of each kind")
     add("--solves", nargs="+", choices=("rest", "motion"), default=("rest", "motion"), help="both")
     add("--steps", type=whole_number(2), default=200, metavar="N", help="of the motion; 200")

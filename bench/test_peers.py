@@ -2,17 +2,19 @@
 
 import json
 import shutil
+import sys
 
 import pytest
 
-import calculix
 import peers
-from peer_runs import Run
+from rivals.calculix import PROGRAM, CalculiX
+from rivals.program import Run
 from test_time_to_rest import BLOCK
 
-SMALL = ["--repetitions", "1", "--steps", "60", "--methods", "tl-perturbation", "tl-full"]
+CCX = ["--program", f"calculix={PROGRAM}"]
+SMALL = [*CCX, "--repetitions", "1", "--steps", "60", "--methods", "tl-perturbation", "tl-full"]
 needs_ccx = pytest.mark.skipif(
-    shutil.which(calculix.PROGRAM) is None, reason="ccx is not installed (package calculix-ccx)"
+    shutil.which(PROGRAM) is None, reason="ccx is not installed (package calculix-ccx)"
 )
 
 
@@ -34,7 +36,9 @@ def _compare(case, *options):
 @needs_ccx
 def test_the_same_element_gives_the_same_answers(block, capsys):
     page = block.parent / "peers.md"
-    code, document = _compare(block, "--elements", "C3D8", "C3D8R", "--markdown", str(page))
+    answers = block.parent / "answers"
+    words = ["--markdown", str(page), "--answers", str(answers)]
+    code, document = _compare(block, "--elements", "C3D8", "C3D8R", *words)
     assert code == 0
     rest = {record["element"]: record for record in document["at_rest"]}
     assert set(rest) == {"C3D8", "C3D8R", "tl-perturbation", "tl-full"}
@@ -55,20 +59,23 @@ def test_the_same_element_gives_the_same_answers(block, capsys):
         assert 0 < record["processor_seconds"] < seconds + 0.02  # one thread; clocks tick at 10 ms
         assert record["seconds"] == seconds
         assert record["processor_seconds_of_runs"] == [record["processor_seconds"]]
-    assert document["versions"]["ccx"] and document["versions"]["sandglass"]
+    (program,) = document["programs"]
+    assert program["version"] and document["sandglass"]
+    for record in document["at_rest"]:
+        assert (answers / record["answer"]).is_file()
     assert page.read_text() == capsys.readouterr().out
 
 
 @needs_ccx
 def test_an_element_that_fails_is_told_and_the_others_kept(block, monkeypatch, capsys):
-    there = calculix.solve
+    there = CalculiX.run
 
-    def fail(text, *rest):
-        if "TYPE=C3D8I" in text:
+    def fail(program, deck, motion):
+        if "TYPE=C3D8I" in deck.read_text():
             raise peers.ComputationError("no equilibrium")
-        return there(text, *rest)
+        return there(program, deck, motion)
 
-    monkeypatch.setattr(calculix, "solve", fail)
+    monkeypatch.setattr(CalculiX, "run", fail)
     code, document = _compare(block, "--solves", "rest", "--elements", "C3D8I", "C3D8R")
     assert code == 3
     found = {record["element"]: record["failure"] for record in document["at_rest"]}
@@ -76,10 +83,19 @@ def test_an_element_that_fails_is_told_and_the_others_kept(block, monkeypatch, c
     assert "error: CalculiX C3D8I, Newton: no equilibrium" in capsys.readouterr().err
 
 
-def test_without_ccx_there_is_no_comparison(block, monkeypatch, capsys):
-    monkeypatch.setattr(peers.shutil, "which", lambda name: None)
-    assert _compare(block) == (2, None)
-    assert "package calculix-ccx: bash ci/setup bench" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["--program", "ccx=ccx"], "--program ccx: known: calculix, febio"),
+        (["--program", "niftysim"], "must be NAME[:BUILD]=PATH"),
+        (["--program", "niftysim=none/there"], "none/there: no such file"),
+        (["--about", "febio=4.11"], "--about febio: there is no --program febio"),
+        (["--elements", "C3D9"], "did you mean 'C3D8'"),
+    ],
+)
+def test_wrong_programs(block, capsys, words, told):
+    assert peers.main([str(block), "--program", f"calculix={sys.executable}", *words]) == 2
+    assert told in capsys.readouterr().err
 
 
 @needs_ccx
@@ -87,7 +103,7 @@ def test_without_ccx_there_is_no_comparison(block, monkeypatch, capsys):
     "old, new, told",
     [
         ("quasi-static", "dynamic", "must be 'quasi-static'"),
-        ('"neo-hookean"', '"st-venant-kirchhoff"', "CalculiX has no such law"),
+        ('"neo-hookean"', '"st-venant-kirchhoff"', "is not known to CalculiX"),
     ],
 )
 def test_cases_that_calculix_cannot_do(block, capsys, old, new, told):

@@ -26,7 +26,6 @@ if importlib.util.find_spec("ufl") is None:
     # never called, but the import must not fail.
     sys.modules["ufl"] = types.ModuleType("ufl")
 
-import calculix
 import rest_records
 from case_file import read_case
 from common.accuracy import relative_errors
@@ -35,20 +34,20 @@ from common.errors import ComputationError, InputError, suggestion
 from common.files import read_toml, require_writable, write_json
 from common.program import CASES, ROOT, binary, output_of
 from common.result_file import last_displacement
+from exchange import frd_file
 from mesh_file import load_case_mesh, make_mesh
 from reference_file import path_of, read_reference
+from rivals.calculix import PROGRAM, CalculiX
 
 METHODS = ("tl-mean-dilatation", "tl-perturbation")
 ELEMENTS = ("C3D8", "C3D8R")
-# For CalculiX's force residual and displacement correction; the residual at which Sandglass stops.
-TOLERANCE = 1e-8
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 NOTES = """
 Seconds are wall time. Distances are max |u - u'| over the nodes / largest imposed displacement.
 to 1 %, 0.1 %: from the start of the solution until u stays that close to the method's final u.
 For Sandglass: the corresponding share of its force evaluations, times its seconds to rest.
 to rest: until the method stops. FEniCSx: correction < 1e-10. CalculiX: residual and correction
-< 1e-8; time as printed by CalculiX, including reading and set-up. Sandglass: residual < 1e-8, in
+< 1e-8; wall time of the process, including reading and set-up. Sandglass: residual < 1e-8, in
 float also the rounding; median of three runs.
 steps, iterations: load steps and Newton iterations of implicit programs, force
 evaluations of Sandglass.
@@ -156,37 +155,40 @@ def _golden(job, load_steps):
 
 def time_calculix(job):
     """Adds a record of CalculiX for every requested element. Raises Unavailable."""
-    if shutil.which(calculix.PROGRAM) is None:
+    path = shutil.which(PROGRAM)
+    if path is None:
         raise Unavailable(
-            f"{calculix.PROGRAM} is not installed; package {calculix.PACKAGE} (ci/setup bench)"
+            f"{PROGRAM} is not installed; package {CalculiX.package} (ci/setup bench)"
         )
-    try:
-        material = calculix.material_of(job.case)
-    except InputError as error:
-        raise Unavailable(str(error)) from error
+    program = CalculiX([path])
+    program.environment = job.environment
     for element in job.options.elements:
-        title = f"{job.case.name}, mesh {job.mesh_file.mesh_hash}"
-        deck = calculix.deck(title, job.mesh, material, element, TOLERANCE)
-        folder = job.folder / element
-        folder.mkdir()
+        deck = job.folder / element / "deck.inp"
+        deck.parent.mkdir()
+        words = ["mesh", job.path, "--deck", program.deck, "--element", element, "-o", deck]
         try:
-            solution = calculix.solve(deck, len(job.mesh.points), folder, job.environment)
+            output_of(binary(), *words)
+        except InputError as error:
+            raise Unavailable(str(error)) from error
+        try:
+            run = program.run(deck, None)
         except ComputationError as error:
             job.fail(f"{element}: {error}")
             continue
-        job.versions["ccx"] = solution.version
+        job.versions["ccx"] = program.version
         timed = rest_records.record(
-            program="CalculiX",
+            program=program.name,
             case=job.case.name,
             method=element,
             precision="double",
-            steps=solution.increments,
-            iterations=solution.iterations,
-            seconds_to_rest=solution.solver_seconds,
-            process_seconds=solution.process_seconds,
+            steps=run.steps,
+            iterations=run.iterations,
+            seconds_to_rest=run.seconds,
+            process_seconds=run.seconds,
         )
         job.records.append(timed)
-        job.displacements.append((timed, solution.displacement))
+        displacement = frd_file.read_displacement(run.answer, len(job.mesh.points))
+        job.displacements.append((timed, displacement))
 
 
 def time_sandglass(job):

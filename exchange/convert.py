@@ -1,7 +1,8 @@
 """Converts between the files of other programs and Sandglass's own; the solver calls it.
 
 Usage: convert.py mesh FOREIGN MESH.h5 [--spacing X Y Z]      read a mesh
-       convert.py write MESH.h5 FILE --format vtu|xdmf|inp [--deck --element C3D8]
+       convert.py write MESH.h5 FILE --format vtu|xdmf|inp
+       convert.py deck PROBLEM.h5 FILE PROGRAM [--element E] [--hourglass H]
        convert.py displacement FOREIGN MESH.h5 OUT.h5 --tolerance T [--field NAME]
 Exit codes: 0 done, 2 bad input, reported in one line on standard output, 3 the disk or the memory
 is full. Warnings go to standard error.
@@ -22,8 +23,9 @@ try:
     import numpy as np
 
     from common.errors import InputError
-    from exchange import abaqus_file, csv_file, frd_file, gmsh_file, hdf5_file, image_file, vtu_file
-    from exchange.calculix_deck import deck
+    from common.files import write_whole
+    from exchange import abaqus_file, csv_file, decks, frd_file, gmsh_file, hdf5_file, image_file
+    from exchange import radioss_file, text_results, vtu_file
     from exchange.foreign_mesh import to_hexahedra
 except ImportError as error:
     print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")
@@ -36,7 +38,18 @@ IMAGES = {
     ".nii": image_file.read_nifti,
     ".gz": image_file.read_nifti,
 }
-DISPLACEMENTS = (".h5", ".hdf5", ".vtu", ".csv", ".frd")
+# Answers: ending -> function of path, field and warn that returns points (n, 3) or None, ids (n,)
+# or None, and displacement (n, 3).
+DISPLACEMENTS = {
+    ".csv": lambda path, field, warn: csv_file.read(path, field),
+    ".frd": lambda path, field, warn: _at_points(frd_file.read(path)),
+    ".h5": lambda path, field, warn: _at_points(hdf5_file.read_displacement(path, warn)),
+    ".hdf5": lambda path, field, warn: _at_points(hdf5_file.read_displacement(path, warn)),
+    ".log": lambda path, field, warn: (None, *text_results.read_febio(path)),
+    ".state": lambda path, field, warn: (None, None, text_results.read_sofa(path)),
+    ".txt": lambda path, field, warn: (None, None, text_results.read_niftysim(path)),
+    ".vtu": lambda path, field, warn: _at_points(vtu_file.read_displacement(path, field)),
+}
 
 
 def read_mesh(source, output, spacing):
@@ -55,33 +68,41 @@ def read_mesh(source, output, spacing):
     hdf5_file.write_mesh(output, mesh)
 
 
-def write_mesh(source, output, options):
-    """Writes a mesh, or a deck, for another program. Raises InputError."""
+def _at_points(found):
+    """(points, displacement) with no ids between them."""
+    points, displacement = found
+    return points, None, displacement
+
+
+def write_mesh(source, output, name):
+    """Writes a mesh in a format by its name. Raises InputError."""
     mesh = hdf5_file.read_mesh(source)
-    if options.deck:
-        problem = hdf5_file.read_problem(source)
-        text = deck(mesh=mesh, element=options.element, **problem)
-    elif options.format == "inp":
-        text = "\n".join(["*HEADING", "sandglass", *abaqus_file.mesh_lines(mesh)]) + "\n"
-    else:
-        vtu_file.write(output, mesh, options.format)
+    if name != "inp":
+        vtu_file.write(output, mesh, name)
         return
-    output.write_text(text, encoding="utf-8")
+    lines = ["*HEADING", "sandglass", *abaqus_file.mesh_lines(mesh)]
+    output.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def write_deck(options):
+    """Writes the files of a deck. Raises InputError."""
+    problem = hdf5_file.read_problem(options.source)
+    texts = decks.files(
+        options.program, problem, options.output, options.element, options.hourglass
+    )
+    for path, text in texts.items():
+        write_whole(path, text)
 
 
 def match_displacement(source, mesh_path, output, options):
     """Writes displacements in the node order of a mesh. Raises InputError."""
     from exchange import matching  # its library takes long to load
 
-    ending, ids = _ending(source, DISPLACEMENTS), None
-    if ending == ".csv":
-        points, ids, displacement = csv_file.read(source, options.field)
-    elif ending == ".frd":
-        points, displacement = frd_file.read(source)
-    elif ending == ".vtu":
-        points, displacement = vtu_file.read_displacement(source, options.field)
+    if radioss_file.is_animation(source):
+        points, ids, displacement = _at_points(radioss_file.read_displacement(source))
     else:
-        points, displacement = hdf5_file.read_displacement(source, lambda t: _warn(source, t))
+        read = DISPLACEMENTS[_ending(source, DISPLACEMENTS)]
+        points, ids, displacement = read(source, options.field, lambda t: _warn(source, t))
     nodes = hdf5_file.read_mesh(mesh_path).points
     for name, values in (("coordinates", points), ("displacements", displacement)):
         if values is not None and not np.isfinite(values).all():
@@ -132,8 +153,12 @@ def main(arguments=None):
     command.add_argument("source", type=Path)
     command.add_argument("output", type=Path)
     command.add_argument("--format", choices=("vtu", "xdmf", "inp"), required=True)
-    command.add_argument("--deck", action="store_true")
-    command.add_argument("--element", default="C3D8")
+    command = commands.add_parser("deck")
+    command.add_argument("source", type=Path)
+    command.add_argument("output", type=Path)
+    command.add_argument("program")
+    command.add_argument("--element", default="")
+    command.add_argument("--hourglass", type=float)
     command = commands.add_parser("displacement")
     command.add_argument("source", type=Path)
     command.add_argument("mesh", type=Path)
@@ -145,7 +170,9 @@ def main(arguments=None):
         if options.command == "mesh":
             read_mesh(options.source, options.output, options.spacing)
         elif options.command == "write":
-            write_mesh(options.source, options.output, options)
+            write_mesh(options.source, options.output, options.format)
+        elif options.command == "deck":
+            write_deck(options)
         else:
             match_displacement(options.source, options.mesh, options.output, options)
     except InputError as error:

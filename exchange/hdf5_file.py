@@ -5,6 +5,7 @@ import numpy as np
 
 from common.errors import InputError
 from common.result_file import text_of
+from exchange.decks.problem import Material, Motion, Problem
 from exchange.foreign_mesh import HexMesh
 
 
@@ -29,25 +30,51 @@ def write_mesh(path, mesh):
 
 
 def read_problem(path):
-    """The contents of a deck other than the mesh, as keywords of calculix_deck.deck: title, law,
-    material, prescribed, values, forces. Written by solver/io/foreign_file.cpp."""
+    """The Problem of a file written by app/deck_file.cpp."""
+    mesh = read_mesh(path)
     with h5py.File(path, "r") as file:
-        shape, attributes = file["mesh/points"].shape, dict(file.attrs)
+        attributes = {k: text_of(v) for k, v in file.attrs.items()}
         imposed = file["problem/imposed"][...] if "problem/imposed" in file else np.empty((0, 3))
         loads = file["problem/forces"][...] if "problem/forces" in file else np.empty((0, 4))
+        made_of = file["mesh/materials"][...] if "mesh/materials" in file else None
+    shape = mesh.points.shape
     prescribed, values, forces = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
     at = imposed[:, 0].astype(int), imposed[:, 1].astype(int)
     prescribed[at], values[at] = True, imposed[:, 2]
-    forces[loads[:, 0].astype(int)] = loads[:, 1:]
-    prefix = "material."
-    return {
-        "title": f"{text_of(attributes['case'])}, mesh {text_of(attributes['mesh_hash'])}",
-        "law": text_of(attributes["law"]),
-        "material": {k.removeprefix(prefix): v for k, v in attributes.items() if prefix in k},
-        "prescribed": prescribed,
-        "values": values,
-        "forces": forces,
-    }
+    np.add.at(forces, loads[:, 0].astype(int), loads[:, 1:])
+    if made_of is None:
+        made_of = np.zeros(len(mesh.cells), dtype=int)
+    materials = [
+        _material(attributes, f"material.{i}.", np.flatnonzero(made_of == i))
+        for i in range(made_of.max() + 1)
+    ]
+    return Problem(
+        title=f"{attributes['case']}, mesh {attributes['mesh_hash']}",
+        mesh=mesh,
+        materials=materials,
+        prescribed=prescribed,
+        values=values,
+        forces=forces,
+        motion=_motion(attributes) if "duration" in attributes else None,
+        stable_step=float(attributes["stable_step"]),
+    )
+
+
+def _material(attributes, prefix, elements):
+    """The Material whose attributes have this prefix."""
+    own = {k.removeprefix(prefix): v for k, v in attributes.items() if k.startswith(prefix)}
+    word = "parameter."
+    parameters = {k.removeprefix(word): float(v) for k, v in own.items() if k.startswith(word)}
+    numbers = [float(own[key]) for key in ("density", "shear_modulus", "bulk_modulus")]
+    return Material(own["law"], parameters, *numbers, own["volumetric"], elements)
+
+
+def _motion(attributes):
+    """The Motion of a dynamic case; its steps are shortened so that they fill the ramp."""
+    ramp, duration = attributes["ramp_time"], attributes["duration"]
+    ramp_steps = max(1, round(ramp / attributes["time_step"] + 0.5 - 1e-6))
+    step = ramp / ramp_steps
+    return Motion(float(step), round(duration / step), ramp_steps, float(attributes["damping"]))
 
 
 def read_displacement(path, warn):

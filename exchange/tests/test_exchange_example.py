@@ -83,7 +83,7 @@ def table():
 @pytest.mark.parametrize("element", ["C3D8", "C3D8R", "C3D8I"])
 def test_the_table_of_calculix(tmp_path, element):
     """To a unit of the third digit: other processors sum in other orders, .frd has six digits."""
-    deck = ["mesh", "column", "--format", "inp", "--deck", "--element", element]
+    deck = ["mesh", "column", "--deck", "calculix", "--element", element]
     assert sandglass(*deck, "-o", tmp_path / "column.inp").returncode == 0
     run("ccx", "column", folder=tmp_path)
     record = record_of("column.frd", "--case", "column", folder=tmp_path)

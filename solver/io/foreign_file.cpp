@@ -14,8 +14,8 @@
 #include <system_error>
 
 #include "base/error.hpp"
-#include "io/new_file.hpp"
 #include "io/project_folder.hpp"
+#include "io/temporary_folder.hpp"
 
 namespace sandglass {
 
@@ -27,29 +27,6 @@ std::string setting(const char* variable, const std::string& otherwise) {
   const char* value = std::getenv(variable);
   return value != nullptr ? value : otherwise;
 }
-
-/// A folder that is gone afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "sandglass-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw ComputationError(
-          fmt::format("{}: cannot be made a folder: {}", pattern, std::generic_category().message(errno)));
-    }
-    path_ = pattern;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  fs::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
 
 /// What a program writes to a pipe, until it closes its end; trailing white space is cut.
 std::string read_all(int pipe) {
@@ -94,9 +71,9 @@ int run_program(std::vector<std::string> words, std::string& said) {
   return status;
 }
 
-/// Runs exchange/convert.py; `path` is the file of the user that is converted. Throws InputError with what it
-/// says of wrong input, ComputationError when it fails.
-void convert(std::vector<std::string> arguments, const fs::path& path) {
+}  // namespace
+
+void run_converter(std::vector<std::string> arguments, const fs::path& path) {
   const fs::path program = fs::path(setting("SANDGLASS_EXCHANGE", project_folder("exchange"))) / "convert.py";
   std::error_code ignored;
   if (!fs::is_regular_file(program, ignored)) {
@@ -118,44 +95,9 @@ void convert(std::vector<std::string> arguments, const fs::path& path) {
                                          : fmt::format("convert.py ended with {}", WEXITSTATUS(status))));
 }
 
-/// A path of the user as an argument that is no option.
-std::string argument(const fs::path& path) {
+std::string as_argument(const fs::path& path) {
   return path.string().starts_with('-') ? "./" + path.string() : path.string();
 }
-
-/// What a deck says beside the mesh: /problem/imposed (node, component, final value in m), /problem/forces
-/// (node and three components in N), attributes law and material.NAME.
-void write_problem(const Scene& scene, Hdf5File& file) {
-  const auto write_rows = [&](const std::string& name, std::size_t width, const std::vector<double>& rows) {
-    if (!rows.empty()) file.write(name, {rows.size() / width, width}, std::span<const double>(rows));
-  };
-  std::vector<double> imposed, forces;
-  for (const auto& constraint : scene.constraints) {
-    imposed.insert(imposed.end(),
-                   {static_cast<double>(constraint.node), static_cast<double>(constraint.component),
-                    final_value(scene, constraint)});
-  }
-  for (const auto& [node, force, curve] : scene.loads) {
-    const double factor = scene.curves[curve].at(1.0, 1.0);
-    forces.insert(forces.end(),
-                  {static_cast<double>(node), factor * force[0], factor * force[1], factor * force[2]});
-  }
-  write_rows("/problem/imposed", 3, imposed);
-  write_rows("/problem/forces", 4, forces);
-  const auto write_number = [&]<class Value>(std::string_view name, const Value& value) {
-    if constexpr (std::is_arithmetic_v<Value>) {
-      file.write_attribute("/", fmt::format("material.{}", name), static_cast<double>(value));
-    }
-  };
-  std::visit(
-      [&](const auto& law) {
-        file.write_attribute("/", "law", std::string(law.name));
-        std::apply([&](const auto&... p) { (write_number(p.name, law.*(p.member)), ...); }, law.parameters());
-      },
-      scene.description.materials.front().law);
-}
-
-}  // namespace
 
 bool is_foreign_mesh(const fs::path& path) {
   std::string ending = path.extension().string();
@@ -167,55 +109,13 @@ bool is_foreign_mesh(const fs::path& path) {
 MeshWithSets read_foreign_mesh(const MeshFile& file) {
   const TemporaryFolder folder;
   const fs::path converted = folder / "mesh.h5";
-  std::vector<std::string> arguments{"mesh", argument(file.path), converted.string()};
+  std::vector<std::string> arguments{"mesh", as_argument(file.path), converted.string()};
   if (file.spacing) {
     arguments.emplace_back("--spacing");
     for (const double h : *file.spacing) arguments.push_back(fmt::to_string(h));
   }
-  convert(std::move(arguments), file.path);
+  run_converter(std::move(arguments), file.path);
   return read_mesh_file(converted);
-}
-
-void write_foreign_mesh(const Scene& scene, const fs::path& path, const ForeignFormat& format) {
-  if (format.deck && !scene.description.quasi_static) {
-    throw InputError(fmt::format("{}: a dynamic case has no deck", scene.description.file.string()));
-  }
-  if (format.deck && !(scene.pressures.empty() && scene.supports.empty())) {
-    throw InputError(fmt::format("{}: pressures and supports have no deck; allowed are forces and gravity",
-                                 scene.description.file.string()));
-  }
-  if (format.deck && scene.materials.list.size() > 1) {
-    throw InputError(fmt::format("{}: a case of {} materials has no deck; allowed is one material",
-                                 scene.description.file.string(), scene.materials.list.size()));
-  }
-  if (!scene.ties.empty()) {
-    throw InputError(fmt::format("{}: a refined mesh has nodes that hang, which no other format here knows",
-                                 scene.description.file.string()));
-  }
-  NewFile output(path);
-  const TemporaryFolder folder;
-  const fs::path source = folder / "mesh.h5";
-  auto file = Hdf5File::create(source);
-  write_mesh(scene, file);
-  if (format.deck) write_problem(scene, file);
-  file.commit();
-  std::vector<std::string> arguments{"write",       source.string(), output.temporary().string(),
-                                     "--format",    format.name,     "--element",
-                                     format.element};
-  if (format.deck) arguments.emplace_back("--deck");
-  convert(std::move(arguments), path);
-  output.commit();
-}
-
-NodalField read_foreign_displacement(const fs::path& path, const Scene& scene, const NodeMatching& matching) {
-  const TemporaryFolder folder;
-  const fs::path mesh = folder / "mesh.h5", matched = folder / "displacement.h5";
-  write_mesh_file(scene, mesh);
-  std::vector<std::string> arguments{"displacement",   argument(path), mesh.string(),
-                                     matched.string(), "--tolerance",  fmt::to_string(matching.tolerance)};
-  if (!matching.field.empty()) arguments.push_back("--field=" + matching.field);
-  convert(std::move(arguments), path);
-  return read_nodal_field(Hdf5File::open(matched), "/displacement", scene.mesh.points.size());
 }
 
 }  // namespace sandglass

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "io/mesh_file.hpp"
 
@@ -18,25 +19,11 @@ bool is_foreign_mesh(const std::filesystem::path& path);
 /// is no mesh of hexahedra and where a package is missing.
 MeshWithSets read_foreign_mesh(const MeshFile& file);
 
-/// How a mesh is written for another program.
-struct ForeignFormat {
-  std::string name;              ///< "vtu", "xdmf" or "inp"
-  bool deck = false;             ///< of "inp": with material, displacements and forces, for CalculiX
-  std::string element = "C3D8";  ///< of "inp": the type of its bricks
-};
+/// Runs exchange/convert.py with arguments; `path` is the user's file, for messages. Throws InputError with
+/// what it says of wrong input, ComputationError when it fails.
+void run_converter(std::vector<std::string> arguments, const std::filesystem::path& path);
 
-/// Writes the mesh and node sets of a scene. Throws InputError where the format or CalculiX cannot say it.
-void write_foreign_mesh(const Scene& scene, const std::filesystem::path& path, const ForeignFormat& format);
-
-/// How nodes of a file are found.
-struct NodeMatching {
-  double tolerance = 1e-5;  ///< distance that is none, as a fraction of the diagonal of the scene's nodes
-  std::string field = {};   ///< name of the displacements in the file; empty: the usual names
-};
-
-/// Displacements (m) of another program's answer, or of ours, at the nodes of a scene: .h5, .vtu, .csv, .frd.
-/// Throws InputError unless each node of the scene is found once.
-NodalField read_foreign_displacement(const std::filesystem::path& path, const Scene& scene,
-                                     const NodeMatching& matching);
+/// A path of the user as an argument that is no option.
+std::string as_argument(const std::filesystem::path& path);
 
 }  // namespace sandglass

@@ -1,0 +1,9 @@
+"""The programs that bench/peers.py times. A new one is a module here and an entry in PROGRAMS."""
+
+from rivals.calculix import CalculiX
+from rivals.febio import FEBio
+from rivals.niftysim import NiftySim
+from rivals.openradioss import OpenRadioss
+
+# By the name of their decks.
+PROGRAMS = {one.deck: one for one in (CalculiX, FEBio, NiftySim, OpenRadioss)}

@@ -1,0 +1,96 @@
+"""What all programs have in common that are timed on a deck of `sandglass mesh --deck`."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from pathlib import Path
+
+import clock
+from common.errors import ComputationError, InputError
+
+
+@dataclass(frozen=True)
+class Run:
+    """Wall and processor time of a program (s), its steps and its answer.
+
+    steps: of time, or increments of Newton's method. iterations: of Newton's method, or 0. answer:
+    a file of displacements for `sandglass score`.
+    """
+
+    seconds: float
+    processor_seconds: float
+    steps: int
+    iterations: int
+    answer: Path
+
+
+@dataclass(frozen=True)
+class Element:
+    """An element of a program by the name of its decks, and its hourglass coefficient or None."""
+
+    name: str
+    hourglass: float | None = None
+
+    def __str__(self):
+        return self.name if self.hourglass is None else f"{self.name} {self.hourglass:.3g}"
+
+
+class Program(ABC):
+    """A program under a name, with what is needed to run it on one thread of one processor.
+
+    deck: its name for `sandglass mesh --deck`. explicit: whether it only integrates in time, so
+    that it finds rest by a damped motion.
+    """
+
+    deck: str
+    name: str
+    package = "see bench/README.md"
+    explicit = True
+    precision = "double"
+
+    def __init__(self, paths, build="", about=""):
+        """paths: of its executables. build: tells builds of one program apart. about: its revision,
+        compiler and flags, in words. Before it runs, `environment` and `processor` are set."""
+        self.paths, self.build, self.about = paths, build, about
+        self.environment, self.processor, self.version = {}, None, ""
+        for path in paths:
+            if not Path(path).is_file():
+                raise InputError(f"--program {self.deck}={path}: no such file")
+
+    def __str__(self):
+        return f"{self.name} ({self.build})" if self.build else self.name
+
+    @abstractmethod
+    def run(self, deck, motion):
+        """A Run on a deck, in its folder. motion: (time step in s, steps) of a motion, or None.
+
+        Raises ComputationError if the program fails, InputError if its output cannot be read.
+        """
+
+    @abstractmethod
+    def elements(self, kappa):
+        """The Elements to time. kappa: the hourglass stiffness of eq. 12 that Sandglass takes."""
+
+    def provenance(self):
+        """What the figures come from, for the JSON file."""
+        return {
+            "program": self.deck,
+            "name": self.name,
+            "build": self.build,
+            "version": self.version,
+            "about": self.about,
+        }
+
+    def clocked(self, command, folder, **more):
+        """The clock.Clocked of a command in a folder. more: environment variables."""
+        return clock.run(command, folder, {**self.environment, **more}, self.processor)
+
+    def fail(self, reason):
+        """Raises ComputationError."""
+        raise ComputationError(f"{self}: {reason}")
+
+
+def one_line(text, pattern="error"):
+    """The last line of an output that contains a word, or the last line of all."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    found = [line for line in lines if pattern in line.lower()]
+    return (found or lines or ["no message"])[-1]
