@@ -22,6 +22,7 @@ from sandglass_report.measured import read_measured
 from sandglass_report.page import Inputs, write_report
 from sandglass_report.refinement import read_refinement, refinement_plate
 from sandglass_report.second import read_second_program
+from sandglass_report.submissions import read_submissions
 from sandglass_report.subject import read_subjects
 
 
@@ -50,6 +51,7 @@ def make(options):
         growth=growth,
         refinement=refinement_plate(read_refinement(refined)) if refined.exists() else None,
         second=second,
+        submissions=tuple(read_submissions(options.submissions)),
     )
     size = write_report(inputs, options.output)
     seconds = time.monotonic() - start
@@ -85,6 +87,7 @@ def main(arguments=None):
         default="reports/figures/refinement.json",
         help="of bench/refinement.py",
     )
+    add("--submissions", type=Path, default="results", help="folder of submitted results")
     add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
     add(
         "--mutants",

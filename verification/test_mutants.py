@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import patches
 import pytest
-import results
+import outcomes
 from clean_runs import CleanRuns
 from command_line import ROOT
 
@@ -34,8 +34,8 @@ def test_patch_fits_this_tree(patch):
 
 
 def test_table_names_exactly_the_mutants_there_are():
-    text = results.TABLE.read_text()
-    rows = results.rows_of(text)
+    text = outcomes.TABLE.read_text()
+    rows = outcomes.rows_of(text)
     assert list(rows) == [patch.name for patch in PATCHES]
     for patch in PATCHES:
         assert rows[patch.name][1] == patch.mistake
@@ -44,13 +44,13 @@ def test_table_names_exactly_the_mutants_there_are():
 
 def test_table_survives_being_written_anew(tmp_path, monkeypatch):
     """Without stored results, as in a fresh clone, rows are unchanged."""
-    rows = results.rows_of(results.TABLE.read_text())
+    rows = outcomes.rows_of(outcomes.TABLE.read_text())
     table = tmp_path / "RESULTS.md"
-    table.write_text(results.TABLE.read_text())
-    monkeypatch.setattr(results, "TABLE", table)
-    monkeypatch.setattr(results, "STORE", tmp_path / "none")
-    results.write_table(PATCHES, "0123456789ab")
-    assert results.rows_of(table.read_text()) == rows
+    table.write_text(outcomes.TABLE.read_text())
+    monkeypatch.setattr(outcomes, "TABLE", table)
+    monkeypatch.setattr(outcomes, "STORE", tmp_path / "none")
+    outcomes.write_table(PATCHES, "0123456789ab")
+    assert outcomes.rows_of(table.read_text()) == rows
 
 
 def test_patch_without_a_sentence_is_refused(tmp_path):
@@ -77,7 +77,7 @@ class FakeWorker:
 
 @pytest.fixture
 def empty_store(tmp_path, monkeypatch):
-    monkeypatch.setattr(results, "STORE", tmp_path / "store")
+    monkeypatch.setattr(outcomes, "STORE", tmp_path / "store")
 
 
 def clean_runs(wanted, tree="tree"):
@@ -93,7 +93,7 @@ def test_workers_share_the_clean_runs(empty_store):
         thread.join()
     assert runs.is_done()
     assert sum(worker.runs for worker in workers) == 7
-    assert results.stored(results.CLEAN)["alarms"] == [[]] * 7
+    assert outcomes.stored(outcomes.CLEAN)["alarms"] == [[]] * 7
 
 
 def test_clean_runs_of_the_same_tree_count_and_of_another_do_not(empty_store):
@@ -107,7 +107,7 @@ def test_a_single_failing_run_is_followed_by_another(empty_store):
     runs.work(worker)
     assert worker.runs == 2
     runs.conclude()  # a false alarm: the second run had none
-    assert results.stored(results.CLEAN)["alarms"] == [["a"], []]
+    assert outcomes.stored(outcomes.CLEAN)["alarms"] == [["a"], []]
 
 
 def test_what_fails_in_every_run_is_a_broken_tree(empty_store):

@@ -13,17 +13,26 @@ from sandglass_report.points import families, fronts
 FAILURES = ("hourglassing", "locking", "inverted", "unstable", "not at rest")
 
 
-def chart_data(points, palette):
-    """The data for chart.js: points, fronts, adaptive lines, and the methods' colours and marks."""
+# The mark of other programs.
+OTHER = {"css": "--ink", "symbol": "star"}
+
+
+def chart_data(points, palette, others=()):
+    """The data for chart.js: points, fronts, adaptive lines, and the methods' colours and marks.
+
+    others: Points of other programs. They were timed on another machine, so no front has them.
+    """
+    shown = [*points, *others]
     return {
         "own_mesh": OWN_MESH,
-        "points": [p.as_record() | {"fails": not p.ok or p.finding in FAILURES} for p in points],
+        "points": [p.as_record() | {"fails": not p.ok or p.finding in FAILURES} for p in shown],
         "fronts": fronts(points),
         "families": families(points),
         "methods": {
             m: {"css": palette.css(m), "symbol": style.PLOTLY_MARKS[palette.mark(m)]}
             for m in palette.methods
-        },
+        }
+        | {p.method: OTHER for p in others},
     }
 
 

@@ -22,6 +22,7 @@ ANCHORS = {"chart": "chart-head"} | {
         "shapes",
         "bending",
         "published",
+        "programs",
         "refinement",
         "growth",
         "maps",
@@ -46,6 +47,7 @@ class Inputs:
     growth: plates.Plate | None = None
     refinement: plates.Plate | None = None
     second: dict = field(default_factory=dict)  # kind -> SecondProgram
+    submissions: tuple = ()
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,7 @@ def write_report(inputs, page):
             growth=inputs.growth,
             refinement=inputs.refinement,
             second=inputs.second,
+            submissions=inputs.submissions,
             evidence=inputs.evidence,
             anchors=ANCHORS,
         )
@@ -149,11 +152,17 @@ def _of_measured(inputs, palette):
     found, names = inputs.measured, [subject.name for subject in inputs.subjects]
     elements = {s.name: None if s.cells is None else len(s.cells) for s in inputs.subjects}
     points = make_points(inputs.verdicts.runs, elements, found)
+    others = [s for s in inputs.submissions if not s.ours and elements.get(s.entry["case"])]
     ladders = [name for name in names if any(rung.case == name for rung in found.rungs)]
     map_texts = maps.map_texts(sorted(found.maps, key=lambda m: m["case"] != paper.FIRST_CASE))
     pictures = [p for p in inputs.pictures if p.stem not in {m.name for m in map_texts}]
     return {
-        "chart": interactive.chart_data([p for p in points if palette.knows(p.method)], palette),
+        "chart": interactive.chart_data(
+            [p for p in points if palette.knows(p.method)],
+            palette,
+            [s.as_point(elements[s.entry["case"]]) for s in others],
+        ),
+        "chart_programs": dict.fromkeys(s.label for s in others),
         "chart_cases": names,
         "first_case": paper.FIRST_CASE if paper.FIRST_CASE in names else names[0],
         "ladder_cases": ladders,

@@ -2,7 +2,7 @@
 
 import threading
 
-import results
+import outcomes
 
 
 class CleanRuns:
@@ -12,7 +12,7 @@ class CleanRuns:
     """
 
     def __init__(self, wanted, tree, revision):
-        known = results.stored(results.CLEAN)
+        known = outcomes.stored(outcomes.CLEAN)
         if known is None or known["tree"] != tree:
             known = {"tree": tree, "revision": revision, "alarms": [], "seconds": {}}
         self._known, self._wanted = known, wanted
@@ -49,7 +49,7 @@ class CleanRuns:
             self._running -= 1
             self._known["alarms"].append(alarms)
             self._known["seconds"] |= seconds
-            results.store(results.CLEAN, self._known)
+            outcomes.store(outcomes.CLEAN, self._known)
             failed = f"{', '.join(alarms)} failed, " if alarms else ""
             told = f"run {len(self._known['alarms'])}, {failed}{sum(seconds.values()):.0f} s"
             print(f"clean tree: {told}", flush=True)

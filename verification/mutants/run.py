@@ -21,7 +21,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent.parent))
 
-import results
+import outcomes
 from clean_runs import CleanRuns
 from common.command import exit_code
 from common.errors import InputError
@@ -68,26 +68,26 @@ def result_of(worker, patch, programs, timeout):
 def work(worker, todo, options, tree, revision):
     """Takes mutants from a queue until it is empty."""
     programs = worker.programs()
-    seconds = results.stored(results.CLEAN)["seconds"]
+    seconds = outcomes.stored(outcomes.CLEAN)["seconds"]
     while True:
         try:
             patch = todo.get_nowait()
         except queue.Empty:
             return
-        killers = results.killers()
+        killers = outcomes.killers()
         for program in programs:
             program.seconds, program.kills = seconds[program.name], killers[program.name]
         programs.sort(key=lambda program: program.cost())
         result = result_of(worker, patch, programs, options.timeout)
         result |= {"tree": tree, "revision": revision, "date": str(datetime.date.today())}
-        results.store(patch.name, result)
+        outcomes.store(patch.name, result)
         told = f"{patch.name:<44} {result['seconds']:5.0f} s  {result['by']}"
         print(f"{result['verdict']:<10} {told}", flush=True)
 
 
 def is_finished(patch, tree):
     """Whether this patch has a verdict on this tree."""
-    result = results.stored(patch.name)
+    result = outcomes.stored(patch.name)
     wanted = (patch.digest, tree)
     if result is None or result["verdict"] in ("broken", "no verdict"):
         return False
@@ -147,7 +147,7 @@ def run(options, stop):
         thread.start()
     for thread in threads:
         thread.join()
-    rows = results.write_table(read_patches(), revision)
+    rows = outcomes.write_table(read_patches(), revision)
     for error in errors:
         print(f"error: {error}", file=sys.stderr)
     if errors:

@@ -1,0 +1,133 @@
+"""Results of other programs, and those that other people submitted: the entries of results/."""
+
+import math
+from dataclasses import dataclass, field
+
+from results.entry import entry_files, read_entry
+from sandglass_report import style
+from sandglass_report.measured import OWN_MESH
+from sandglass_report.points import Point
+
+OURS = "Sandglass"
+# An error within this factor of another is as good.
+AS_GOOD = 1.05
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The entry of Sandglass to compare with, from the same machine.
+
+    as_good: whether its error is at most that of the other. step, simulated, rest: how many times
+    as long the other takes for a step, a simulated second, and to rest; None if unknown.
+    """
+
+    element: str
+    precision: str
+    as_good: bool
+    step: float | None
+    simulated: float | None
+    rest: float | None
+
+    def in_words(self):
+        """A sentence for the chart."""
+        parts = [
+            f"{style.plain(value, 2)} times per {words}"
+            for value, words in (
+                (self.step, "step"),
+                (self.simulated, "simulated second"),
+                (self.rest, "answer"),
+            )
+            if value
+        ]
+        than = f"{self.element} ({self.precision})"
+        quality = "" if self.as_good else ", which is less accurate"
+        return f"{', '.join(parts) or 'no times'} of {than}{quality}"
+
+
+@dataclass(frozen=True)
+class Submission:
+    """An entry, where it is, and what of ours is nearest; None for ours."""
+
+    name: str
+    entry: dict
+    nearest: Nearest | None = field(default=None)
+
+    @property
+    def ours(self):
+        """Whether the program is Sandglass."""
+        return self.entry["program"] == OURS
+
+    @property
+    def label(self):
+        """Program and element."""
+        return f"{self.entry['program']} {self.entry['element']}"
+
+    def error(self, reference="golden", figure="max"):
+        """One error as a fraction, or None."""
+        return self.entry["errors"].get(reference, {}).get(figure)
+
+    def as_point(self, elements):
+        """The Point of the main chart. elements: number of those of the case."""
+        entry, errors = self.entry, self.entry["errors"]
+        ns, step = entry.get("ns_per_element_step"), entry.get("time_step")
+        cost = 1e-9 * ns * elements if ns else None
+        return Point(
+            entry["case"],
+            self.label,
+            None,
+            True,
+            None,
+            entry["precision"],
+            OWN_MESH,
+            elements,
+            finding=self.nearest.in_words() if self.nearest else "nothing of ours to compare with",
+            ok=True,
+            golden=errors.get("golden", {}),
+            truth=errors.get("truth", {}),
+            step=cost,
+            simulated=cost / step if cost and step else None,
+            rest=entry.get("seconds_to_rest"),
+            measured_by=f"results/{self.name}: {entry['build']}; {entry['machine']}",
+        )
+
+
+def read_submissions(folder):
+    """The Submissions of a folder, those of one case together, ours last. Raises InputError."""
+    found = [(path.name, read_entry(path)) for path in entry_files(folder)]
+    ours = [entry for _, entry in found if entry["program"] == OURS]
+    submissions = [
+        Submission(name, entry, None if entry["program"] == OURS else _nearest(entry, ours))
+        for name, entry in found
+    ]
+    return sorted(submissions, key=lambda s: (s.entry["case"], s.ours, s.label, s.entry["build"]))
+
+
+def _nearest(entry, ours):
+    """The Nearest of an entry: the cheapest of ours that is as good, else the most accurate one."""
+
+    def error(one):
+        return max(one["errors"].get("golden", {}).get("max", math.inf), style.FLOOR)
+
+    def cost(one):
+        return one.get("ns_per_element_step") or math.inf
+
+    same = [one for one in ours if all(one[key] == entry[key] for key in ("case", "machine"))]
+    if not same:
+        return None
+    good = [one for one in same if error(one) <= AS_GOOD * error(entry)]
+    one = min(good, key=cost) if good else min(same, key=error)
+
+    def ratio(key, scale=lambda e: 1.0):
+        if not (entry.get(key) and one.get(key)):
+            return None
+        return entry[key] / scale(entry) / (one[key] / scale(one))
+
+    steps = entry.get("time_step") and one.get("time_step")
+    return Nearest(
+        one["element"],
+        one["precision"],
+        bool(good),
+        ratio("ns_per_element_step"),
+        ratio("ns_per_element_step", lambda e: e["time_step"]) if steps else None,
+        ratio("seconds_to_rest"),
+    )

@@ -1,0 +1,40 @@
+"""Checks the entries of results/: schema, hash of the displacements, and errors by scoring again.
+
+Usage: /usr/bin/python3 results/check.py [ENTRY.json...]; all of results/ by default.
+Exit codes: 0 all are right, 1 one is not, 2 bad usage.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+
+from common.command import exit_code
+from common.errors import InputError
+from results.entry import check, entry_files
+
+
+def check_all(options):
+    """Checks the entries; returns the exit code."""
+    wrong = 0
+    for path in options.entries or entry_files():
+        try:
+            check(path)
+            print(f"{path.name}: right")
+        except InputError as error:
+            print(f"error: {error}", file=sys.stderr)
+            wrong += 1
+    return 1 if wrong else 0
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("entries", nargs="*", type=Path, metavar="ENTRY.json")
+    return exit_code(check_all, parser.parse_args(arguments))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+"""An entry of results/: what a program's displacements on a case score, and what they cost.
+
+The displacements are stored beside it under the hash of their file, so that anyone can score them
+again: errors are checked, times are as submitted.
+"""
+
+import hashlib
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+
+from common.errors import InputError
+from common.files import new_file, read_json
+from common.program import ROOT, binary, output_of
+
+FOLDER = ROOT / "results"
+FIGURES = {"max": "max_relative_error", "rms": "rms_relative_error"}
+PROFILE = "profile_relative_error"
+# Scoring again repeats the same arithmetic; only the compiler and its order of sums may differ.
+SAME = 1e-9
+
+
+def schema():
+    """The published JSON Schema, a dict."""
+    return json.loads((FOLDER / "schema.json").read_text(encoding="utf-8"))
+
+
+def entry_files(folder=FOLDER):
+    """The paths of all entries in a folder, in order of their names."""
+    return sorted(path for path in folder.glob("*.json") if path.name != "schema.json")
+
+
+def read_entry(path):
+    """The entry in a file, a dict that obeys the schema. Raises InputError naming key and rule."""
+    found = read_json(path)
+    require_valid(path, found)
+    return found
+
+
+def require_valid(path, entry):
+    """Raises InputError unless an entry obeys the schema. path: for the message."""
+    import jsonschema  # only needed here; package python3-jsonschema
+
+    broken = sorted(jsonschema.Draft7Validator(schema()).iter_errors(entry), key=str)
+    if broken:
+        place = ".".join(map(str, broken[0].absolute_path)) or "entry"
+        raise InputError(f"{path}: {place}: {broken[0].message}")
+
+
+def displacement_file(entry, folder=FOLDER):
+    """The path of an entry's displacements."""
+    return folder / "displacements" / f"{entry['displacement']}.h5"
+
+
+def hash_of(path):
+    """SHA-256 of a file, in hexadecimal digits."""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def scored(case, answer):
+    """(errors as in an entry, hash of the mesh) of a file of displacements, by `sandglass score`.
+
+    Raises InputError and ComputationError.
+    """
+    with tempfile.TemporaryDirectory() as name:
+        output = Path(name) / "score.json"
+        output_of(binary(), "score", answer, "--case", case, "--json", output, allowed=(0, 1))
+        record = read_json(output)["records"][0]
+        mesh = Path(name) / "mesh.h5"
+        output_of(binary(), "mesh", case, "-o", mesh)
+        with h5py.File(mesh) as file:
+            mesh_hash = file.attrs["mesh_hash"]
+    errors = {}
+    for name in ("golden", "truth"):
+        if found := record.get(name):
+            errors[name] = {figure: found[key] for figure, key in FIGURES.items()}
+            if found.get(PROFILE) is not None:
+                errors[name]["profile"] = found[PROFILE]
+    if not errors:
+        raise InputError(f"case {case}: has neither golden nor truth to compare with")
+    return errors, mesh_hash if isinstance(mesh_hash, str) else mesh_hash.decode()
+
+
+def keep_displacement(case, answer, folder=FOLDER):
+    """Stores an answer's displacements in the order of the case's nodes; returns the hash.
+
+    answer: a file that `sandglass score` reads. Raises InputError.
+    """
+    with tempfile.TemporaryDirectory() as name:
+        mesh, output = Path(name) / "mesh.h5", Path(name) / "displacement.h5"
+        output_of(binary(), "mesh", case, "-o", mesh)
+        words = [sys.executable, ROOT / "exchange/convert.py", "displacement", answer, mesh, output]
+        words = [str(word) for word in (*words, "--tolerance", "1e-5")]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise InputError(done.stdout.strip() or done.stderr.strip())
+        found = hash_of(output)
+        place = folder / "displacements" / f"{found}.h5"
+        place.parent.mkdir(exist_ok=True)
+        with new_file(place) as file:
+            file.write_bytes(output.read_bytes())
+    return found
+
+
+def check(path):
+    """Scores an entry again. Raises InputError unless it is what its displacements say."""
+    entry = read_entry(path)
+    stored = displacement_file(entry, path.parent)
+    if not stored.is_file():
+        raise InputError(f"{path}: displacement: {stored.name} is not in displacements/")
+    if hash_of(stored) != entry["displacement"]:
+        raise InputError(f"{path}: displacement: {stored.name} has another SHA-256: it was changed")
+    errors, mesh_hash = scored(entry["case"], stored)
+    if mesh_hash != entry["mesh_hash"]:
+        raise InputError(f"{path}: mesh_hash: the mesh of {entry['case']} is {mesh_hash}")
+    if set(errors) != set(entry["errors"]):
+        raise InputError(f"{path}: errors: those to {', '.join(sorted(errors))} are required")
+    for reference, figures in errors.items():
+        for figure, value in figures.items():
+            told = entry["errors"][reference].get(figure)
+            if told is None or abs(told - value) > SAME * max(1.0, abs(value)):
+                raise InputError(
+                    f"{path}: errors.{reference}.{figure} = {told}: its displacements score {value}"
+                )

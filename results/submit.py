@@ -1,0 +1,127 @@
+"""Makes an entry of results/ from a program's displacements on a case, and from what you measured.
+
+Usage: /usr/bin/python3 results/submit.py ANSWER --case CASE --program P --version V --element E
+       --precision double --build FLAGS --machine CPU --by NAME [--ns N] [--step S] [--seconds S]
+       /usr/bin/python3 results/submit.py --peers peers.json --answers FOLDER --by NAME
+The second form makes an entry of every row that `ci/peers CASE --json --answers` measured at rest.
+Exit codes: 0 done, 2 bad usage or input, 3 scoring failed.
+"""
+
+import argparse
+import datetime
+import re
+import sys
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+
+from common.command import exit_code
+from common.errors import InputError
+from common.files import read_json, write_json
+from results.entry import FOLDER, keep_displacement, require_valid, scored
+
+REQUIRED = ("case", "program", "version", "element", "build", "machine")
+OPTIONAL = ("ns_per_element_step", "time_step", "seconds_to_rest", "how")
+
+
+def make_entry(answer, folder, given):
+    """Scores an answer, stores its displacements and writes its entry; returns the path.
+
+    given: the entry's keys apart from those that are computed here. Raises InputError.
+    """
+    errors, mesh_hash = scored(given["case"], answer)
+    entry = {
+        "schema": 1,
+        **{key: value for key, value in given.items() if value is not None},
+        "mesh_hash": mesh_hash,
+        "displacement": "0" * 64,  # replaced when everything else is right
+        "errors": errors,
+        "date": datetime.date.today().isoformat(),
+    }
+    words = [entry[key] for key in ("case", "program", "element", "precision", "build")]
+    name = ".".join(re.sub(r"[^A-Za-z0-9.=]+", "-", word).strip("-.").lower() for word in words)
+    path = folder / f"{name[:120]}.json"
+    require_valid(path, entry)
+    entry["displacement"] = keep_displacement(given["case"], answer, folder)
+    write_json(path, entry)
+    return path
+
+
+def of_peers(path, answers):
+    """(answer, keys of an entry) of every row that `ci/peers` measured. Raises InputError."""
+    found = read_json(path, "ci/peers --json")
+    steps = {_key(row): row for row in found["in_motion"] if not row["failure"]}
+    programs = {(one["name"], one["build"]): one for one in found["programs"]}
+    for row in found["at_rest"]:
+        if row["failure"]:
+            continue
+        about = programs.get((row["program"], row["build"] or ""))
+        version, build = _origin(about) if about else (found["sandglass"], found["build"])
+        moved = steps.get(_key(row), {})
+        yield answers / row["answer"], {
+            "program": row["program"],
+            "version": version,
+            "element": row["element"],
+            "precision": row["precision"],
+            "build": build,
+            "machine": f"{found['processor']}, one thread",
+            "case": found["case"],
+            "ns_per_element_step": moved.get("ns_per_element_step"),
+            "time_step": row["time_step"],
+            "seconds_to_rest": row["seconds"],
+            "how": f"{row['solve']}, {row['steps']} steps; ci/peers",
+        }
+
+
+def _origin(about):
+    """(version, build) of a program of `ci/peers`: --about is "REVISION; COMPILER AND FLAGS"."""
+    revision, separator, flags = about["about"].partition(";")
+    if not separator:
+        revision, flags = about["version"], about["about"]
+    build = ", ".join(word.strip() for word in (about["build"], flags) if word.strip())
+    return revision.strip() or "unknown", build or "unknown"
+
+
+def _key(row):
+    return row["program"], row["build"], row["element"], row["precision"]
+
+
+def submit(options):
+    """Makes the entries. Raises InputError."""
+    if options.peers:
+        if options.answers is None:
+            raise InputError("--peers: needs --answers, the folder that ci/peers wrote")
+        pairs = list(of_peers(options.peers, options.answers))
+    else:
+        given = {key: getattr(options, key) for key in (*REQUIRED, *OPTIONAL, "precision")}
+        missing = [f"--{key}" for key in REQUIRED if given[key] is None]
+        if options.answer is None or missing:
+            raise InputError(f"missing: {', '.join(missing or ['ANSWER'])}")
+        pairs = [(options.answer, given)]
+    for answer, given in pairs:
+        path = make_entry(answer, options.folder, {**given, "submitted_by": options.by})
+        print(f"wrote {path}")
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    add = parser.add_argument
+    add("answer", nargs="?", type=Path, metavar="ANSWER", help="a file that sandglass score reads")
+    for key in REQUIRED:
+        add(f"--{key}", help="see results/schema.json")
+    add("--precision", choices=("float", "double", "mixed"), default="double")
+    add("--ns", dest="ns_per_element_step", type=float, help="ns per element and step")
+    add("--step", dest="time_step", type=float, help="stable step used, s")
+    add("--seconds", dest="seconds_to_rest", type=float, help="wall time until the answer, s")
+    add("--how", help="how answer and times were found")
+    add("--peers", type=Path, metavar="FILE", help="of ci/peers --json")
+    add("--answers", type=Path, metavar="FOLDER", help="of ci/peers --answers")
+    add("--by", required=True, metavar="NAME", help="who submits")
+    add("--folder", type=Path, default=FOLDER, help="where to write; results/ by default")
+    return exit_code(submit, parser.parse_args(arguments))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
