@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -17,7 +16,6 @@
 #include "comparison/verdict_json.hpp"
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
-#include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "solve/body.hpp"
 
@@ -30,11 +28,7 @@ struct ScoreOptions {
   std::string case_name;
   std::string name;
   std::string json;
-  std::string chart;
-  std::string results;
   NodeMatching matching;
-  double seconds = 0.0;
-  long steps = 0;
 };
 
 /// The answer of the golden's explicit twin, for cases that have no stored one. Throws ComputationError when
@@ -57,12 +51,9 @@ Finding finding_of(const Scene& scene, const References& references, const Displ
   return diagnose(found, good_limit(golden_to_truth(scene, references)));
 }
 
-/// `u` receives the displacements.
-Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
+Verdict score(const Scene& scene, const ScoreOptions& options) {
   const References references = read_references(scene);
-  u = read_foreign_displacement(options.file, scene, options.matching);
-  const Displacements answer{u};
-  const auto work = static_cast<double>(options.steps) * static_cast<double>(scene.mesh.cells.size());
+  const Displacements answer{read_foreign_displacement(options.file, scene, options.matching)};
   Verdict verdict{
       .case_name = scene.description.name,
       .method = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name,
@@ -70,9 +61,6 @@ Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
       .status = "ok",
       .golden = accuracy_of(scene, references.comparison, answer, references.golden),
       .truth = accuracy_of(scene, references.comparison, answer, references.truth),
-      .steps = options.steps,
-      .ns_per_element_step = options.steps > 0 ? 1e9 * options.seconds / work : 0.0,
-      .wall_seconds = options.seconds,
       .family = scene.description.family,
       .variants = scene.description.variants};
   if (references.golden) {
@@ -81,17 +69,6 @@ Verdict score(const Scene& scene, const ScoreOptions& options, NodalField& u) {
     verdict.twin = accuracy_of(scene, references.comparison, answer, twin_of(scene));
   }
   return verdict;
-}
-
-/// The displacements as a result file, named as `verify --results` does it, for pictures.
-void write_result(const Scene& scene, const Verdict& verdict, const NodalField& u,
-                  const std::filesystem::path& folder) {
-  const Model model(scene, {.method = std::string(golden_method)});
-  ResultWriter writer(model, folder / fmt::format("{}.{}.h5", verdict.case_name, verdict.method),
-                      build_provenance());
-  writer.frame(static_frame(model, 0.0, NodalField(u.size())));
-  writer.frame(static_frame(model, 1.0, u));
-  writer.commit("complete");
 }
 
 void print(const Verdict& verdict) {
@@ -111,28 +88,16 @@ void run(const ScoreOptions& options) {
     throw InputError(fmt::format("--tolerance = {} must be in (0, 1), a fraction of the diagonal",
                                  options.matching.tolerance));
   }
-  if (!(options.seconds >= 0.0 && std::isfinite(options.seconds)) || options.steps < 0) {
-    throw InputError("--seconds and --steps must not be negative");
-  }
-  if (!options.chart.empty() && (options.seconds == 0.0 || options.steps == 0)) {
-    throw InputError("--add-to: needs --seconds and --steps, the place on the chart's other axis");
-  }
   if (options.name.find('/') != std::string::npos) throw InputError("--name must have no '/'");
   const Scene scene = read_scene(find_case(options.case_name));
   if (!scene.description.quasi_static) {
     throw InputError(
         fmt::format("{}: a dynamic case has no answer to score", scene.description.file.string()));
   }
-  for (const auto& place : {options.json, options.chart}) {
-    if (!place.empty()) require_place(place);
-  }
-  if (!options.results.empty()) make_folder(options.results);
-  NodalField u;
-  const Verdict verdict = score(scene, options, u);
+  if (!options.json.empty()) require_place(options.json);
+  const Verdict verdict = score(scene, options);
   print(verdict);
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), {verdict}, {}));
-  if (!options.results.empty()) write_result(scene, verdict, u, options.results);
-  if (!options.chart.empty()) write_text_file(options.chart, with_record(options.chart, verdict));
 }
 
 }  // namespace
@@ -152,12 +117,7 @@ void add_score_command(CLI::App& app) {
       ->add_option("--tolerance", options->matching.tolerance,
                    "distance at which two nodes are one, as a fraction of the diagonal of the nodes")
       ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "what the computation took, for its place on the chart");
-  command->add_option("--steps", options->steps, "in so many steps, or iterations of an implicit program");
   command->add_option("--json", options->json, "write the figures to this file, as `verify --json` does");
-  command->add_option("--add-to", options->chart, "add the figures to this file of `verify --json`");
-  command->add_option("--results", options->results,
-                      "write the displacements to this folder, as `verify --results` does");
   command->callback([options] { run(*options); });
 }
 

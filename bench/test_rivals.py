@@ -140,6 +140,10 @@ def test_openradioss_runs_starter_and_engine(tmp_path, monkeypatch):
     program, deck = stand_in(tmp_path, OpenRadioss, RADIOSS, executables=2)
     found = program.run(deck, (0.5, 40))
     assert found.steps == 42 and found.answer.name == "caseA002"
+    broken = RADIOSS.replace("     NORMAL", "WARNING ZERO OR NEGATIVE VOLUME\n     NORMAL")
+    program, deck = stand_in(tmp_path, OpenRadioss, broken, executables=2)
+    with pytest.raises(ComputationError, match="OpenRadioss: zero or negative volume"):
+        program.run(deck, (0.5, 40))
     program, deck = stand_in(tmp_path, OpenRadioss, "rm -f *.rst; echo ERROR ID : 7; exit 2", 2)
     with pytest.raises(ComputationError, match="OpenRadioss: ERROR ID : 7"):
         program.run(deck, (0.5, 40))

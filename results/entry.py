@@ -16,6 +16,7 @@ import h5py
 from common.errors import InputError
 from common.files import new_file, read_json
 from common.program import ROOT, binary, output_of
+from common.result_file import text_of
 
 FOLDER = ROOT / "results"
 FIGURES = {"max": "max_relative_error", "rms": "rms_relative_error"}
@@ -62,9 +63,9 @@ def hash_of(path):
 
 
 def scored(case, answer):
-    """(errors as in an entry, hash of the mesh) of a file of displacements, by `sandglass score`.
+    """(errors as in an entry, hash of the mesh, name of the case) of a file of displacements.
 
-    Raises InputError and ComputationError.
+    case: name or file of a case. By `sandglass score`. Raises InputError and ComputationError.
     """
     with tempfile.TemporaryDirectory() as name:
         output = Path(name) / "score.json"
@@ -82,7 +83,7 @@ def scored(case, answer):
                 errors[name]["profile"] = found[PROFILE]
     if not errors:
         raise InputError(f"case {case}: has neither golden nor truth to compare with")
-    return errors, mesh_hash if isinstance(mesh_hash, str) else mesh_hash.decode()
+    return errors, text_of(mesh_hash), record["case"]
 
 
 def keep_displacement(case, answer, folder=FOLDER):
@@ -114,7 +115,7 @@ def check(path):
         raise InputError(f"{path}: displacement: {stored.name} is not in displacements/")
     if hash_of(stored) != entry["displacement"]:
         raise InputError(f"{path}: displacement: {stored.name} has another SHA-256: it was changed")
-    errors, mesh_hash = scored(entry["case"], stored)
+    errors, mesh_hash, _ = scored(entry["case"], stored)
     if mesh_hash != entry["mesh_hash"]:
         raise InputError(f"{path}: mesh_hash: the mesh of {entry['case']} is {mesh_hash}")
     if set(errors) != set(entry["errors"]):

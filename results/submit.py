@@ -21,6 +21,8 @@ from common.errors import InputError
 from common.files import read_json, write_json
 from results.entry import FOLDER, keep_displacement, require_valid, scored
 
+# Motions of different elements differ by less than this, of what is imposed.
+SOUND = 0.3
 REQUIRED = ("case", "program", "version", "element", "build", "machine")
 OPTIONAL = ("ns_per_element_step", "time_step", "seconds_to_rest", "how")
 
@@ -30,18 +32,20 @@ def make_entry(answer, folder, given):
 
     given: the entry's keys apart from those that are computed here. Raises InputError.
     """
-    errors, mesh_hash = scored(given["case"], answer)
+    errors, mesh_hash, case = scored(given["case"], answer)
     entry = {
         "schema": 1,
         **{key: value for key, value in given.items() if value is not None},
+        "case": case,
         "mesh_hash": mesh_hash,
         "displacement": "0" * 64,  # replaced when everything else is right
         "errors": errors,
         "date": datetime.date.today().isoformat(),
     }
-    words = [entry[key] for key in ("case", "program", "element", "precision", "build")]
-    name = ".".join(re.sub(r"[^A-Za-z0-9.=]+", "-", word).strip("-.").lower() for word in words)
-    path = folder / f"{name[:120]}.json"
+    words = [entry[key] for key in ("case", "program", "element", "precision")]
+    words.append(re.split("[,;]", entry["build"])[0].replace("'", ""))
+    name = ".".join(re.sub(r"[^A-Za-z0-9.]+", "-", word).strip("-.").lower() for word in words)
+    path = folder / f"{name}.json"
     require_valid(path, entry)
     entry["displacement"] = keep_displacement(given["case"], answer, folder)
     write_json(path, entry)
@@ -68,10 +72,18 @@ def of_peers(path, answers):
             "machine": f"{found['processor']}, one thread",
             "case": found["case"],
             "ns_per_element_step": moved.get("ns_per_element_step"),
-            "time_step": row["time_step"],
+            "time_step": row["time_step"] or moved.get("time_step"),
             "seconds_to_rest": row["seconds"],
-            "how": f"{row['solve']}, {row['steps']} steps; ci/peers",
+            "how": f"{row['solve']}, {row['steps']} steps{_soundness(moved)}; by ci/peers",
         }
+
+
+def _soundness(moved):
+    """What is to say of a motion that none of ours is near to, as words that follow others."""
+    nearest = moved.get("nearest")
+    if not nearest or nearest["difference"] < SOUND:
+        return ""
+    return f"; its motion is {100 * nearest['difference']:.0f} % from the nearest of ours"
 
 
 def _origin(about):

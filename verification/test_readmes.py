@@ -76,8 +76,6 @@ class Follower:
 
     def run(self, command, folder=None):
         """Runs a command, with what `commands.toml` adds to it; what it printed."""
-        if command in LISTED["first"]:
-            self.run(LISTED["first"][command])
         done = subprocess.run(
             f"{command} {LISTED['more'].get(command, '')}",
             shell=True,

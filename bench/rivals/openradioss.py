@@ -34,8 +34,10 @@ class OpenRadioss(Program):
         done = self.clocked([self.paths[1], "-i", f"{name}_0001.rad", "-nt", "1"], folder)
         said = (folder / f"{name}_0001.out").read_text(errors="replace")
         answers = sorted(folder.glob(f"{name}A[0-9][0-9][0-9]"))
-        if "NORMAL TERMINATION" not in said or not answers:
-            self.fail(one_line(said))
+        # A motion that diverges ends early, and normally.
+        broken = re.search(r"ZERO OR NEGATIVE VOLUME|TIME STEP LESS OR EQUAL", said + done.output)
+        if broken or "NORMAL TERMINATION" not in said or not answers:
+            self.fail(broken[0].lower() if broken else one_line(said))
         steps = re.findall(r"TOTAL NUMBER OF CYCLES *: *(\d+)", said)
         if not steps:
             raise InputError(f"{name}_0001.out: 'TOTAL NUMBER OF CYCLES' is required")

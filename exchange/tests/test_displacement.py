@@ -50,7 +50,55 @@ def matched(capsys, path, *options, tolerance=1e-5):
         return file["displacement"][...], warnings
 
 
+def write_text(path, *lines):
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def words(rows):
+    return " ".join(map(repr, np.ravel(rows).tolist()))
+
+
+def write_animation(path, points, u, name=b"Displacement"):
+    """As written by OpenRadioss: big-endian, in single precision, with another vector before."""
+    n, text = len(points), b"%-81b"
+    counts = [n, 2, 1, 1, 1, 2, 0, 1]  # nodes, facets, parts, scalars, of facets, vectors, -, skews
+    parts = [
+        np.array([0x542C], ">i4"),
+        np.array([0.25], ">f4"),
+        b"".join(text % word for word in (b"Time=", b"ModAnim", b"Radioss Run=")),
+        np.zeros(10, ">i4"),
+        np.array(counts, ">i4"),
+        np.zeros(6, ">u2"),
+        (points + u).astype(">f4"),
+        np.zeros(8, ">i4"),
+        b"\1\1",
+        np.zeros(1, ">i4"),
+        b"%-50b" % b"part",
+        np.zeros(3 * n, ">u2"),
+        text % b"scalar" + text % b"of facets",
+        np.zeros(n + 2, ">f4"),
+        text % b"Velocity" + (name + b"\0" * 81)[:81],
+        np.stack([7 * u, u]).astype(">f4"),
+    ]
+    path.write_bytes(b"".join(p if isinstance(p, bytes) else p.tobytes() for p in parts))
+    return path
+
+
 FILES = {
+    "NiftySim": lambda f: write_text(
+        f / "U.txt", *(f"{x * 2!r} {x!r} " for x in U.ravel().tolist())
+    ),
+    "FEBio": lambda f: write_text(
+        f / "a.log",
+        "*Step  = 1",
+        "*Data  = ux;uy;uz",
+        *(f"{i} 9 9 9" for i in range(1, 13)),
+        "*Step  = 2",
+        "*Time  = 1",
+        "*Data  = ux;uy;uz",
+        *(f"{i + 1} {words(U[i])}" for i in ORDER),
+    ),
     "result of sandglass": lambda f: write_h5(
         f / "a.h5",
         mesh__points=POINTS[ORDER],
@@ -87,6 +135,48 @@ FILES = {
 def test_every_format_gives_the_displacements_to_the_bit(tmp_path, capsys, kind):
     found, warnings = matched(capsys, FILES[kind](tmp_path))
     assert (found == U).all() and not warnings
+
+
+def test_single_precision_of_openradioss(tmp_path, capsys):
+    """Positions and displacements are rounded to 24 bits, of numbers up to six."""
+    found, _ = matched(capsys, write_animation(tmp_path / "columnA001", POINTS[ORDER], U[ORDER]))
+    assert np.abs(found - U).max() <= 2.0**-24 * np.abs(U).max() and found[0, 0] != 0
+
+
+def test_positions_of_sofa(tmp_path, capsys):
+    """It writes positions, up to six: half a unit of the last digit of each is lost."""
+    start, end = f"  X0= {words(POINTS)}", f"  X= {words(POINTS + U)}"
+    path = write_text(tmp_path / "a.state", "T= 0", start, f"  X= {words(U)}", "T= 1", end)
+    assert np.abs(matched(capsys, path)[0] - U).max() <= 2 * 4 * 2.0**-53
+
+
+DAMAGED = {
+    "U.txt": [("1 2\n3 4\n5\n", "rows of equally many numbers"), ("1\n2\nx\n", "'x'")],
+    "a.log": [
+        ("*Data  = x;y;z\n1 2 3 4\n", "node_data data='ux;uy;uz'"),
+        ("*Data  = ux;uy;uz\n1 2 3\n", "an id and three numbers"),
+    ],
+    "a.state": [("T= 1\n  X= 1 2 3\n", "lines X= and X0="), ("X= 1\nX0= 1\n", "equally many")],
+}
+
+
+@pytest.mark.parametrize("name, text, told", [(n, *case) for n in DAMAGED for case in DAMAGED[n]])
+def test_damaged_texts_of_other_programs(tmp_path, capsys, name, text, told):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(Refused, match=f"{name}: .*{told}"):
+        matched(capsys, tmp_path / name)
+
+
+def test_damaged_animations_of_openradioss(tmp_path, capsys):
+    path = write_animation(tmp_path / "aA001", POINTS, U, name=b"Rotation")
+    with pytest.raises(Refused, match="has no displacements; the engine file needs /ANIM/VECT"):
+        matched(capsys, path)
+    path.write_bytes(write_animation(path, POINTS, U).read_bytes()[:-1])
+    with pytest.raises(Refused, match="aA001: ends too early"):
+        matched(capsys, path)
+    path.write_bytes(b"no animation")
+    with pytest.raises(Refused, match="is not an animation file of OpenRadioss"):
+        matched(capsys, path)
 
 
 def test_six_digits_of_calculix(tmp_path, capsys):

@@ -1,6 +1,7 @@
 """Results of other programs, and those that other people submitted: the entries of results/."""
 
 import math
+import re
 from dataclasses import dataclass, field
 
 from results.entry import entry_files, read_entry
@@ -62,14 +63,23 @@ class Submission:
         """Program and element."""
         return f"{self.entry['program']} {self.entry['element']}"
 
+    @property
+    def build(self):
+        """The first words of how it was built."""
+        return re.split("[,;]", self.entry["build"])[0]
+
     def error(self, reference="golden", figure="max"):
         """One error as a fraction, or None."""
         return self.entry["errors"].get(reference, {}).get(figure)
 
+    def figure(self, key):
+        """A figure that an entry may lack, or None."""
+        return self.entry.get(key)
+
     def as_point(self, elements):
         """The Point of the main chart. elements: number of those of the case."""
         entry, errors = self.entry, self.entry["errors"]
-        ns, step = entry.get("ns_per_element_step"), entry.get("time_step")
+        ns, step = self.figure("ns_per_element_step"), self.figure("time_step")
         cost = 1e-9 * ns * elements if ns else None
         return Point(
             entry["case"],
@@ -86,7 +96,7 @@ class Submission:
             truth=errors.get("truth", {}),
             step=cost,
             simulated=cost / step if cost and step else None,
-            rest=entry.get("seconds_to_rest"),
+            rest=self.figure("seconds_to_rest"),
             measured_by=f"results/{self.name}: {entry['build']}; {entry['machine']}",
         )
 

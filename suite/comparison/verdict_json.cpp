@@ -1,11 +1,6 @@
 #include "comparison/verdict_json.hpp"
 
-#include <fmt/format.h>
-
-#include <fstream>
 #include <nlohmann/json.hpp>
-
-#include "base/error.hpp"
 
 namespace sandglass {
 
@@ -121,25 +116,6 @@ std::string to_json(const Provenance& provenance, const std::vector<Verdict>& ve
     }
   }
   document["limits"] = to_records(limits);
-  return document.dump(1) + "\n";
-}
-
-std::string with_record(const std::filesystem::path& file, const Verdict& verdict) {
-  std::ifstream stream(file);
-  Json document = Json::parse(stream, nullptr, false);
-  if (!document.is_object() || !document.contains("records") || !document["records"].is_array()) {
-    throw InputError(fmt::format("{}: is no file of `sandglass verify --json`", file.string()));
-  }
-  const Json added = to_record(verdict);
-  Json records = Json::array();
-  for (const auto& record : document["records"]) {
-    const auto same = [&](const char* key) {
-      return record.is_object() && record.value(key, Json()) == added[key];
-    };
-    if (!(same("case") && same("method") && same("precision"))) records.push_back(record);
-  }
-  records.push_back(added);
-  document["records"] = std::move(records);
   return document.dump(1) + "\n";
 }
 

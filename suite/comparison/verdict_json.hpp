@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,9 +13,5 @@ namespace sandglass {
 /// not exist are null.
 std::string to_json(const Provenance& provenance, const std::vector<Verdict>& verdicts,
                     const std::vector<LimitCheck>& limits);
-
-/// The verdicts.json of a file with one record more, which takes the place of one of the same case, method
-/// and precision. Throws InputError when the file is none.
-std::string with_record(const std::filesystem::path& file, const Verdict& verdict);
 
 }  // namespace sandglass
