@@ -4,13 +4,12 @@ import json
 import os
 import resource
 import shutil
-import subprocess
 import xml.etree.ElementTree as xml
 
 import h5py
 import numpy as np
 import pytest
-from command_line import BLOCK, ROOT, dynamic, sandglass, write_golden
+from command_line import BLOCK, dynamic, sandglass, write_golden
 from meshes import CELLS, DATA, POINTS, write
 
 from common.accuracy import relative_errors  # an account of its own

@@ -30,7 +30,8 @@ PYTHON_FOLDERS = {
     "common": ("common",),
     "exchange": ("common", "exchange", *COMPILED),
     "reference": ("common", "reference", *COMPILED),
-    "reports": ("common", "reports"),
+    "reports": ("common", "reports", "results"),
+    "results": ("common", "exchange", "results", *COMPILED),
     "verification": ("common", "verification", *COMPILED),
 }
 PYTHON = "/usr/bin/python3"
