@@ -29,6 +29,11 @@ def rows(documents, kind, program, element):
     return found
 
 
+def of_column(documents):
+    """Those of the column, whose elements are bricks: lumped masses are the same by every rule."""
+    return [document for document in documents if document["case"] == "column"]
+
+
 def test_the_readme_has_the_table_of_the_stored_files():
     text = (ROOT / "bench/README.md").read_text()
     assert text.split(BEGIN)[1].split(END)[0].strip() == tables(FILES)
@@ -50,14 +55,14 @@ def test_febio_finds_the_golden(documents):
 
 def test_febio_moves_as_mean_dilatation(documents):
     """The same element, masses and central differences: what twelve digits leave of a motion."""
-    for row in rows(documents, "in_motion", "FEBio", "three-field-solid"):
+    for row in rows(of_column(documents), "in_motion", "FEBio", "three-field-solid"):
         assert row["nearest"]["method"] == "tl-mean-dilatation"
         assert row["nearest"]["difference"] < 1e-10
 
 
 def test_calculix_moves_as_the_displacement_element(documents):
     """C3D8; it takes the load half a step later, which is of second order in the step."""
-    for row in rows(documents, "in_motion", "CalculiX", "C3D8"):
+    for row in rows(of_column(documents), "in_motion", "CalculiX", "C3D8"):
         assert row["nearest"]["method"] == "tl-full"
         assert row["nearest"]["difference"] < 1e-4
 

@@ -241,6 +241,7 @@ class DataSet:
             f"--rest={self.folder}/rest.json",
             f"--curves={self.folder}/curves",
             f"--maps={self.folder}/maps",
+            f"--submissions={self.folder}/submissions",
             f"--kept-maps={self.folder}/kept-maps",
             f"--pictures={self.folder}/pictures",
             f"--claims={self.folder}/claims.toml",
