@@ -151,7 +151,8 @@ def not_taken(command, binary):
             unknown = [w for w in words[1:] if not re.search(usage.format(w), opening)]
             unknown += [w for w in words[1:] if w.isalpha() and not re.search(rf"\b{w}\b", text)]
             return f"{words[0]} does not tell of {unknown}" if unknown else ""
-        words = [*handed[1].split(), *words[1:]]
+        script = handed[1].replace('"', "").replace("$root/", "")
+        words = [*script.split(), *words[1:]]
     done = _run(["/usr/bin/python3", "-c", PARSE_ONLY, *words])
     return "" if done.stdout.endswith("parsed\n") and done.returncode == 0 else done.stderr
 
