@@ -13,14 +13,14 @@ from sandglass_report.points import families, fronts
 FAILURES = ("hourglassing", "locking", "inverted", "unstable", "not at rest")
 
 
-# The mark of other programs.
+# The mark of entries of results/: other programs, and ours beside them.
 OTHER = {"css": "--ink", "symbol": "star"}
 
 
 def chart_data(points, palette, others=()):
     """The data for chart.js: points, fronts, adaptive lines, and the methods' colours and marks.
 
-    others: Points of other programs. They were timed on another machine, so no front has them.
+    others: Points of results/. They were timed on another machine, so no front has them.
     """
     shown = [*points, *others]
     return {

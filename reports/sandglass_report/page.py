@@ -152,7 +152,7 @@ def _of_measured(inputs, palette):
     found, names = inputs.measured, [subject.name for subject in inputs.subjects]
     elements = {s.name: None if s.cells is None else len(s.cells) for s in inputs.subjects}
     points = make_points(inputs.verdicts.runs, elements, found)
-    others = [s for s in inputs.submissions if not s.ours and elements.get(s.entry["case"])]
+    others = [s for s in inputs.submissions if elements.get(s.entry["case"])]
     ladders = [name for name in names if any(rung.case == name for rung in found.rungs)]
     map_texts = maps.map_texts(sorted(found.maps, key=lambda m: m["case"] != paper.FIRST_CASE))
     pictures = [p for p in inputs.pictures if p.stem not in {m.name for m in map_texts}]

@@ -76,6 +76,12 @@ class Submission:
         """A figure that an entry may lack, or None."""
         return self.entry.get(key)
 
+    def finding(self):
+        """What the chart says of it."""
+        if self.ours:
+            return "timed beside other programs"
+        return self.nearest.in_words() if self.nearest else "nothing of ours to compare with"
+
     def as_point(self, elements):
         """The Point of the main chart. elements: number of those of the case."""
         entry, errors = self.entry, self.entry["errors"]
@@ -90,7 +96,7 @@ class Submission:
             entry["precision"],
             OWN_MESH,
             elements,
-            finding=self.nearest.in_words() if self.nearest else "nothing of ours to compare with",
+            finding=self.finding(),
             ok=True,
             golden=errors.get("golden", {}),
             truth=errors.get("truth", {}),
