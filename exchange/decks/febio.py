@@ -34,11 +34,16 @@ def _ogden(*, mu1, alpha1, mu2=0.0, alpha2=2.0, bulk_modulus):
     return "Ogden", {"c1": 2 * mu1, "m1": alpha1, "c2": 2 * mu2, "m2": alpha2}
 
 
+def _yeoh(*, c1, c2, c3, bulk_modulus):
+    """FEBio's stress is that of sum c_i / i (I1bar - 3)^i, its energy is not (FEYeoh.cpp of 4.11)."""
+    return "Yeoh", {"c1": c1, "c2": 2 * c2, "c3": 3 * c3}
+
+
 # Law -> (FEBio's type, its parameters) of a Material.
 LAWS = {
     "neo-hookean": lambda m: _mooney_rivlin(m.shear_modulus / 2, 0.0),
     "mooney-rivlin": lambda m: _mooney_rivlin(m.parameters["c10"], m.parameters["c01"]),
-    "yeoh": lambda m: ("Yeoh", {name: m.parameters[name] for name in ("c1", "c2", "c3")}),
+    "yeoh": lambda m: _yeoh(**m.parameters),
     "ogden": lambda m: _ogden(**m.parameters),
 }
 

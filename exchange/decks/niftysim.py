@@ -18,9 +18,7 @@ def deck(problem, element, hourglass):
     """{ending: text} of a Problem. hourglass: HGKappa, or None for the usual one."""
     motion = problem.motion or problem.relaxation()
     if motion.ramp_steps != motion.steps:
-        refuse(
-            problem, NAME, "its smooth loading curve lasts as long as the motion; ramp_time must"
-        )
+        refuse(problem, NAME, "its loading curve lasts as long as the motion: ramp_time = duration")
     mesh = problem.mesh
     lines = [
         "<?xml version='1.0' encoding='utf-8'?>",

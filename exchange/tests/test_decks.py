@@ -111,13 +111,15 @@ OGDEN = {"mu1": 6.0, "alpha1": 4.0, "mu2": 4.0, "alpha2": -2.0, "bulk_modulus": 
 
 
 def test_laws_of_febio():
-    """W = sum c / m^2 (l1^m + ...) where Sandglass has 2 mu / alpha^2."""
+    """Ogden: sum c / m^2 (l1^m + ...) where Sandglass has 2 mu / alpha^2. Yeoh: sum c / i x^i."""
 
     def of(law, parameters):
         return febio.LAWS[law](made_of(law, parameters))
 
     assert of("neo-hookean", {}) == ("Mooney-Rivlin", {"c1": 5.0, "c2": 0.0})
     assert of("mooney-rivlin", MOONEY) == ("Mooney-Rivlin", {"c1": 3.0, "c2": 2.0})
+    yeoh = {"c1": 5.0, "c2": 0.5, "c3": 0.25, "bulk_modulus": 400.0}
+    assert of("yeoh", yeoh) == ("Yeoh", {"c1": 5.0, "c2": 1.0, "c3": 0.75})
     assert of("ogden", OGDEN) == ("Ogden", {"c1": 12.0, "m1": 4.0, "c2": 8.0, "m2": -2.0})
     with pytest.raises(InputError, match="exponent of 0"):
         of("ogden", OGDEN | {"alpha1": 0.0})
@@ -204,7 +206,13 @@ def test_a_quasi_static_case_becomes_a_damped_motion():
         ("calculix", ".inp", problem(), {"hourglass": 1.0}, "have no hourglass coefficient"),
         ("calculix", ".inp", problem(DAMPED), {}, "have no damping"),
         ("febio", ".feb", problem(), {"hourglass": 1.0}, "three-field-solid has no hourglass"),
-        ("niftysim", ".xml", problem(Motion(0.25, 6, 4)), {}, "lasts as long as the motion"),
+        (
+            "niftysim",
+            ".xml",
+            problem(Motion(0.25, 6, 4)),
+            {},
+            "lasts as long as the motion: ramp_time = duration",
+        ),
         ("sofa", ".scn", problem(), {}, "nodal forces do not follow"),
         ("sofa", ".scn", problem(force=0.0, held=(0,)), {}, "hold all components"),
         ("sofa", ".scn", replace(two_materials()), {}, "has one material"),
