@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from common.hexahedron import gauss_jacobians
 from exchange.decks.problem import refuse
 
 NAME, ENDING = "SOFA", ".scn"
@@ -35,7 +36,8 @@ def deck(problem, element, hourglass):
     if (problem.prescribed.any(axis=1) != problem.prescribed.all(axis=1)).any():
         refuse(problem, NAME, "its constraints on the device hold all components of a node")
     motion, material = problem.motion or problem.relaxation(), problem.materials[0]
-    mesh, volume = problem.mesh, _volume(problem.mesh)
+    mesh = problem.mesh
+    volume = float(gauss_jacobians(mesh.points, mesh.cells).sum())  # m^3
     body = [
         _tag("CentralDifferenceSolver", rayleighMass=motion.damping),
         _tag("MechanicalObject", name="nodes", template="CudaVec3f", position=mesh.points),
@@ -73,16 +75,6 @@ def _movements(problem, motion):
         )
         for i, value in enumerate(values)
     ]
-
-
-def _volume(mesh):
-    """Of all elements by their centre, m^3, as SOFA and the one-point element have it."""
-    corners = mesh.points[mesh.cells]
-    signs = np.array(
-        [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)]
-        + [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
-    )
-    return float(np.linalg.det(np.einsum("eai,aj->eij", corners, signs) / 8).sum() * 8)
 
 
 def _tag(component, /, **attributes):
