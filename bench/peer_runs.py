@@ -8,15 +8,16 @@ import json
 import math
 import os
 import re
-import subprocess
-import sys
+import shutil
 from pathlib import Path
 
 import clock
 from case_file import read_case, read_tables
 from common.errors import ComputationError, InputError
-from common.program import ROOT, binary
+from common.program import binary
+from exchange.convert import match_displacement
 from exchange.decks import PROGRAMS as DECKS
+from exchange.decks.problem import STEP_FRACTION
 from exchange.hdf5_file import read_displacement
 from mesh_file import load_case_mesh, make_mesh
 from rivals.program import Run
@@ -24,10 +25,8 @@ from rivals.program import Run
 # Largest speed of imposed displacements over the shear wave speed; strains are of this order.
 SPEED = 0.1
 CURVE_RATE = 15 / 8  # the steepest that the loading curve of eq. 15 is
-STEP_FRACTION = 0.8  # of the smallest stable step of the methods of Sandglass
 # The longer run of a motion has at least three times the steps and, in programs that step quickly,
-# enough elements times steps for half a second, so that its excess is clear of the start-up time.
-ELEMENT_STEPS = {"calculix": 0, "febio": 0}
+# this many elements times steps, half a second, so that its excess is clear of the start-up time.
 MANY = 4e6
 
 
@@ -44,7 +43,7 @@ class Bench:
         self.binary = binary()
         self.environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
         self.processor = max(os.sched_getaffinity(0))
-        self._fresh = itertools.count()
+        self._fresh, self._decks = itertools.count(), {}
 
     def fresh_folder(self):
         """An empty folder."""
@@ -79,13 +78,21 @@ class Bench:
     def kappa(self):
         """The hourglass stiffness of eq. 12 that tl-perturbation takes for a neo-Hookean material:
         E / 9 over lambda + 2 mu."""
-        poisson = self.tables["material"]["poisson_ratio"]
+        poisson = self.material["poisson_ratio"]
         return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson) / 9
 
     def deck(self, case, program, element):
         """The path of a case's deck for a program and one of its Elements, in a new folder."""
-        output = self.fresh_folder() / f"deck{DECKS[program.deck].ENDING}"
-        words = ["mesh", case, "--deck", program.deck, "--element", element.name, "-o", output]
+        key = case, program.deck, element
+        if key not in self._decks:
+            self._decks[key] = self._write_deck(*key)
+        folder = self.fresh_folder()
+        shutil.copytree(self._decks[key].parent, folder, dirs_exist_ok=True)
+        return folder / self._decks[key].name
+
+    def _write_deck(self, case, deck, element):
+        output = self.fresh_folder() / f"deck{DECKS[deck].ENDING}"
+        words = ["mesh", case, "--deck", deck, "--element", element.name, "-o", output]
         if element.hourglass is not None:
             words += ["--hourglass", repr(element.hourglass)]
         self.sandglass(*words)
@@ -103,21 +110,33 @@ class Bench:
         return {name: errors and errors["max_relative_error"] for name, errors in found.items()}
 
     def displacement(self, answer):
-        """The displacements (n, 3), m, of any answer that `sandglass score` reads."""
+        """The displacements (n, 3), m, of any answer that `sandglass score` reads.
+
+        Raises ComputationError for an answer that is none.
+        """
         output = self.folder / "displacement.h5"
-        convert = [sys.executable, ROOT / "exchange/convert.py", "displacement", answer]
-        words = [*convert, self.mesh_path, output, "--tolerance", "1e-5"]
-        done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-        if done.returncode:
-            raise ComputationError(done.stdout.strip())
+        try:
+            match_displacement(answer, self.mesh_path, output)
+        except InputError as error:
+            raise ComputationError(str(error)) from error
         return read_displacement(output, lambda text: None)[1]
+
+    @property
+    def material(self):
+        """The entries of [material]. Raises InputError for several materials and other moduli."""
+        material = self.tables.get("material", {})
+        if not {"young_modulus", "poisson_ratio"} <= material.keys():
+            raise InputError(
+                f"{self.path}: explicit runs support only one [material], with young_modulus and "
+                "poisson_ratio"
+            )
+        return material
 
     @property
     def shear_wave_speed(self):
         """Of the undeformed material, m/s."""
-        material = self.tables["material"]
-        shear = material["young_modulus"] / 2 / (1 + material["poisson_ratio"])
-        return math.sqrt(shear / material["density"])
+        shear = self.material["young_modulus"] / 2 / (1 + self.material["poisson_ratio"])
+        return math.sqrt(shear / self.material["density"])
 
     def write_case(self, share, **dynamics):
         """Writes the case as a dynamic one, with a share of its displacements; returns its path.
@@ -126,11 +145,9 @@ class Bench:
         """
         if self.case.rotations or self.case.forces:
             raise InputError(f"{self.path}: explicit runs support only [[displacement]]")
-        if not isinstance(self.tables["material"], dict):
-            raise InputError(f"{self.path}: explicit runs support only one [material]")
         case = {"name": self.case.name, "requirement": "It moves.", "answer": "dynamic"}
         lines = _table("[case]", case) + _table("[mesh]", {"file": str(self.mesh_path)})
-        lines += _table("[material]", self.tables["material"])
+        lines += _table("[material]", self.material)
         lines += _table("[dynamics]", {"frames": 1, **dynamics})
         for entry in self.case.displacements:
             value = [share * component for component in entry.value]
@@ -189,9 +206,12 @@ class Motion:
         duration = self.time_step * self.steps * longer
         return self.bench.write_case(self.share, duration=duration, time_step=self.time_step)
 
-    def longer(self, program):
-        """The number of steps in the longer run of a program over that in the shorter one."""
-        least = ELEMENT_STEPS.get(program, MANY) / len(self.bench.mesh.cells) / self.steps
+    def longer(self, quick):
+        """The number of steps in the longer run over that in the shorter one.
+
+        quick: whether the program is made for explicit steps.
+        """
+        least = MANY / len(self.bench.mesh.cells) / self.steps if quick else 0
         return max(3, round(least))
 
     def largest_imposed(self):

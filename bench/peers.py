@@ -142,8 +142,8 @@ class Row:
         """The row as a dict of plain figures; None for unknown ones."""
         record = {key: None for _, key, _ in (*COLUMNS_AT_REST, *COLUMNS_IN_MOTION)}
         record |= {"program": self.program, "element": self.element, "solve": self.solve}
-        known = ("seconds", "processor_seconds", "ns_per_element_step", "time_step")
-        record |= dict.fromkeys((*known, "precision", "build")) | self.more
+        known = ("seconds", "processor_seconds", "ns_per_element_step")
+        record |= dict.fromkeys(known) | self.more
         record["failure"] = self.failure
         if not self.failure:
             answers = self.clocked["answer"]
@@ -178,7 +178,8 @@ def rows_at_rest(bench, programs, options):
             runs = {"answer": peer_runs.at_rest(bench, program, element)}
             rows.append(Row(program.name, str(element), NEWTON, runs, **more))
     for method in options.methods or AT_REST:
-        step = bench.own_step(method)
+        # A case that cannot be moved has no steps of time.
+        step = bench.own_step(method) if "motion" in options.solves else None
         for precision in precisions_of(method):
             runs = {"answer": peer_runs.sandglass_at_rest(bench, method, precision)}
             more = {"precision": precision, "build": "", "time_step": step}
@@ -215,13 +216,13 @@ def rows_in_motion(motion, programs, options):
         make = peer_runs.in_motion
         runs = {
             "answer": make(motion, program, element),
-            "longer": make(motion, program, element, motion.longer(program.deck)),
+            "longer": make(motion, program, element, motion.longer(program.explicit)),
         }
         more = {"precision": program.precision, "build": program.build}
         rows.append(Row(program.name, str(element), EXPLICIT, runs, **more))
     for method in motion_methods(options):
         for precision in precisions_of(method):
-            make, longer = peer_runs.sandglass_in_motion, motion.longer("sandglass")
+            make, longer = peer_runs.sandglass_in_motion, motion.longer(True)
             runs = {
                 "answer": make(motion, method, precision),
                 "longer": make(motion, method, precision, longer),
@@ -237,7 +238,7 @@ def precisions_of(method):
 
 def elements_of(bench, programs, options):
     """(program, Element) of all that are asked for."""
-    pairs = [(p, e) for p in programs for e in p.elements(bench.kappa)]
+    pairs = [(p, e) for p in programs for e in p.elements(bench)]
     if not options.elements:
         return pairs
     names = list(dict.fromkeys(str(element) for _, element in pairs))

@@ -8,12 +8,13 @@ rest.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from common.accuracy import relative_errors
 from common.errors import ComputationError
-from peer_runs import STEP_FRACTION
+from exchange.decks.problem import STEP_FRACTION
 
 WITHIN = 1e-3
 # Durations and dampings in units of the time in which a shear wave crosses the body.
@@ -27,9 +28,9 @@ SOUND = 1e-2  # largest change of the answer by a longer step, of the imposed di
 
 @dataclass(frozen=True)
 class Way:
-    """How a program comes to rest: its case, its step (s), its steps, and why it is this one.
+    """How a program comes to rest.
 
-    case: path of the damped motion. duration: s. damping: 1/s.
+    case: path of the damped motion. time_step, duration: s. damping: 1/s.
     """
 
     case: object
@@ -46,7 +47,11 @@ class RestSearch:
         self.bench, self.program, self.element = bench, program, element
         size = np.linalg.norm(np.ptp(bench.mesh.points, axis=0))
         self.crossing = size / bench.shear_wave_speed
-        self.base_step = STEP_FRACTION * bench.own_step()
+
+    @cached_property
+    def base_step(self):
+        """A step, s, that every program should take."""
+        return STEP_FRACTION * self.bench.own_step()
 
     def quickest(self):
         """The quickest Way. Raises ComputationError if the slow motion fails."""

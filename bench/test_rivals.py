@@ -2,6 +2,7 @@
 
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -162,7 +163,7 @@ def test_openradioss_needs_both_executables_and_its_configuration(tmp_path, monk
 def test_every_program_has_decks_for_its_elements(program):
     known = decks.PROGRAMS[program.deck]
     assert known.NAME == program.name
-    for element in program.elements(program, 0.01):
+    for element in program.elements(program, SimpleNamespace(kappa=0.01)):
         assert element.name in known.ELEMENTS
 
 

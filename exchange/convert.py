@@ -94,15 +94,23 @@ def write_deck(options):
         write_whole(path, text)
 
 
-def match_displacement(source, mesh_path, output, options):
-    """Writes displacements in the node order of a mesh. Raises InputError."""
+# Of the diagonal: the distance at which two nodes are one, as `sandglass score` takes it.
+USUAL_TOLERANCE = 1e-5
+
+
+def match_displacement(source, mesh_path, output, tolerance=USUAL_TOLERANCE, field=None):
+    """Writes the displacements of a file in the node order of a mesh. Raises InputError.
+
+    source, mesh_path, output: Paths. tolerance: as for matching.by_coordinates. field: name of the
+    displacements in the file, or None for the usual ones.
+    """
     from exchange import matching  # its library takes long to load
 
     if radioss_file.is_animation(source):
         points, ids, displacement = _at_points(radioss_file.read_displacement(source))
     else:
         read = DISPLACEMENTS[_ending(source, DISPLACEMENTS)]
-        points, ids, displacement = read(source, options.field, lambda t: _warn(source, t))
+        points, ids, displacement = read(source, field, lambda t: _warn(source, t))
     nodes = hdf5_file.read_mesh(mesh_path).points
     for name, values in (("coordinates", points), ("displacements", displacement)):
         if values is not None and not np.isfinite(values).all():
@@ -113,7 +121,7 @@ def match_displacement(source, mesh_path, output, options):
     if not len(displacement):
         raise InputError(f"{source}: has no nodes")
     if points is not None:
-        rows = matching.by_coordinates(nodes, points, options.tolerance, source)
+        rows = matching.by_coordinates(nodes, points, tolerance, source)
     else:
         rows = matching.by_ids(
             np.arange(len(displacement)) if ids is None else ids, len(nodes), source
@@ -174,7 +182,8 @@ def main(arguments=None):
         elif options.command == "deck":
             write_deck(options)
         else:
-            match_displacement(options.source, options.mesh, options.output, options)
+            names = ("source", "mesh", "output", "tolerance", "field")
+            match_displacement(*(getattr(options, name) for name in names))
     except InputError as error:
         print(" ".join(str(error).splitlines()))
         return 2

@@ -1,5 +1,7 @@
 """Sandglass's own HDF5 files: mesh, displacement, and what a deck needs."""
 
+import math
+
 import h5py
 import numpy as np
 
@@ -72,7 +74,7 @@ def _material(attributes, prefix, elements):
 def _motion(attributes):
     """The Motion of a dynamic case; its steps are shortened so that they fill the ramp."""
     ramp, duration = attributes["ramp_time"], attributes["duration"]
-    ramp_steps = max(1, round(ramp / attributes["time_step"] + 0.5 - 1e-6))
+    ramp_steps = max(1, math.ceil(ramp / attributes["time_step"] - 1e-6))
     step = ramp / ramp_steps
     return Motion(float(step), round(duration / step), ramp_steps, float(attributes["damping"]))
 

@@ -6,17 +6,17 @@ again: errors are checked, times are as submitted.
 
 import hashlib
 import json
-import subprocess
-import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
 
 from common.errors import InputError
-from common.files import new_file, read_json
+from common.files import read_json
 from common.program import ROOT, binary, output_of
 from common.result_file import text_of
+from exchange.convert import match_displacement
 
 FOLDER = ROOT / "results"
 FIGURES = {"max": "max_relative_error", "rms": "rms_relative_error"}
@@ -57,24 +57,39 @@ def displacement_file(entry, folder=FOLDER):
     return folder / "displacements" / f"{entry['displacement']}.h5"
 
 
-def hash_of(path):
-    """SHA-256 of a file, in hexadecimal digits."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+def hash_of(content):
+    """SHA-256 of bytes, in hexadecimal digits."""
+    return hashlib.sha256(content).hexdigest()
+
+
+@dataclass(frozen=True)
+class Score:
+    """What a file of displacements is.
+
+    case: its name. mesh_hash: of the case's mesh. errors: as in an entry. displacement: the bytes
+    of the file that stores the displacements in the order of the case's nodes.
+    """
+
+    case: str
+    mesh_hash: str
+    errors: dict
+    displacement: bytes
 
 
 def scored(case, answer):
-    """(errors as in an entry, hash of the mesh, name of the case) of a file of displacements.
+    """The Score of a file of displacements, by `sandglass score`.
 
-    case: name or file of a case. By `sandglass score`. Raises InputError and ComputationError.
+    case: name or file of a case. Raises InputError and ComputationError.
     """
     with tempfile.TemporaryDirectory() as name:
-        output = Path(name) / "score.json"
-        output_of(binary(), "score", answer, "--case", case, "--json", output, allowed=(0, 1))
-        record = read_json(output)["records"][0]
-        mesh = Path(name) / "mesh.h5"
+        score, mesh, matched = (Path(name) / file for file in ("s.json", "mesh.h5", "u.h5"))
+        output_of(binary(), "score", answer, "--case", case, "--json", score, allowed=(0, 1))
+        record = read_json(score)["records"][0]
         output_of(binary(), "mesh", case, "-o", mesh)
+        match_displacement(Path(answer), mesh, matched)
         with h5py.File(mesh) as file:
-            mesh_hash = file.attrs["mesh_hash"]
+            mesh_hash = text_of(file.attrs["mesh_hash"])
+        displacement = matched.read_bytes()
     errors = {}
     for name in ("golden", "truth"):
         if found := record.get(name):
@@ -83,28 +98,7 @@ def scored(case, answer):
                 errors[name]["profile"] = found[PROFILE]
     if not errors:
         raise InputError(f"case {case}: has neither golden nor truth to compare with")
-    return errors, text_of(mesh_hash), record["case"]
-
-
-def keep_displacement(case, answer, folder=FOLDER):
-    """Stores an answer's displacements in the order of the case's nodes; returns the hash.
-
-    answer: a file that `sandglass score` reads. Raises InputError.
-    """
-    with tempfile.TemporaryDirectory() as name:
-        mesh, output = Path(name) / "mesh.h5", Path(name) / "displacement.h5"
-        output_of(binary(), "mesh", case, "-o", mesh)
-        words = [sys.executable, ROOT / "exchange/convert.py", "displacement", answer, mesh, output]
-        words = [str(word) for word in (*words, "--tolerance", "1e-5")]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise InputError(done.stdout.strip() or done.stderr.strip())
-        found = hash_of(output)
-        place = folder / "displacements" / f"{found}.h5"
-        place.parent.mkdir(exist_ok=True)
-        with new_file(place) as file:
-            file.write_bytes(output.read_bytes())
-    return found
+    return Score(record["case"], mesh_hash, errors, displacement)
 
 
 def check(path):
@@ -113,14 +107,14 @@ def check(path):
     stored = displacement_file(entry, path.parent)
     if not stored.is_file():
         raise InputError(f"{path}: displacement: {stored.name} is not in displacements/")
-    if hash_of(stored) != entry["displacement"]:
+    if hash_of(stored.read_bytes()) != entry["displacement"]:
         raise InputError(f"{path}: displacement: {stored.name} has another SHA-256: it was changed")
-    errors, mesh_hash, _ = scored(entry["case"], stored)
-    if mesh_hash != entry["mesh_hash"]:
-        raise InputError(f"{path}: mesh_hash: the mesh of {entry['case']} is {mesh_hash}")
-    if set(errors) != set(entry["errors"]):
-        raise InputError(f"{path}: errors: those to {', '.join(sorted(errors))} are required")
-    for reference, figures in errors.items():
+    score = scored(entry["case"], stored)
+    if score.mesh_hash != entry["mesh_hash"]:
+        raise InputError(f"{path}: mesh_hash: the mesh of {entry['case']} is {score.mesh_hash}")
+    if set(score.errors) != set(entry["errors"]):
+        raise InputError(f"{path}: errors: those to {', '.join(sorted(score.errors))} are required")
+    for reference, figures in score.errors.items():
         for figure, value in figures.items():
             told = entry["errors"][reference].get(figure)
             if told is None or abs(told - value) > SAME * max(1.0, abs(value)):

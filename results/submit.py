@@ -18,8 +18,8 @@ if __name__ == "__main__":
 
 from common.command import exit_code
 from common.errors import InputError
-from common.files import read_json, write_json
-from results.entry import FOLDER, keep_displacement, require_valid, scored
+from common.files import new_file, read_json, write_json
+from results.entry import FOLDER, displacement_file, hash_of, require_valid, scored
 
 # Motions of different elements differ by less than this, of what is imposed.
 SOUND = 0.3
@@ -32,14 +32,14 @@ def make_entry(answer, folder, given):
 
     given: the entry's keys apart from those that are computed here. Raises InputError.
     """
-    errors, mesh_hash, case = scored(given["case"], answer)
+    score = scored(given["case"], answer)
     entry = {
         "schema": 1,
         **{key: value for key, value in given.items() if value is not None},
-        "case": case,
-        "mesh_hash": mesh_hash,
-        "displacement": "0" * 64,  # replaced when everything else is right
-        "errors": errors,
+        "case": score.case,
+        "mesh_hash": score.mesh_hash,
+        "displacement": hash_of(score.displacement),
+        "errors": score.errors,
         "date": datetime.date.today().isoformat(),
     }
     words = [entry[key] for key in ("case", "program", "element", "precision")]
@@ -47,7 +47,10 @@ def make_entry(answer, folder, given):
     name = ".".join(re.sub(r"[^A-Za-z0-9.]+", "-", word).strip("-.").lower() for word in words)
     path = folder / f"{name}.json"
     require_valid(path, entry)
-    entry["displacement"] = keep_displacement(given["case"], answer, folder)
+    stored = displacement_file(entry, folder)
+    stored.parent.mkdir(exist_ok=True)
+    with new_file(stored) as file:
+        file.write_bytes(score.displacement)
     write_json(path, entry)
     return path
 

@@ -16,7 +16,7 @@ class CalculiX(Program):
 
     deck, name, package, explicit = "calculix", "CalculiX", "calculix-ccx", False
 
-    def elements(self, kappa):
+    def elements(self, bench):
         """Full and reduced integration, and incompatible modes."""
         return [Element("C3D8"), Element("C3D8R"), Element("C3D8I")]
 

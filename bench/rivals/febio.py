@@ -10,7 +10,7 @@ class FEBio(Program):
 
     deck, name, explicit = "febio", "FEBio", False
 
-    def elements(self, kappa):
+    def elements(self, bench):
         """The three-field element (the golden's), and one point with hourglass control."""
         return [Element("three-field-solid"), Element("udg-hex")]
 

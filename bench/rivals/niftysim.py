@@ -10,20 +10,15 @@ class NiftySim(Program):
 
     deck, name, precision = "niftysim", "NiftySim", "float"
 
-    def elements(self, kappa):
+    def elements(self, bench):
         """At the stiffness of its own models, and at that of Sandglass."""
-        return [Element("H8", 0.075), Element("H8", kappa)]
+        return [Element("H8", 0.075), Element("H8", bench.kappa)]
 
     def run(self, deck, motion):
         done = self.clocked([self.paths[0], "-x", deck.name, "-v"], deck.parent)
         said = done.output + done.errors
         answer = deck.parent / "U.txt"
-        if re.search(r"[Dd]iverge", said) or done.code or not answer.exists():
-            self.fail(f"{one(said)}")
+        diverged = re.search(r".*[Dd]iverge.*", said)
+        if diverged or done.code or not answer.exists():
+            self.fail(diverged[0].strip(" !") if diverged else "no answer")
         return Run(done.seconds, done.processor_seconds, motion[1], 0, answer)
-
-
-def one(said):
-    """What it says of a failure, in one line."""
-    found = re.search(r".*[Dd]iverge.*", said)
-    return found[0].strip(" !") if found else "no answer"

@@ -21,7 +21,7 @@ class OpenRadioss(Program):
         if "RAD_CFG_PATH" not in os.environ:
             raise InputError("RAD_CFG_PATH must name the folder hm_cfg_files of OpenRadioss")
 
-    def elements(self, kappa):
+    def elements(self, bench):
         """Physical stabilisation, viscous control, and eight points with one pressure."""
         return [Element("HEPH"), Element("viscous"), Element("H8C")]
 

@@ -43,7 +43,6 @@ class Program(ABC):
 
     deck: str
     name: str
-    package = "see bench/README.md"
     explicit = True
     precision = "double"
 
@@ -67,8 +66,8 @@ class Program(ABC):
         """
 
     @abstractmethod
-    def elements(self, kappa):
-        """The Elements to time. kappa: the hourglass stiffness of eq. 12 that Sandglass takes."""
+    def elements(self, bench):
+        """The Elements to time. bench: has kappa, the hourglass stiffness that Sandglass takes."""
 
     def provenance(self):
         """What the figures come from, for the JSON file."""
@@ -80,17 +79,17 @@ class Program(ABC):
             "about": self.about,
         }
 
-    def clocked(self, command, folder, **more):
-        """The clock.Clocked of a command in a folder. more: environment variables."""
-        return clock.run(command, folder, {**self.environment, **more}, self.processor)
+    def clocked(self, command, folder):
+        """The clock.Clocked of a command in a folder."""
+        return clock.run(command, folder, self.environment, self.processor)
 
     def fail(self, reason):
         """Raises ComputationError."""
         raise ComputationError(f"{self}: {reason}")
 
 
-def one_line(text, pattern="error"):
-    """The last line of an output that contains a word, or the last line of all."""
+def one_line(text):
+    """The last line of an output that tells of an error, or the last line of all."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    found = [line for line in lines if pattern in line.lower()]
+    found = [line for line in lines if "error" in line.lower()]
     return (found or lines or ["no message"])[-1]

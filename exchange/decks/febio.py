@@ -35,7 +35,7 @@ def _ogden(*, mu1, alpha1, mu2=0.0, alpha2=2.0, bulk_modulus):
 
 
 def _yeoh(*, c1, c2, c3, bulk_modulus):
-    """FEBio's stress is that of sum c_i / i (I1bar - 3)^i, its energy is not (FEYeoh.cpp of 4.11)."""
+    """FEBio's stress, unlike its energy, is that of sum c_i / i (I1bar - 3)^i (FEYeoh.cpp)."""
     return "Yeoh", {"c1": c1, "c2": 2 * c2, "c3": 3 * c3}
 
 

@@ -89,21 +89,21 @@ class Problem:
 
     def imposed(self):
         """(component, value in m, nodes) of imposed displacements, those of one value together."""
-        found = []
-        for component in range(3):
-            nodes = np.flatnonzero(self.prescribed[:, component])
-            values, group = np.unique(self.values[nodes, component], return_inverse=True)
-            found += [(component, v, nodes[group == i]) for i, v in enumerate(values)]
-        return found
+        return _alike(self.prescribed, self.values)
 
     def applied(self):
         """(component, force in N, nodes) of all nodal forces, those of one value together."""
-        found = []
-        for component in range(3):
-            nodes = np.flatnonzero(self.forces[:, component])
-            values, group = np.unique(self.forces[nodes, component], return_inverse=True)
-            found += [(component, v, nodes[group == i]) for i, v in enumerate(values)]
-        return found
+        return _alike(self.forces, self.forces)
+
+
+def _alike(given, values):
+    """(component, value, nodes) of the components (n, 3) that are given, by component and value."""
+    found = []
+    for component in range(3):
+        nodes = np.flatnonzero(given[:, component])
+        distinct, group = np.unique(values[nodes, component], return_inverse=True)
+        found += [(component, v, nodes[group == i]) for i, v in enumerate(distinct)]
+    return found
 
 
 def refuse(problem, program, reason):

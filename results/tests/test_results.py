@@ -75,7 +75,7 @@ def spoil_displacement(path, entry):
     stored = path.parent / "displacements" / f"{entry['displacement']}.h5"
     with h5py.File(stored, "r+") as file:
         file["displacement"][7, 0] += 1e-3
-    entry["displacement"] = hash_of(stored)
+    entry["displacement"] = hash_of(stored.read_bytes())
     stored.rename(stored.with_stem(entry["displacement"]))
 
 

@@ -3,7 +3,7 @@
 # downloads: Debian's in their place, the open reader instead of the closed one, no H3D output. With a network the authors' way is
 # `./build_script.sh -arch=linux64_gf` in starter/ and engine/; the element loops are the same.
 #   git clone https://github.com/OpenRadioss/OpenRadioss && git -C OpenRadioss checkout bd4557b
-#   bash bench/rivals/recipes/openradioss.sh OpenRadioss bin               # bin/openradioss_starter, openradioss_engine; an hour on two cores
+#   bash bench/rivals/recipes/openradioss.sh OpenRadioss bin               # bin/openradioss_starter, openradioss_engine
 #   NATIVE=1 bash bench/rivals/recipes/openradioss.sh OpenRadioss bin      # bin/openradioss_engine-native, with -O3 -march=native
 # Packages: build-essential gfortran cmake ninja-build python3 liblapack-dev libblas-dev libmetis-dev zlib1g-dev libboost-filesystem-dev.
 # To run: RAD_CFG_PATH=OpenRadioss/hm_cfg_files LD_LIBRARY_PATH=OpenRadioss/exec
