@@ -11,13 +11,15 @@ import re
 import shutil
 from pathlib import Path
 
+import numpy as np
+
 import clock
 from case_file import read_case, read_tables
 from common.errors import ComputationError, InputError
 from common.program import binary
 from exchange.convert import match_displacement
 from exchange.decks import PROGRAMS as DECKS
-from exchange.decks.problem import STEP_FRACTION
+from exchange.decks.problem import DAMPING_PER_CROSSING, RELAXATION_CROSSINGS, STEP_FRACTION
 from exchange.hdf5_file import read_displacement
 from mesh_file import load_case_mesh, make_mesh
 from rivals.program import Run
@@ -163,6 +165,21 @@ class Bench:
         span = self.mesh.largest_imposed() / self.shear_wave_speed
         done = self.sandglass("run", self.write_case(1e-6, duration=span), "-m", method)
         return span / int(_said(r"in (\d+) steps of", done.output))
+
+    @property
+    def crossing(self):
+        """The time, s, in which a shear wave crosses the body."""
+        return np.linalg.norm(np.ptp(self.mesh.points, axis=0)) / self.shear_wave_speed
+
+    def mean_step(self, method):
+        """The mean step, s, that a method of Sandglass takes in a damped motion to the whole load.
+
+        Raises ComputationError if the motion fails.
+        """
+        duration = RELAXATION_CROSSINGS * self.crossing
+        settings = {"duration": duration, "damping": DAMPING_PER_CROSSING / self.crossing}
+        done = self.sandglass("run", self.write_case(1.0, **settings), "-m", method)
+        return duration / int(_said(r"in (\d+) steps of", done.output))
 
 
 def at_rest(bench, program, element):

@@ -178,13 +178,20 @@ def rows_at_rest(bench, programs, options):
             runs = {"answer": peer_runs.at_rest(bench, program, element)}
             rows.append(Row(program.name, str(element), NEWTON, runs, **more))
     for method in options.methods or AT_REST:
-        # A case that cannot be moved has no steps of time.
-        step = bench.own_step(method) if "motion" in options.solves else None
+        step = step_of(bench, method) if "motion" in options.solves else None
         for precision in precisions_of(method):
             runs = {"answer": peer_runs.sandglass_at_rest(bench, method, precision)}
             more = {"precision": precision, "build": "", "time_step": step}
             rows.append(Row("Sandglass", method, RELAXATION, runs, **more))
     return rows
+
+
+def step_of(bench, method):
+    """The mean step of a method of Sandglass in a damped motion; None if the motion fails."""
+    try:
+        return bench.mean_step(method)
+    except ComputationError:
+        return None
 
 
 def damped_row(bench, program, element, found, more):

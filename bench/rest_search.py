@@ -45,8 +45,7 @@ class RestSearch:
 
     def __init__(self, bench, program, element):
         self.bench, self.program, self.element = bench, program, element
-        size = np.linalg.norm(np.ptp(bench.mesh.points, axis=0))
-        self.crossing = size / bench.shear_wave_speed
+        self.crossing = bench.crossing
 
     @cached_property
     def base_step(self):
