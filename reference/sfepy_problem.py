@@ -6,10 +6,13 @@ is found, not which. Pressures have the opposite sign here, which is SfePy's.
 
 import contextlib
 import io
+from pathlib import Path
 
 import numpy as np
 import scipy.sparse
 
+# SfePy makes this folder when it is first imported, and fails if another process is quicker.
+(Path.home() / ".sfepy").mkdir(exist_ok=True)
 with contextlib.redirect_stdout(io.StringIO()):
     import sfepy.discrete as discrete  # first: other orders of import fail
     from sfepy import __version__ as VERSION
