@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse
 
-# SfePy makes this folder when it is first imported, and fails if another process is quicker.
-(Path.home() / ".sfepy").mkdir(exist_ok=True)
 with contextlib.redirect_stdout(io.StringIO()):
+    # SfePy makes this folder when it is first imported, and fails if another process is quicker.
+    (Path.home() / ".sfepy").mkdir(exist_ok=True)
     import sfepy.discrete as discrete  # first: other orders of import fail
     from sfepy import __version__ as VERSION
     from sfepy.base.base import output
