@@ -13,9 +13,7 @@ mkdir -p "$2"
 bin=$(realpath "$2")
 cd "$source"
 compilers=(-G Ninja -DCMAKE_Fortran_COMPILER=gfortran -DCMAKE_C_COMPILER=gcc -DCMAKE_CXX_COMPILER=g++)
-# What is left out below is never called by our decks.
-linked="-Wl,--unresolved-symbols=ignore-all"
-options=(-Darch=linux64_gf -Dprecision=dp -Ddebug=0 -Dstatic_link=0 -Dno_python=0 "-DCMAKE_EXE_LINKER_FLAGS=$linked")
+options=(-Darch=linux64_gf -Dprecision=dp -Ddebug=0 -Dstatic_link=0 -Dno_python=0)
 
 if [ ! -d extlib ]; then
   # 1. Stand-ins for the libraries that are downloaded.
@@ -66,6 +64,10 @@ EXPRTK
   # 3. The open reader does not make rigid bodies of parts; the H3D writer is closed.
   sed -i 's/^\( *\)call cpp_evaluate_rbodies_number_from_rigid_parts.*/\1NBRBODIES_PER_PART(1:NPART) = 0/' \
     starter/source/devtools/hm_reader/hm_evaluate_rbodies_from_rigid_parts.F90
+  # What is left out is never called by our decks.
+  for part in starter engine; do
+    echo 'string(APPEND LINK " -Wl,--unresolved-symbols=ignore-all")' >>$part/CMake_Compilers/cmake_linux64_gf.txt
+  done
   cat >>engine/CMake_Compilers/cmake_linux64_gf.txt <<'ENGINE'
 list(FILTER cpp_source_files EXCLUDE REGEX "/h3d_build_cpp/")
 list(FILTER c_source_files EXCLUDE REGEX "/h3d_build_cpp/")
