@@ -64,7 +64,12 @@ EXPRTK
   # 3. The open reader does not make rigid bodies of parts; the H3D writer is closed.
   sed -i 's/^\( *\)call cpp_evaluate_rbodies_number_from_rigid_parts.*/\1NBRBODIES_PER_PART(1:NPART) = 0/' \
     starter/source/devtools/hm_reader/hm_evaluate_rbodies_from_rigid_parts.F90
-  # What is left out is never called by our decks.
+  cat >starter/stub/open_reader.c <<'STUB'
+void cpp_create_rbodies_from_rigid_parts_(void* a) { (void)a; }
+void cpp_is_part_with_elements_(int* id, char* filled) { (void)id, (void)filled; }
+void cpp_sale_mesh_create_(void* a) { (void)a; }
+STUB
+  # What else is left out is never called by our decks.
   for part in starter engine; do
     echo 'string(APPEND LINK " -Wl,--unresolved-symbols=ignore-all")' >>$part/CMake_Compilers/cmake_linux64_gf.txt
   done
