@@ -51,7 +51,10 @@ Identity identity_of(const Model& model) {
 }  // namespace
 
 CheckpointKeeper::CheckpointKeeper(const Model& model, fs::path file, double seconds)
-    : file_(std::move(file)), identity_(identity_of(model)), interval_(seconds) {
+    : file_(std::move(file)),
+      identity_(identity_of(model)),
+      interval_(seconds),
+      ranks_(model.choice().ranks) {
   require_place(file_);
   std::error_code ignored;
   if (!fs::exists(file_, ignored)) return;
@@ -62,11 +65,11 @@ CheckpointKeeper::CheckpointKeeper(const Model& model, fs::path file, double sec
 
 void CheckpointKeeper::resumable(const std::function<Checkpoint()>& checkpoint) {
   const auto now = std::chrono::steady_clock::now();
-  if (now - last_ < interval_ && !interrupted()) return;
+  if (!ranks_->any(now - last_ >= interval_ || interrupted())) return;
   last_ = now;
   try {
     run_.point = checkpoint();
-    write_checkpoint_file(file_, identity_, run_);
+    if (ranks_->rank() == 0) write_checkpoint_file(file_, identity_, run_);
   } catch (const std::exception& error) {
     fmt::print(stderr, "warning: no checkpoint now, the run goes on: {}\n", error.what());
   }
@@ -74,7 +77,7 @@ void CheckpointKeeper::resumable(const std::function<Checkpoint()>& checkpoint) 
 
 void CheckpointKeeper::finish() {
   std::error_code error;
-  fs::remove(file_, error);
+  if (ranks_->rank() == 0) fs::remove(file_, error);
   if (error) {
     fmt::print(stderr, "warning: {}: cannot be removed: {}\n", file_.string(), error.message());
   }

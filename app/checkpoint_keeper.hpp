@@ -39,6 +39,7 @@ class CheckpointKeeper {
   std::filesystem::path file_;
   Identity identity_;
   std::chrono::duration<double> interval_;
+  std::shared_ptr<const Ranks> ranks_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
   RunSoFar run_;
   bool resumed_ = false;

@@ -37,6 +37,7 @@ struct RunOptions {
   std::optional<std::string> accuracy = {};
   std::optional<std::string> sleep = {};
   int threads = 1;
+  std::shared_ptr<const Ranks> ranks;
   std::string output;
   std::string checkpoint;
   double checkpoint_every = 60.0;
@@ -49,8 +50,10 @@ struct RunOptions {
 class RunObserver final : public Observer {
  public:
   /// `writer` and `keeper` may be null. What a run that goes on told before goes into its result first.
-  RunObserver(const std::string& title, ResultWriter* writer, CheckpointKeeper* keeper)
-      : progress_(title), writer_(writer) {
+  RunObserver(const Model& model, ResultWriter* writer, CheckpointKeeper* keeper)
+      : first_rank_(model.choice().ranks->rank() == 0),
+        progress_(model.scene().description.name),
+        writer_(writer) {
     if (keeper != nullptr) {
       for (const auto& told : keeper->run().frames) frame(told);
       for (const auto& row : keeper->run().history) history(row);
@@ -72,13 +75,14 @@ class RunObserver final : public Observer {
     if (keeper_ != nullptr) keeper_->resumable(checkpoint);
   }
   bool proceed(long step, double share, double residual) override {
-    progress_.show(share, fmt::format("step {}, residual {:.1e}", step, residual));
+    if (first_rank_) progress_.show(share, fmt::format("step {}, residual {:.1e}", step, residual));
     return !interrupted();
   }
   const HistoryRow& last() const { return last_; }
   const std::vector<double>& levels() const { return levels_; }
 
  private:
+  bool first_rank_;
   Progress progress_;
   ResultWriter* writer_;
   CheckpointKeeper* keeper_ = nullptr;
@@ -153,6 +157,7 @@ MethodChoice choose_method(const RunOptions& options, const Given& given, const 
   choice.precision = given.precision.value_or(choice.precision);
   choice.accuracy = given.accuracy.value_or(choice.accuracy);
   choice.threads = options.threads;
+  choice.ranks = options.ranks;
   return choice;
 }
 
@@ -173,6 +178,12 @@ void require_sensible(const RunOptions& options) {
       throw InputError("--against: a refined mesh is computed as a whole; leave out --sleep");
     if (!options.checkpoint.empty())
       throw InputError("--against: a run that refines its mesh keeps no checkpoints; leave out --checkpoint");
+  }
+  if (options.ranks->count() > 1 &&
+      (options.sleep || !options.against.empty() || options.estimate == "truth")) {
+    throw InputError(
+        "--sleep, --against and --estimate truth compute parts and other meshes, which are not divided among "
+        "ranks; allowed: one rank with more --threads");
   }
   if (options.sleep && !options.checkpoint.empty()) {
     throw InputError("--sleep: a run of which a part sleeps keeps no checkpoints; leave out --checkpoint");
@@ -276,7 +287,7 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
   if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
   watch_for_interrupt();
-  RunObserver observer(scene.description.name, writer, keeper);
+  RunObserver observer(model, writer, keeper);
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
   Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
                                : dynamic_answer(model, observer, from);
@@ -330,8 +341,9 @@ int run_case(const RunOptions& options) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, int& exit_code) {
+void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks> ranks) {
   auto options = std::make_shared<RunOptions>();
+  options->ranks = std::move(ranks);
   CLI::App* command = app.add_subcommand("run", "compute a case with a method");
   command->add_option("CASE", options->name, "name or file of the case");
   command->add_option("-m,--method", options->method,

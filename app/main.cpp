@@ -11,15 +11,15 @@
 #include "app/build_info.hpp"
 #include "app/commands.hpp"
 #include "base/error.hpp"
+#include "io/mpi_ranks.hpp"
 
 namespace {
 
 /// Exit codes of every command.
 enum ExitCode { ok = 0, limit_broken = 1, bad_input = 2, computation_failed = 3 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The program. Of several ranks only the first prints.
+int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ranks) {
   CLI::App app{
       "Sandglass: explicit Total Lagrangian hexahedra with hourglass control, measured against a mixed "
       "reference.\n"
@@ -28,37 +28,54 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("sandglass {} ({})", sandglass::build_info::version,
                                                 sandglass::build_info::revision));
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
+  if (ranks->rank() > 0 && std::freopen("/dev/null", "w", stdout) == nullptr) return computation_failed;
   int exit_code = ok;
-  sandglass::add_cases_command(app);
-  sandglass::add_methods_command(app);
-  sandglass::add_run_command(app, exit_code);
-  sandglass::add_verify_command(app, exit_code);
-  sandglass::add_stability_command(app, exit_code);
-  sandglass::add_choose_command(app, exit_code);
-  sandglass::add_score_command(app);
-  sandglass::add_mesh_command(app);
-  sandglass::add_flops_command(app);
-  sandglass::add_bench_command(app, exit_code);
+  sandglass::add_run_command(app, exit_code, ranks);
+  if (ranks->count() == 1) {
+    sandglass::add_cases_command(app);
+    sandglass::add_methods_command(app);
+    sandglass::add_verify_command(app, exit_code);
+    sandglass::add_stability_command(app, exit_code);
+    sandglass::add_choose_command(app, exit_code);
+    sandglass::add_score_command(app);
+    sandglass::add_mesh_command(app);
+    sandglass::add_flops_command(app);
+    sandglass::add_bench_command(app, exit_code);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? ok : bad_input;
-  } catch (const sandglass::InputError& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return bad_input;
-  } catch (const sandglass::ComputationError& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return computation_failed;
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "error: not enough memory\n");
-    return computation_failed;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "error: {}\n", error.what());
-    return computation_failed;
+    return ranks->rank() > 0 ? bad_input : app.exit(error) == 0 ? ok : bad_input;
   }
   if (std::fflush(stdout) != 0) {
     fmt::print(stderr, "error: standard output: cannot be written\n");
     return computation_failed;
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::shared_ptr<const sandglass::Ranks> ranks = std::make_shared<const sandglass::Ranks>();
+  // An error of all ranks is told once and ends them in order; one of some ends the others, who wait for
+  // them.
+  const auto fail = [&ranks](const char* message, int code) {
+    const bool all = ranks->all_end();
+    if (!all || ranks->rank() == 0) {
+      fmt::print(stderr, "error: {}{}\n", all ? "" : fmt::format("rank {}: ", ranks->rank()), message);
+    }
+    if (!all) ranks->abort(code);
+    return code;
+  };
+  try {
+    ranks = sandglass::join_ranks();
+    return run(argc, argv, ranks);
+  } catch (const sandglass::InputError& error) {
+    return fail(error.what(), bad_input);
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory", computation_failed);
+  } catch (const std::exception& error) {
+    return fail(error.what(), computation_failed);
+  }
 }

@@ -38,8 +38,8 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
  public:
   template <class LoopLaw>
   ElementAssembly(const Mesh& mesh, const Materials& materials, const std::vector<LoopLaw>& laws,
-                  const HourglassSettings& settings, int threads)
-      : Base(mesh, materials, settings, threads), laws_(laws.begin(), laws.end()) {}
+                  const HourglassSettings& settings, const Team& team)
+      : Base(mesh, materials, settings, team), laws_(laws.begin(), laws.end()) {}
 
   State<Real> undeformed() const override {
     State<Real> state = Base::undeformed();
@@ -48,18 +48,31 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     return state;
   }
 
+  void gather(State<Real>& state) const override {
+    layout_->gather_rows(state.u.data());
+    layout_->gather_rows(state.increment.data());
+    layout_->gather_cells(state.history.data(), history_numbers / width);
+    if constexpr (Base::averages_over_nodes) layout_->gather_rows(volumes_of(state), 4);
+  }
+
   StrainEnergies energies(const State<Real>& state) const override {
-    StrainEnergies sum;
+    std::vector<double> partial(2 * layout_->chunks.size());  // strain and hourglass energy of chunks
     const auto laws = laws_at(state.step);
     this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at,
                                                   const auto& for_each_lane) {
       const auto energy = KernelOf<Method>::energy(motion, element, history<Method>(state, at.block),
                                                    with_axes(laws[at.material], at.axes));
       for_each_lane([&](std::size_t /*e*/, int lane) {
-        sum.strain += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
-        sum.hourglass += static_cast<double>(Lanes<Number>::get(energy.hourglass, lane));
+        partial[2 * at.chunk] += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
+        partial[2 * at.chunk + 1] += static_cast<double>(Lanes<Number>::get(energy.hourglass, lane));
       });
     });
+    layout_->team.ranks->sum(partial);
+    StrainEnergies sum;
+    for (std::size_t c = 0; c < layout_->chunks.size(); ++c) {
+      sum.strain += partial[2 * c];
+      sum.hourglass += partial[2 * c + 1];
+    }
     return sum;
   }
 
@@ -90,20 +103,29 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     if constexpr (Base::adapts) {
       const std::vector<std::size_t> before = Base::plan_of(state).levels;
       std::vector<Defects> defects(before.size());
-      in_parallel(layout_->chunks.size(), this->threads_,
-                  [&](std::size_t c) { measure_defects(layout_->chunks[c], state.u, mobility, defects); });
-      std::vector<std::size_t> wanted(before.size());
-      for (std::size_t e = 0; e < wanted.size(); ++e) {
-        const std::size_t needed = cheapest(defects[e], length), kept = cheapest(defects[e], demoting_length);
-        wanted[e] = needed > before[e]      ? needed
-                    : demoting_length > 0.0 ? std::min(kept, before[e])
-                                            : before[e];
+      layout_->for_each_local_chunk(
+          [&](std::size_t c) { measure_defects(layout_->chunks[c], state.u, mobility, defects); });
+      std::vector<std::size_t> wanted = before;
+      std::array<double, 2> changed{};  // promoted, demoted
+      for (std::size_t c = layout_->local_chunks.first; c < layout_->local_chunks.last; ++c) {
+        const std::vector<int>& elements = this->elements_of_chunks()[c];
+        for (const int number : elements) {
+          const auto e = static_cast<std::size_t>(number);
+          const std::size_t needed = cheapest(defects[e], length),
+                            kept = cheapest(defects[e], demoting_length);
+          wanted[e] = needed > before[e]      ? needed
+                      : demoting_length > 0.0 ? std::min(kept, before[e])
+                                              : before[e];
+        }
+        fill_lanes(elements, defects, wanted);
+        if (c >= layout_->own_chunks.last) continue;
+        for (const int number : elements) {
+          const auto e = static_cast<std::size_t>(number);
+          if (wanted[e] != before[e]) ++changed[wanted[e] < before[e]];
+        }
       }
-      for (const auto& elements : this->elements_of_chunks()) fill_lanes(elements, defects, wanted);
-      for (std::size_t e = 0; e < wanted.size(); ++e) {
-        if (wanted[e] > before[e]) ++changes.promoted;
-        if (wanted[e] < before[e]) ++changes.demoted;
-      }
+      layout_->team.ranks->sum(changed);
+      changes = {static_cast<std::size_t>(changed[0]), static_cast<std::size_t>(changed[1])};
       if (changes.promoted + changes.demoted > 0) this->regroup(state, std::move(wanted));
     }
     return changes;
@@ -246,13 +268,13 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
 
  public:
   ForceLoop(const Mesh& mesh, const Materials& materials, const std::vector<LoopLaw>& laws,
-            const HourglassSettings& settings, int threads)
-      : Base(mesh, materials, laws, settings, threads), loop_laws_(laws) {}
+            const HourglassSettings& settings, const Team& team)
+      : Base(mesh, materials, laws, settings, team), loop_laws_(laws) {}
 
   void evaluate(State<Real>& state, Rows<Real>& force) const override {
     const auto& plan = Base::plan_of(state);
     if constexpr (Base::averages_over_nodes) this->sum_volumes(state, this->volumes_of(state));
-    sum_over_chunks(*this->layout_, this->threads_, numbers_of(force), [&](std::size_t c) {
+    sum_over_chunks(*this->layout_, numbers_of(force), [&](std::size_t c) {
       std::apply([&](const auto&... part) { (add_forces(part, state, numbers_of(force)), ...); },
                  *plan.chunks[c]);
     });

@@ -45,17 +45,18 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& material
         "another method",
         name_of(material.law), method.name));
   }
+  const Team team{choice.threads, choice.ranks};
   const HourglassSettings settings{.kappa = choice.kappa, .kappa_modulus = choice.kappa_modulus};
   if (choice.kernel == KernelWidth::scalar) {
     if (!has_scalar_kernels()) {
       throw InputError("kernel: this program has no scalar kernels; sandglass-scalar has");
     }
-    return method.assemble_scalar_double(mesh, materials, settings, choice.threads);
+    return method.assemble_scalar_double(mesh, materials, settings, team);
   }
   if (choice.precision == Precision::double_precision) {
-    return method.assemble_packed_double(mesh, materials, settings, choice.threads);
+    return method.assemble_packed_double(mesh, materials, settings, team);
   }
-  return method.assemble_packed_float(mesh, materials, settings, choice.threads);
+  return method.assemble_packed_float(mesh, materials, settings, team);
 }
 
 template <class Real>

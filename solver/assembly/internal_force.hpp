@@ -69,7 +69,8 @@ class InternalForce {
   virtual bool needs_increment() const = 0;
 
   /// Sets `force` to the internal nodal forces (N) and advances the history by one step. Allocates nothing.
-  /// The bits do not depend on the number of threads.
+  /// The bits do not depend on the number of threads and ranks. Of several ranks each knows the forces of its
+  /// Layout::row_blocks, from the displacements of the same.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
   /// Sets `force` to the nodal forces (N) of pressures p - q(J) (Pa), one for each element in the numbering
@@ -97,10 +98,14 @@ class InternalForce {
   /// Sets the levels. Throws InputError if one is not a level of the method: they may come from a file.
   virtual void set_levels(State<Real>& /*state*/, const std::vector<double>& /*levels*/) const {}
 
-  /// Strain and hourglass energy of the whole mesh.
+  /// Makes displacements, increments and history known to all ranks.
+  virtual void gather(State<Real>& state) const = 0;
+
+  /// Strain and hourglass energy of the whole mesh, of all ranks.
   virtual StrainEnergies energies(const State<Real>& state) const = 0;
 
-  // The following are per element, in the numbering of the mesh.
+  // The following are per element, in the numbering of the mesh; only those of chunks that the rank owns are
+  // set.
 
   /// Hourglass energy per reference volume (J/m^3).
   virtual void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const = 0;
@@ -138,6 +143,7 @@ struct MethodChoice {
   std::optional<double> kappa = {};  ///< none means auto
   Precision precision = Precision::double_precision;
   int threads = 1;
+  std::shared_ptr<const Ranks> ranks = std::make_shared<const Ranks>();
   KernelWidth kernel = KernelWidth::pack;
   KappaModulus kappa_modulus = KappaModulus::p_wave;
   double accuracy = default_accuracy;  ///< of an adaptive method: displacement error over the largest imposed

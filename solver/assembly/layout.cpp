@@ -1,11 +1,14 @@
 #include "assembly/layout.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 
 #include "assembly/strips.hpp"
+#include "base/error.hpp"
 
 namespace sandglass {
 
@@ -212,6 +215,43 @@ class StripPacker {
   int round_ = -1;
 };
 
+/// Divides the chunks of a layout among the ranks of its team, in pairs.
+void divide_among_ranks(Layout& layout) {
+  const std::size_t chunks = layout.chunks.size(), pairs = (chunks + 1) / 2;
+  const auto ranks = at(layout.team.ranks->count()), rank = at(layout.team.ranks->rank());
+  if (ranks > pairs) {
+    throw InputError(fmt::format(
+        "ranks: {} are too many for a mesh of {} elements; allowed: at most {}, or threads instead", ranks,
+        layout.elements.size() - at(static_cast<int>(std::ranges::count(layout.elements, -1))), pairs));
+  }
+  std::vector<std::size_t> first_chunk;
+  for (std::size_t r = 0; r <= ranks; ++r) first_chunk.push_back(std::min(chunks, 2 * (pairs * r / ranks)));
+  layout.own_chunks = {first_chunk[rank], first_chunk[rank + 1]};
+  layout.local_chunks = {layout.own_chunks.first, std::min(chunks, layout.own_chunks.last + 1)};
+  std::vector<std::size_t> row_ends, cell_ends;
+  const auto first_cell = [&](std::size_t group) {
+    const bool end = group == layout.groups.size();
+    return end ? layout.elements.size() : layout.groups[group].first_rank * at(layout.width);
+  };
+  for (const auto& chunk : layout.chunks) {
+    row_ends.push_back(4 * chunk.last_row);
+    cell_ends.push_back(first_cell(chunk.last));
+  }
+  // The neighbours' rows that own elements touch are those of one chunk on each side.
+  const bool last = rank + 1 == ranks;
+  const std::size_t below = layout.own_chunks.first - (rank > 0 ? 1 : 0);
+  row_ends.push_back(4 * layout.rows());  // nodes in no element, and spare rows
+  layout.row_blocks = Blocks(row_ends, {layout.own_chunks.first, last ? chunks + 1 : layout.own_chunks.last},
+                             {below, last ? chunks + 1 : layout.local_chunks.last}, layout.team);
+  layout.cell_blocks = Blocks(cell_ends, layout.own_chunks, layout.local_chunks, layout.team);
+  for (std::size_t r = 0; r < ranks; ++r) {
+    layout.rank_rows.push_back(layout.chunks[first_chunk[r]].first_row);
+    layout.rank_cells.push_back(first_cell(layout.chunks[first_chunk[r]].first));
+  }
+  layout.rank_rows.push_back(layout.rows());
+  layout.rank_cells.push_back(layout.elements.size());
+}
+
 }  // namespace
 
 std::vector<int> Layout::elements_of(const Chunk& chunk) const {
@@ -224,13 +264,15 @@ std::vector<int> Layout::elements_of(const Chunk& chunk) const {
   return found;
 }
 
-Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows, std::vector<std::uint16_t> materials) {
+Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows, std::vector<std::uint16_t> materials,
+                   Team team) {
   const NodeElements neighbours(mesh);
   const std::vector<int> order = sorted_along_the_mesh(mesh);
   const std::size_t n = choose_chunks(mesh, order);
   Layout layout;
   layout.nodes = mesh.points.size();
   layout.materials = std::move(materials);
+  layout.team = std::move(team);
   layout.row_of_node.assign(layout.nodes, -1);
   const auto number = [&](int node) {
     int& row = layout.row_of_node[at(node)];
@@ -258,6 +300,7 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows, std::vecto
   for (std::size_t node = 0; node < layout.nodes; ++node) number(static_cast<int>(node));  // in no element
   layout.node_of_row.insert(layout.node_of_row.end(), spare.begin(), spare.end());
   static_cast<ElementGroups&>(layout) = packer.finish();
+  divide_among_ranks(layout);
   return layout;
 }
 

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "base/ranks.hpp"
+#include "math/row_loops.hpp"
 #include "math/rows.hpp"
 #include "mesh/mesh.hpp"
 
@@ -36,7 +38,10 @@ struct ElementGroups {
 /// The order in which the time loop goes through a mesh, computed once. Groups are divided into chunks, which
 /// are slabs of the mesh. Even chunks share no nodes with each other, nor do odd ones, so that any number of
 /// threads adds the forces at a node in the same order. Rows are nodes in the order of their first occurrence
-/// in the groups.
+/// in the groups; cells are lanes, rank by rank.
+///
+/// Each rank of a team owns some chunks and the rows that occur first in them. It also computes the first
+/// chunk of the rank above, which touches its last rows, so that the forces of all its rows are complete.
 struct Layout : ElementGroups {
   /// Groups first to last - 1, in which rows first_row to last_row - 1 occur first. Spare rows for strips of
   /// up to `spare_ranks` elements begin at `spare_row`, if the chunk has any.
@@ -55,18 +60,58 @@ struct Layout : ElementGroups {
   std::vector<Chunk> chunks;
   std::vector<std::uint16_t> materials;  ///< of each element; empty if there is only one
 
+  Team team;
+  Blocks::Range own_chunks;             ///< of this rank
+  Blocks::Range local_chunks;           ///< that it computes
+  Blocks row_blocks;                    ///< of vectors with four numbers for each row
+  Blocks cell_blocks;                   ///< of vectors with a number for each cell
+  std::vector<std::size_t> rank_rows;   ///< where the own rows of each rank begin, and the end
+  std::vector<std::size_t> rank_cells;  ///< the same for its cells
+
   std::size_t rows() const { return node_of_row.size(); }
+
+  /// Calls body(c) for the chunks that this rank computes, in parallel.
+  template <class Body>
+  void for_each_local_chunk(const Body& body) const {
+    in_parallel(local_chunks.last - local_chunks.first, team.threads,
+                [&](std::size_t k) { body(local_chunks.first + k); });
+  }
+
+  /// Sends the values of each rank's own rows, or cells, to all others.
+  template <class T>
+  void gather_rows(T* values, std::size_t of_each = 1) const {
+    gather(values, rank_rows, of_each);
+  }
+  template <class T>
+  void gather_cells(T* values, std::size_t of_each = 1) const {
+    gather(values, rank_cells, of_each);
+  }
+
+  /// Whether this rank owns the row of a node.
+  bool owns(int node) const {
+    const auto row = static_cast<std::size_t>(row_of_node[static_cast<std::size_t>(node)]);
+    const auto rank = static_cast<std::size_t>(team.ranks->rank());
+    return row >= rank_rows[rank] && row < rank_rows[rank + 1];
+  }
 
   /// The elements of a chunk, in the order of the loop.
   std::vector<int> elements_of(const Chunk& chunk) const;
+
+ private:
+  template <class T>
+  void gather(T* values, std::vector<std::size_t> bounds, std::size_t of_each) const {
+    for (std::size_t& bound : bounds) bound *= of_each * sizeof(T);
+    team.ranks->gather(reinterpret_cast<std::byte*>(values), bounds);
+  }
 };
 
 /// Which chunks have spare rows: those with spare lanes, or all, for groups made later.
 enum class SpareRows { where_needed, everywhere };
 
-/// The layout of a mesh for kernels that compute `width` elements at a time; `materials` as in Layout.
+/// The layout of a mesh for kernels that compute `width` elements at a time; `materials` as in Layout. Throws
+/// InputError if there are more ranks than pairs of chunks.
 Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows = SpareRows::where_needed,
-                   std::vector<std::uint16_t> materials = {});
+                   std::vector<std::uint16_t> materials = {}, Team team = {});
 
 class NodeElements;
 

@@ -83,11 +83,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
  public:
   LevelledElements(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
-                   int threads)
-      : layout_(std::make_shared<Layout>(make_layout(
-            mesh, width, adapts ? SpareRows::everywhere : SpareRows::where_needed, materials.of_element))),
-        axes_(materials.axes),
-        threads_(threads) {
+                   const Team& team)
+      : layout_(std::make_shared<Layout>(make_layout(mesh, width,
+                                                     adapts ? SpareRows::everywhere : SpareRows::where_needed,
+                                                     materials.of_element, team))),
+        axes_(materials.axes) {
     for (const Material& material : materials.list) {
       setups_.push_back({elastic_law(kernel_law(material)), settings});
       setups_.back().settings.density = material.density;
@@ -100,7 +100,10 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       regrouping_ = std::make_unique<const Regrouping>(mesh, *layout_);
       plan = plan_at(std::vector<std::size_t>(mesh.cells.size()), nullptr);
     } else {
-      for (const auto& chunk : layout_->chunks) plan->chunks.push_back(only_part(mesh, chunk));
+      plan->chunks.resize(layout_->chunks.size());
+      for (std::size_t c = layout_->local_chunks.first; c < layout_->local_chunks.last; ++c) {
+        plan->chunks[c] = only_part(mesh, layout_->chunks[c]);
+      }
     }
     undeformed_plan_ = std::move(plan);
     using Cheapest = typename std::tuple_element_t<0, Parts>::Element;
@@ -144,7 +147,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       volumes.resize(4 * layout_->rows());
       sum_volumes(state, volumes.data());
     }
-    sum_over_chunks(*layout_, threads_, numbers_of(force), [&](std::size_t c) {
+    sum_over_chunks(*layout_, numbers_of(force), [&](std::size_t c) {
       std::apply(
           [&](const auto&... part) {
             (add_pressures(part, state, volumes.data(), p, lambdas, numbers_of(force), defect), ...);
@@ -224,20 +227,22 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   /// volume (m^3).
   void sum_volumes(const State<Real>& state, Real* volumes) const {
     const Plan& plan = plan_of(state);
-    sum_over_chunks(*layout_, threads_, volumes, [&](std::size_t c) {
+    sum_over_chunks(*layout_, volumes, [&](std::size_t c) {
       std::apply([&](const auto&... part) { (add_volumes(part, state, volumes), ...); }, *plan.chunks[c]);
     });
   }
 
-  /// A block of elements: its index among those of its groups, its material, and the axes of its elements.
+  /// A block of elements: its chunk, its index among those of its groups, its material, and the axes of its
+  /// elements.
   struct BlockPlace {
+    std::size_t chunk;
     std::size_t block;
     std::size_t material;
     const MaterialAxes<Number>* axes;
   };
 
-  /// Calls visit.operator()<Method>(motion, element, place, for_each_lane) for every block of elements, where
-  /// for_each_lane(use) calls use(e, lane) for each lane with the number of its element.
+  /// Calls visit.operator()<Method>(motion, element, place, for_each_lane) for every block of own elements,
+  /// where for_each_lane(use) calls use(e, lane) for each lane with the number of its element.
   template <class Visit>
   void for_each_block(const State<Real>& state, const Visit& visit) const {
     std::vector<Real> volumes;
@@ -246,7 +251,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       sum_volumes(state, volumes.data());
     }
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
-    const auto visit_part = [&]<class Method>(const Part<Method>& part) {
+    const auto visit_part = [&]<class Method>(const Part<Method>& part, std::size_t c) {
       for (std::size_t g = part.first; g < part.last; ++g) {
         const auto group = part.groups->groups[g];
         FaceMotion lower = gather_face<Method>(*part.groups, state, volumes.data(), group.first_face);
@@ -256,7 +261,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
               gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
           visit.template operator()<Method>(
               between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block],
-              BlockPlace{block, group.material, part.axes_at(block)}, [&](const auto& use) {
+              BlockPlace{c, block, group.material, part.axes_at(block)}, [&](const auto& use) {
                 for (int lane = 0; lane < width; ++lane) {
                   const int e = part.groups->elements[block * width + static_cast<std::size_t>(lane)];
                   if (e >= 0) use(static_cast<std::size_t>(e), lane);
@@ -266,12 +271,12 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
         }
       }
     };
-    for (const auto& parts : plan_of(state).chunks) {
-      std::apply([&](const auto&... part) { (visit_part(part), ...); }, *parts);
+    for (std::size_t c = layout_->own_chunks.first; c < layout_->own_chunks.last; ++c) {
+      std::apply([&](const auto&... part) { (visit_part(part, c), ...); }, *plan_of(state).chunks[c]);
     }
   }
 
-  /// Sets values[e] for every element to its lane of evaluate.operator()<Method>(motion, element, place).
+  /// Sets values[e] for every own element to its lane of evaluate.operator()<Method>(motion, element, place).
   template <class Evaluate>
   void per_element(const State<Real>& state, std::span<double> values, const Evaluate& evaluate) const {
     for_each_block(state, [&]<class Method>(const ElementMotion<Number>& motion, const auto& element,
@@ -299,9 +304,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   std::shared_ptr<const Layout> layout_;    // of all elements
   std::vector<MaterialAxes<double>> axes_;  // of each element; empty: those of space
   std::vector<Setup> setups_;               // of each material
-  int threads_;
-  Rows<Real> coordinates_;  // only if kernels need them, or adaptive methods
-  bool streams_ = false;    // whether constants do not remain in the cache from step to step
+  Rows<Real> coordinates_;                  // only if kernels need them, or adaptive methods
+  bool streams_ = false;                    // whether constants do not remain in the cache from step to step
 
  private:
   /// The data needed for changing the levels of elements.
@@ -330,13 +334,14 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   std::shared_ptr<Plan> plan_at(std::vector<std::size_t> levels, const Plan* before) const {
     auto plan = std::make_shared<Plan>();
     plan->levels = std::move(levels);
-    for (std::size_t c = 0; c < elements_of_chunks().size(); ++c) {
+    plan->chunks.resize(layout_->chunks.size());
+    for (std::size_t c = layout_->local_chunks.first; c < layout_->local_chunks.last; ++c) {
       const auto& elements = elements_of_chunks()[c];
       const bool same = before != nullptr && std::all_of(elements.begin(), elements.end(), [&](int e) {
                           const auto n = static_cast<std::size_t>(e);
                           return before->levels[n] == plan->levels[n];
                         });
-      plan->chunks.push_back(same ? before->chunks[c] : parts_at(c, plan->levels));
+      plan->chunks[c] = same ? before->chunks[c] : parts_at(c, plan->levels);
     }
     return plan;
   }

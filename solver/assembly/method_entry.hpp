@@ -15,7 +15,7 @@ using ForceOf = std::unique_ptr<InternalForce<typename Lanes<Number>::Scalar>>;
 
 /// Makes the elements of a mesh with materials whose laws the method supports.
 template <class Number>
-using Assemble = ForceOf<Number>(const Mesh&, const Materials&, const HourglassSettings&, int threads);
+using Assemble = ForceOf<Number>(const Mesh&, const Materials&, const HourglassSettings&, const Team& team);
 
 template <class Number>
 class BatchForce;
@@ -60,13 +60,13 @@ struct MethodEntry {
 /// The elements of a mesh with a method, for `MethodEntry`. Defined in `assembly/assemble.hpp`.
 template <class Method, class Number>
 ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
-                         int threads);
+                         const Team& team);
 
 /// The same, one element at a time, to compare with. Weak: null in a program without `sandglass_scalar`, for
 /// these kernels serve tests and benchmarks alone. Defined in `assembly/assemble.hpp`.
 template <class Method>
 [[gnu::weak]] ForceOf<double> assemble_scalar(const Mesh& mesh, const Materials& materials,
-                                              const HourglassSettings& settings, int threads);
+                                              const HourglassSettings& settings, const Team& team);
 
 /// The elements of bodies side by side, for `MethodEntry`. Defined in `assembly/batch_force.hpp`.
 template <class Method, class Number>

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <limits>
@@ -11,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "io/file_hash.hpp"
+#include "io/mpi_ranks.hpp"
 #include "io/new_file.hpp"
 
 namespace sandglass {
@@ -149,7 +151,8 @@ struct Hdf5File::Handle {
     H5Pset_create_intermediate_group(links.get(), 1);
     const Identifier creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.get(), false);  // the same content gives the same bytes
-    if (storage.compressed && entries.size() >= compress_from) {
+    const auto count = static_cast<std::size_t>(storage.ranks->count());
+    if (storage.compressed && count == 1 && entries.size() >= compress_from) {
       H5Pset_chunk(creation.get(), static_cast<int>(dims.size()), dims.data());
       H5Pset_shuffle(creation.get());
       H5Pset_deflate(creation.get(), 4);
@@ -158,7 +161,23 @@ struct Hdf5File::Handle {
         H5Dcreate2(file, name.c_str(), native(T{}), space.get(), links.get(), creation.get(), H5P_DEFAULT),
         H5Dclose);
     require_written(set.valid(), fmt::format("cannot create dataset '{}'", name));
-    require_written(H5Dwrite(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, entries.data()) >= 0,
+    // Each rank writes some of the entries along the first axis.
+    const auto rank = static_cast<std::size_t>(storage.ranks->rank());
+    const std::size_t first = shape[0] * rank / count, last = shape[0] * (rank + 1) / count;
+    std::vector<hsize_t> begin(dims.size()), part = dims;
+    begin[0] = first;
+    part[0] = last - first;
+    const Identifier memory(H5Screate_simple(static_cast<int>(dims.size()), part.data(), nullptr), H5Sclose);
+    if (first < last) {
+      H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, begin.data(), nullptr, part.data(), nullptr);
+    } else {
+      H5Sselect_none(space.get());
+      H5Sselect_none(memory.get());
+    }
+    const Identifier transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+    write_together(*storage.ranks, transfer.get());
+    const T* from = entries.data() + (shape[0] > 0 ? entries.size() / shape[0] * first : 0);
+    require_written(H5Dwrite(set.get(), native(T{}), memory.get(), space.get(), transfer.get(), from) >= 0,
                     fmt::format("cannot write dataset '{}'", name));
   }
 
@@ -197,11 +216,15 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path, Storage storage) {
   auto handle = std::make_unique<Handle>();
   handle->path = path;
   handle->storage = storage;
-  handle->being_written.emplace(path);
-  const Identifier creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  const Ranks& ranks = *storage.ranks;
+  if (ranks.rank() == 0) handle->being_written.emplace(path);
+  const auto process = static_cast<int>(ranks.of_all(getpid())[0]);
+  const Identifier creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose),
+      access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (storage.sealed) H5Pset_userblock(creation.get(), seal_size);
+  open_together(ranks, access.get());
   handle->file =
-      H5Fcreate(handle->being_written->temporary().c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT);
+      H5Fcreate(temporary_path(path, process).c_str(), H5F_ACC_TRUNC, creation.get(), access.get());
   handle->require_written(handle->file >= 0, "cannot be completed");
   return Hdf5File(std::move(handle));
 }
@@ -232,6 +255,7 @@ void Hdf5File::commit() {
   handle_->require_written(H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0, "cannot be completed");
   const bool closed = H5Fclose(std::exchange(handle_->file, -1)) >= 0;
   handle_->require_written(closed, "cannot be completed");
+  if (!handle_->being_written) return;
   if (handle_->storage.sealed) write_seal(handle_->being_written->temporary());
   handle_->being_written->commit();
 }

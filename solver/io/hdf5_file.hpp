@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/ranks.hpp"
+
 namespace sandglass {
 
 /// An array of a file: shape and entries by rows.
@@ -20,6 +22,8 @@ struct FileArray {
 struct Storage {
   bool compressed = true;  ///< large datasets; smaller, and many times slower
   bool sealed = false;     ///< with a checksum of the whole file before its content
+  std::shared_ptr<const Ranks> ranks = std::make_shared<const Ranks>();  ///< that write it together, all the
+                                                                         ///< same, each a part of a dataset
 };
 
 /// An HDF5 file that closes itself. Errors of reading, and of places that cannot be written, are InputError

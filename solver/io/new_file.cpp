@@ -59,8 +59,11 @@ void remove_abandoned(const fs::path& path) {
 
 }  // namespace
 
-NewFile::NewFile(const fs::path& path) : path_(path), temporary_(path) {
-  temporary_ += fmt::format(".{}.part", getpid());
+fs::path temporary_path(const fs::path& path, int process) {
+  return fs::path(path) += fmt::format(".{}.part", process);
+}
+
+NewFile::NewFile(const fs::path& path) : path_(path), temporary_(temporary_path(path, getpid())) {
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: cannot be put in place: what stands there is no file", path.string()));

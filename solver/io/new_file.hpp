@@ -4,6 +4,9 @@
 
 namespace sandglass {
 
+/// The temporary file of a process beside a path.
+std::filesystem::path temporary_path(const std::filesystem::path& path, int process);
+
 /// A file on its way: its bytes go to a temporary file next to its place, and `commit` puts them there.
 /// Without it nothing is left, and a file that stood there before stays as it was. What a program left that
 /// was killed goes when the next one writes to the same place.

@@ -60,7 +60,7 @@ Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_n
 
 ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path,
                            const Provenance& provenance)
-    : model_(model), path_(path), file_(Hdf5File::create(path)) {
+    : model_(model), path_(path), file_(Hdf5File::create(path, {.ranks = model.choice().ranks})) {
   write_mesh(model.scene(), file_);
   for (const auto& [name, value] : provenance) file_.write_attribute("/", name, value);
 }
@@ -124,6 +124,7 @@ std::string ResultWriter::xdmf() const {
 void ResultWriter::commit(const std::string& status) {
   write_history();
   file_.write_attribute("/", "status", status);
+  if (model_.choice().ranks->rank() > 0) return file_.commit();
   NewTextFile guide(std::filesystem::path(path_).replace_extension(".xdmf"), xdmf());  // both or none
   file_.commit();
   guide.commit();

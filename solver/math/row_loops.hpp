@@ -1,13 +1,17 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <vector>
 
 #include "base/parallel.hpp"
+#include "base/ranks.hpp"
 #include "math/rows.hpp"
 
-/// Loops over the numbers of all rows, in blocks whose size depends only on how many numbers there are, so
-/// that sums over blocks have the same bits for any number of threads.
+/// Loops over the numbers of vectors, in blocks whose bounds depend only on the vector, so that sums over
+/// blocks have the same bits for any number of threads and ranks.
 namespace sandglass {
 
 inline constexpr std::size_t most_blocks = 256;
@@ -18,39 +22,86 @@ inline std::size_t block_size(std::size_t numbers) {
   return unit * std::max<std::size_t>(1, (numbers + most_blocks * unit - 1) / (most_blocks * unit));
 }
 
-/// Calls body(first, last) for the blocks of n numbers.
-template <class Function>
-void for_each_block(std::size_t n, int threads, const Function& body) {
-  const std::size_t size = block_size(n);
-  in_parallel((n + size - 1) / size, threads,
-              [&](std::size_t b) { body(b * size, std::min(n, (b + 1) * size)); });
-}
+/// The blocks of a vector, and which of them a rank has: sums are over its own blocks, all else is computed
+/// in a few more, which its neighbours own.
+class Blocks {
+ public:
+  /// The first and the last of some blocks, by number.
+  struct Range {
+    std::size_t first = 0, last = 0;
+  };
 
-/// The sum over all blocks, in order, of function(first, last).
-template <class Sum, class Function>
-Sum sum_over_blocks(std::size_t n, int threads, const Function& function) {
-  std::array<Sum, most_blocks> partial;
-  const std::size_t size = block_size(n), blocks = (n + size - 1) / size;
-  in_parallel(blocks, threads,
-              [&](std::size_t b) { partial[b] = function(b * size, std::min(n, (b + 1) * size)); });
-  Sum sum{};
-  for (std::size_t b = 0; b < blocks; ++b) sum += partial[b];
-  return sum;
-}
+  Blocks() = default;
 
-/// Sets all rows to zero.
-template <class Real>
-void clear(Rows<Real>& rows, int threads) {
-  Real* x = numbers_of(rows);
-  for_each_block(4 * rows.size(), threads,
-                 [=](std::size_t first, std::size_t last) { std::fill(x + first, x + last, Real(0)); });
-}
+  /// All blocks of n numbers, by one rank.
+  Blocks(std::size_t n, int threads) : threads_(threads) {
+    cut(n, block_size(n));
+    own_ = local_ = {0, count()};
+  }
+
+  /// The blocks of parts of a vector that end at `ends`: a rank owns those of the parts `own`, and computes
+  /// those of `local`.
+  Blocks(std::span<const std::size_t> ends, Range own, Range local, const Team& team)
+      : threads_(team.threads), ranks_(team.ranks) {
+    std::vector<std::size_t> first_of_part;
+    for (const std::size_t end : ends) {
+      first_of_part.push_back(count());
+      cut(end, block_size(ends.back()));
+    }
+    first_of_part.push_back(count());
+    own_ = {first_of_part[own.first], first_of_part[own.last]};
+    local_ = {first_of_part[local.first], first_of_part[local.last]};
+  }
+
+  std::size_t count() const { return bounds_.size() - 1; }
+  const Ranks& ranks() const { return *ranks_; }
+
+  /// The numbers of the blocks that this rank owns.
+  Range own() const { return {bounds_[own_.first], bounds_[own_.last]}; }
+
+  /// The numbers that it computes.
+  Range local() const { return {bounds_[local_.first], bounds_[local_.last]}; }
+
+  /// Calls body(first, last) with the numbers of each block that is computed here, in parallel.
+  template <class Function>
+  void for_each(const Function& body) const {
+    in_parallel(local_.last - local_.first, threads_, [&](std::size_t k) {
+      const std::size_t b = local_.first + k;
+      body(bounds_[b], bounds_[b + 1]);
+    });
+  }
+
+  /// The sum over all blocks of all ranks, in order, of function(first, last).
+  template <class Function>
+  double sum(const Function& function) const {
+    std::vector<double> partial(count());
+    in_parallel(own_.last - own_.first, threads_, [&](std::size_t k) {
+      const std::size_t b = own_.first + k;
+      partial[b] = function(bounds_[b], bounds_[b + 1]);
+    });
+    ranks_->sum(partial);
+    return std::accumulate(partial.begin(), partial.end(), 0.0);
+  }
+
+ private:
+  /// About equal blocks of whole rows up to `end`, each of about `most` numbers.
+  void cut(std::size_t end, std::size_t most) {
+    const std::size_t begin = bounds_.back(), parts = (end - begin + most - 1) / most;
+    for (std::size_t k = 1; k < parts; ++k) bounds_.push_back(begin + (end - begin) * k / parts / 4 * 4);
+    if (parts > 0) bounds_.push_back(end);
+  }
+
+  int threads_ = 1;
+  std::shared_ptr<const Ranks> ranks_ = std::make_shared<const Ranks>();
+  std::vector<std::size_t> bounds_{0};
+  Range own_, local_;
+};
 
 /// The sum over all rows of their scalar products.
 template <class Real>
-double dot(const Rows<Real>& a, const Rows<Real>& b, int threads) {
+double dot(const Rows<Real>& a, const Rows<Real>& b, const Blocks& blocks) {
   const Real *x = numbers_of(a), *y = numbers_of(b);
-  return sum_over_blocks<double>(4 * a.size(), threads, [=](std::size_t first, std::size_t last) {
+  return blocks.sum([=](std::size_t first, std::size_t last) {
     Real sum = 0;
 #pragma omp simd reduction(+ : sum)
     for (std::size_t k = first; k < last; ++k) sum += x[k] * y[k];

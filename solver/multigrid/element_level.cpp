@@ -33,12 +33,11 @@ class Elements final : public ElementLevel {
 
  public:
   Elements(const Mesh& mesh, const Ties& ties, const Layout& layout, const Rows<float>& free,
-           const Rows<float>& springs, int threads)
-      : ElementLevel(threads, pressure_steps),
-        layout_(layout),
+           const Rows<float>& springs)
+      : ElementLevel(layout, pressure_steps),
         coordinates_(centred_coordinates<float>(mesh.points, layout)),
         present_(layout.rows()),
-        blocks_(layout.ranks()) {
+        elements_(layout.ranks()) {
     resize(layout.rows(), layout.elements.size());
     free_ = free;
     springs_ = springs;
@@ -56,20 +55,20 @@ class Elements final : public ElementLevel {
       for (std::size_t i = 0; i < 3; ++i) present_[r][i] = coordinates_[r][i] + u[r][i];
     }
     std::vector<float> bounds(layout_.chunks.size());
-    in_parallel(bounds.size(), threads_,
-                [&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c], moduli); });
-    sum_over_chunks(layout_, threads_, numbers_of(stiffness_),
+    layout_.for_each_local_chunk([&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c], moduli); });
+    sum_over_chunks(layout_, numbers_of(stiffness_),
                     [&](std::size_t c) { add_diagonals(layout_.chunks[c]); });
     ties_.hand_on(stiffness_);  // means are convex: D - A stays positive where it was
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) stiffness_[row][i] += springs_[row][i];
     }
-    set_smoother(stiffness_, *std::max_element(bounds.begin(), bounds.end()));
+    layout_.gather_rows(stiffness_.data());
+    layout_.gather_cells(tangents_.data());
+    set_smoother(stiffness_, static_cast<float>(largest_of_all(*std::ranges::max_element(bounds))));
   }
 
   void apply(const MixedVector& x, MixedVector& y) const override {
-    sum_over_chunks(layout_, threads_, numbers_of(y.u),
-                    [&](std::size_t c) { apply_to(layout_.chunks[c], x, y); });
+    sum_over_chunks(layout_, numbers_of(y.u), [&](std::size_t c) { apply_to(layout_.chunks[c], x, y); });
     ties_.hand_on(y.u);
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) y.u[row][i] += springs_[row][i] * x.u[row][i];
@@ -77,34 +76,35 @@ class Elements final : public ElementLevel {
   }
 
   void divergence(const Rows<float>& u, std::vector<float>& g) const override {
-    in_parallel(layout_.chunks.size(), threads_, [&](std::size_t c) { diverge(layout_.chunks[c], u, g); });
+    layout_.for_each_local_chunk([&](std::size_t c) { diverge(layout_.chunks[c], u, g); });
   }
 
   void gradient(const std::vector<float>& p, Rows<float>& f) const override {
-    sum_over_chunks(layout_, threads_, numbers_of(f),
-                    [&](std::size_t c) { add_gradients(layout_.chunks[c], p, f); });
+    sum_over_chunks(layout_, numbers_of(f), [&](std::size_t c) { add_gradients(layout_.chunks[c], p, f); });
     ties_.hand_on(f);
   }
 
   double largest_gradient(const Rows<float>& u) const override {
     Number largest(0.0f);
-    for (const auto& chunk : layout_.chunks) {
-      for_each_rank(chunk, [&](std::size_t rank, std::size_t face, std::size_t /*material*/) {
-        const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), blocks_[rank].body);
+    for (std::size_t c = layout_.own_chunks.first; c < layout_.own_chunks.last; ++c) {
+      for_each_rank(layout_.chunks[c], [&](std::size_t rank, std::size_t face, std::size_t /*material*/) {
+        const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), elements_[rank].body);
         largest = max(largest, double_dot(H, H));
       });
     }
-    return std::sqrt(largest_lane(largest));
+    return std::sqrt(static_cast<float>(largest_of_all(largest_lane(largest))));
   }
 
  protected:
   void for_each_corner(const VisitCorner& visit) const override {
     std::vector<Column> columns;  // of an element, those of tied nodes handed on
-    for (const auto& group : layout_.groups) {
+    for (std::size_t g = layout_.chunks[layout_.local_chunks.first].first;
+         g < layout_.chunks[layout_.local_chunks.last - 1].last; ++g) {
+      const ElementGroups::Group& group = layout_.groups[g];
       for (std::size_t k = 0; k < group.ranks; ++k) {
         const std::size_t rank = group.first_rank + k, face = group.first_face + k;
-        const NodalVectors<Number> b = nodal_gradients(blocks_[rank]);
-        const Number& V = blocks_[rank].body.V;
+        const NodalVectors<Number> b = nodal_gradients(elements_[rank]);
+        const Number& V = elements_[rank].body.V;
         for (int lane = 0; lane < W; ++lane) {
           const std::size_t cell = rank * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
           if (layout_.elements[cell] < 0) continue;
@@ -134,6 +134,10 @@ class Elements final : public ElementLevel {
         std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.first == row; });
     if (known == columns.end()) known = columns.insert(columns.end(), {row, {}});
     for (std::size_t i = 0; i < 3; ++i) known->second[i] += weight * b[i];
+  }
+
+  double largest_of_all(float largest) const {
+    return std::ranges::max(layout_.team.ranks->of_all(static_cast<double>(largest)));
   }
 
   static float largest_lane(const Number& number) {
@@ -219,7 +223,7 @@ class Elements final : public ElementLevel {
       FaceModes<Number> carried{};
       for (std::size_t k = 0; k < ranks; ++k) {
         const std::size_t rank = first_rank + k;
-        const Block& block = blocks_[rank];
+        const Block& block = elements_[rank];
         const auto upper = gather_face_modes<Number>(x.u, layout_, first_face + k + 1);
         const Modes<Number> u = modes_between(lower, upper);
         const Tensor<Number> H = OnePoint::mean_gradient(u, block.body);
@@ -240,7 +244,7 @@ class Elements final : public ElementLevel {
       const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
       auto lower = gather_face_modes<Number>(u, layout_, first_face);
       for (std::size_t k = 0; k < ranks; ++k) {
-        const Block& block = blocks_[first_rank + k];
+        const Block& block = elements_[first_rank + k];
         const auto upper = gather_face_modes<Number>(u, layout_, first_face + k + 1);
         const Modes<Number> modes = modes_between(lower, upper);
         Number sum(0.0f);
@@ -259,7 +263,7 @@ class Elements final : public ElementLevel {
       const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
       FaceModes<Number> carried{};
       for (std::size_t k = 0; k < ranks; ++k) {
-        const Block& block = blocks_[first_rank + k];
+        const Block& block = elements_[first_rank + k];
         const Modes<Number> modes = (block.body.V * load(p, first_rank + k)) * gradient_modes(block);
         scatter_face_modes(carried + lower_face(modes), numbers_of(f), layout_, first_face + k);
         carried = upper_face(modes);
@@ -305,7 +309,7 @@ class Elements final : public ElementLevel {
       const Modes<Number> x = modes_of(present_, face);
       const auto reference = OnePoint::geometry(modes_of(coordinates_, face));
       const Tensor<Number> F_inverse = inverse(OnePoint::mean_gradient(x, reference));
-      Block& block = blocks_[rank];
+      Block& block = elements_[rank];
       block.body = OnePoint::geometry(x);
       block.stress = Number(2.0f * mu) * reference.V;
       // eq. 12; |h|^2 by nodes is eight times that by modes
@@ -330,37 +334,35 @@ class Elements final : public ElementLevel {
 
   [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
     for_each_rank(chunk, [&](std::size_t rank, std::size_t face, std::size_t /*material*/) {
-      const NodalVectors<Number> g = nodal_gradients(blocks_[rank]);
+      const NodalVectors<Number> g = nodal_gradients(elements_[rank]);
       for (std::size_t I = 0; I < 8; ++I) {
-        const Triple<Number> D = diagonal(blocks_[rank], g, static_cast<int>(I));
+        const Triple<Number> D = diagonal(elements_[rank], g, static_cast<int>(I));
         scatter_add<Number>({D(0, 0), D(1, 0), D(2, 0)}, numbers_of(stiffness_),
                             layout_.places(face + I / 4, I % 4));
       }
     });
   }
 
-  const Layout& layout_;
   Rows<float> coordinates_;  // m
   Rows<float> present_;      // m
-  std::vector<Block> blocks_;
+  std::vector<Block> elements_;
 };
 
 }  // namespace
 
 std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Ties& ties, const Layout& layout,
-                                                 const Rows<float>& free, const Rows<float>& springs,
-                                                 int threads) {
+                                                 const Rows<float>& free, const Rows<float>& springs) {
   switch (layout.width) {
     case 1:
-      return std::make_unique<Elements<1>>(mesh, ties, layout, free, springs, threads);
+      return std::make_unique<Elements<1>>(mesh, ties, layout, free, springs);
     case 2:
-      return std::make_unique<Elements<2>>(mesh, ties, layout, free, springs, threads);
+      return std::make_unique<Elements<2>>(mesh, ties, layout, free, springs);
     case 4:
-      return std::make_unique<Elements<4>>(mesh, ties, layout, free, springs, threads);
+      return std::make_unique<Elements<4>>(mesh, ties, layout, free, springs);
     case 8:
-      return std::make_unique<Elements<8>>(mesh, ties, layout, free, springs, threads);
+      return std::make_unique<Elements<8>>(mesh, ties, layout, free, springs);
     default:
-      return std::make_unique<Elements<16>>(mesh, ties, layout, free, springs, threads);
+      return std::make_unique<Elements<16>>(mesh, ties, layout, free, springs);
   }
 }
 

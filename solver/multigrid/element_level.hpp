@@ -27,7 +27,11 @@ struct ElementTangent {
 /// method. Nothing is assembled. Rows are those of a layout, cells its lanes, rank by rank.
 class ElementLevel : public SaddleLevel {
  public:
-  using SaddleLevel::SaddleLevel;
+  ElementLevel(const Layout& layout, int pressure_steps)
+      : SaddleLevel({layout.row_blocks, layout.cell_blocks}, pressure_steps), layout_(layout) {}
+
+  /// The order of its rows and cells.
+  const Layout& layout() const { return layout_; }
 
   /// Takes the configuration with displacements u (m), in which no element may be inverted, and the moduli of
   /// each material.
@@ -39,13 +43,13 @@ class ElementLevel : public SaddleLevel {
   /// The cell of each element of the mesh.
   const std::vector<std::size_t>& cells() const { return cells_; }
 
-  /// The tangents of the elements by cell.
+  /// The tangents of the elements by cell, of all ranks.
   const std::vector<ElementTangent>& tangents() const { return tangents_; }
 
   /// The stiffness of springs that hold the rows, N/m; empty without any.
   const Rows<float>& springs() const { return springs_; }
 
-  /// The diagonal of A on constrained components too, N/m.
+  /// The diagonal of A on constrained components too, N/m, of all ranks.
   const Rows<float>& stiffness() const { return stiffness_; }
 
   /// The ties of the mesh, on rows.
@@ -54,6 +58,7 @@ class ElementLevel : public SaddleLevel {
   void follow(Rows<float>& u) const override { ties_.follow(u); }
 
  protected:
+  const Layout& layout_;
   RowTies<float> ties_;
   std::vector<std::size_t> cells_;
   std::vector<ElementTangent> tangents_;
@@ -64,7 +69,6 @@ class ElementLevel : public SaddleLevel {
 /// For the rows and the lanes of a layout. `free` is 1, or 0 on constrained components, tied nodes and spare
 /// rows; `springs` as in ElementLevel.
 std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Ties& ties, const Layout& layout,
-                                                 const Rows<float>& free, const Rows<float>& springs,
-                                                 int threads);
+                                                 const Rows<float>& free, const Rows<float>& springs);
 
 }  // namespace sandglass

@@ -169,8 +169,8 @@ void ElementTransfer::restrict_residual(const MixedVector& r, MixedVector& b) {
 
 void ElementTransfer::add_correction(const MixedVector& x, MixedVector& fine) const {
   const auto& free = elements_.free();
-  for_each_block(fine.u.size(), elements_.threads(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
+  elements_.blocks().u.for_each([&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first / 4; row < last / 4; ++row) {
       const auto w = weights(places_[row].local);
       Row<float> sum;
       for (std::size_t a = 0; a < 8; ++a) {
@@ -181,7 +181,7 @@ void ElementTransfer::add_correction(const MixedVector& x, MixedVector& fine) co
     }
   });
   elements_.follow(fine.u);
-  for_each_block(fine.p.size(), elements_.threads(), [&](std::size_t first, std::size_t last) {
+  elements_.blocks().p.for_each([&](std::size_t first, std::size_t last) {
     for (std::size_t cell = first; cell < last; ++cell) fine.p[cell] += x.p[boxes_[cell]];
   });
 }

@@ -16,7 +16,11 @@ constexpr int pressure_steps = 2;
 }  // namespace
 
 GridLevel::GridLevel(const Grid& grid, int threads)
-    : SaddleLevel(threads, pressure_steps), grid_(grid), problems_(grid.nodes()), stencils_(grid.nodes()) {
+    : SaddleLevel({Blocks(4 * grid.nodes(), threads), Blocks(grid.nodes(), threads)}, pressure_steps),
+      threads_(threads),
+      grid_(grid),
+      problems_(grid.nodes()),
+      stencils_(grid.nodes()) {
   resize(grid.nodes(), grid.nodes());
 }
 

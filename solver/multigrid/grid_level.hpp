@@ -19,6 +19,7 @@ class GridLevel final : public SaddleLevel {
   GridLevel(const Grid& grid, int threads);
 
   const Grid& grid() const { return grid_; }
+  int threads() const { return threads_; }
 
   /// The problems of the boxes, by number; `assemble` must follow a change.
   std::vector<BoxProblem>& problems() { return problems_; }
@@ -49,6 +50,7 @@ class GridLevel final : public SaddleLevel {
   /// Columns of the 3 x 3 blocks of a node's 27 neighbours.
   using Stencil = std::array<Row<float>, 81>;
 
+  int threads_;
   Grid grid_;
   std::vector<BoxProblem> problems_;
   std::vector<Stencil> stencils_;

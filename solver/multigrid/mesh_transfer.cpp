@@ -54,8 +54,8 @@ Rows<float> MeshTransfer::at_common_nodes(const Rows<float>& fine) const {
 }
 
 void MeshTransfer::restrict_residual(const MixedVector& r, MixedVector& b) const {
-  for_each_block(b.u.size(), coarse_.threads(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
+  coarse_.blocks().u.for_each([&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first / 4; row < last / 4; ++row) {
       Row<float> sum;
       for (std::size_t k = from_fine_.first[row]; k < from_fine_.first[row + 1]; ++k) {
         const auto& [from, weight] = from_fine_.shares[k];
@@ -71,8 +71,8 @@ void MeshTransfer::restrict_residual(const MixedVector& r, MixedVector& b) const
 
 void MeshTransfer::add_correction(const MixedVector& x, MixedVector& fine) const {
   const auto& free = fine_.free();
-  for_each_block(fine.u.size(), fine_.threads(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
+  fine_.blocks().u.for_each([&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first / 4; row < last / 4; ++row) {
       for (std::size_t k = from_coarse_.first[row]; k < from_coarse_.first[row + 1]; ++k) {
         const auto& [from, weight] = from_coarse_.shares[k];
         for (std::size_t i = 0; i < 4; ++i) fine.u[row][i] += free[row][i] * weight * x.u[from][i];

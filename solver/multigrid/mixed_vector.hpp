@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "math/rows.hpp"
+#include "math/row_loops.hpp"
 
 namespace sandglass {
 
@@ -12,16 +12,21 @@ struct MixedVector {
   std::vector<float> p;
 };
 
+/// The blocks of the numbers of both.
+struct MixedBlocks {
+  Blocks u, p;
+};
+
 /// The scalar product, in double precision.
-double dot(const MixedVector& a, const MixedVector& b, int threads);
+double dot(const MixedVector& a, const MixedVector& b, const MixedBlocks& blocks);
 
 /// y += factor * x.
-void add(float factor, const MixedVector& x, MixedVector& y, int threads);
+void add(float factor, const MixedVector& x, MixedVector& y, const MixedBlocks& blocks);
 
 /// x *= factor.
-void multiply(float factor, MixedVector& x, int threads);
+void multiply(float factor, MixedVector& x, const MixedBlocks& blocks);
 
 /// x = 0.
-void clear(MixedVector& x, int threads);
+void clear(MixedVector& x, const MixedBlocks& blocks);
 
 }  // namespace sandglass

@@ -10,10 +10,10 @@ namespace sandglass {
 
 namespace {
 
-/// body(k) for all k < n, in parallel.
+/// body(k) for all numbers of blocks, in parallel.
 template <class Body>
-void for_all(std::size_t n, int threads, const Body& body) {
-  for_each_block(n, threads, [&](std::size_t first, std::size_t last) {
+void for_all(const Blocks& blocks, const Body& body) {
+  blocks.for_each([&](std::size_t first, std::size_t last) {
 #pragma omp simd
     for (std::size_t k = first; k < last; ++k) body(k);
   });
@@ -68,15 +68,16 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
     }
   });
   float largest = 1.0f;
-  for (std::size_t r = 0; r < M.size(); ++r)
+  for (std::size_t r = blocks_.u.own().first / 4; r < blocks_.u.own().last / 4; ++r)
     largest = std::max(largest, eigenvalue_bound(relaxation_[r], M[r]));
+  largest = static_cast<float>(std::ranges::max(blocks_.u.ranks().of_all(static_cast<double>(largest))));
   for (float& s : schur_) s = s > 0.0f ? 1.0f / (largest * s) : 0.0f;
 }
 
 void SaddleLevel::smooth_from_zero(const MixedVector& b, MixedVector& x) {
   const float *f = numbers_of(b.u), *D = numbers_of(relaxation_);
   float* u = numbers_of(x.u);
-  for_all(4 * free_.size(), threads_, [=](std::size_t k) { u[k] = D[k] * f[k]; });
+  for_all(blocks_.u, [=](std::size_t k) { u[k] = D[k] * f[k]; });
   std::fill(x.p.begin(), x.p.end(), 0.0f);
   relax_pressures(b, x);
 }
@@ -85,12 +86,11 @@ void SaddleLevel::smooth(const MixedVector& b, MixedVector& x) {
   apply(x, y_);
   const float *f = numbers_of(b.u), *D = numbers_of(relaxation_), *y = numbers_of(y_.u);
   float* u = numbers_of(x.u);
-  for_all(4 * free_.size(), threads_, [=](std::size_t k) { u[k] += D[k] * (f[k] - y[k]); });
+  for_all(blocks_.u, [=](std::size_t k) { u[k] += D[k] * (f[k] - y[k]); });
   relax_pressures(b, x);
 }
 
 void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
-  const std::size_t rows = 4 * free_.size(), cells = compliance_.size();
   const float *C = compliance_.data(), *D = numbers_of(relaxation_), *S = schur_.data();
   float *r = r_.data(), *d = change_.data(), *q = sum_.data(), *t = numbers_of(t_), *p = x.p.data();
   follow(x.u);
@@ -99,27 +99,27 @@ void SaddleLevel::relax_pressures(const MixedVector& b, MixedVector& x) {
   const float least = 1.0f / static_cast<float>(pressure_steps_ * pressure_steps_);
   const float centre = 0.5f * (1.0f + least), radius = 0.5f * (1.0f - least), sigma = centre / radius;
   float rho = 1.0f / sigma;
-  for_all(cells, threads_, [=, g = b.p.data()](std::size_t k) {
+  for_all(blocks_.p, [=, g = b.p.data()](std::size_t k) {
     r[k] -= C[k] * p[k] + g[k];
     q[k] = d[k] = S[k] * r[k] / centre;
   });
   for (int step = 1; step < pressure_steps_; ++step) {
     gradient(change_, t_);
-    for_all(rows, threads_, [=](std::size_t k) { t[k] *= D[k]; });
+    for_all(blocks_.u, [=](std::size_t k) { t[k] *= D[k]; });
     follow(t_);
     divergence(t_, y_.p);
     const float next = 1.0f / (2.0f * sigma - rho), keep = next * rho, add = 2.0f * next / radius;
     rho = next;
-    for_all(cells, threads_, [=, y = y_.p.data()](std::size_t k) {
+    for_all(blocks_.p, [=, y = y_.p.data()](std::size_t k) {
       r[k] -= y[k] + C[k] * d[k];
       d[k] = keep * d[k] + add * S[k] * r[k];
       q[k] += d[k];
     });
   }
-  for_all(cells, threads_, [=](std::size_t k) { p[k] += q[k]; });
+  for_all(blocks_.p, [=](std::size_t k) { p[k] += q[k]; });
   gradient(sum_, t_);
   float* u = numbers_of(x.u);
-  for_all(rows, threads_, [=](std::size_t k) { u[k] -= D[k] * t[k]; });
+  for_all(blocks_.u, [=](std::size_t k) { u[k] -= D[k] * t[k]; });
   follow(x.u);
 }
 
@@ -127,8 +127,8 @@ void SaddleLevel::residual(const MixedVector& b, const MixedVector& x, MixedVect
   apply(x, r);
   const float *f = numbers_of(b.u), *free = numbers_of(free_), *g = b.p.data();
   float *y = numbers_of(r.u), *z = r.p.data();
-  for_all(4 * free_.size(), threads_, [=](std::size_t k) { y[k] = free[k] * (f[k] - y[k]); });
-  for_all(r.p.size(), threads_, [=](std::size_t k) { z[k] = g[k] - z[k]; });
+  for_all(blocks_.u, [=](std::size_t k) { y[k] = free[k] * (f[k] - y[k]); });
+  for_all(blocks_.p, [=](std::size_t k) { z[k] = g[k] - z[k]; });
 }
 
 }  // namespace sandglass

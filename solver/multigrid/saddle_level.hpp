@@ -13,8 +13,9 @@ namespace sandglass {
 /// volumes over lambda (m^3/Pa). Solving for both at once, no step suffers from a large lambda.
 class SaddleLevel {
  public:
-  /// The pressures of the smoother take so many steps.
-  SaddleLevel(int threads, int pressure_steps) : threads_(threads), pressure_steps_(pressure_steps) {}
+  /// `blocks` of its vectors; the pressures of the smoother take so many steps.
+  SaddleLevel(MixedBlocks blocks, int pressure_steps)
+      : blocks_(std::move(blocks)), pressure_steps_(pressure_steps) {}
   SaddleLevel(const SaddleLevel&) = delete;
   SaddleLevel& operator=(const SaddleLevel&) = delete;
   virtual ~SaddleLevel() = default;
@@ -52,7 +53,8 @@ class SaddleLevel {
   /// 1, or 0 on constrained components and unused rows.
   const Rows<float>& free() const { return free_; }
 
-  int threads() const { return threads_; }
+  /// The blocks of its vectors.
+  const MixedBlocks& blocks() const { return blocks_; }
 
  protected:
   /// Calls visit(cell, row, b) for every cell and each of its corners, with the column b (m^2) of B.
@@ -64,7 +66,7 @@ class SaddleLevel {
   /// Sets the smoother from the diagonal of A (N/m) and a bound of the eigenvalues of its inverse times A.
   void set_smoother(const Rows<float>& diagonal, float bound);
 
-  int threads_;
+  MixedBlocks blocks_;
   Rows<float> free_;
   std::vector<float> compliance_;  // C
 

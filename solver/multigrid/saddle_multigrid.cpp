@@ -24,10 +24,8 @@ void smooth_after(SaddleLevel& level, const MixedVector& b, MixedVector& x) {
 }  // namespace
 
 SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::vector<CoarserMesh>& coarser,
-                                 const Layout& layout, const Rows<float>& free, const Rows<float>& springs,
-                                 int threads)
-    : elements_(make_element_level(mesh, ties, layout, free, springs, threads)),
-      residual_(elements_->zero()) {
+                                 const Layout& layout, const Rows<float>& free, const Rows<float>& springs)
+    : elements_(make_element_level(mesh, ties, layout, free, springs)), residual_(elements_->zero()) {
   const Mesh* coarsest_mesh = &mesh;
   const Layout* coarsest_layout = &layout;
   const ElementLevel* coarsest_elements = elements_.get();
@@ -39,8 +37,8 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
         own[static_cast<std::size_t>(next.element_of[e])] = materials[e];
       materials = std::move(own);
     }
-    auto own =
-        std::make_unique<Layout>(make_layout(next.mesh, layout.width, SpareRows::where_needed, materials));
+    auto own = std::make_unique<Layout>(make_layout(next.mesh, layout.width, SpareRows::where_needed,
+                                                    materials, {.threads = layout.team.threads}));
     Rows<float> own_free(own->rows()), own_springs(springs.empty() ? 0 : own->rows());
     for (std::size_t row = 0; row < own->nodes; ++row) {
       const int node = own->node_of_row[row];
@@ -49,7 +47,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
       if (!is_tied(next.ties, node)) own_free[row] = free[finest];
       if (!springs.empty()) own_springs[row] = springs[finest];
     }
-    auto level = make_element_level(next.mesh, next.ties, *own, own_free, own_springs, threads);
+    auto level = make_element_level(next.mesh, next.ties, *own, own_free, own_springs);
     auto transfer = std::make_unique<MeshTransfer>(next, *coarsest_layout, *coarsest_elements, *own, *level);
     coarsest_mesh = &next.mesh;
     coarsest_layout = own.get();
@@ -58,7 +56,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
     meshes_.push_back({std::move(own), std::move(level), std::move(transfer), zero, zero, zero});
   }
   const auto add = [&](const Grid& grid) {
-    auto level = std::make_unique<GridLevel>(grid, threads);
+    auto level = std::make_unique<GridLevel>(grid, layout.team.threads);
     const MixedVector zero = level->zero();
     grids_.push_back({std::move(level), nullptr, zero, zero, zero});
   };
@@ -107,6 +105,8 @@ void SaddleMultigrid::cycle_mesh(std::size_t number, ElementLevel& level, const 
                                  MixedVector& x, MixedVector& r) {
   smooth_before(level, b, x);
   level.residual(b, x, r);
+  level.layout().gather_rows(r.u.data());
+  level.layout().gather_cells(r.p.data());
   if (number < meshes_.size()) {
     auto& [layout, coarser, to_finer, coarse_b, coarse_x, coarse_r] = meshes_[number];
     to_finer->restrict_residual(r, coarse_b);

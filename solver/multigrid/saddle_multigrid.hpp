@@ -9,14 +9,14 @@ namespace sandglass {
 
 /// An approximate solution of the saddle-point problem of a body, by one V-cycle over a hierarchy of levels:
 /// the elements of the mesh, whatever its shape, those that were split into them, and grids of boxes around
-/// these, ever coarser.
+/// these, ever coarser. Ranks divide the elements of the mesh; each has all the coarser levels.
 class SaddleMultigrid {
  public:
   /// `ties` are those of the mesh, `coarser` the meshes that it was refined from, the last first. `free` is
   /// 1, or 0 on constrained components, tied nodes and spare rows; `springs` (N/m) hold rows, empty without
   /// any; `update` must follow.
   SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::vector<CoarserMesh>& coarser,
-                  const Layout& layout, const Rows<float>& free, const Rows<float>& springs, int threads);
+                  const Layout& layout, const Rows<float>& free, const Rows<float>& springs);
 
   /// Takes the configuration with displacements u, rows of the layout (m), in which no element may be
   /// inverted, and the moduli of each material.

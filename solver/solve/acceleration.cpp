@@ -23,14 +23,14 @@ void Acceleration::remember(const MixedVector& residual) {
     for (Pair& pair : pairs_) pair.with_earlier.erase(pair.with_earlier.begin());
   }
   Pair pair{std::move(step_), residual, {}, 0.0};
-  add(-1.0f, before_, pair.change, threads_);
+  add(-1.0f, before_, pair.change, blocks_);
   for (Pair& earlier : pairs_) {
-    const double product = dot(earlier.change, pair.change, threads_);
+    const double product = dot(earlier.change, pair.change, blocks_);
     earlier.with_residual += product;
     pair.with_earlier.push_back(product);
   }
-  pair.with_earlier.push_back(dot(pair.change, pair.change, threads_));
-  pair.with_residual = dot(pair.change, residual, threads_);
+  pair.with_earlier.push_back(dot(pair.change, pair.change, blocks_));
+  pair.with_residual = dot(pair.change, residual, blocks_);
   pairs_.push_back(std::move(pair));
   has_step_ = false;
 }
@@ -58,12 +58,12 @@ std::vector<double> Acceleration::best_shares() const {
 void Acceleration::combine(MixedVector& residual, MixedVector& step) {
   if (has_step_) remember(residual);
   before_ = residual;
-  sandglass::clear(step, threads_);
+  sandglass::clear(step, blocks_);
   if (pairs_.empty()) return;
   const std::vector<double> shares = best_shares();
   for (std::size_t i = 0; i < shares.size(); ++i) {
-    add(static_cast<float>(-shares[i]), pairs_[i].change, residual, threads_);
-    add(static_cast<float>(-shares[i]), pairs_[i].step, step, threads_);
+    add(static_cast<float>(-shares[i]), pairs_[i].change, residual, blocks_);
+    add(static_cast<float>(-shares[i]), pairs_[i].step, step, blocks_);
   }
 }
 

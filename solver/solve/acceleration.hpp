@@ -12,7 +12,8 @@ namespace sandglass {
 /// leaves the least residual. For a linear problem this is GMRES.
 class Acceleration {
  public:
-  explicit Acceleration(int threads) : threads_(threads) {}
+  /// `blocks` of the vectors must live as long.
+  explicit Acceleration(const MixedBlocks& blocks) : blocks_(blocks) {}
 
   /// Forgets all steps.
   void clear();
@@ -38,7 +39,7 @@ class Acceleration {
   void remember(const MixedVector& residual);
   std::vector<double> best_shares() const;
 
-  int threads_;
+  const MixedBlocks& blocks_;
   std::deque<Pair> pairs_;
   MixedVector before_;  // residual at the start of the last step
   MixedVector step_;

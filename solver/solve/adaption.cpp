@@ -67,7 +67,12 @@ template <class Real>
 double Adaption<Real>::asked(const Body<Real>& body) const {
   double unit = imposed_;
   if (!(imposed_ > 0.0)) {
-    for (const auto& u : body.state().u) unit = std::max(unit, length(Vector{u[0], u[1], u[2]}));
+    const Blocks::Range own = body.layout().row_blocks.own();
+    for (std::size_t row = own.first / 4; row < own.last / 4; ++row) {
+      const auto& u = body.state().u[row];
+      unit = std::max(unit, length(Vector{u[0], u[1], u[2]}));
+    }
+    unit = std::ranges::max(body.layout().team.ranks->of_all(unit));
   }
   return accuracy_ * unit;
 }

@@ -1,8 +1,11 @@
 #include "solve/body.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "math/row_loops.hpp"
 #include "solve/health.hpp"
 
@@ -15,26 +18,72 @@ std::array<Real, 3> rounded(const std::array<double, 3>& values) {
   return {static_cast<Real>(values[0]), static_cast<Real>(values[1]), static_cast<Real>(values[2])};
 }
 
+/// Throws InputError for what is not yet divided among ranks.
+void require_divisible(const Model& model) {
+  if (model.choice().ranks->count() == 1) return;
+  const auto& dynamics = model.scene().description.dynamics;
+  const char* what = !model.scene().ties.empty()    ? "ties and hanging nodes are"
+                     : dynamics.subcycles > 1       ? "dynamics.subcycles > 1 is"
+                     : dynamics.body_frequency != 0 ? "dynamics.body_frequency = 1 is"
+                                                    : nullptr;
+  if (what == nullptr) return;
+  throw InputError(fmt::format("{}: {} not divided among ranks; allowed: one rank with more threads",
+                               model.scene().description.file.string(), what));
+}
+
+/// The smallest of the steps of all ranks; of equal ones that of the first element.
+StableStep smallest_of(const Ranks& ranks, const StableStep& own) {
+  const auto steps = ranks.of_all(own.step), elements = ranks.of_all(static_cast<double>(own.element));
+  StableStep smallest = own;
+  for (std::size_t r = 0; r < steps.size(); ++r) {
+    const auto element = static_cast<int>(elements[r]);
+    if (steps[r] < smallest.step || (steps[r] == smallest.step && element < smallest.element)) {
+      smallest = {steps[r], element};
+    }
+  }
+  return smallest;
+}
+
 }  // namespace
 
 template <class Real>
 Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
     : elements_(elements),
-      threads_(model.choice().threads),
-      angles_(model.scene().angles),
-      terms_(angles_.size()),
+      scene_(model.scene()),
+      terms_(scene_.angles.size()),
       ties_(model.scene().ties, elements.layout()),
       loads_(model.scene(), elements.layout()),
       largest_frequency_(model.scene().mesh.cells.size()),
       state_(elements.undeformed()),
       force_(state_.u.size()),
-      reactions_(model.scene().constraints.size(), 0.0),
+      reactions_(scene_.constraints.size(), 0.0),
       per_element_(model.scene().mesh.cells.size()) {
-  for (const auto& [node, component, path] : model.scene().constraints) {
-    const int row = elements.layout().row_of_node[static_cast<std::size_t>(node)];
-    constraints_.push_back({static_cast<std::size_t>(row), static_cast<std::size_t>(component),
-                            rounded<Real>(path.share), path.angle});
+  require_divisible(model);
+  const Blocks::Range local = layout().row_blocks.local();
+  for (std::size_t k = 0; k < reactions_.size(); ++k) {
+    const auto& [node, component, path] = scene_.constraints[k];
+    const auto row = static_cast<std::size_t>(layout().row_of_node[static_cast<std::size_t>(node)]);
+    if (layout().owns(node)) own_constraints_.push_back(k);
+    if (4 * row < local.first || 4 * row >= local.last) continue;
+    constraints_.push_back(
+        {k, row, static_cast<std::size_t>(component), rounded<Real>(path.share), path.angle});
   }
+}
+
+template <class Real>
+std::vector<double> Body<Real>::of_all_constraints(const std::vector<double>& numbers) const {
+  std::vector<double> of_all(numbers.size());
+  for (const std::size_t k : own_constraints_) of_all[k] = numbers[k];
+  ranks().sum(of_all);
+  return of_all;
+}
+
+template <class Real>
+void Body<Real>::gather() {
+  elements_.gather(state_);
+  layout().gather_rows(force_.data());
+  reactions_ = of_all_constraints(reactions_);
+  loads_.gather();
 }
 
 template <class Real>
@@ -43,25 +92,26 @@ void Body<Real>::evaluate_forces() {
   loads_.subtract(state_, force_);
   if (subcycling_) subcycling_->average(state_.u, force_);
   ties_.hand_on(force_);
-  for (std::size_t k = 0; k < constraints_.size(); ++k) {
-    Real& component = force_[constraints_[k].row][constraints_[k].component];
-    reactions_[k] = static_cast<double>(component);
+  for (const RowConstraint& constraint : constraints_) {
+    Real& component = force_[constraint.row][constraint.component];
+    reactions_[constraint.index] = static_cast<double>(component);
     component = Real(0);
-    state_.increment[constraints_[k].row][constraints_[k].component] = Real(0);
+    state_.increment[constraint.row][constraint.component] = Real(0);
   }
 }
 
 template <class Real>
 double Body<Real>::residual() const {
-  return residual(dot(force_, force_, threads_));
+  return residual(dot(force_, force_, layout().row_blocks));
 }
 
 template <class Real>
 double Body<Real>::residual(double free_square) const {
   const double unbalanced = std::sqrt(free_square);
+  const std::vector<double> all = of_all_constraints(reactions_);
   double carried_square = 0.0;
 #pragma omp simd reduction(+ : carried_square)
-  for (std::size_t k = 0; k < reactions_.size(); ++k) carried_square += reactions_[k] * reactions_[k];
+  for (std::size_t k = 0; k < all.size(); ++k) carried_square += all[k] * all[k];
   const double carried = std::sqrt(carried_square + loads_.square());
   return carried > 0.0 ? unbalanced / carried : unbalanced;
 }
@@ -70,7 +120,8 @@ template <class Real>
 void Body<Real>::impose(double factor, double time) {
   load_factor_ = factor;
   loads_.set(time, factor);
-  for (std::size_t m = 0; m < terms_.size(); ++m) terms_[m] = rounded<Real>(path_terms(angles_[m], factor));
+  for (std::size_t m = 0; m < terms_.size(); ++m)
+    terms_[m] = rounded<Real>(path_terms(scene_.angles[m], factor));
   for (const auto& constraint : constraints_) {
     const std::array<Real, 3>&share = constraint.share, &terms = terms_[constraint.angle];
     impose(constraint, share[0] * terms[0] + share[1] * terms[1] + share[2] * terms[2]);
@@ -82,15 +133,15 @@ template <class Real>
 void Body<Real>::impose(std::span<const double> displacements, double factor, double time) {
   load_factor_ = factor;
   loads_.set(time, factor);
-  for (std::size_t k = 0; k < constraints_.size(); ++k) {
-    impose(constraints_[k], static_cast<Real>(displacements[k]));
+  for (const RowConstraint& constraint : constraints_) {
+    impose(constraint, static_cast<Real>(displacements[constraint.index]));
   }
   follow();
 }
 
 template <class Real>
 Rows<Real> Body<Real>::change_of_loads(double factor) const {
-  Rows<Real> rows = loads_.change_to(factor, factor, state_.u);
+  Rows<Real> rows = loads_.change_to(factor, factor, of_all(state_.u));
   ties_.hand_on(rows);
   for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
   return rows;
@@ -100,7 +151,7 @@ template <class Real>
 void Body<Real>::move_to(const Rows<Real>& target) {
   Real *u = numbers_of(state_.u), *increment = numbers_of(state_.increment);
   const Real* to = numbers_of(target);
-  for_each_block(4 * target.size(), threads_, [=](std::size_t first, std::size_t last) {
+  layout().row_blocks.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
     for (std::size_t k = first; k < last; ++k) {
       increment[k] = to[k] - u[k];
@@ -118,7 +169,10 @@ Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) cons
     for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value;
   }
   ties_.clear(rows);
-  for (const auto& constraint : constraints_) rows[constraint.row][constraint.component] = Real(0);
+  for (const auto& [node, component, path] : scene_.constraints) {
+    const int row = layout.row_of_node[static_cast<std::size_t>(node)];
+    rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(component)] = Real(0);
+  }
   return rows;
 }
 
@@ -132,32 +186,33 @@ Frame Body<Real>::frame(double time, NodalField v) const {
               elements_.levels(state_)};
   elements_.jacobians(state_, frame.jacobians);
   elements_.hourglass_energy_densities(state_, frame.hourglass_energy_densities);
+  for (auto* values : {&frame.jacobians, &frame.hourglass_energy_densities, &frame.levels}) {
+    if (!values->empty()) gather_elements(*values);
+  }
   return frame;
 }
 
 template <class Real>
 void Body<Real>::require_healthy(long step) {
-  elements_.smallest_jacobians(state_, per_element_);
+  if (healthy()) return;
+  gather_elements(per_element_);
   sandglass::require_healthy(per_element_, step);
 }
 
 template <class Real>
 bool Body<Real>::healthy() {
+  fill_others(1.0);
   elements_.smallest_jacobians(state_, per_element_);
-  return std::all_of(per_element_.begin(), per_element_.end(), is_healthy);
-}
-
-template <class Real>
-const std::vector<double>& Body<Real>::stiffness_bounds() {
-  elements_.stiffness_bounds(state_, per_element_);
-  return per_element_;
+  return !ranks().any(!std::all_of(per_element_.begin(), per_element_.end(), is_healthy));
 }
 
 template <class Real>
 StableStep Body<Real>::stable_step(const Model& model, const Rows<Real>& inverse_masses, double given_step) {
-  const std::vector<double>& bounds = stiffness_bounds();
+  const std::vector<double>& bounds = per_element_;
+  fill_others(0.0);
+  elements_.stiffness_bounds(state_, per_element_);
   if (subcycling_) return subcycling_->choose_substeps(stable_steps(model, bounds), given_step);
-  StableStep stable = sandglass::stable_step(model, bounds);
+  StableStep stable = smallest_of(ranks(), sandglass::stable_step(model, bounds));
   if (model.scene().description.dynamics.body_frequency == 0) return stable;
   const double square = largest_frequency_.square(model.scene().mesh, elements_, ties_, inverse_masses,
                                                   state_, bounds, std::pow(2.0 / stable.step, 2));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "assembly/row_ties.hpp"
@@ -28,8 +29,28 @@ class Body {
   const Rows<Real>& free_forces() const { return force_; }
 
   /// Internal forces minus loads (N) on constrained components, in the order of the scene's constraints: the
-  /// reactions of a body in equilibrium.
+  /// reactions of a body in equilibrium; of several ranks each knows those of its own nodes.
   const std::vector<double>& reactions() const { return reactions_; }
+
+  /// The constraints of nodes whose rows this rank owns.
+  const std::vector<std::size_t>& own_constraints() const { return own_constraints_; }
+
+  /// Numbers in the order of the scene's constraints, of which each rank knows its own, of all ranks.
+  std::vector<double> of_all_constraints(const std::vector<double>& numbers) const;
+
+  /// Sets the values of elements that other ranks own, in the numbering of the mesh.
+  template <class T>
+  void gather_elements(std::vector<T>& values) const {
+    std::vector<double> all(values.size());
+    const auto rank = static_cast<std::size_t>(ranks().rank());
+    for (std::size_t c = layout().rank_cells[rank]; c < layout().rank_cells[rank + 1]; ++c) {
+      const int e = layout().elements[c];
+      if (e >= 0) all[static_cast<std::size_t>(e)] = static_cast<double>(values[static_cast<std::size_t>(e)]);
+    }
+    ranks().sum(all);
+    std::transform(all.begin(), all.end(), values.begin(),
+                   [](double value) { return static_cast<T>(value); });
+  }
 
   /// Evaluates the forces of the state. Afterwards the increments of constrained components are cleared, so
   /// that the update of increments can ignore constraints.
@@ -71,10 +92,13 @@ class Body {
   Rows<Real> change_of_loads(double factor) const;
 
   /// See Loads::potential, J.
-  double load_potential() const { return loads_.potential(state_.u); }
+  double load_potential() const { return loads_.potential(of_all(state_.u)); }
 
-  /// The work (J) of the loads since the last call.
-  double work_of_loads() { return loads_.work(state_.u); }
+  /// Adds the work of the loads since the last call.
+  void add_work_of_loads() { loads_.add_work(state_.u); }
+
+  /// The work (J) of the loads, of all calls.
+  double work_of_loads() const { return loads_.work(); }
 
   /// Nodal values as rows, zero on constrained components, at tied nodes and in spare rows: with inverse
   /// masses only free components move, without a branch.
@@ -83,8 +107,8 @@ class Body {
   /// The order of its rows.
   const Layout& layout() const { return elements_.layout(); }
 
-  /// Rows in the numbering of the mesh.
-  NodalField field(const Rows<Real>& rows) const { return to_field(rows, layout()); }
+  /// Rows, of which each rank knows its own, in the numbering of the mesh.
+  NodalField field(const Rows<Real>& rows) const { return to_field(of_all(rows), layout()); }
 
   /// Strain and hourglass energy, J.
   StrainEnergies energies() const { return elements_.energies(state_); }
@@ -97,9 +121,6 @@ class Body {
 
   /// Whether all displacements are finite and no element is inverted.
   bool healthy();
-
-  /// Upper bounds of the largest eigenvalue (N/m) of each element's tangent stiffness.
-  const std::vector<double>& stiffness_bounds();
 
   /// The stable step, by bounds of elements or, where the case says so, by the largest frequency of the body.
   /// `inverse_masses` as LargestFrequency has them, `given_step` (s) is the one that a user demands, or 0.
@@ -125,15 +146,15 @@ class Body {
     return elements_.adapt(state_, mobility, length, demoting_length);
   }
 
-  int threads() const { return threads_; }
-
   /// The data that the next step or load level depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
+    gather();
     archive("displacement", state_.u);
     archive("increment", state_.increment);
     archive("element history", state_.history);
     std::vector<double> levels = elements_.levels(state_);
+    if (!levels.empty()) gather_elements(levels);
     archive("element level", levels);
     elements_.set_levels(state_, levels);
     archive("increment step", state_.step);
@@ -147,6 +168,7 @@ class Body {
 
  private:
   struct RowConstraint {
+    std::size_t index;  // in the scene
     std::size_t row;
     std::size_t component;
     std::array<Real, 3> share;  // of the terms of its path, m
@@ -159,11 +181,27 @@ class Body {
     u = displacement;
   }
 
+  /// Rows, of which each rank knows its own, of all ranks.
+  Rows<Real> of_all(Rows<Real> rows) const {
+    layout().gather_rows(rows.data());
+    return rows;
+  }
+
+  /// Makes everything that is kept known to all ranks.
+  void gather();
+
+  /// Sets the values of elements that other ranks own.
+  void fill_others(double value) {
+    if (ranks().count() > 1) std::fill(per_element_.begin(), per_element_.end(), value);
+  }
+
+  const Ranks& ranks() const { return *layout().team.ranks; }
+
   const InternalForce<Real>& elements_;
-  int threads_;
-  const std::vector<double>& angles_;       // of paths, rad
+  const Scene& scene_;
   std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the present factor
-  std::vector<RowConstraint> constraints_;
+  std::vector<RowConstraint> constraints_;  // of rows that this rank computes
+  std::vector<std::size_t> own_constraints_;
   RowTies<Real> ties_;
   Loads<Real> loads_;
   std::optional<Subcycling<Real>> subcycling_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "problem/loading.hpp"
@@ -42,6 +43,7 @@ class CentralDifference {
         leapfrog_(model, elements, settings_.damping),
         body_(leapfrog_.body()),
         reactions_(model.scene().constraints.size(), 0.0),
+        works_(reactions_.size(), 0.0),
         moved_(model.scene().angles.size()),
         accelerations_(moved_.size()) {}
 
@@ -49,16 +51,24 @@ class CentralDifference {
   double time() const { return leapfrog_.time(); }
   long step() const { return leapfrog_.step(); }
   double step_size() const { return leapfrog_.step_size(); }
-  double external_work() const { return work_; }
+
+  /// Of imposed displacements and forces since the start, J.
+  double external_work() const {
+    const std::vector<double> all = body_.of_all_constraints(works_);
+    return std::accumulate(all.begin(), all.end(), body_.work_of_loads());
+  }
+
   double adaption_energy() const { return adaption_energy_; }
 
   /// The data that the next step depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
     leapfrog_.keep(archive);
+    reactions_ = body_.of_all_constraints(reactions_);
+    works_ = body_.of_all_constraints(works_);
     archive("reaction", reactions_);
     archive("next step", next_step_);
-    archive("work", work_);
+    archive("work", works_);
     archive("adaption energy", adaption_energy_);
   }
 
@@ -99,20 +109,21 @@ class CentralDifference {
     }
   }
 
-  /// Work of imposed displacements and forces over the last step, from the mean of the forces at its ends.
-  void update_external_work() {
+  /// Adds the work of imposed displacements and forces over the last step, from the mean of the forces at its
+  /// ends.
+  void add_external_work() {
     const double now = loading(time()), before = loading(time() - step_size());
     follow_paths(before, now);
     const auto& constraints = model_.scene().constraints;
-    for (std::size_t k = 0; k < constraints.size(); ++k) {
+    for (const std::size_t k : body_.own_constraints()) {
       const ImposedPath& path = constraints[k].path;
       const double force = constraint_force(k);
       for (std::size_t i = 0; i < 3; ++i) {
-        work_ += 0.5 * (reactions_[k] + force) * moved_[path.angle][i] * path.share[i];
+        works_[k] += 0.5 * (reactions_[k] + force) * moved_[path.angle][i] * path.share[i];
       }
       reactions_[k] = force;
     }
-    work_ += body_.work_of_loads();
+    body_.add_work_of_loads();
   }
 
   /// Promotes elements and evaluates their new forces. The increase of stored energy at the same
@@ -190,9 +201,9 @@ class CentralDifference {
   Leapfrog<Real> leapfrog_;
   Body<Real>& body_;
   std::vector<double> reactions_;
+  std::vector<double> works_;                     // J, of constraints
   std::vector<PathTerms> moved_, accelerations_;  // of paths of each angle
   double next_step_ = 0.0;
-  double work_ = 0.0;
   double adaption_energy_ = 0.0;
 };
 
@@ -221,7 +232,8 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
       observer.frame(body.frame(scheme.time(), std::move(v)));
       ++frames;
     }
-    motion.interrupted = !observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
+    const bool proceeds = observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
+    motion.interrupted = model.choice().ranks->any(!proceeds);
   };
 
   const auto keep = [&](auto archive) {
@@ -244,14 +256,14 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     scheme.choose_step();
     motion.smallest_step = settings.duration;
     body.evaluate_forces();
-    body.work_of_loads();  // from here on
+    body.add_work_of_loads();  // from here on
     scheme.set_initial_velocities();
     report();
     observer.resumable(checkpoint);
   }
   while (!scheme.finished() && !motion.interrupted) {
     scheme.advance(observer);
-    scheme.update_external_work();
+    scheme.add_external_work();
     motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
     motion.most_substeps = std::max(motion.most_substeps, body.substeps());
     if (scheme.step() % settings.check_interval == 0 || frame_due()) {

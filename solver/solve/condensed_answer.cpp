@@ -113,7 +113,8 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
     result.interrupted = !observer.proceed(1, 1.0, result.residual);
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,
-                    work_of(scene, body.reactions()) - 0.5 * body.load_potential(), result.residual, 1.0});
+                    work_of(scene, body.of_all_constraints(body.reactions())) - 0.5 * body.load_potential(),
+                    result.residual, 1.0});
   observer.frame(body.frame(1.0, no_velocity));
   return result;
 }

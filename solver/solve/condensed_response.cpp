@@ -255,7 +255,7 @@ void CondensedResponse<Real>::displacements(std::span<const Vector> d, std::span
   const std::size_t numbers = 3 * outputs_.size();
   Real* const sum = u.data()->data();
   const double* const amounts = d.data()->data();
-  for_each_block(numbers, threads, [=, this](std::size_t first, std::size_t last) {
+  Blocks(numbers, threads).for_each([=, this](std::size_t first, std::size_t last) {
     const auto add = [=, this](std::size_t column, double amount) {
       const auto share = static_cast<Real>(amount);
       const Real* const response = response_.data() + column * numbers;

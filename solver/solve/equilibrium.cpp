@@ -132,7 +132,7 @@ bool Equilibrium<Real>::linearized_step() {
   acceleration_.combine(reduced_, step_);
   correction_ = reduced_;
   mixed_.correct(reduced_, correction_);
-  add(1.0f, correction_, step_, body().threads());
+  add(1.0f, correction_, step_, blocks());
   const std::size_t recent = std::min<std::size_t>(norms_.size(), 3);
   const bool last_try = depends_on_path_ || effort_ == Effort::full;
   const double growth = last_try ? most_growth_of_the_last_try : most_growth;
@@ -145,7 +145,7 @@ bool Equilibrium<Real>::linearized_step() {
     mixed_.evaluate();
     const double next = mixed_.norm();
     if (std::isfinite(next) && next <= allowed) {
-      if (share < 1.0) multiply(static_cast<float>(share), step_, body().threads());
+      if (share < 1.0) multiply(static_cast<float>(share), step_, blocks());
       acceleration_.moved(step_);
       return true;
     }
@@ -236,9 +236,9 @@ double Equilibrium<Real>::extend(double load, double most) {
   const auto evaluate = [&] {
     mixed_.multigrid().elements().apply(x, forces);
     reduced_ = forces;
-    add(-1.0f, loads, reduced_, body().threads());
+    add(-1.0f, loads, reduced_, blocks());
     mixed_.weigh(reduced_);
-    return std::sqrt(dot(reduced_, reduced_, body().threads()));
+    return std::sqrt(dot(reduced_, reduced_, blocks()));
   };
   acceleration_.clear();
   const double first = evaluate();
@@ -247,8 +247,8 @@ double Equilibrium<Real>::extend(double load, double most) {
     step_ = correction_ = zero;
     acceleration_.combine(reduced_, step_);
     mixed_.correct(reduced_, correction_);
-    add(1.0f, correction_, step_, body().threads());
-    add(1.0f, step_, x, body().threads());
+    add(1.0f, correction_, step_, blocks());
+    add(1.0f, step_, x, blocks());
     acceleration_.moved(step_);
     if (!(evaluate() > 0.1 * first)) break;
   }

@@ -19,9 +19,7 @@ class Equilibrium {
  public:
   /// For the undeformed body of the model; `start` must follow.
   Equilibrium(const Model& model, const InternalForce<Real>& elements)
-      : mixed_(model, elements),
-        acceleration_(model.choice().threads),
-        depends_on_path_(elements.needs_increment()) {}
+      : mixed_(model, elements), acceleration_(blocks()), depends_on_path_(elements.needs_increment()) {}
 
   /// The body; its forces and displacements are those of the last evaluation. Callers that move it must set
   /// its increment.
@@ -82,6 +80,7 @@ class Equilibrium {
     bool take(double norm, int patience);
   };
 
+  const MixedBlocks& blocks() const { return mixed_.multigrid().elements().blocks(); }
   void begin();
   void begin_acceleration();
   void begin_multipliers();

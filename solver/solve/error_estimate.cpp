@@ -17,7 +17,9 @@ double rms_distance(const NodalField& a, const NodalField& b) {
 ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   constexpr double share_left = 0.01;
   const Scene& scene = model.scene();
-  const Model exact(scene, {.method = std::string(estimate_method), .threads = model.choice().threads});
+  const Model exact(scene, {.method = std::string(estimate_method),
+                            .threads = model.choice().threads,
+                            .ranks = model.choice().ranks});
   const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(exact.internal_force());
   Equilibrium<double> search(exact, elements);
   search.body().state() = state_at(elements, u);

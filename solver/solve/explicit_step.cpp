@@ -25,7 +25,7 @@ void ExplicitStep<Real>::move(double step, double keep, double gain) {
   Real* increment = numbers_of(body_.state().increment);
   const Real* force = numbers_of(body_.free_forces());
   const Real* inverse_mass = numbers_of(inverse_masses_);
-  for_each_block(4 * inverse_masses_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+  body_.layout().row_blocks.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
     for (std::size_t k = first; k < last; ++k) {
       increment[k] = kept * increment[k] + gained * inverse_mass[k] * force[k];

@@ -183,6 +183,9 @@ class LoadLevels {
   /// The data that the next load levels depend on, for a body at the last one; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive, const Body<Real>& body) {
+    body.layout().gather_rows(before_.u.data());
+    body.gather_elements(before_.pressures);
+    body.gather_elements(last_.pressures);
     archive("leg", leg_);
     if (leg_ == 0 || leg_ >= turns_.size()) {
       throw InputError("checkpoint: 'leg' must be one of the case's cycles; it belongs to another case");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace sandglass {
 
@@ -14,7 +15,8 @@ double dot(const Vector& a, const Vector& b) {
 }  // namespace
 
 template <class Real>
-Loads<Real>::Loads(const Scene& scene, const Layout& layout) : curves_(scene.curves) {
+Loads<Real>::Loads(const Scene& scene, const Layout& layout)
+    : curves_(scene.curves), ranks_(layout.team.ranks) {
   std::vector<int> nodes;
   for (const auto& load : scene.loads) nodes.push_back(load.node);
   for (const auto& pressure : scene.pressures) {
@@ -30,6 +32,7 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout) : curves_(scene.cur
   };
   for (const int node : nodes) {
     rows_.push_back(static_cast<std::size_t>(layout.row_of_node[static_cast<std::size_t>(node)]));
+    owned_.push_back(layout.owns(node));
   }
   for (const auto& load : scene.loads) dead_.push_back({at(load.node), load.curve, load.force});
   const auto all_at = [&](const Quadrilateral& face) {
@@ -44,6 +47,7 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout) : curves_(scene.cur
         {all_at(face), gauss_points_of(corners_of(points, face)), stiffness, damping, only_normal});
   }
   forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
+  work_.resize(rows_.size());
   factors_ = factors_at(0.0, 0.0);
 }
 
@@ -124,6 +128,8 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
     // The velocity is that of half a step before; without time it is zero.
     if (support.damping > 0.0) resist(support.damping / state.step, state.increment);
   }
+  // Dead forces are known everywhere, the others where the rank knows the displacements.
+  if (!faces_.empty() || !supports_.empty()) gather({numbers_of(forces_), 4 * rows_.size()});
   square_ = 0.0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -166,17 +172,37 @@ double Loads<Real>::potential(const Rows<Real>& u) const {
 }
 
 template <class Real>
-double Loads<Real>::work(const Rows<Real>& u) {
-  double work = 0.0;
+void Loads<Real>::gather(std::span<double> values) const {
+  const std::size_t each = rows_.empty() ? 0 : values.size() / rows_.size();
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    if (!owned_[n / each]) values[n] = 0.0;
+  }
+  ranks_->sum(values);
+}
+
+template <class Real>
+void Loads<Real>::gather() {
+  gather(work_);
+  gather({numbers_of(u_before_), 4 * rows_.size()});
+}
+
+template <class Real>
+double Loads<Real>::work() const {
+  std::vector<double> all = work_;
+  gather(all);
+  return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
+template <class Real>
+void Loads<Real>::add_work(const Rows<Real>& u) {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const Vector now = displacement(u, k);
     for (std::size_t i = 0; i < 3; ++i) {
-      work += 0.5 * (forces_[k][i] + forces_before_[k][i]) * (now[i] - u_before_[k][i]);
+      work_[k] += 0.5 * (forces_[k][i] + forces_before_[k][i]) * (now[i] - u_before_[k][i]);
       u_before_[k][i] = now[i];
     }
   }
   forces_before_ = forces_;
-  return work;
 }
 
 template class Loads<double>;

@@ -29,8 +29,14 @@ class Loads {
   /// the origin.
   double potential(const Rows<Real>& u) const;
 
-  /// The work (J) of the loads since the last call, from the mean of the forces of both states.
-  double work(const Rows<Real>& u);
+  /// Adds the work of the loads since the last call, from the mean of the forces of both states.
+  void add_work(const Rows<Real>& u);
+
+  /// The sum of all that was added, J.
+  double work() const;
+
+  /// Makes everything that is kept known to all ranks.
+  void gather();
 
   /// The data that the next work depends on; see checkpoint.hpp.
   template <class Archive>
@@ -39,6 +45,7 @@ class Loads {
     archive("loads", forces_);
     archive("loads before", forces_before_);
     archive("loaded displacements before", u_before_);
+    archive("work of loads", work_);
   }
 
  private:
@@ -78,14 +85,20 @@ class Loads {
 
   std::vector<double> factors_at(double time, double load_factor) const;
 
+  /// Sets the values at loaded rows that other ranks own.
+  void gather(std::span<double> values) const;
+
   const std::vector<LoadCurve>& curves_;
   std::vector<std::size_t> rows_;  // that carry loads
+  std::vector<bool> owned_;        // by this rank, of these
+  std::shared_ptr<const Ranks> ranks_;
   std::vector<Dead> dead_;
   std::vector<Face> faces_;
   std::vector<Support> supports_;
   std::vector<double> factors_;  // of curves
   Rows<double> forces_;          // N, of loaded rows
   Rows<double> forces_before_, u_before_;
+  std::vector<double> work_;  // J, of loaded rows
   double square_ = 0.0;
 };
 

@@ -72,8 +72,7 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
       multigrid_(model.scene().mesh, model.scene().ties, model.scene().coarser, elements.layout(),
-                 rounded_rows<float>(free_), springs_of(model.scene(), elements.layout()),
-                 model.choice().threads),
+                 rounded_rows<float>(free_), springs_of(model.scene(), elements.layout())),
       linearized_at_(free_.size()),
       p_(model.scene().mesh.cells.size()),
       defect_(p_.size()),
@@ -136,9 +135,9 @@ void MixedBody<Real>::weigh() {
   for (std::size_t row = 0; row < diagonal.size(); ++row) {
     for (std::size_t i = 0; i < 3; ++i) weights_.u[row][i] = std::sqrt(diagonal[row][i]);
   }
-  for (std::size_t e = 0; e < p_.size(); ++e) {
-    weights_.p[cell(e)] = static_cast<float>(std::sqrt(moduli_[materials_.of(e)].mu / volume(e)));
-  }
+  for_each_element([&](std::size_t e, std::size_t c) {
+    weights_.p[c] = static_cast<float>(std::sqrt(moduli_[materials_.of(e)].mu / volume(e)));
+  });
 }
 
 template <class Real>
@@ -163,14 +162,12 @@ void MixedBody<Real>::compare() {
              *free = numbers_of(free_);
   const float* w = numbers_of(weights_.u);
   float* r = numbers_of(residuals_.u);
-  for_each_block(4 * free_.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+  multigrid_.elements().blocks().u.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
     for (std::size_t k = first; k < last; ++k) r[k] = w[k] * static_cast<float>(f[k] + free[k] * g[k]);
   });
-  for_each_block(p_.size(), body_.threads(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t e = first; e < last; ++e) {
-      residuals_.p[cell(e)] = weights_.p[cell(e)] * static_cast<float>(defect_[e]);
-    }
+  for_each_element([&](std::size_t e, std::size_t c) {
+    residuals_.p[c] = weights_.p[c] * static_cast<float>(defect_[e]);
   });
 }
 
@@ -185,18 +182,19 @@ void MixedBody<Real>::weigh(MixedVector& residuals) const {
 template <class Real>
 void MixedBody<Real>::correct(const MixedVector& weighted, MixedVector& step) {
   // The range of single precision is small.
-  const double size = std::sqrt(dot(weighted, weighted, body_.threads()));
+  const MixedBlocks& blocks = multigrid_.elements().blocks();
+  const double size = std::sqrt(dot(weighted, weighted, blocks));
   const auto scale = static_cast<float>(size > 0.0 ? -1.0 / size : 1.0);
-  const auto divide = [&](const float* r, const float* w, float* b, std::size_t n) {
-    for_each_block(n, body_.threads(), [=](std::size_t first, std::size_t last) {
+  const auto divide = [&](const float* r, const float* w, float* b, const Blocks& numbers) {
+    numbers.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
       for (std::size_t k = first; k < last; ++k) b[k] = w[k] > 0.0f ? scale * r[k] / w[k] : 0.0f;
     });
   };
-  divide(numbers_of(weighted.u), numbers_of(weights_.u), numbers_of(b_.u), 4 * b_.u.size());
-  divide(weighted.p.data(), weights_.p.data(), b_.p.data(), b_.p.size());
+  divide(numbers_of(weighted.u), numbers_of(weights_.u), numbers_of(b_.u), blocks.u);
+  divide(weighted.p.data(), weights_.p.data(), b_.p.data(), blocks.p);
   multigrid_.cycle(b_, step);
-  multiply(static_cast<float>(size), step, body_.threads());
+  multiply(static_cast<float>(size), step, blocks);
 }
 
 template <class Real>
@@ -204,16 +202,14 @@ void MixedBody<Real>::move(const MixedVector& step, double share) {
   const auto factor = static_cast<Real>(share);
   const float* s = numbers_of(step.u);
   Real *u = numbers_of(body_.state().u), *increment = numbers_of(body_.state().increment);
-  for_each_block(4 * step.u.size(), body_.threads(), [=](std::size_t first, std::size_t last) {
+  multigrid_.elements().blocks().u.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
     for (std::size_t k = first; k < last; ++k) {
       increment[k] = factor * static_cast<Real>(s[k]);
       u[k] += increment[k];
     }
   });
-  for_each_block(p_.size(), body_.threads(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t e = first; e < last; ++e) p_[e] += factor * static_cast<Real>(step.p[cell(e)]);
-  });
+  for_each_element([&](std::size_t e, std::size_t c) { p_[e] += factor * static_cast<Real>(step.p[c]); });
   body_.follow();
 }
 
@@ -255,14 +251,19 @@ void MixedBody<Real>::evaluate(const Multipliers* multipliers, Rows<Real>& f) {
 template <class Real>
 double MixedBody<Real>::potential(const Multipliers* multipliers) const {
   const StrainEnergies energies = body_.energies();
-  double sum = energies.strain + energies.hourglass + body_.load_potential();
+  const double sum = energies.strain + energies.hourglass + body_.load_potential();
   if (multipliers == nullptr) return sum;
-  for (std::size_t e = 0; e < p_.size(); ++e) {
-    const auto m = static_cast<double>(multipliers->pressures[e]);
-    const double change = volume_change(e, *multipliers);
-    sum += volume(e) * change * (m - 0.5 * multipliers->given_up[materials_.of(e)] * change);
-  }
-  return sum;
+  return sum + multigrid_.elements().blocks().p.sum([&](std::size_t first, std::size_t last) {
+    double work = 0.0;
+    for (std::size_t c = first; c < last; ++c) {
+      if (body_.layout().elements[c] < 0) continue;
+      const auto e = static_cast<std::size_t>(body_.layout().elements[c]);
+      const auto m = static_cast<double>(multipliers->pressures[e]);
+      const double change = volume_change(e, *multipliers);
+      work += volume(e) * change * (m - 0.5 * multipliers->given_up[materials_.of(e)] * change);
+    }
+    return work;
+  });
 }
 
 template <class Real>

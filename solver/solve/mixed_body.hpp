@@ -53,7 +53,7 @@ class MixedBody {
   const MixedVector& residuals() const { return residuals_; }
 
   /// Their norm.
-  double norm() const { return std::sqrt(dot(residuals_, residuals_, body_.threads())); }
+  double norm() const { return std::sqrt(dot(residuals_, residuals_, multigrid_.elements().blocks())); }
 
   /// Body::residual of the last evaluation.
   double residual() const { return residual_; }
@@ -109,6 +109,7 @@ class MixedBody {
   /// The data that the next load level depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
+    body_.layout().gather_rows(linearized_at_.data());
     archive("evaluations", evaluations_);
     archive("linearized at", linearized_at_);
     archive("linearized with a penalty", linearized_penalty_);
@@ -136,6 +137,17 @@ class MixedBody {
   }
 
   std::size_t cell(std::size_t element) const { return multigrid_.elements().cells()[element]; }
+
+  /// Calls body(e, cell) for the elements that this rank computes, in parallel.
+  template <class Function>
+  void for_each_element(const Function& body) const {
+    multigrid_.elements().blocks().p.for_each([&](std::size_t first, std::size_t last) {
+      for (std::size_t c = first; c < last; ++c) {
+        const int e = body_.layout().elements[c];
+        if (e >= 0) body(static_cast<std::size_t>(e), c);
+      }
+    });
+  }
 
   const InternalForce<Real>& elements_;
   Body<Real> body_;

@@ -28,7 +28,7 @@ class NewtonStep {
   NewtonStep(MixedBody<Real>& mixed, const Multipliers* multipliers)
       : mixed_(mixed), multipliers_(multipliers), start_(mixed.body().state()) {
     mixed_.evaluate(multipliers_, start_force_);
-    size_ = std::sqrt(dot(start_force_, start_force_, threads()));
+    size_ = std::sqrt(dot(start_force_, start_force_, blocks().u));
   }
 
   bool take(int most_products) {
@@ -36,7 +36,7 @@ class NewtonStep {
     const double start_potential = mixed_.potential(multipliers_);
     const MixedVector downhill = against_forces();
     const MixedVector step = direction(downhill, most_products);
-    const double slope = -size_ * dot(downhill, step, threads());
+    const double slope = -size_ * dot(downhill, step, blocks());
     double share = std::min(1.0, longest / mixed_.multigrid().elements().largest_gradient(step.u));
     constexpr int most_trials = 30;
     Rows<Real> f;
@@ -45,7 +45,7 @@ class NewtonStep {
       mixed_.evaluate(multipliers_, f);
       if (mixed_.body().healthy()) {
         const double allowed = start_potential + 1e-4 * share * slope;
-        if (std::sqrt(dot(f, f, threads())) < (1.0 - 1e-4 * share) * size_) return true;
+        if (std::sqrt(dot(f, f, blocks().u)) < (1.0 - 1e-4 * share) * size_) return true;
         if (mixed_.potential(multipliers_) <= allowed) return true;
       }
       mixed_.body().state() = start_;
@@ -54,7 +54,7 @@ class NewtonStep {
   }
 
  private:
-  int threads() const { return mixed_.body().threads(); }
+  const MixedBlocks& blocks() const { return mixed_.multigrid().elements().blocks(); }
 
   static Rows<float> scaled(const Rows<Real>& rows, double factor) {
     Rows<float> to(rows.size());
@@ -104,29 +104,29 @@ class NewtonStep {
     for (int k = 0; k < most_products; ++k) {
       precondition(r, z);
       const double rz_before = rz;
-      rz = dot(r, z, threads());
+      rz = dot(r, z, blocks());
       if (!(rz > 0.0)) {
         return k > 0 ? x : longest_along(steepest(r));
       }
       if (k > 0) {
-        multiply(static_cast<float>(rz / rz_before), d, threads());
-        add(1.0f, z, d, threads());
+        multiply(static_cast<float>(rz / rz_before), d, blocks());
+        add(1.0f, z, d, blocks());
       } else {
         d = z;
       }
       q.u = product(d);
-      const double curvature = dot(d, q, threads());
+      const double curvature = dot(d, q, blocks());
       if (!(curvature > 0.0)) return k > 0 ? x : longest_along(std::move(d));
       const auto length = static_cast<float>(rz / curvature);
-      add(length, d, x, threads());
-      add(-length, q, r, threads());
-      if (dot(r, r, threads()) < forcing * forcing) break;  // it was one
+      add(length, d, x, blocks());
+      add(-length, q, r, blocks());
+      if (dot(r, r, blocks()) < forcing * forcing) break;  // it was one
     }
     return x;
   }
 
   MixedVector longest_along(MixedVector d) const {
-    multiply(static_cast<float>(longest / mixed_.multigrid().elements().largest_gradient(d.u)), d, threads());
+    multiply(static_cast<float>(longest / mixed_.multigrid().elements().largest_gradient(d.u)), d, blocks());
     return d;
   }
 

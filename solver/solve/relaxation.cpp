@@ -245,10 +245,11 @@ class Search {
     const double residual = equilibrium_.residual();
     const double digits =
         std::log(std::clamp(residual, settings_.tolerance, 1.0)) / std::log(settings_.tolerance);
-    result_.interrupted = !observer_.proceed(
+    const bool proceeds = observer_.proceed(
         evaluations,
         load_levels_.full() ? 0.3 + 0.7 * digits : 0.3 * load_levels_.travelled() / load_levels_.way(),
         residual);
+    result_.interrupted = model_.choice().ranks->any(!proceeds);
     ended_ = ended_ || result_.interrupted;
   }
 
@@ -257,21 +258,23 @@ class Search {
   void add_work() {
     const auto& constraints = model_.scene().constraints;
     const auto moved = load_levels_.moved();
+    const std::vector<double> forces = body().of_all_constraints(body().reactions());
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const ImposedPath& path = constraints[k].path;
-      const double force = body().reactions()[k];
+      const double force = forces[k];
       for (std::size_t i = 0; i < 3; ++i) {
         work_ += 0.5 * (reactions_[k] + force) * moved[path.angle][i] * path.share[i];
       }
       reactions_[k] = force;
     }
-    work_ += body().work_of_loads();
+    body().add_work_of_loads();
   }
 
   void report() {
     const StrainEnergies energies = body().energies();
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
-                       energies.hourglass, work_, equilibrium_.residual(), load_levels_.increment()});
+                       energies.hourglass, work_ + body().work_of_loads(), equilibrium_.residual(),
+                       load_levels_.increment()});
   }
 
   const Model& model_;

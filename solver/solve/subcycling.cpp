@@ -134,7 +134,7 @@ void require_bare_faces(const Scene& scene, const FreeNodes& free, const std::ve
 template <class Real>
 Subcycling<Real>::Subcycling(const Model& model, const InternalForce<Real>& elements,
                              const Rows<Real>& inverse_masses)
-    : threads_(model.choice().threads), most_substeps_(model.scene().description.dynamics.subcycles) {
+    : most_substeps_(model.scene().description.dynamics.subcycles) {
   const Scene& scene = model.scene();
   const State<Real> undeformed = elements.undeformed();
   require_bare_elements(model.choice(), elements.needs_increment(), !undeformed.history.empty());
@@ -201,7 +201,7 @@ void Subcycling<Real>::add_to_mean(std::size_t k) {
   const auto before = static_cast<Real>(k > 0 ? 1 : 0), share = static_cast<Real>(substeps_.weight(k));
   Real *mean = numbers_of(mean_), *force = numbers_of(force_);
   const Real* rest = numbers_of(rest_);
-  for_each_block(4 * force_.size(), threads_, [=](std::size_t first, std::size_t last) {
+  part_->layout().row_blocks.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
     for (std::size_t n = first; n < last; ++n) {
       mean[n] = before * mean[n] + share * force[n];
@@ -218,7 +218,7 @@ void Subcycling<Real>::move(std::size_t k) {
   Real *u = numbers_of(state_.u), *increment = numbers_of(state_.increment);
   const Real *mobility = numbers_of(mobility_), *force = numbers_of(force_);
   const auto for_each_number = [&](const auto& move_number) {
-    for_each_block(4 * mobility_.size(), threads_, [=](std::size_t first, std::size_t last) {
+    part_->layout().row_blocks.for_each([=](std::size_t first, std::size_t last) {
 #pragma omp simd
       for (std::size_t n = first; n < last; ++n) move_number(n);
     });

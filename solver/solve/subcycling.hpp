@@ -61,7 +61,6 @@ class Subcycling {
   void add_to_mean(std::size_t k);
   void move(std::size_t k);
 
-  int threads_;
   int most_substeps_;
   Substeps substeps_{1};
   double step_ = 0.0;  // s

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace sandglass {
+
+/// Processes that share the work on one body; the base class is a process alone. All hold the whole model,
+/// make the same decisions, and call these functions in the same order.
+class Ranks {
+ public:
+  Ranks() = default;
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+  virtual ~Ranks() = default;
+
+  virtual int rank() const { return 0; }
+  virtual int count() const { return 1; }
+
+  /// Data to and from the ranks below and above; empty where there is none.
+  struct Exchange {
+    std::span<const std::byte> to_below, to_above;
+    std::span<std::byte> from_below, from_above;
+  };
+
+  /// Begins an exchange. Its data must not be touched until `finish` returns.
+  virtual void start(const Exchange& /*exchange*/) const {}
+  virtual void finish() const {}
+
+  /// Adds up over the ranks, number by number. With each number from one rank and zeros from the others this
+  /// is exact, and puts together what ranks computed apart.
+  virtual void sum(std::span<double> /*numbers*/) const {}
+
+  /// Sends each rank's own part of `data`, from bounds[rank] to bounds[rank + 1], to all others.
+  virtual void gather(std::byte* /*data*/, std::span<const std::size_t> /*bounds*/) const {}
+
+  /// Whether all ranks come to their end with this one, which a rank in an error waits a little for.
+  virtual bool all_end() const { return true; }
+
+  /// Ends all ranks at once.
+  virtual void abort(int /*exit_code*/) const {}
+
+  /// One value of each rank.
+  std::vector<double> of_all(double value) const {
+    std::vector<double> values(static_cast<std::size_t>(count()));
+    values[static_cast<std::size_t>(rank())] = value;
+    sum(values);
+    return values;
+  }
+
+  /// Whether something holds on any rank.
+  bool any(bool here) const {
+    double sum_of_all = here ? 1.0 : 0.0;
+    sum({&sum_of_all, 1});
+    return sum_of_all > 0.0;
+  }
+};
+
+/// Who shares the work of loops: the ranks, and the threads of each.
+struct Team {
+  int threads = 1;
+  std::shared_ptr<const Ranks> ranks = std::make_shared<const Ranks>();
+};
+
+}  // namespace sandglass

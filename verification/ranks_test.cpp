@@ -1,0 +1,214 @@
+/// Ranks that share the work on one body: the same bits for any number of them and of their threads, and no
+/// more traffic than the method needs. They are threads here (support/thread_ranks.hpp); test_ranks.py starts
+/// the program with mpirun.
+
+#include <gtest/gtest.h>
+
+#include "assembly/chunk_sum.hpp"
+#include "base/error.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/relaxation.hpp"
+#include "support/scenes.hpp"
+#include "support/thread_ranks.hpp"
+#include "support/typed_lists.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// A block between two plates, one of which moves, under a pressure from one side.
+Scene block(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elements) {
+  Case description = plain_case(law);
+  const Mesh mesh = box({0.1, 0.1, 0.4}, elements);
+  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
+                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.3999; })},
+                      {"side", nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0; })}};
+  description.displacements = {{"foot", {}}, {"head", {0.01, 0.0, 0.02}}};
+  description.pressures = {{.set = "side", .value = 50.0}};
+  description.quasi_static = quasi_static;
+  description.relaxation.max_steps = 12;
+  description.relaxation.check_interval = 4;
+  description.dynamics.duration = 0.01;
+  description.dynamics.check_interval = 4;
+  description.dynamics.frames = 2;
+  return make_scene(description, mesh, sets);
+}
+
+/// Everything that a run tells.
+struct Told final : Observer {
+  void frame(const Frame& frame) override {
+    for (const auto& field : {frame.u, frame.v}) {
+      for (const Vector& value : field) numbers.insert(numbers.end(), value.begin(), value.end());
+    }
+    for (const auto& values : {frame.jacobians, frame.hourglass_energy_densities, frame.levels}) {
+      numbers.insert(numbers.end(), values.begin(), values.end());
+    }
+  }
+  void history(const HistoryRow& row) override {
+    numbers.insert(numbers.end(), {row.time, row.kinetic, row.strain, row.hourglass, row.external_work,
+                                   row.residual, row.step_size, row.adaption});
+  }
+  void resumable(const std::function<Checkpoint()>& checkpoint) override {
+    for (const auto& [name, values] : checkpoint().arrays) {
+      numbers.insert(numbers.end(), values.begin(), values.end());
+    }
+  }
+
+  std::vector<double> numbers;
+};
+
+std::vector<double> told_by(const Scene& scene, const MethodChoice& choice) {
+  Told told;
+  const Model model(scene, choice);
+  if (scene.description.quasi_static) {
+    relax(model, told);
+  } else {
+    integrate(model, told);
+  }
+  return told.numbers;
+}
+
+void expect_same_bits(const Scene& scene, const std::string& method, int count, int threads = 1) {
+  const std::vector<double> alone = told_by(scene, {.method = method});
+  const auto together = ThreadRanks(count).run([&](std::shared_ptr<const Ranks> ranks) {
+    return told_by(scene, {.method = method, .threads = threads, .ranks = std::move(ranks)});
+  });
+  for (const auto& numbers : together) EXPECT_EQ(numbers, alone) << count << " ranks";
+}
+
+template <class Method>
+class RanksTest : public ::testing::Test {
+ protected:
+  static inline const std::string name{Method::name};
+};
+
+TYPED_TEST_SUITE(RanksTest, MethodTypes, EntryName);
+
+TYPED_TEST(RanksTest, relaxation) {
+  Scene scene = block(sample_law<NeoHookean>(0.45), true, {4, 4, 18});
+  if (is_condensed<TypeParam>) scene.pressures.clear();
+  expect_same_bits(scene, this->name, 2);
+}
+
+TYPED_TEST(RanksTest, motion) {
+  if constexpr (!is_condensed<TypeParam>) {
+    expect_same_bits(block(sample_law<NeoHookean>(0.45), false, {4, 4, 18}), this->name, 2);
+  }
+}
+
+TYPED_TEST(RanksTest, motion_with_a_law_that_remembers) {
+  if constexpr (!is_condensed<TypeParam> && knows_law<TypeParam, Viscoelastic<NeoHookean>>) {
+    expect_same_bits(block(sample_law<Viscoelastic<NeoHookean>>(0.45), false, {4, 4, 18}), this->name, 2);
+  }
+}
+
+/// Three ranks: one has neighbours on both sides.
+TEST(Ranks, between_others) {
+  Scene motion = block(sample_law<NeoHookean>(0.45), false, {8, 8, 192});
+  motion.description.dynamics.duration = 0.005;
+  expect_same_bits(motion, "tl-perturbation", 3, 2);
+  Scene rest = block(sample_law<NeoHookean>(0.45), true, {8, 8, 192});
+  rest.description.relaxation.max_steps = 5;
+  expect_same_bits(rest, "tl-perturbation", 3, 2);
+}
+
+/// Sums of numbers of single precision, which depend on their order, for every division of nine pairs of
+/// chunks: ranks without an interior, with one odd chunk, and with more.
+TEST(Ranks, sum_over_chunks_in_one_order) {
+  const Mesh mesh = box({1.0, 1.0, 16.0}, {12, 12, 256});
+  const auto sum = [&](const Layout& layout) {
+    Rows<float> rows(layout.rows());
+    sum_over_chunks(layout, numbers_of(rows), [&](std::size_t c) {
+      for (const int e : layout.elements_of(layout.chunks[c])) {
+        for (const int node : mesh.cells[static_cast<std::size_t>(e)]) {
+          const auto row = static_cast<std::size_t>(layout.row_of_node[static_cast<std::size_t>(node)]);
+          rows[row][0] += 1.0f / static_cast<float>(1 + e % 1009);
+        }
+      }
+    });
+    return rows;
+  };
+  const Layout whole = make_layout(mesh, 4);
+  ASSERT_EQ(whole.chunks.size(), 18U);
+  const Rows<float> expected = sum(whole);
+  for (int count = 1; count <= 9; ++count) {
+    for (const int threads : {1, 3}) {
+      const auto wrong = ThreadRanks(count).run([&](std::shared_ptr<const Ranks> ranks) {
+        const Layout layout = make_layout(mesh, 4, SpareRows::where_needed, {}, {threads, std::move(ranks)});
+        const Rows<float> rows = sum(layout);
+        long differing = 0;
+        const Blocks::Range local = layout.row_blocks.local();
+        for (std::size_t row = local.first / 4; row < local.last / 4; ++row) {
+          if (rows[row][0] != expected[row][0]) ++differing;
+        }
+        return differing;
+      });
+      for (const long differing : wrong) EXPECT_EQ(differing, 0) << count << " ranks";
+    }
+  }
+}
+
+/// A step sends the rows of one chunk to each neighbour and nothing else; only checks and reports ask all
+/// ranks.
+TEST(Ranks, a_step_takes_one_exchange) {
+  Scene scene = block(sample_law<NeoHookean>(0.45), false, {8, 8, 192});
+  scene.pressures.clear();
+  scene.description.dynamics.check_interval = 1000000;
+  scene.description.dynamics.frames = 1;
+  const auto traffic_of = [&](double duration) {
+    scene.description.dynamics.duration = duration;
+    scene.description.dynamics.ramp_time = 1.0;
+    ThreadRanks ranks(3);
+    const auto steps = ranks.run([&](std::shared_ptr<const Ranks> own) {
+      Observer silent;
+      return integrate(Model(scene, {.method = "tl-perturbation", .ranks = std::move(own)}), silent).steps;
+    });
+    return std::pair(steps.front(), ranks.traffic(1));
+  };
+  const auto [few, less] = traffic_of(0.01);
+  const auto [many, more] = traffic_of(0.03);
+  ASSERT_GT(many, few + 5);
+  EXPECT_EQ(more.exchanges - less.exchanges, many - few);
+  EXPECT_EQ(more.messages - less.messages, 2 * (many - few));
+  EXPECT_EQ(more.sums, less.sums);
+  EXPECT_EQ(more.gathers, less.gathers);
+  // The middle one of three ranks sends its chunks 2 and 3, whose nodes others share only in layers: at most
+  // those of the chunk's elements and one layer more.
+  const Layout layout = std::get<0>(Model(scene, {.method = "tl-perturbation"}).internal_force())->layout();
+  const auto rows = [&](std::size_t c) { return layout.chunks[c].last_row - layout.chunks[c].first_row; };
+  const auto row_bytes = static_cast<long>(sizeof(Row<double>));
+  EXPECT_EQ(more.bytes - less.bytes, row_bytes * static_cast<long>(rows(2) + rows(3)) * (many - few));
+}
+
+TEST(Ranks, too_many_are_refused) {
+  const Mesh mesh = box({1.0, 1.0, 1.0}, {4, 4, 18});
+  const auto messages = ThreadRanks(3).run([&](std::shared_ptr<const Ranks> ranks) -> std::string {
+    try {
+      make_layout(mesh, 4, SpareRows::where_needed, {}, {1, std::move(ranks)});
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  });
+  for (const auto& message : messages) {
+    EXPECT_NE(message.find("3 are too many for a mesh of 288 elements; allowed: at most 2"),
+              std::string::npos);
+  }
+}
+
+TEST(Ranks, what_is_not_divided_is_refused) {
+  Scene scene = block(sample_law<NeoHookean>(0.45), false, {4, 4, 18});
+  scene.description.dynamics.subcycles = 4;
+  const auto messages = ThreadRanks(2).run([&](std::shared_ptr<const Ranks> ranks) -> std::string {
+    Observer silent;
+    try {
+      integrate(Model(scene, {.method = "tl-perturbation", .ranks = std::move(ranks)}), silent);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  });
+  for (const auto& message : messages) EXPECT_NE(message.find("subcycles"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sandglass::verification
