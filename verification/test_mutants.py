@@ -10,8 +10,10 @@ from types import SimpleNamespace
 import patches
 import pytest
 import outcomes
+import run
 from clean_runs import CleanRuns
 from command_line import ROOT
+from common.errors import InputError
 
 PATCHES = patches.read_patches()
 
@@ -51,6 +53,45 @@ def test_table_survives_being_written_anew(tmp_path, monkeypatch):
     monkeypatch.setattr(outcomes, "STORE", tmp_path / "none")
     outcomes.write_table(PATCHES, "0123456789ab")
     assert outcomes.rows_of(table.read_text()) == rows
+
+
+def test_names_choose_mutants_and_that_of_the_clean_tree_none():
+    assert run.chosen_patches([]) == PATCHES
+    assert [patch.name[:3] for patch in run.chosen_patches(["017", "002-c"])] == ["002", "017"]
+    assert run.chosen_patches(["clean"]) == []
+    assert len(run.chosen_patches(["clean", "017"])) == 1
+    with pytest.raises(InputError, match="no mutant begins with '999'"):
+        run.chosen_patches(["clean", "999"])
+
+
+@pytest.mark.parametrize(
+    "verdict, code", [("killed", 0), ("equivalent", 0), ("survived", 1), ("broken", 3), (None, 3)]
+)
+def test_the_table_is_made_of_stored_results_alone(
+    tmp_path, monkeypatch, empty_store, verdict, code
+):
+    monkeypatch.setattr(outcomes, "TABLE", tmp_path / "RESULTS.md")
+    monkeypatch.setattr(run, "Worker", None)  # so that none can be made
+    patch = PATCHES[0]
+    if verdict:
+        result = {"patch": patch.digest, "verdict": verdict, "by": "a.test", "seconds": 1.0}
+        outcomes.store(patch.name, result | {"revision": "0123456789ab"})
+    options = SimpleNamespace(names=[patch.name], table=True)
+    assert run.run(options, threading.Event()) == code
+    rows = outcomes.rows_of(outcomes.TABLE.read_text())
+    assert list(rows) == [patch.name for patch in PATCHES]
+    assert rows[patch.name][2] == (verdict or "not run")
+
+
+def test_no_copy_is_made_when_all_is_finished(tmp_path, monkeypatch, empty_store):
+    monkeypatch.setattr(outcomes, "TABLE", tmp_path / "RESULTS.md")
+    monkeypatch.setattr(run, "Worker", None)
+    tree, patch = run.tree_digest(), PATCHES[0]
+    outcomes.store("clean", {"tree": tree, "revision": "", "alarms": [[]], "seconds": {}})
+    result = {"patch": patch.digest, "tree": tree, "verdict": "killed", "by": "a.test"}
+    outcomes.store(patch.name, result | {"seconds": 1.0, "revision": "0123456789ab"})
+    options = SimpleNamespace(names=[patch.name], table=False, clean=1, jobs=2)
+    assert run.run(options, threading.Event()) == 0
 
 
 def test_patch_without_a_sentence_is_refused(tmp_path):

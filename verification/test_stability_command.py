@@ -1,13 +1,12 @@
 """`sandglass stability`: maps in JSON, stored cells, and rejected input."""
 
 import json
-import shutil
 import signal
 import subprocess
 import time
 
 import pytest
-from command_line import BINARY, ROOT, sandglass
+from command_line import BINARY, sandglass
 
 MAP = ("--map", "load,nu", "--values", "load=0.5,1", "--values", "nu=0.3,0.49")
 FEW = (*MAP, "--methods", "tl-none", "tl-perturbation", "tl-full")
@@ -100,17 +99,3 @@ def test_axes_are_described():
     text = sandglass("stability", "--describe").stdout
     for name in ("kappa", "nu", "load", "aspect", "skew", "elements", "cycles", "step", "noise"):
         assert any(line.startswith(name + " ") for line in text.splitlines())
-
-
-@pytest.mark.skipif(not shutil.which("snakemake"), reason="Snakemake is not installed")
-def test_the_workflow_has_a_job_for_each_case_and_method(tmp_path):
-    """A case with a dot in its name; file names also have one between case and method."""
-    settings = (f"sandglass={BINARY}", f"folder={tmp_path}", "cases=column bending-2-nu0.49")
-    workflow = ROOT / "verification/stability/Snakefile"
-    plan = ["snakemake", "-s", workflow, "-n", "--config", *settings]
-    outcome = subprocess.run(plan, cwd=tmp_path, capture_output=True, text=True, timeout=100)
-    assert outcome.returncode == 0, outcome.stderr[:1000]
-    jobs = dict(line.split()[:2] for line in outcome.stdout.splitlines() if len(line.split()) == 4)
-    methods = len(sandglass("methods").stdout.splitlines())
-    counts = {"method": 2 * methods, "maps": 2, "figures": 2}
-    assert {name: int(jobs[name]) for name in counts} == counts

@@ -95,10 +95,14 @@ def is_finished(patch, tree):
 
 
 def chosen_patches(names):
-    """The patches whose names begin with one of the given names, or all. Raises InputError."""
+    """The patches whose names begin with one of the given names, or all. Raises InputError.
+
+    The name of the clean tree is not of a patch: alone, it asks for the clean runs only.
+    """
     patches = read_patches()
     if not names:
         return patches
+    names = [name for name in names if name != outcomes.CLEAN]
     for name in names:
         if not any(patch.name.startswith(name) for patch in patches):
             raise InputError(f"NAME: no mutant begins with '{name}' in verification/mutants")
@@ -117,7 +121,11 @@ def conclude(verdicts, stopped):
 def run(options, stop):
     """Runs the mutants; returns the exit code. Raises InputError."""
     patches = chosen_patches(options.names)
+    names = {patch.name for patch in patches}
     tree, revision = tree_digest(), git("rev-parse", "--short=12", "HEAD").strip()
+    if options.table:
+        rows = outcomes.write_table(read_patches(), revision)
+        return conclude([row[2] for row in rows if row[0] in names], False)
     todo = queue.Queue()
     for patch in patches:
         if not is_finished(patch, tree):
@@ -141,7 +149,7 @@ def run(options, stop):
             errors.append(error)
             stop.set()
 
-    count = max(1, min(options.jobs, todo.qsize() + clean.missing()))
+    count = min(max(1, options.jobs), todo.qsize() + clean.missing())
     threads = [threading.Thread(target=one_worker) for n in range(count)]
     for thread in threads:
         thread.start()
@@ -152,7 +160,6 @@ def run(options, stop):
         print(f"error: {error}", file=sys.stderr)
     if errors:
         return 1
-    names = {patch.name for patch in patches}
     return conclude([row[2] for row in rows if row[0] in names], stop.is_set())
 
 
@@ -163,10 +170,16 @@ def main():
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("names", nargs="*", metavar="NAME", help="mutants, or how they begin: 017")
+    parser.add_argument(
+        "names",
+        nargs="*",
+        metavar="NAME",
+        help="mutants, or how they begin: 017; 'clean': the clean tree, and no mutant by itself",
+    )
     parser.add_argument("--jobs", type=int, default=1, help="copies side by side (default 1)")
     parser.add_argument("--timeout", type=float, default=1800, help="s for each mutant (1800)")
     parser.add_argument("--clean", type=int, default=1, help="runs of the clean tree first (1)")
+    parser.add_argument("--table", action="store_true", help="write RESULTS.md, and run nothing")
     options = parser.parse_args()
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
