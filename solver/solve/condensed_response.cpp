@@ -255,7 +255,9 @@ void CondensedResponse<Real>::displacements(std::span<const Vector> d, std::span
   const std::size_t numbers = 3 * outputs_.size();
   Real* const sum = u.data()->data();
   const double* const amounts = d.data()->data();
-  Blocks(numbers, threads).for_each([=, this](std::size_t first, std::size_t last) {
+  const std::size_t size = block_size(numbers);
+  in_parallel((numbers + size - 1) / size, threads, [=, this](std::size_t block) {
+    const std::size_t first = block * size, last = std::min(numbers, first + size);
     const auto add = [=, this](std::size_t column, double amount) {
       const auto share = static_cast<Real>(amount);
       const Real* const response = response_.data() + column * numbers;
