@@ -141,7 +141,7 @@ BoxProblem ElementTransfer::problem_of(const Contents& contents) const {
 }
 
 void ElementTransfer::restrict_residual(const MixedVector& r, MixedVector& b) {
-  grid_.for_each_line(0, [&](std::size_t first, std::size_t count) {
+  grid_.set_by_lines(0, sums_, [&](std::size_t first, std::size_t count) {
     for (std::size_t box = first; box < first + count; ++box) {
       auto& sums = sums_[box];
       sums.fill({});
@@ -151,12 +151,16 @@ void ElementTransfer::restrict_residual(const MixedVector& r, MixedVector& b) {
           for (std::size_t i = 0; i < 4; ++i) sums[a][i] += w[a] * r.u[row][i];
         }
       }
+    }
+  });
+  grid_.set_by_lines(0, b.p, [&](std::size_t first, std::size_t count) {
+    for (std::size_t box = first; box < first + count; ++box) {
       float p = 0.0f;
       for (const std::uint32_t cell : contents_[box].cells) p += r.p[cell];
       b.p[box] = p;
     }
   });
-  grid_.for_each_line(1, [&](std::size_t first, std::size_t count) {
+  grid_.set_by_lines(1, b.u, [&](std::size_t first, std::size_t count) {
     for (std::size_t n = first; n < first + count; ++n) {
       Row<float> sum;
       for (std::size_t a = 0; a < 8; ++a) {

@@ -15,9 +15,10 @@ constexpr int pressure_steps = 2;
 
 }  // namespace
 
-GridLevel::GridLevel(const Grid& grid, int threads)
-    : SaddleLevel({Blocks(4 * grid.nodes(), threads), Blocks(grid.nodes(), threads)}, pressure_steps),
-      threads_(threads),
+GridLevel::GridLevel(const Grid& grid, Team team)
+    : SaddleLevel({Blocks(4 * grid.nodes(), team.threads), Blocks(grid.nodes(), team.threads)},
+                  pressure_steps),
+      team_(std::move(team)),
       grid_(grid),
       problems_(grid.nodes()),
       stencils_(grid.nodes()) {
@@ -26,7 +27,7 @@ GridLevel::GridLevel(const Grid& grid, int threads)
 
 void GridLevel::assemble() {
   Rows<float> diagonal(grid_.nodes());
-  for_each_line(1, [&](std::size_t first, std::size_t count) {
+  set_by_lines(1, diagonal, [&](std::size_t first, std::size_t count) {
     for (std::size_t n = first; n < first + count; ++n) {
       Stencil& stencil = stencils_[n];
       stencil.fill({});
@@ -46,9 +47,11 @@ void GridLevel::assemble() {
       }
       const Row<float>* own = &stencil[39];
       diagonal[n] = {{own[0][0], own[1][1], own[2][2], 0.0f}};
-      for (std::size_t i = 0; i < 3; ++i) free_[n][i] = diagonal[n][i] > 0.0f ? 1.0f : 0.0f;
     }
   });
+  for (std::size_t n = 0; n < diagonal.size(); ++n) {
+    for (std::size_t i = 0; i < 3; ++i) free_[n][i] = diagonal[n][i] > 0.0f ? 1.0f : 0.0f;
+  }
   for (std::size_t box = 0; box < problems_.size(); ++box) compliance_[box] = problems_[box].C;
   set_smoother(diagonal, eigenvalue_bound());
 }
@@ -56,7 +59,7 @@ void GridLevel::assemble() {
 /// Of D^-1 A of the boxes alone, D the diagonal, by power iterations: no sum of boxes has larger ones.
 float GridLevel::eigenvalue_bound() const {
   std::vector<float> largest(grid_.nodes(), 1.0f);
-  for_each_line(0, [&](std::size_t first, std::size_t count) {
+  set_by_lines(0, largest, [&](std::size_t first, std::size_t count) {
     for (std::size_t box = first; box < first + count; ++box) {
       const auto& A = problems_[box].A;
       std::array<float, 24> x, y;
@@ -97,7 +100,7 @@ void GridLevel::for_each_corner(const VisitCorner& visit) const {
 
 void GridLevel::apply(const MixedVector& x, MixedVector& y) const {
   const float* u = numbers_of(x.u);
-  for_each_line(1, [&](std::size_t first, std::size_t count) {
+  set_by_lines(1, y.u, [&](std::size_t first, std::size_t count) {
     std::array<std::size_t, 27> offsets;
     for (std::size_t m = 0; m < 27; ++m) {
       offsets[m] = m % 3 + m / 3 % 3 * grid_.stride(1) + m / 9 * grid_.stride(2);
@@ -123,7 +126,7 @@ void GridLevel::apply(const MixedVector& x, MixedVector& y) const {
 }
 
 void GridLevel::divergence(const Rows<float>& u, std::vector<float>& g) const {
-  for_each_line(0, [&](std::size_t first, std::size_t count) {
+  set_by_lines(0, g, [&](std::size_t first, std::size_t count) {
     for (std::size_t box = first; box < first + count; ++box) {
       float sum = 0.0f;
       const auto& B = problems_[box].B;
@@ -137,7 +140,7 @@ void GridLevel::divergence(const Rows<float>& u, std::vector<float>& g) const {
 }
 
 void GridLevel::gradient(const std::vector<float>& p, Rows<float>& f) const {
-  for_each_line(1, [&](std::size_t first, std::size_t count) {
+  set_by_lines(1, f, [&](std::size_t first, std::size_t count) {
     for (std::size_t n = first; n < first + count; ++n) {
       Row<float> sum;
       for (std::size_t a = 0; a < 8; ++a) {

@@ -39,8 +39,12 @@ void GridTransfer::for_all(const Indices& counts, const Visit& visit) const {
 }
 
 void GridTransfer::gather() {
-  for_all(coarse_.grid().boxes, [&](const Indices& box) {
-    coarse_.problems()[coarse_.grid().number(box[0], box[1], box[2])] = problem_of(box);
+  const Grid& grid = coarse_.grid();
+  coarse_.set_by_lines(0, coarse_.problems(), [&](std::size_t first, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Indices box{i, first % grid.stride(2) / grid.stride(1) - 1, first / grid.stride(2) - 1};
+      coarse_.problems()[first + i] = problem_of(box);
+    }
   });
 }
 

@@ -56,7 +56,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
     meshes_.push_back({std::move(own), std::move(level), std::move(transfer), zero, zero, zero});
   }
   const auto add = [&](const Grid& grid) {
-    auto level = std::make_unique<GridLevel>(grid, layout.team.threads);
+    auto level = std::make_unique<GridLevel>(grid, layout.team);
     const MixedVector zero = level->zero();
     grids_.push_back({std::move(level), nullptr, zero, zero, zero});
   };
