@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string_view>
 
 #include "app/build_info.hpp"
 #include "app/commands.hpp"
@@ -29,19 +30,23 @@ int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ra
                                                 sandglass::build_info::revision));
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
   if (ranks->rank() > 0 && std::freopen("/dev/null", "w", stdout) == nullptr) return computation_failed;
-  int exit_code = ok;
-  sandglass::add_run_command(app, exit_code, ranks);
-  if (ranks->count() == 1) {
-    sandglass::add_cases_command(app);
-    sandglass::add_methods_command(app);
-    sandglass::add_verify_command(app, exit_code);
-    sandglass::add_stability_command(app, exit_code);
-    sandglass::add_choose_command(app, exit_code);
-    sandglass::add_score_command(app);
-    sandglass::add_mesh_command(app);
-    sandglass::add_flops_command(app);
-    sandglass::add_bench_command(app, exit_code);
+  if (ranks->count() > 1 && (argc < 2 || std::string_view(argv[1]) != "run")) {
+    throw sandglass::InputError(fmt::format(
+        "ranks: {} were started, which only `sandglass run CASE` divides its work among; start other commands "
+        "without mpirun",
+        ranks->count()));
   }
+  int exit_code = ok;
+  sandglass::add_cases_command(app);
+  sandglass::add_methods_command(app);
+  sandglass::add_run_command(app, exit_code, ranks);
+  sandglass::add_verify_command(app, exit_code);
+  sandglass::add_stability_command(app, exit_code);
+  sandglass::add_choose_command(app, exit_code);
+  sandglass::add_score_command(app);
+  sandglass::add_mesh_command(app);
+  sandglass::add_flops_command(app);
+  sandglass::add_bench_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
