@@ -11,8 +11,8 @@
 
 #include "app/build_info.hpp"
 #include "app/commands.hpp"
+#include "app/mpi_ranks.hpp"
 #include "base/error.hpp"
-#include "io/mpi_ranks.hpp"
 
 namespace {
 
@@ -31,10 +31,11 @@ int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ra
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
   if (ranks->rank() > 0 && std::freopen("/dev/null", "w", stdout) == nullptr) return computation_failed;
   if (ranks->count() > 1 && (argc < 2 || std::string_view(argv[1]) != "run")) {
-    throw sandglass::InputError(fmt::format(
-        "ranks: {} were started, which only `sandglass run CASE` divides its work among; start other commands "
-        "without mpirun",
-        ranks->count()));
+    throw sandglass::InputError(
+        fmt::format("ranks: {} were started, which only `sandglass run CASE` divides its work among; start "
+                    "other commands "
+                    "without mpirun",
+                    ranks->count()));
   }
   int exit_code = ok;
   sandglass::add_cases_command(app);

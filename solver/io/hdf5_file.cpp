@@ -12,7 +12,6 @@
 
 #include "base/error.hpp"
 #include "io/file_hash.hpp"
-#include "io/mpi_ranks.hpp"
 #include "io/new_file.hpp"
 
 namespace sandglass {
@@ -175,7 +174,7 @@ struct Hdf5File::Handle {
       H5Sselect_none(memory.get());
     }
     const Identifier transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-    write_together(*storage.ranks, transfer.get());
+    storage.ranks->write_together(transfer.get());
     const T* from = entries.data() + (shape[0] > 0 ? entries.size() / shape[0] * first : 0);
     require_written(H5Dwrite(set.get(), native(T{}), memory.get(), space.get(), transfer.get(), from) >= 0,
                     fmt::format("cannot write dataset '{}'", name));
@@ -222,7 +221,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path, Storage storage) {
   const Identifier creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose),
       access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (storage.sealed) H5Pset_userblock(creation.get(), seal_size);
-  open_together(ranks, access.get());
+  ranks.open_together(access.get());
   handle->file =
       H5Fcreate(temporary_path(path, process).c_str(), H5F_ACC_TRUNC, creation.get(), access.get());
   handle->require_written(handle->file >= 0, "cannot be completed");

@@ -1,4 +1,4 @@
-#include "io/mpi_ranks.hpp"
+#include "app/mpi_ranks.hpp"
 
 #include <fmt/format.h>
 
@@ -76,6 +76,14 @@ class MpiRanks final : public Ranks {
     }
   }
 
+  void open_together(std::int64_t access) const override {
+    if (count_ > 1) H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL);
+  }
+
+  void write_together(std::int64_t transfer) const override {
+    if (count_ > 1) H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
+  }
+
   bool all_end() const override {
     using namespace std::chrono_literals;
     MPI_Request request;
@@ -104,14 +112,6 @@ std::shared_ptr<const Ranks> join_ranks() {
   return std::make_shared<const MpiRanks>();
 }
 
-void open_together(const Ranks& ranks, std::int64_t access) {
-  if (ranks.count() > 1) H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL);
-}
-
-void write_together(const Ranks& ranks, std::int64_t transfer) {
-  if (ranks.count() > 1) H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
-}
-
 #else
 
 std::shared_ptr<const Ranks> join_ranks() {
@@ -125,9 +125,6 @@ std::shared_ptr<const Ranks> join_ranks() {
   }
   return std::make_shared<const Ranks>();
 }
-
-void open_together(const Ranks& /*ranks*/, std::int64_t /*access*/) {}
-void write_together(const Ranks& /*ranks*/, std::int64_t /*transfer*/) {}
 
 #endif
 
