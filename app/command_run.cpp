@@ -302,6 +302,7 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
     print_estimate_of(options.estimate, model, answer.u);
   }
   print_time(answer.seconds, answer.steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
+  if (options.ranks->count() > 1) print_traffic(*options.ranks);
   return answer;
 }
 

@@ -40,6 +40,7 @@ class MpiRanks final : public Ranks {
 
   int rank() const override { return rank_; }
   int count() const override { return count_; }
+  Traffic traffic() const override { return traffic_; }
 
   void start(const Exchange& exchange) const override {
     const int below = rank_ > 0 ? rank_ - 1 : MPI_PROC_NULL;
@@ -47,7 +48,10 @@ class MpiRanks final : public Ranks {
     const auto receive = [](std::span<std::byte> to, int from, MPI_Request& request) {
       MPI_Irecv(to.data(), static_cast<int>(to.size()), MPI_BYTE, from, 0, MPI_COMM_WORLD, &request);
     };
-    const auto send = [](std::span<const std::byte> from, int to, MPI_Request& request) {
+    ++traffic_.exchanges;
+    const auto send = [this](std::span<const std::byte> from, int to, MPI_Request& request) {
+      if (!from.empty()) ++traffic_.messages;
+      traffic_.bytes += static_cast<long>(from.size());
       MPI_Isend(from.data(), static_cast<int>(from.size()), MPI_BYTE, to, 0, MPI_COMM_WORLD, &request);
     };
     receive(exchange.from_below, below, requests_[0]);
@@ -104,6 +108,7 @@ class MpiRanks final : public Ranks {
   int count_ = 1;
   MPI_Comm endings_{};
   mutable std::array<MPI_Request, 4> requests_{};
+  mutable Traffic traffic_;
 };
 
 }  // namespace

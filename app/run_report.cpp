@@ -76,4 +76,14 @@ void print_estimate(std::string_view against, const Scene& scene, double unit, d
              how);
 }
 
+void print_traffic(const Ranks& ranks) {
+  const auto most = [&](long number) {
+    return std::ranges::max(ranks.of_all(static_cast<double>(number))) /
+           static_cast<double>(std::max(ranks.traffic().exchanges, 1L));
+  };
+  const Ranks::Traffic traffic = ranks.traffic();
+  fmt::print("{} ranks: {} exchanges, each of at most {:.3g} messages and {:.0f} bytes from a rank\n",
+             ranks.count(), traffic.exchanges, most(traffic.messages), most(traffic.bytes));
+}
+
 }  // namespace sandglass

@@ -27,4 +27,7 @@ void print_levels(const std::string& method, const std::vector<double>& levels, 
 /// `asleep`: steps had different numbers of elements.
 void print_time(double seconds, long steps, std::size_t elements, bool went_on, bool asleep);
 
+/// Prints what an exchange takes on the rank that sends most; all ranks call it.
+void print_traffic(const Ranks& ranks);
+
 }  // namespace sandglass

@@ -93,9 +93,9 @@ TEST(LayoutTest, every_element_stands_once_between_its_faces) {
       const Layout layout = make_layout(mesh, width);
       std::vector<int> met(mesh.cells.size(), 0);
       for (const auto& group : layout.groups) {
-        for (std::size_t k = 0; k < group.ranks; ++k) {
+        for (std::size_t k = 0; k < group.packs; ++k) {
           for (int lane = 0; lane < width; ++lane) {
-            const int e = layout.elements[(group.first_rank + k) * index(width) + index(lane)];
+            const int e = layout.elements[(group.first_pack + k) * index(width) + index(lane)];
             NodalVectors<double> X{};
             std::set<int> nodes;
             for (int I = 0; I < 8; ++I) {
@@ -138,7 +138,7 @@ TEST(LayoutTest, chunks_of_one_parity_share_no_row) {
         for (std::size_t c = parity; c < layout.chunks.size(); c += 2) {
           for (std::size_t g = layout.chunks[c].first; g < layout.chunks[c].last; ++g) {
             const auto& group = layout.groups[g];
-            for (std::size_t n = 0; n < 4 * index(width) * (group.ranks + 1); ++n) {
+            for (std::size_t n = 0; n < 4 * index(width) * (group.packs + 1); ++n) {
               int& by = owner[layout.places(group.first_face, 0)[n] / 4];
               EXPECT_TRUE(by == -1 || by == static_cast<int>(c));
               by = static_cast<int>(c);
@@ -153,10 +153,10 @@ TEST(LayoutTest, chunks_of_one_parity_share_no_row) {
 /// Going along strips is worth it only if they are long: in a box they run from side to side of a chunk.
 TEST(LayoutTest, strips_of_a_box_are_long_and_lanes_are_filled) {
   const Layout layout = make_layout(box({3, 2, 2.5}, {24, 16, 20}), 8);
-  std::size_t ranks = 0;
-  for (const auto& group : layout.groups) ranks += group.ranks;
-  EXPECT_GE(ranks / layout.groups.size(), 8U);
-  EXPECT_LT(layout.ranks() * 8, 24U * 16U * 20U * 101 / 100);
+  std::size_t packs = 0;
+  for (const auto& group : layout.groups) packs += group.packs;
+  EXPECT_GE(packs / layout.groups.size(), 8U);
+  EXPECT_LT(layout.packs() * 8, 24U * 16U * 20U * 101 / 100);
 }
 
 template <class Method>

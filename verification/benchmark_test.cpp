@@ -46,7 +46,7 @@ TEST(Roofline, the_slower_of_arithmetic_and_traffic_binds) {
 TEST(Traffic, of_a_strip_counted_by_hand) {
   const Layout layout = make_layout(BoxMesh{{1.0, 1.0, 4.0}, {1, 1, 4}}.build(), 1);
   ASSERT_EQ(layout.rows(), 20U);
-  ASSERT_EQ(layout.ranks(), 4U);
+  ASSERT_EQ(layout.packs(), 4U);
   const double places = 5 * 4 * 4, constants = 4 * 32 * 8, history = 4 * 2 * 9 * 8, rows = 20 * 4 * 8;
   EXPECT_EQ(bytes_per_element({32, 9, 1}, 8, layout, 4), (places + constants + history + 8 * rows) / 4);
   EXPECT_EQ(bytes_per_element({32, 9, 1}, 4, layout, 4), (places + (constants + history + 8 * rows) / 2) / 4);

@@ -162,15 +162,14 @@ TEST(Ranks, a_step_takes_one_exchange) {
       Observer silent;
       return integrate(Model(scene, {.method = "tl-perturbation", .ranks = std::move(own)}), silent).steps;
     });
-    return std::pair(steps.front(), ranks.traffic(1));
+    return std::tuple(steps.front(), ranks.traffic(1), ranks.collectives(1));
   };
-  const auto [few, less] = traffic_of(0.01);
-  const auto [many, more] = traffic_of(0.03);
+  const auto [few, less, few_collectives] = traffic_of(0.01);
+  const auto [many, more, many_collectives] = traffic_of(0.03);
   ASSERT_GT(many, few + 5);
   EXPECT_EQ(more.exchanges - less.exchanges, many - few);
   EXPECT_EQ(more.messages - less.messages, 2 * (many - few));
-  EXPECT_EQ(more.sums, less.sums);
-  EXPECT_EQ(more.gathers, less.gathers);
+  EXPECT_EQ(many_collectives, few_collectives);
   // The middle one of three ranks sends its chunks 2 and 3, whose nodes others share only in layers: at most
   // those of the chunk's elements and one layer more.
   const Layout layout = std::get<0>(Model(scene, {.method = "tl-perturbation"}).internal_force())->layout();

@@ -61,10 +61,10 @@ class BatchLoop final : public BatchForce<Number> {
             const HourglassSettings& settings)
       : layout_(make_layout(mesh, 1, SpareRows::where_needed, materials.of_element)), laws_(laws) {
     for (const Material& material : materials.list) densities_.push_back(material.density);
-    constants_.reserve(layout_.ranks());
+    constants_.reserve(layout_.packs());
     for (const auto& group : layout_.groups) {
       const CalledLaw law = elastic_law(kernel_law(materials.list[group.material]));
-      for (std::size_t k = 0; k < group.ranks; ++k) {
+      for (std::size_t k = 0; k < group.packs; ++k) {
         const auto element = element_block<FormulationOf<Method, CalledLaw>, Real>(
             mesh, layout_, layout_.node_of_row, group.first_face + k, [&](int) { return law; }, settings);
         constants_.push_back(std::bit_cast<std::array<Real, numbers>>(element));
@@ -132,11 +132,11 @@ class BatchLoop final : public BatchForce<Number> {
   template <class Use>
   void for_each_element(const ElementGroups::Group& group, const Number* u, const Use& use) const {
     FaceModes<Number> lower = face_at(u, group.first_face);
-    for (std::size_t k = 0; k < group.ranks; ++k) {
+    for (std::size_t k = 0; k < group.packs; ++k) {
       const FaceModes<Number> upper = face_at(u, group.first_face + k + 1);
       ElementMotion<Number> motion;
       motion.u = modes_between(lower, upper);
-      use(motion, in_all_lanes(constants_[group.first_rank + k]));
+      use(motion, in_all_lanes(constants_[group.first_pack + k]));
       lower = upper;
     }
   }

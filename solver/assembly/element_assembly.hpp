@@ -43,7 +43,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   State<Real> undeformed() const override {
     State<Real> state = Base::undeformed();
-    state.history.resize(history_numbers * layout_->ranks() +
+    state.history.resize(history_numbers * layout_->packs() +
                          (Base::averages_over_nodes ? 4 * layout_->rows() : 0));
     return state;
   }
@@ -150,7 +150,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   /// The volumes around nodes in the history, for elements that average over nodes.
   Real* volumes_of(State<Real>& state) const {
-    return state.history.data() + history_numbers * layout_->ranks();
+    return state.history.data() + history_numbers * layout_->packs();
   }
 
   std::vector<Law> laws_;  // of each material
@@ -201,12 +201,12 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
                        std::vector<Defects>& defects) const {
     for (std::size_t g = chunk.first; g < chunk.last; ++g) {
       const auto& group = layout_->groups[g];
-      for (std::size_t k = 0; k < group.ranks; ++k) {
-        const auto axes = this->axes_of(layout_->elements.data() + (group.first_rank + k) * width);
+      for (std::size_t k = 0; k < group.packs; ++k) {
+        const auto axes = this->axes_of(layout_->elements.data() + (group.first_pack + k) * width);
         const auto squares =
             squared_defects(u, mobility, group.first_face + k, group.material, axes ? &*axes : nullptr);
         for (int lane = 0; lane < width; ++lane) {
-          const int e = layout_->elements[(group.first_rank + k) * width + static_cast<std::size_t>(lane)];
+          const int e = layout_->elements[(group.first_pack + k) * width + static_cast<std::size_t>(lane)];
           if (e < 0) continue;
           for (std::size_t level = 0; level < top; ++level) {
             defects[static_cast<std::size_t>(e)][level] =
@@ -309,14 +309,14 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
     for (std::size_t g = first; g < last; ++g) {
       const ElementGroups::Group group = groups.groups[g];
       FaceMotion lower = this->template gather_face<Method>(groups, state, volumes, group.first_face);
-      const auto* const blocks = part.blocks.data() + (group.first_rank - part.first_block);
+      const auto* const blocks = part.blocks.data() + (group.first_pack - part.first_block);
       Faces carried{};
-      for (std::size_t k = 0; k < group.ranks; ++k) {
-        const std::size_t block = group.first_rank + k;
+      for (std::size_t k = 0; k < group.packs; ++k) {
+        const std::size_t block = group.first_pack + k;
         const auto& element = blocks[k];
         const FaceMotion upper =
             this->template gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
-        if (this->streams_) prefetch_block(part, state, block + ranks_ahead);
+        if (this->streams_) prefetch_block(part, state, block + packs_ahead);
         auto remembered = this->template history<Method>(state, block);
         if (timeless) remembered.law = {};  // irrelevant here, and possibly left by a failed trial
         const Modes<Number> f = Kernel::force(
@@ -327,7 +327,7 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
         carried = upper_face(f);
         lower = upper;
       }
-      scatter_face_modes(carried, force, groups, group.first_face + group.ranks);
+      scatter_face_modes(carried, force, groups, group.first_face + group.packs);
     }
   }
 

@@ -114,12 +114,12 @@ class StripPacker {
  public:
   StripPacker(int width, std::size_t nodes) : taken_by_(nodes, -1) { groups_.width = width; }
 
-  /// Adds strips, cut into pieces of at most `most_ranks` elements. row_of(node) is called for the nodes of
+  /// Adds strips, cut into pieces of at most `most_packs` elements. row_of(node) is called for the nodes of
   /// each group in turn; spare lanes run along the rows from `spare_row` on.
   template <class RowOf>
-  void add(MaterialStrips open, std::size_t most_ranks, std::size_t spare_row, const RowOf& row_of) {
+  void add(MaterialStrips open, std::size_t most_packs, std::size_t spare_row, const RowOf& row_of) {
     while (!open.strips.empty()) {
-      add_group(open.material, choose(open.strips, most_ranks), spare_row, row_of);
+      add_group(open.material, choose(open.strips, most_packs), spare_row, row_of);
     }
   }
 
@@ -128,8 +128,8 @@ class StripPacker {
   /// Whether one of the groups from number `first` on has a lane without a strip.
   bool has_spare_lanes(std::size_t first) const {
     if (first >= groups()) return false;
-    const auto rank = static_cast<std::ptrdiff_t>(groups_.groups[first].first_rank * at(groups_.width));
-    return std::find(groups_.elements.begin() + rank, groups_.elements.end(), -1) != groups_.elements.end();
+    const auto pack = static_cast<std::ptrdiff_t>(groups_.groups[first].first_pack * at(groups_.width));
+    return std::find(groups_.elements.begin() + pack, groups_.elements.end(), -1) != groups_.elements.end();
   }
 
   ElementGroups finish() { return std::move(groups_); }
@@ -147,8 +147,8 @@ class StripPacker {
 
   /// Cuts up to `width` pieces of equal length off the open strips: preferably pieces that share no node,
   /// since lanes that add to the same row in turn stall the processor.
-  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_ranks) {
-    const std::size_t length = piece_length(open, most_ranks);
+  std::vector<Strip> choose(std::vector<Strip>& open, std::size_t most_packs) {
+    const std::size_t length = piece_length(open, most_packs);
     std::vector<Strip> chosen;
     ++round_;
     for (const bool apart : {true, false}) {
@@ -191,7 +191,7 @@ class StripPacker {
   void add_group(std::size_t material, const std::vector<Strip>& strips, std::size_t spare_row,
                  const RowOf& row_of) {
     const std::size_t length = strips.front().length(), width = at(groups_.width);
-    groups_.groups.push_back({groups_.ranks(), groups_.face_places.size() / (4 * width), length, material});
+    groups_.groups.push_back({groups_.packs(), groups_.face_places.size() / (4 * width), length, material});
     for (const auto& strip : strips) {
       for (const auto& face : strip.faces) {
         for (const int node : face) row_of(node);
@@ -231,7 +231,7 @@ void divide_among_ranks(Layout& layout) {
   std::vector<std::size_t> row_ends, cell_ends;
   const auto first_cell = [&](std::size_t group) {
     const bool end = group == layout.groups.size();
-    return end ? layout.elements.size() : layout.groups[group].first_rank * at(layout.width);
+    return end ? layout.elements.size() : layout.groups[group].first_pack * at(layout.width);
   };
   for (const auto& chunk : layout.chunks) {
     row_ends.push_back(4 * chunk.last_row);
@@ -257,8 +257,8 @@ void divide_among_ranks(Layout& layout) {
 std::vector<int> Layout::elements_of(const Chunk& chunk) const {
   std::vector<int> found;
   for (std::size_t g = chunk.first; g < chunk.last; ++g) {
-    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_rank * at(width));
-    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].ranks * at(width)),
+    const auto first = elements.begin() + static_cast<std::ptrdiff_t>(groups[g].first_pack * at(width));
+    std::copy_if(first, first + static_cast<std::ptrdiff_t>(groups[g].packs * at(width)),
                  std::back_inserter(found), [](int e) { return e >= 0; });
   }
   return found;
@@ -291,9 +291,9 @@ Layout make_layout(const Mesh& mesh, int width, SpareRows spare_rows, std::vecto
         cut_by_material(mesh, neighbours, std::span(order).subspan(begin, end - begin), layout.materials);
     const Strip& longest_strip = longest(parts);
     const std::size_t first = packer.groups(), first_row = layout.rows(),
-                      spare_row = layout.nodes + spare.size(), spare_ranks = longest_strip.length();
-    for (const auto& part : parts) packer.add(part, spare_ranks, spare_row, number);
-    layout.chunks.push_back({first, packer.groups(), first_row, layout.rows(), spare_row, spare_ranks});
+                      spare_row = layout.nodes + spare.size(), spare_packs = longest_strip.length();
+    for (const auto& part : parts) packer.add(part, spare_packs, spare_row, number);
+    layout.chunks.push_back({first, packer.groups(), first_row, layout.rows(), spare_row, spare_packs});
     if (spare_rows == SpareRows::where_needed && !packer.has_spare_lanes(first)) continue;
     for (const auto& face : longest_strip.faces) spare.insert(spare.end(), face.begin(), face.end());
   }
@@ -308,7 +308,7 @@ ElementGroups groups_within(const Layout& layout, const Layout::Chunk& chunk, co
                             const NodeElements& neighbours, std::span<const int> elements) {
   StripPacker packer(layout.width, layout.nodes);
   for (const auto& part : cut_by_material(mesh, neighbours, elements, layout.materials)) {
-    packer.add(part, chunk.spare_ranks, chunk.spare_row,
+    packer.add(part, chunk.spare_packs, chunk.spare_row,
                [&](int node) { return at(layout.row_of_node[at(node)]); });
   }
   return packer.finish();

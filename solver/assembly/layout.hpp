@@ -11,23 +11,23 @@
 namespace sandglass {
 
 /// Elements in the order of a time loop. A group consists of up to `width` strips of one material and of
-/// equal length side by side, one per lane. Its k-th rank consists of the k-th elements of its strips, which
+/// equal length side by side, one per lane. Its k-th pack consists of the k-th elements of its strips, which
 /// are computed together. Lanes without a strip run along spare rows, which have the coordinates of nodes of
 /// the mesh and zero displacements, so that kernels need no branch.
 struct ElementGroups {
   struct Group {
-    std::size_t first_rank;  ///< into `elements`, counted in ranks
-    std::size_t first_face;  ///< into `face_places`, counted in faces; a group has one more than ranks
-    std::size_t ranks;
+    std::size_t first_pack;  ///< into `elements`, counted in packs
+    std::size_t first_face;  ///< into `face_places`, counted in faces; a group has one more than packs
+    std::size_t packs;
     std::size_t material;
   };
 
   int width = 1;
   std::vector<Place> face_places;  ///< [face][corner][lane], places of rows
-  std::vector<int> elements;       ///< [rank][lane]; -1 in spare lanes
+  std::vector<int> elements;       ///< [pack][lane]; -1 in spare lanes
   std::vector<Group> groups;
 
-  std::size_t ranks() const { return elements.size() / static_cast<std::size_t>(width); }
+  std::size_t packs() const { return elements.size() / static_cast<std::size_t>(width); }
 
   /// The places of the rows of one corner of a face, one per lane.
   const Place* places(std::size_t face, std::size_t corner) const {
@@ -38,20 +38,20 @@ struct ElementGroups {
 /// The order in which the time loop goes through a mesh, computed once. Groups are divided into chunks, which
 /// are slabs of the mesh. Even chunks share no nodes with each other, nor do odd ones, so that any number of
 /// threads adds the forces at a node in the same order. Rows are nodes in the order of their first occurrence
-/// in the groups; cells are lanes, rank by rank.
+/// in the groups; cells are lanes, pack by pack.
 ///
 /// Each rank of a team owns some chunks and the rows that occur first in them. It also computes the first
 /// chunk of the rank above, which touches its last rows, so that the forces of all its rows are complete.
 struct Layout : ElementGroups {
   /// Groups first to last - 1, in which rows first_row to last_row - 1 occur first. Spare rows for strips of
-  /// up to `spare_ranks` elements begin at `spare_row`, if the chunk has any.
+  /// up to `spare_packs` elements begin at `spare_row`, if the chunk has any.
   struct Chunk {
     std::size_t first;
     std::size_t last;
     std::size_t first_row;
     std::size_t last_row;
     std::size_t spare_row;
-    std::size_t spare_ranks;
+    std::size_t spare_packs;
   };
 
   std::size_t nodes = 0;         ///< of the mesh; rows from here on are spare

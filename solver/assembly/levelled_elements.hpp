@@ -107,7 +107,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
     undeformed_plan_ = std::move(plan);
     using Cheapest = typename std::tuple_element_t<0, Parts>::Element;
-    streams_ = layout_->ranks() * sizeof(Cheapest) > cached_bytes;
+    streams_ = layout_->packs() * sizeof(Cheapest) > cached_bytes;
   }
 
   const Layout& layout() const override { return *layout_; }
@@ -255,8 +255,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       for (std::size_t g = part.first; g < part.last; ++g) {
         const auto group = part.groups->groups[g];
         FaceMotion lower = gather_face<Method>(*part.groups, state, volumes.data(), group.first_face);
-        for (std::size_t k = 0; k < group.ranks; ++k) {
-          const std::size_t block = group.first_rank + k;
+        for (std::size_t k = 0; k < group.packs; ++k) {
+          const std::size_t block = group.first_pack + k;
           const FaceMotion upper =
               gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
           visit.template operator()<Method>(
@@ -326,7 +326,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     part.groups = layout_;
     part.first = chunk.first;
     part.last = chunk.last;
-    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_rank;
+    if (chunk.first < chunk.last) part.first_block = layout_->groups[chunk.first].first_pack;
     fill_blocks(part, mesh);
     return parts;
   }
@@ -369,8 +369,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     for (std::size_t g = part.first; g < part.last; ++g) {
       const auto& group = part.groups->groups[g];
       const Setup& setup = setups_[group.material];
-      for (std::size_t k = 0; k < group.ranks; ++k) {
-        const int* elements = part.groups->elements.data() + (group.first_rank + k) * width;
+      for (std::size_t k = 0; k < group.packs; ++k) {
+        const int* elements = part.groups->elements.data() + (group.first_pack + k) * width;
         const auto law_of = [&](int lane) {
           const bool own = !axes_.empty() && elements[lane] >= 0;
           return setup.law.with_axes(own ? &axes_[static_cast<std::size_t>(elements[lane])] : nullptr);
@@ -392,17 +392,17 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
         const ElementGroups::Group group = groups.groups[g];
         Faces lower = gather_face_modes<Number>(state.u, groups, group.first_face);
         NodalVolumes<Number> carried{};
-        for (std::size_t k = 0; k < group.ranks; ++k) {
+        for (std::size_t k = 0; k < group.packs; ++k) {
           const Faces upper = gather_face_modes<Number>(state.u, groups, group.first_face + k + 1);
           ElementMotion<Number> motion;
           motion.u = modes_between(lower, upper);
           const auto own =
-              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_rank + k - part.first_block]);
+              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_pack + k - part.first_block]);
           scatter_volumes(carried, own, groups, group.first_face + k, volumes);
           carried = own;
           lower = upper;
         }
-        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.ranks, volumes);
+        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.packs, volumes);
       }
     }
   }
@@ -422,8 +422,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       const Number stiffness(lambda), compliance(Real(1) / lambda);
       FaceMotion lower = gather_face<Method>(groups, state, volumes, group.first_face);
       Faces carried{};
-      for (std::size_t k = 0; k < group.ranks; ++k) {
-        const std::size_t block = group.first_rank + k;
+      for (std::size_t k = 0; k < group.packs; ++k) {
+        const std::size_t block = group.first_pack + k;
         const int* numbers = groups.elements.data() + block * width;
         const FaceMotion upper = gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
         const auto motion = between<Method>(lower, upper, inverse_step);
@@ -464,7 +464,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
         carried = upper_face(f);
         lower = upper;
       }
-      scatter_face_modes(carried, force, groups, group.first_face + group.ranks);
+      scatter_face_modes(carried, force, groups, group.first_face + group.packs);
     }
   }
 

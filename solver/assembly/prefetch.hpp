@@ -8,9 +8,9 @@ namespace sandglass {
 /// The bytes of element constants that a core may keep in its own caches.
 inline constexpr std::size_t cached_bytes = std::size_t{2} << 20U;
 
-/// The distance, in ranks, between computing and prefetching: long enough for memory to respond, short enough
+/// The distance, in packs, between computing and prefetching: long enough for memory to respond, short enough
 /// for the first-level cache.
-inline constexpr std::size_t ranks_ahead = 3;
+inline constexpr std::size_t packs_ahead = 3;
 
 /// Prefetches `size` bytes from `start` on.
 inline void prefetch(const void* start, std::size_t size) {

@@ -26,6 +26,14 @@ class Ranks {
     std::span<std::byte> from_below, from_above;
   };
 
+  /// What exchanges have taken so far, on this rank.
+  struct Traffic {
+    long exchanges = 0;
+    long messages = 0;  ///< sent
+    long bytes = 0;     ///< sent
+  };
+  virtual Traffic traffic() const { return {}; }
+
   /// Begins an exchange. Its data must not be touched until `finish` returns.
   virtual void start(const Exchange& /*exchange*/) const {}
   virtual void finish() const {}

@@ -37,7 +37,7 @@ class Elements final : public ElementLevel {
       : ElementLevel(layout, pressure_steps),
         coordinates_(centred_coordinates<float>(mesh.points, layout)),
         present_(layout.rows()),
-        elements_(layout.ranks()) {
+        elements_(layout.packs()) {
     resize(layout.rows(), layout.elements.size());
     free_ = free;
     springs_ = springs;
@@ -87,8 +87,8 @@ class Elements final : public ElementLevel {
   double largest_gradient(const Rows<float>& u) const override {
     Number largest(0.0f);
     for (std::size_t c = layout_.own_chunks.first; c < layout_.own_chunks.last; ++c) {
-      for_each_rank(layout_.chunks[c], [&](std::size_t rank, std::size_t face, std::size_t /*material*/) {
-        const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), elements_[rank].body);
+      for_each_pack(layout_.chunks[c], [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
+        const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), elements_[pack].body);
         largest = max(largest, double_dot(H, H));
       });
     }
@@ -101,12 +101,12 @@ class Elements final : public ElementLevel {
     for (std::size_t g = layout_.chunks[layout_.local_chunks.first].first;
          g < layout_.chunks[layout_.local_chunks.last - 1].last; ++g) {
       const ElementGroups::Group& group = layout_.groups[g];
-      for (std::size_t k = 0; k < group.ranks; ++k) {
-        const std::size_t rank = group.first_rank + k, face = group.first_face + k;
-        const NodalVectors<Number> b = nodal_gradients(elements_[rank]);
-        const Number& V = elements_[rank].body.V;
+      for (std::size_t k = 0; k < group.packs; ++k) {
+        const std::size_t pack = group.first_pack + k, face = group.first_face + k;
+        const NodalVectors<Number> b = nodal_gradients(elements_[pack]);
+        const Number& V = elements_[pack].body.V;
         for (int lane = 0; lane < W; ++lane) {
-          const std::size_t cell = rank * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
+          const std::size_t cell = pack * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
           if (layout_.elements[cell] < 0) continue;
           columns.clear();
           for (std::size_t I = 0; I < 8; ++I) {
@@ -146,15 +146,15 @@ class Elements final : public ElementLevel {
     return most;
   }
 
-  static Number load(const std::vector<float>& values, std::size_t rank) {
+  static Number load(const std::vector<float>& values, std::size_t pack) {
     Number lanes;
-    std::memcpy(static_cast<void*>(&lanes), values.data() + rank * static_cast<std::size_t>(W),
+    std::memcpy(static_cast<void*>(&lanes), values.data() + pack * static_cast<std::size_t>(W),
                 sizeof(lanes));
     return lanes;
   }
 
-  static void store(const Number& lanes, std::vector<float>& values, std::size_t rank) {
-    std::memcpy(values.data() + rank * static_cast<std::size_t>(W), static_cast<const void*>(&lanes),
+  static void store(const Number& lanes, std::vector<float>& values, std::size_t pack) {
+    std::memcpy(values.data() + pack * static_cast<std::size_t>(W), static_cast<const void*>(&lanes),
                 sizeof(lanes));
   }
 
@@ -209,49 +209,49 @@ class Elements final : public ElementLevel {
   }
 
   template <class Visit>
-  void for_each_rank(const Layout::Chunk& chunk, const Visit& visit) const {
+  void for_each_pack(const Layout::Chunk& chunk, const Visit& visit) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
-      for (std::size_t k = 0; k < ranks; ++k) visit(first_rank + k, first_face + k, material);
+      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
+      for (std::size_t k = 0; k < packs; ++k) visit(first_pack + k, first_face + k, material);
     }
   }
 
   [[gnu::flatten]] void apply_to(const Layout::Chunk& chunk, const MixedVector& x, MixedVector& y) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
+      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
       auto lower = gather_face_modes<Number>(x.u, layout_, first_face);
       FaceModes<Number> carried{};
-      for (std::size_t k = 0; k < ranks; ++k) {
-        const std::size_t rank = first_rank + k;
-        const Block& block = elements_[rank];
+      for (std::size_t k = 0; k < packs; ++k) {
+        const std::size_t pack = first_pack + k;
+        const Block& block = elements_[pack];
         const auto upper = gather_face_modes<Number>(x.u, layout_, first_face + k + 1);
         const Modes<Number> u = modes_between(lower, upper);
         const Tensor<Number> H = OnePoint::mean_gradient(u, block.body);
-        const Number p = load(x.p, rank);
-        store(block.body.V * (H(0, 0) + H(1, 1) + H(2, 2)) - load(compliance_, rank) * p, y.p, rank);
+        const Number p = load(x.p, pack);
+        store(block.body.V * (H(0, 0) + H(1, 1) + H(2, 2)) - load(compliance_, pack) * p, y.p, pack);
         const Modes<Number> f = forces(block, u, H, block.body.V * p);
         scatter_face_modes(carried + lower_face(f), numbers_of(y.u), layout_, first_face + k);
         carried = upper_face(f);
         lower = upper;
       }
-      scatter_face_modes(carried, numbers_of(y.u), layout_, first_face + ranks);
+      scatter_face_modes(carried, numbers_of(y.u), layout_, first_face + packs);
     }
   }
 
   [[gnu::flatten]] void diverge(const Layout::Chunk& chunk, const Rows<float>& u,
                                 std::vector<float>& g) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
+      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
       auto lower = gather_face_modes<Number>(u, layout_, first_face);
-      for (std::size_t k = 0; k < ranks; ++k) {
-        const Block& block = elements_[first_rank + k];
+      for (std::size_t k = 0; k < packs; ++k) {
+        const Block& block = elements_[first_pack + k];
         const auto upper = gather_face_modes<Number>(u, layout_, first_face + k + 1);
         const Modes<Number> modes = modes_between(lower, upper);
         Number sum(0.0f);
         for (int m = 0; m < 6; ++m) {
           for (int i = 0; i < 3; ++i) sum = sum + modes(m, i) * block.body.h(m, i);
         }
-        store(block.body.V * sum, g, first_rank + k);
+        store(block.body.V * sum, g, first_pack + k);
         lower = upper;
       }
     }
@@ -260,15 +260,15 @@ class Elements final : public ElementLevel {
   [[gnu::flatten]] void add_gradients(const Layout::Chunk& chunk, const std::vector<float>& p,
                                       Rows<float>& f) const {
     for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_rank, first_face, ranks, material] = layout_.groups[group];
+      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
       FaceModes<Number> carried{};
-      for (std::size_t k = 0; k < ranks; ++k) {
-        const Block& block = elements_[first_rank + k];
-        const Modes<Number> modes = (block.body.V * load(p, first_rank + k)) * gradient_modes(block);
+      for (std::size_t k = 0; k < packs; ++k) {
+        const Block& block = elements_[first_pack + k];
+        const Modes<Number> modes = (block.body.V * load(p, first_pack + k)) * gradient_modes(block);
         scatter_face_modes(carried + lower_face(modes), numbers_of(f), layout_, first_face + k);
         carried = upper_face(modes);
       }
-      scatter_face_modes(carried, numbers_of(f), layout_, first_face + ranks);
+      scatter_face_modes(carried, numbers_of(f), layout_, first_face + packs);
     }
   }
 
@@ -303,13 +303,13 @@ class Elements final : public ElementLevel {
 
   [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk, const std::vector<ModelModuli>& moduli) {
     Number largest(1.0f);
-    for_each_rank(chunk, [&](std::size_t rank, std::size_t face, std::size_t material) {
+    for_each_pack(chunk, [&](std::size_t pack, std::size_t face, std::size_t material) {
       const auto mu = static_cast<float>(moduli[material].mu),
                  lambda = static_cast<float>(moduli[material].lambda);
       const Modes<Number> x = modes_of(present_, face);
       const auto reference = OnePoint::geometry(modes_of(coordinates_, face));
       const Tensor<Number> F_inverse = inverse(OnePoint::mean_gradient(x, reference));
-      Block& block = elements_[rank];
+      Block& block = elements_[pack];
       block.body = OnePoint::geometry(x);
       block.stress = Number(2.0f * mu) * reference.V;
       // eq. 12; |h|^2 by nodes is eight times that by modes
@@ -317,7 +317,7 @@ class Elements final : public ElementLevel {
                         double_dot(block.body.h, block.body.h);
       largest = max(largest, eigenvalue_bound(block));
       for (int lane = 0; lane < W; ++lane) {
-        const std::size_t cell = rank * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
+        const std::size_t cell = pack * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
         if (layout_.elements[cell] < 0) continue;
         ElementTangent& tangent = tangents_[cell];
         for (std::size_t n = 0; n < 9; ++n)
@@ -333,10 +333,10 @@ class Elements final : public ElementLevel {
   }
 
   [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
-    for_each_rank(chunk, [&](std::size_t rank, std::size_t face, std::size_t /*material*/) {
-      const NodalVectors<Number> g = nodal_gradients(elements_[rank]);
+    for_each_pack(chunk, [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
+      const NodalVectors<Number> g = nodal_gradients(elements_[pack]);
       for (std::size_t I = 0; I < 8; ++I) {
-        const Triple<Number> D = diagonal(elements_[rank], g, static_cast<int>(I));
+        const Triple<Number> D = diagonal(elements_[pack], g, static_cast<int>(I));
         scatter_add<Number>({D(0, 0), D(1, 0), D(2, 0)}, numbers_of(stiffness_),
                             layout_.places(face + I / 4, I % 4));
       }

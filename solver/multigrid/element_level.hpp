@@ -24,7 +24,7 @@ struct ElementTangent {
 
 /// The finest level, in single precision as all levels: every element as a one-point hexahedron in the
 /// present configuration with the law's initial moduli and a constant hourglass stiffness, whatever the
-/// method. Nothing is assembled. Rows are those of a layout, cells its lanes, rank by rank.
+/// method. Nothing is assembled. Rows are those of a layout, cells its lanes, pack by pack.
 class ElementLevel : public SaddleLevel {
  public:
   ElementLevel(const Layout& layout, int pressure_steps)

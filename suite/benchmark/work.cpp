@@ -4,7 +4,7 @@ namespace sandglass {
 
 double bytes_per_element(const Traffic& traffic, std::size_t bytes_of_number, const Layout& layout,
                          std::size_t elements) {
-  const std::size_t blocks = layout.ranks() * static_cast<std::size_t>(layout.width);
+  const std::size_t blocks = layout.packs() * static_cast<std::size_t>(layout.width);
   const std::size_t numbers = blocks * (traffic.passes * traffic.constants + 2 * traffic.history) +
                               4 * layout.rows() * (traffic.rows_of_motion + rows_of_update);
   const std::size_t bytes =

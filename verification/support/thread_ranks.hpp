@@ -11,15 +11,6 @@
 
 namespace sandglass::verification {
 
-/// What ranks did together, counted on one of them.
-struct Traffic {
-  long exchanges = 0;
-  long messages = 0;  ///< sent in exchanges
-  long bytes = 0;     ///< sent in exchanges
-  long sums = 0;
-  long gathers = 0;
-};
-
 /// Ranks that are threads of one program, which share nothing but what they send, to test without MPI.
 class ThreadRanks {
  public:
@@ -42,7 +33,9 @@ class ThreadRanks {
     return results;
   }
 
-  const Traffic& traffic(std::size_t rank) const { return ranks_[rank]->traffic; }
+  /// What a rank sent, and how often it took part in sums and gathers.
+  Ranks::Traffic traffic(std::size_t rank) const { return ranks_[rank]->sent; }
+  long collectives(std::size_t rank) const { return ranks_[rank]->collectives; }
 
  private:
   struct Member final : Ranks {
@@ -57,10 +50,10 @@ class ThreadRanks {
       all.arrived_.arrive_and_wait();
       if (own > 0) copy(other(own - 1).pending.to_above, pending.from_below);
       if (own + 1 < members) copy(other(own + 1).pending.to_below, pending.from_above);
-      ++traffic.exchanges;
-      for (const auto& sent : {pending.to_below, pending.to_above}) {
-        traffic.messages += sent.empty() ? 0 : 1;
-        traffic.bytes += static_cast<long>(sent.size());
+      ++sent.exchanges;
+      for (const auto& part : {pending.to_below, pending.to_above}) {
+        sent.messages += part.empty() ? 0 : 1;
+        sent.bytes += static_cast<long>(part.size());
       }
       all.arrived_.arrive_and_wait();
     }
@@ -72,7 +65,7 @@ class ThreadRanks {
       for (int r = 0; r < members; ++r) {
         for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] += other(r).published[n];
       }
-      ++traffic.sums;
+      ++collectives;
       all.arrived_.arrive_and_wait();
     }
 
@@ -84,7 +77,7 @@ class ThreadRanks {
                           last = bounds[static_cast<std::size_t>(r) + 1];
         if (r != own) std::copy(other(r).gathered + first, other(r).gathered + last, data + first);
       }
-      ++traffic.gathers;
+      ++collectives;
       all.arrived_.arrive_and_wait();
     }
 
@@ -101,7 +94,8 @@ class ThreadRanks {
     mutable Exchange pending;
     mutable std::vector<double> published;
     mutable std::byte* gathered = nullptr;
-    mutable Traffic traffic;
+    mutable Traffic sent;
+    mutable long collectives = 0;
   };
 
   std::barrier<> arrived_;
