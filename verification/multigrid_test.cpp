@@ -124,12 +124,12 @@ TEST(Multigrid, cycles_do_not_grow_with_the_mesh_nor_with_lambda) {
 /// Grids hold the body's own volume, and their functions of constant displacement change none.
 TEST(Multigrid, levels_conserve_volume) {
   const HeldBar bar(4, 0.3, 0.0);
-  GridLevel first(Grid::around(bar.mesh), 1);
+  GridLevel first(Grid::around(bar.mesh), {});
   ElementTransfer transfer(bar.mesh, bar.layout, bar.multigrid->elements(), first);
   transfer.gather();
   std::array<bool, 3> halved{};
   const Grid coarse = first.grid().coarser(halved);
-  GridLevel second(coarse, 1);
+  GridLevel second(coarse, {});
   GridTransfer to_second(first, second, halved);
   to_second.gather();
   const auto lambda = static_cast<double>(bar.multigrid->elements().tangents().front().lambda);
