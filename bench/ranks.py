@@ -3,7 +3,8 @@
 Usage: /usr/bin/python3 bench/ranks.py [--width N] [--rounds N] [--json FILE]
 Needs the solver built with MPI: build/mpi/sandglass (ci/setup mpi; ci/build mpi), or the one given
 by SANDGLASS_BINARY. The beam has N x N x 5 N elements. One rank, two threads and two ranks take
-turns. Strong scaling: the same beam. Weak scaling: two ranks on a beam of twice the length.
+turns. Strong scaling: the same beam. Weak scaling: a beam of twice the length, which may no longer
+fit into the cache; then all wait for memory, whoever divides the work.
 The model takes the measured time of an element and states its network; it is no measurement.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed.
 """
@@ -85,6 +86,7 @@ def measure_beam(folder, kind, width, rounds):
         "1 rank": (short, 1, 1, 5),
         "2 threads": (short, 1, 2, 5),
         "2 ranks": (short, 2, 1, 5),
+        "2 threads, twice the length": (long, 1, 2, 10),
         "2 ranks, twice the length": (long, 2, 1, 10),
     }
     found = {name: [] for name in setups}
@@ -153,7 +155,7 @@ def measure(options):
             for record in measure_beam(folder, kind, options.width, options.rounds):
                 document["records"].append(record)
                 print(
-                    "{kind:6} {name:26} {elements:>8} elements {ns_per_element_step:8.2f} ns "
+                    "{kind:6} {name:27} {elements:>8} elements {ns_per_element_step:8.2f} ns "
                     "(spread {spread:4.0%}) {steps:>5} steps {messages:3g} messages of {bytes:>7} "
                     "bytes, least {least_bytes}".format(**record),
                     flush=True,

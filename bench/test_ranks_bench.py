@@ -43,7 +43,7 @@ def test_a_small_beam_is_measured(tmp_path, monkeypatch, capsys):
     assert ranks.main(["--width", "8", "--rounds", "1", "--json", str(output)]) == 0
     document = json.loads(output.read_text())
     found = {(record["kind"], record["name"]): record for record in document["records"]}
-    assert len(found) == 8 and len(document["model"]) == 8
+    assert len(found) == 10 and len(document["model"]) == 8
     motion = found["motion", "2 ranks"]
     assert motion["messages"] == 1
     assert motion["bytes"] == 32 * 81 * 10
