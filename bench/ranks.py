@@ -53,7 +53,8 @@ def program():
 def write_beam(folder, kind, width, length):
     """Write the case of a beam of `length` elements along its axis; returns its path."""
     text = growth.BEAM.format(width=width, length=length, ratio=0.49)
-    text = text.replace("0.1]", f"{0.02 * length / width:g}]")
+    end = f"{0.02 * length / width:g}"  # m, where the beam of growth.BEAM ends at 0.1
+    text = text.replace("0.02, 0.1]", f"0.02, {end}]").replace("[0.1, 0.1]", f"[{end}, {end}]")
     if kind == "motion":
         step = 0.0012 / width  # s, about the stable one
         text = text.replace('"quasi-static"', '"dynamic"')
