@@ -41,7 +41,7 @@ struct Chosen {
 /// and all others while the messages travel. Afterwards the rows of `Layout::row_blocks` are complete.
 template <class Real, class Add>
 void sum_over_chunks(const Layout& layout, Real* rows, const Add& add) {
-  const auto [first, last] = layout.own_chunks;
+  const std::size_t first = layout.own_chunks.first, last = layout.own_chunks.last;
   const Ranks& ranks = *layout.team.ranks;
   const int threads = layout.team.threads;
   const bool below = ranks.rank() > 0, above = ranks.rank() + 1 < ranks.count();

@@ -214,13 +214,13 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path, Storage storage) {
   prepare_library();
   auto handle = std::make_unique<Handle>();
   handle->path = path;
-  handle->storage = storage;
-  const Ranks& ranks = *storage.ranks;
+  handle->storage = std::move(storage);
+  const Ranks& ranks = *handle->storage.ranks;
   if (ranks.rank() == 0) handle->being_written.emplace(path);
   const auto process = static_cast<int>(ranks.of_all(getpid())[0]);
   const Identifier creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose),
       access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  if (storage.sealed) H5Pset_userblock(creation.get(), seal_size);
+  if (handle->storage.sealed) H5Pset_userblock(creation.get(), seal_size);
   ranks.open_together(access.get());
   handle->file =
       H5Fcreate(temporary_path(path, process).c_str(), H5F_ACC_TRUNC, creation.get(), access.get());

@@ -173,7 +173,8 @@ double Loads<Real>::potential(const Rows<Real>& u) const {
 
 template <class Real>
 void Loads<Real>::gather(std::span<double> values) const {
-  const std::size_t each = rows_.empty() ? 0 : values.size() / rows_.size();
+  if (owned_.empty()) return;
+  const std::size_t each = values.size() / owned_.size();
   for (std::size_t n = 0; n < values.size(); ++n) {
     if (!owned_[n / each]) values[n] = 0.0;
   }
