@@ -26,7 +26,7 @@ import time_to_rest
 from common.command import exit_code, whole_number
 from common.errors import InputError
 from common.files import require_writable, write_json
-from common.program import ROOT, output_of
+from common.program import ROOT, output_of, under_mpirun
 
 MOTION = """
 [dynamics]
@@ -66,13 +66,8 @@ def write_beam(folder, kind, width, length):
 
 def run(case, ranks, threads):
     """(ns per element and step, steps, bytes and messages of an exchange) of a run."""
-    ranks_and_threads = ("-n", ranks, program(), "run", case, "--threads", threads)
-    environment = os.environ | {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    }
-    command = ("mpirun", "--bind-to", "none", "--oversubscribe", *ranks_and_threads)
-    text = output_of(*command, env=environment)
+    words, environment = under_mpirun(ranks, program(), "run", case, "--threads", threads)
+    text = output_of(*words, env=environment)
     time = float(re.search(r"([\d.e+]+) ns per element and step", text)[1])
     steps = int(re.search(r" (\d+) steps", text)[1])
     traffic = re.search(r"each of at most ([\d.]+) messages and (\d+) bytes", text)

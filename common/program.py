@@ -41,3 +41,13 @@ def output_of(*command, allowed=(0,), **options):
         text = f"`{' '.join(words)}` ended with {done.returncode}: {reason.removeprefix('error: ')}"
         raise kind(text)
     return done.stdout
+
+
+def under_mpirun(ranks, *command):
+    """(words, environment) that start a command on so many ranks.
+
+    As the superuser too, with more ranks and threads than processors, and bound to none of them.
+    """
+    words = ("mpirun", "--oversubscribe", "--bind-to", "none", "-n", ranks, *command)
+    permission = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    return [str(word) for word in words], os.environ | permission

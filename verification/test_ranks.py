@@ -14,70 +14,34 @@ import time
 import h5py
 import pytest
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-BINARY = ROOT / "build/mpi/sandglass"
-WITHOUT_MPI = ROOT / "build/release/sandglass"
+from command_line import BARE, BINARY, dynamic
+from common.program import ROOT, under_mpirun
+
+PROGRAM = ROOT / "build/mpi/sandglass"
 pytestmark = pytest.mark.skipif(
-    not BINARY.exists() or not shutil.which("mpirun"), reason="the program is not built with MPI"
+    not PROGRAM.exists() or not shutil.which("mpirun"), reason="the program is not built with MPI"
 )
 
-BLOCK = """
-[case]
-name = "block"
-requirement = "A block of two materials is pulled, and swings."
-answer = "dynamic"
-
-[dynamics]
-duration = {duration}
-ramp_time = 0.02
-frames = 4
-
-[mesh]
-generator = "box"
-size = [0.02, 0.02, 0.1]
-elements = [8, 8, 40]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.49
-density = 1000.0
-
-[sets]
-foot = {{ z = [0.0, 0.0] }}
-head = {{ z = [0.1, 0.1] }}
-side = {{ x = [0.0, 0.0] }}
-
-[[displacement]]
-set = "foot"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "head"
-value = [0.01, 0.0, 0.02]
-
+PRESSURE = """
 [[pressure]]
 set = "side"
 value = 20.0
 """
 
 
-def start(ranks, *arguments, program=BINARY, **options):
-    """mpirun, also as the superuser and with more threads than processors."""
-    environment = os.environ | {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMP_WAIT_POLICY": "passive",
-    }
-    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks), program]
-    return subprocess.Popen(
-        [str(word) for word in (*command, *arguments)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment,
-        **options,
-    )
+def block_in_motion(duration):
+    """A block that is pulled and sheared, under a pressure from one side."""
+    text = BARE.replace("[2, 2, 4]", "[8, 8, 40]")
+    text = text.replace("[sets]", "[sets]\nside = { x = [0.0, 0.0] }")
+    return dynamic(text + PRESSURE, duration=duration, ramp_time=0.02, frames=4)
+
+
+def start(ranks, *arguments, program=PROGRAM):
+    """Start a run on so many ranks."""
+    words, environment = under_mpirun(ranks, program, *arguments)
+    environment["OMP_WAIT_POLICY"] = "passive"
+    pipe = subprocess.PIPE
+    return subprocess.Popen(words, stdout=pipe, stderr=pipe, text=True, env=environment)
 
 
 def outcome_of(ranks, *arguments, **options):
@@ -103,7 +67,7 @@ def content(file):
 @pytest.fixture(scope="module")
 def block(tmp_path_factory):
     file = tmp_path_factory.mktemp("ranks") / "block.toml"
-    file.write_text(BLOCK.format(duration=0.05))
+    file.write_text(block_in_motion(0.05))
     return file
 
 
@@ -151,7 +115,7 @@ def test_what_ranks_cannot_share_is_refused(arguments, message):
 
 
 def test_a_program_without_mpi_refuses_to_be_started_twice():
-    code, out, err = outcome_of(2, "run", "column", program=WITHOUT_MPI)
+    code, out, err = outcome_of(2, "run", "column", program=BINARY)
     assert code == 2
     assert "built without MPI" in err
 
@@ -165,7 +129,7 @@ def processes_below(pid):
 def test_a_killed_rank_ends_the_run_and_the_checkpoint_goes_on(tmp_path):
     """On as many ranks as before or others, with the bits of a run that nobody killed."""
     case = tmp_path / "block.toml"
-    case.write_text(BLOCK.format(duration=1.0))
+    case.write_text(block_in_motion(1.0))
     whole, result, kept = (tmp_path / name for name in ("whole.h5", "result.h5", "kept.h5"))
     code, out, err = outcome_of(2, "run", case, "-o", whole)
     assert code == 0, err
