@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <string_view>
 
@@ -32,9 +33,8 @@ int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ra
   if (ranks->rank() > 0 && std::freopen("/dev/null", "w", stdout) == nullptr) return computation_failed;
   if (ranks->count() > 1 && (argc < 2 || std::string_view(argv[1]) != "run")) {
     throw sandglass::InputError(
-        fmt::format("ranks: {} were started, which only `sandglass run CASE` divides its work among; start "
-                    "other commands "
-                    "without mpirun",
+        fmt::format("ranks: {} were started, but only `sandglass run CASE` divides its work; start other "
+                    "commands without mpirun",
                     ranks->count()));
   }
   int exit_code = ok;
@@ -51,7 +51,9 @@ int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ra
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return ranks->rank() > 0 ? bad_input : app.exit(error) == 0 ? ok : bad_input;
+    std::ostream nowhere(nullptr);
+    const bool prints = ranks->rank() == 0;
+    return app.exit(error, prints ? std::cout : nowhere, prints ? std::cerr : nowhere) == 0 ? ok : bad_input;
   }
   if (std::fflush(stdout) != 0) {
     fmt::print(stderr, "error: standard output: cannot be written\n");

@@ -78,7 +78,7 @@ void print_estimate(std::string_view against, const Scene& scene, double unit, d
 
 void print_traffic(const Ranks& ranks) {
   const auto most = [&](long number) {
-    return std::ranges::max(ranks.of_all(static_cast<double>(number))) /
+    return ranks.largest(static_cast<double>(number)) /
            static_cast<double>(std::max(ranks.traffic().exchanges, 1L));
   };
   const Ranks::Traffic traffic = ranks.traffic();

@@ -8,29 +8,19 @@
 #include "base/error.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
-#include "support/scenes.hpp"
+#include "support/plates.hpp"
 #include "support/thread_ranks.hpp"
 #include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
 namespace {
 
-/// A block between two plates, one of which moves, under a pressure from one side.
+/// A block between two plates under a pressure from one side.
 Scene block(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elements) {
   Case description = plain_case(law);
-  const Mesh mesh = box({0.1, 0.1, 0.4}, elements);
-  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
-                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.3999; })},
-                      {"side", nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0; })}};
-  description.displacements = {{"foot", {}}, {"head", {0.01, 0.0, 0.02}}};
   description.pressures = {{.set = "side", .value = 50.0}};
-  description.quasi_static = quasi_static;
   description.relaxation.max_steps = 12;
-  description.relaxation.check_interval = 4;
-  description.dynamics.duration = 0.01;
-  description.dynamics.check_interval = 4;
-  description.dynamics.frames = 2;
-  return make_scene(description, mesh, sets);
+  return block_between_plates(std::move(description), quasi_static, elements);
 }
 
 /// Everything that a run tells.

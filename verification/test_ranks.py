@@ -114,6 +114,12 @@ def test_what_ranks_cannot_share_is_refused(arguments, message):
     assert err.count("error: ") == 1 and message in err
 
 
+def test_help_is_printed_once_and_is_no_error():
+    code, out, err = outcome_of(2, "run", "--help")
+    assert code == 0, err
+    assert out.count("compute a case with a method") == 1
+
+
 def test_a_program_without_mpi_refuses_to_be_started_twice():
     code, out, err = outcome_of(2, "run", "column", program=BINARY)
     assert code == 2

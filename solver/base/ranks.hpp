@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -62,6 +63,9 @@ class Ranks {
     sum(values);
     return values;
   }
+
+  /// The largest of the values of all ranks.
+  double largest(double value) const { return std::ranges::max(of_all(value)); }
 
   /// Whether something holds on any rank.
   bool any(bool here) const {

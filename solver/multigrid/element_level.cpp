@@ -64,7 +64,7 @@ class Elements final : public ElementLevel {
     }
     layout_.gather_rows(stiffness_.data());
     layout_.gather_cells(tangents_.data());
-    set_smoother(stiffness_, static_cast<float>(largest_of_all(*std::ranges::max_element(bounds))));
+    set_smoother(stiffness_, largest_of_all(*std::ranges::max_element(bounds)));
   }
 
   void apply(const MixedVector& x, MixedVector& y) const override {
@@ -92,7 +92,7 @@ class Elements final : public ElementLevel {
         largest = max(largest, double_dot(H, H));
       });
     }
-    return std::sqrt(static_cast<float>(largest_of_all(largest_lane(largest))));
+    return std::sqrt(largest_of_all(largest_lane(largest)));
   }
 
  protected:
@@ -136,8 +136,8 @@ class Elements final : public ElementLevel {
     for (std::size_t i = 0; i < 3; ++i) known->second[i] += weight * b[i];
   }
 
-  double largest_of_all(float largest) const {
-    return std::ranges::max(layout_.team.ranks->of_all(static_cast<double>(largest)));
+  float largest_of_all(float largest) const {
+    return static_cast<float>(layout_.team.ranks->largest(largest));
   }
 
   static float largest_lane(const Number& number) {

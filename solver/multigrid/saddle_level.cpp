@@ -70,7 +70,7 @@ void SaddleLevel::set_smoother(const Rows<float>& diagonal, float bound) {
   float largest = 1.0f;
   for (std::size_t r = blocks_.u.own().first / 4; r < blocks_.u.own().last / 4; ++r)
     largest = std::max(largest, eigenvalue_bound(relaxation_[r], M[r]));
-  largest = static_cast<float>(std::ranges::max(blocks_.u.ranks().of_all(static_cast<double>(largest))));
+  largest = static_cast<float>(blocks_.u.ranks().largest(largest));
   for (float& s : schur_) s = s > 0.0f ? 1.0f / (largest * s) : 0.0f;
 }
 

@@ -72,7 +72,7 @@ double Adaption<Real>::asked(const Body<Real>& body) const {
       const auto& u = body.state().u[row];
       unit = std::max(unit, length(Vector{u[0], u[1], u[2]}));
     }
-    unit = std::ranges::max(body.layout().team.ranks->of_all(unit));
+    unit = body.layout().team.ranks->largest(unit);
   }
   return accuracy_ * unit;
 }

@@ -8,7 +8,7 @@
 
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
-#include "support/scenes.hpp"
+#include "support/plates.hpp"
 #include "support/typed_lists.hpp"
 
 namespace sandglass::verification {
@@ -17,17 +17,8 @@ namespace {
 /// A block long enough that it is cut up.
 Scene block(const AnyLaw& law, bool quasi_static) {
   Case description = plain_case(law);
-  const Mesh mesh = box({0.1, 0.1, 0.4}, {4, 4, 18});
-  const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
-                      {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.39; })}};
-  description.displacements = {{"foot", {}}, {"head", {0.01, 0.0, 0.02}}};
-  description.quasi_static = quasi_static;
   description.relaxation.max_steps = 8;
-  description.relaxation.check_interval = 4;
-  description.dynamics.duration = 0.01;
-  description.dynamics.check_interval = 4;
-  description.dynamics.frames = 2;
-  return make_scene(description, mesh, sets);
+  return block_between_plates(std::move(description), quasi_static, {4, 4, 18});
 }
 
 template <class Method>
