@@ -19,9 +19,11 @@ enum class Breakdown { other, inverted, not_finite, no_balance };
 /// with 3. The text names the step, the element and a remedy.
 class ComputationError : public std::runtime_error {
  public:
+  /// An error with its message.
   explicit ComputationError(const std::string& text, Breakdown breakdown = Breakdown::other)
       : std::runtime_error(text), breakdown_(breakdown) {}
 
+  /// How the computation broke down.
   Breakdown breakdown() const { return breakdown_; }
 
  private:

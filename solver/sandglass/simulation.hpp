@@ -17,9 +17,9 @@ namespace sandglass {
 
 /// A mesh in memory, with named sets of nodes.
 struct MeshArrays {
-  std::vector<std::array<double, 3>> points = {};  ///< m
-  std::vector<std::array<int, 8>> cells = {};      ///< hexahedra in VTK order; nodes count from 0
-  std::map<std::string, std::vector<int>> sets = {};
+  std::vector<std::array<double, 3>> points = {};     ///< m
+  std::vector<std::array<int, 8>> cells = {};         ///< hexahedra in VTK order; nodes count from 0
+  std::map<std::string, std::vector<int>> sets = {};  ///< name -> nodes
 };
 
 /// What a program chooses in addition to the case.
@@ -36,11 +36,12 @@ struct SimulationSettings {
 /// stand in the order of the loop; `Simulation::row_of_node` tells the node's.
 template <class Real>
 struct NodalView {
-  static constexpr std::size_t stride = 4;
+  static constexpr std::size_t stride = 4;  ///< numbers from one row to the next
 
-  const Real* data;
-  std::size_t rows;
+  const Real* data;  ///< of the first row
+  std::size_t rows;  ///< as many as there are nodes
 
+  /// The components of a row.
   const Real* operator[](std::size_t row) const { return data + stride * row; }
 };
 
@@ -62,18 +63,23 @@ class Simulation {
   /// sets adds to those of the mesh.
   Simulation(MeshArrays mesh, const std::string& case_text, const SimulationSettings& settings = {});
 
+  /// Copies are snapshots; what was moved from can only be assigned to, or end.
+  /// @{
   Simulation(const Simulation& other);
   Simulation(Simulation&& other) noexcept;
   Simulation& operator=(const Simulation& other);
   Simulation& operator=(Simulation&& other) noexcept;
+  /// @}
   ~Simulation();
 
   /// Where the driven nodes of a set shall be when the next `advance` ends: `displacement` (m) for all of
   /// them, or one for each node of `nodes(set)`. Components that the case leaves free stay free. What is not
   /// told stays where it was told last. Throws InputError for a set without driven nodes, naming those with,
   /// and for numbers that are not finite or too few.
+  /// @{
   void move(const std::string& set, const std::array<double, 3>& displacement);
   void move(const std::string& set, std::span<const std::array<double, 3>> displacements);
+  /// @}
 
   /// The same for all driven nodes at once: where the case has them at a factor of its loads, 1 at the end of
   /// its loading curve. Its forces grow to that factor. Before the first call they are zero.
@@ -108,9 +114,11 @@ class Simulation {
 
   /// The mesh: points (m), cells and the nodes of a set, in its own numbering. `nodes` throws InputError for
   /// an unknown set.
+  /// @{
   std::span<const std::array<double, 3>> points() const;
   std::span<const std::array<int, 8>> cells() const;
   std::span<const int> nodes(const std::string& set) const;
+  /// @}
 
  private:
   class Parts;
