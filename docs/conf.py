@@ -46,7 +46,11 @@ html_css_files = ["site.css"]
 html_copy_source = False
 # Formulas need no network: Debian's copy of MathJax goes along (site_extension.py).
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
-mathjax2_config = {"showMathMenu": False, "SVG": {"linebreaks": {"automatic": False}}}
+mathjax2_config = {
+    "showMathMenu": False,
+    "messageStyle": "none",
+    "tex2jax": {"ignoreClass": "mathjax_ignore", "processClass": "math"},
+}
 linkcheck_timeout = 20
 
 

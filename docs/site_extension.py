@@ -180,7 +180,7 @@ def tell(cells):
     asked = [cell for cell in cells if not cell["golden_failed"] and not cell["refused"]]
     kinds = collections.Counter(cell["finding"] for cell in asked)
     bad = [f"{count} {kind}" for kind, count in kinds.most_common() if kind != "good"]
-    return f"{kinds['good']} of {len(asked)} good" + "".join(f", {text}" for text in bad)
+    return f"{kinds['good']} of {len(asked)}" + (f" ({', '.join(bad)})" if bad else "")
 
 
 class Machines(Directive):

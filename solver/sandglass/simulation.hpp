@@ -63,23 +63,20 @@ class Simulation {
   /// sets adds to those of the mesh.
   Simulation(MeshArrays mesh, const std::string& case_text, const SimulationSettings& settings = {});
 
-  /// Copies are snapshots; what was moved from can only be assigned to, or end.
-  /// @{
-  Simulation(const Simulation& other);
-  Simulation(Simulation&& other) noexcept;
-  Simulation& operator=(const Simulation& other);
-  Simulation& operator=(Simulation&& other) noexcept;
-  /// @}
+  Simulation(const Simulation& other);                 ///< a snapshot
+  Simulation(Simulation&& other) noexcept;             ///< afterwards `other` can only be assigned to, or end
+  Simulation& operator=(const Simulation& other);      ///< a snapshot
+  Simulation& operator=(Simulation&& other) noexcept;  ///< as the constructor
   ~Simulation();
 
   /// Where the driven nodes of a set shall be when the next `advance` ends: `displacement` (m) for all of
-  /// them, or one for each node of `nodes(set)`. Components that the case leaves free stay free. What is not
-  /// told stays where it was told last. Throws InputError for a set without driven nodes, naming those with,
-  /// and for numbers that are not finite or too few.
-  /// @{
+  /// them. Components that the case leaves free stay free. What is not told stays where it was told last.
+  /// Throws InputError for a set without driven nodes, naming those with, and for numbers that are not
+  /// finite.
   void move(const std::string& set, const std::array<double, 3>& displacement);
+
+  /// The same with a displacement (m) for each node of `nodes(set)`; too few are an InputError.
   void move(const std::string& set, std::span<const std::array<double, 3>> displacements);
-  /// @}
 
   /// The same for all driven nodes at once: where the case has them at a factor of its loads, 1 at the end of
   /// its loading curve. Its forces grow to that factor. Before the first call they are zero.
@@ -112,13 +109,12 @@ class Simulation {
   /// accelerates the masses of the nodes themselves. Throws InputError as `move` does.
   std::array<double, 3> reaction(const std::string& set) const;
 
-  /// The mesh: points (m), cells and the nodes of a set, in its own numbering. `nodes` throws InputError for
-  /// an unknown set.
-  /// @{
-  std::span<const std::array<double, 3>> points() const;
-  std::span<const std::array<int, 8>> cells() const;
+  // The mesh, in its own numbering.
+
+  std::span<const std::array<double, 3>> points() const;  ///< m
+  std::span<const std::array<int, 8>> cells() const;      ///< nodes of the hexahedra, in VTK order
+  /// The nodes of a set. Throws InputError for an unknown set.
   std::span<const int> nodes(const std::string& set) const;
-  /// @}
 
  private:
   class Parts;
