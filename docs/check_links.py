@@ -1,4 +1,4 @@
-"""Looks whether every link within a folder of HTML leads to a page and a place on it that are there.
+"""Looks whether every link within a folder of HTML leads to a place that is there.
 
     /usr/bin/python3 docs/check_links.py FOLDER
 

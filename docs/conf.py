@@ -21,7 +21,13 @@ author = "the Sandglass authors"
 copyright = "the Sandglass authors; BSD-3-Clause"
 release = re.search(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)[1]
 
-extensions = ["myst_parser", "breathe", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "site_extension"]
+extensions = [
+    "myst_parser",
+    "breathe",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "site_extension",
+]
 exclude_patterns = ["**/__pycache__"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4

@@ -132,9 +132,13 @@ class Program(Directive):
             program = binary()
         except InputError as error:
             LOGGER.info("%s", error)
-            missing = f"This page was made without the program. It shows what sandglass {words} prints."
+            missing = (
+                f"This page was made without the program. It shows what sandglass {words} prints."
+            )
             return [nodes.paragraph("", missing.replace(str(words), " ".join(words)))]
-        done = subprocess.run([program, *words], capture_output=True, text=True, cwd=ROOT, check=False)
+        done = subprocess.run(
+            [program, *words], capture_output=True, text=True, cwd=ROOT, check=False
+        )
         if done.returncode:
             raise self.error(f"sandglass {' '.join(words)}: {done.stderr}")
         return [nodes.literal_block("", done.stdout, language="none")]
@@ -155,7 +159,10 @@ def table(titles, rows):
 def inlines(text):
     """The nodes of a text, in which code is between single backquotes."""
     parts = str(text).split("`")
-    return [(nodes.literal if k % 2 else nodes.Text)(*([""] * (k % 2)), part) for k, part in enumerate(parts)]
+    return [
+        (nodes.literal if k % 2 else nodes.Text)(*([""] * (k % 2)), part)
+        for k, part in enumerate(parts)
+    ]
 
 
 class Failures(Directive):
@@ -163,7 +170,9 @@ class Failures(Directive):
 
     def run(self):
         """A table with a row for each method and a column for each case."""
-        maps = [json.loads(file.read_text()) for file in sorted((ROOT / "reports/maps").glob("*.json"))]
+        maps = [
+            json.loads(file.read_text()) for file in sorted((ROOT / "reports/maps").glob("*.json"))
+        ]
         rows = collections.defaultdict(dict)
         for case in maps:
             cells = [cell for part in case["maps"] for cell in part["cells"]]

@@ -148,7 +148,7 @@ def test_a_document_is_followed(document, followed):
 
 
 def test_a_page_has_ones_own_mesh_on_its_chart(followed):
-    tree = followed("README.md")
+    tree = followed("docs/getting-started.md")
     page = (tree / "build/page/index.html").read_text()
     points = re.findall(r'\{"case":"hook","method":"tl-[^{}]*\{"max":[^{}]*\}[^{}]*\}', page)
     points = [json.loads(point) for point in points]

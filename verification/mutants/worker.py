@@ -32,7 +32,7 @@ PYTHON_FOLDERS = {
     "reference": ("common", "reference", *COMPILED),
     "reports": ("common", "reports", "results"),
     "results": ("common", "exchange", "results", *COMPILED),
-    "verification": ("common", "verification", *COMPILED),
+    "verification": ("common", "docs", "verification", *COMPILED),
 }
 PYTHON = "/usr/bin/python3"
 

@@ -1,0 +1,139 @@
+"""The documentation: it is made without a warning, and a stranger's questions lead to answers."""
+
+import importlib.util
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from readme import copy
+
+from common.program import ROOT
+
+sys.path.insert(0, str(ROOT / "docs"))
+
+import check_links  # noqa: E402
+
+NEEDED = ("sphinx", "myst_parser", "breathe", "furo")
+PUBLIC = ("solver/sandglass/simulation.hpp", "solver/sandglass/batch.hpp", "solver/base/error.hpp")
+# What a stranger asks, and what the page that answers says.
+ANSWERS = {
+    "How do I apply pressure?": 'set = "loaded" value = 300.0',
+    "Which kappa?": "Leave it at auto",
+    "How do I cite it?": "CITATION.cff",
+    "How do I use my own mesh?": "Physical groups, NSETs and ELSETs become node sets",
+    "Is my answer accurate?": "estimates the distance of an answer from the exact one",
+    "How do I make a body of several materials?": '[[materials]] elements = "core"',
+    "How do I model tissue that relaxes?": 'law = "viscoelastic-neo-hookean"',
+    "How long is a time step?": "A step is .9 of the longest that is surely stable",
+    "How do I use it from Python?": "PYTHONPATH=build/release/python",
+    "How do I add a law?": "solver/material/demiray.hpp",
+    "Why does my mesh fold?": "Zigzags from node to node are hourglass modes",
+    "What are the units?": "SI: m, s, kg, N, Pa",
+    "Can it run on many machines?": "mpirun -n 2 build/mpi/sandglass run column",
+    "Does it do contact?": "plates and tools are imposed motions of node sets",
+}
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory):
+    """A copy of the project with its documentation, made by `ci/docs-site`."""
+    absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if absent or not shutil.which("doxygen"):
+        pytest.skip("needs Sphinx and Doxygen: bash ci/setup docs")
+    tree = Path(copy(tmp_path_factory.mktemp("docs") / "sandglass"))
+    done = docs_site(tree)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return tree
+
+
+@pytest.fixture(scope="module")
+def pages(tree):
+    """Path -> Page of the documentation."""
+    return check_links.read(tree / "build/docs")
+
+
+def docs_site(tree, *words):
+    """Runs ci/docs-site."""
+    command = ["bash", str(tree / "ci/docs-site"), *words]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def clicks(pages):
+    """Page -> how many clicks it is away from the first one."""
+    away, last = {"index.html": 0}, ["index.html"]
+    while last:
+        targets = [check_links.target(name, link) for name in last for link in pages[name].links]
+        new = {target[0] for target in targets if target and target[0] in pages} - set(away)
+        away |= {name: away[last[0]] + 1 for name in new}
+        last = sorted(new)
+    return away
+
+
+@pytest.mark.parametrize("question", ANSWERS)
+def test_a_question_is_answered_in_two_clicks(pages, question):
+    away = clicks(pages)
+    answering = [name for name, page in pages.items() if ANSWERS[question] in page.text]
+    assert answering and min(away[name] for name in answering) <= 2, answering
+
+
+def test_every_page_is_there_and_no_link_leads_nowhere(tree, pages):
+    assert list(check_links.broken(tree / "build/docs")) == []
+    made = {name for name in clicks(pages) if name not in ("genindex.html", "search.html")}
+    sources = {str(path.relative_to(tree / "docs")) for path in (tree / "docs").rglob("*.md")}
+    assert {re.sub(r"\.md$", ".html", name) for name in sources} <= made
+    assert {path.name for path in (tree / "build").iterdir()} == {"docs"}  # nothing half-made
+
+
+def test_what_public_headers_declare_is_described(pages):
+    text = pages["api/cpp.html"].text
+    for header in PUBLIC:
+        code = (ROOT / header).read_text()
+        public = re.sub(r"^ private:.*?^\};", "", code, flags=re.MULTILINE | re.DOTALL)
+        names = re.findall(r"^(?:class|struct|enum class) (\w+)[^;]*\{", public, re.MULTILINE)
+        names += re.findall(
+            r"^  [^/(]*?\b(\w+)\(.*\) ?(?:const)?(?: noexcept)?;", public, re.MULTILINE
+        )
+        assert names
+        assert [name for name in names if not re.search(rf"\b{name}\b", text)] == [], header
+
+
+@pytest.mark.parametrize(
+    "path, old, new, rule",
+    [
+        ("docs/questions.md", "methods.md#which-kappa", "methods.md#kappa", "reference target not"),
+        ("docs/glossary.md", "# Glossary", "# Glossary\n\n```{nothing}\n```", "Unknown directive"),
+        ("solver/sandglass/batch.hpp", "  ///< s, the longest", "  // s, the longest", "step_size"),
+    ],
+)
+def test_a_fault_is_told_and_leaves_the_last_documentation(tree, path, old, new, rule):
+    text = (tree / path).read_text()
+    assert old in text
+    (tree / path).write_text(text.replace(old, new))
+    done = docs_site(tree)
+    (tree / path).write_text(text)
+    assert done.returncode == 1 and rule in done.stderr and Path(path).name in done.stderr
+    assert (tree / "build/docs/index.html").is_file()
+    assert not (tree / "build/docs.new").exists()
+
+
+def test_what_ci_docs_site_does_not_know_is_refused(tree):
+    done = docs_site(tree, "--link")
+    assert done.returncode == 2 and "allowed: nothing, or --links" in done.stderr
+
+
+def test_links_that_lead_nowhere_are_found(tmp_path):
+    links = ["a.html#there", "a.html#gone", "b.html", "#gone", "https://example.org/x", "../a.html"]
+    body = "".join(f'<a href="{link}">to</a>' for link in links)
+    (tmp_path / "index.html").write_text(body)
+    (tmp_path / "a.html").write_text('<p id="there">text</p>')
+    told = list(check_links.broken(tmp_path))
+    assert [re.search("'(.*?)'", message)[1] for message in told] == [
+        "a.html#gone",
+        "b.html",
+        "#gone",
+    ]
+    with pytest.raises(check_links.InputError, match="index.html is not there"):
+        check_links.read(tmp_path / "nowhere")
