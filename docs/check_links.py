@@ -22,28 +22,30 @@ PUBLISHED = ("report/index.html",)
 
 
 class Page(HTMLParser):
-    """The anchors and links of a page, and its text without that of scripts."""
+    """The anchors and links of a page, its text without that of scripts, and its blocks of code."""
 
     def __init__(self, path):
         super().__init__()
-        self.anchors, self.links, self.text, self.hidden = set(), [], "", False
+        self.anchors, self.links, self.text, self.code, self.inside = set(), [], "", "", ""
         self.feed(path.read_text())
-        self.text = " ".join(self.text.split())
+        self.text, self.code = (" ".join(text.split()) for text in (self.text, self.code))
 
     def handle_starttag(self, tag, attributes):
         """Keeps what a tag names and where it leads."""
         named = dict(attributes)
         self.anchors |= {named[key] for key in ("id", "name") if named.get(key)}
         self.links += [named[key] for key in ("href", "src") if named.get(key)]
-        self.hidden = tag in ("script", "style")
+        if tag in ("script", "style", "pre"):
+            self.inside = tag
 
     def handle_endtag(self, tag):
-        """Text goes on after a script."""
-        self.hidden = self.hidden and tag not in ("script", "style")
+        """Leaves a script or a block of code."""
+        self.inside = "" if tag == self.inside else self.inside
 
     def handle_data(self, data):
         """Keeps text."""
-        self.text += "" if self.hidden else data
+        self.text += "" if self.inside in ("script", "style") else data
+        self.code += data if self.inside == "pre" else ""
 
 
 def read(folder):

@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from readme import copy
+from command_line import BINARY
+from readme import commands, copy
 
 from common.program import ROOT
 
@@ -39,11 +40,13 @@ ANSWERS = {
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
-    """A copy of the project with its documentation, made by `ci/docs-site`."""
+    """A copy of the project with its documentation, made by `ci/docs-site` with the program."""
     absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if absent or not shutil.which("doxygen"):
         pytest.skip("needs Sphinx and Doxygen: bash ci/setup docs")
     tree = Path(copy(tmp_path_factory.mktemp("docs") / "sandglass"))
+    (tree / "build").mkdir()
+    (tree / "build/release").symlink_to(Path(BINARY).resolve().parent)
     done = docs_site(tree)
     assert done.returncode == 0, done.stdout + done.stderr
     return tree
@@ -84,7 +87,22 @@ def test_every_page_is_there_and_no_link_leads_nowhere(tree, pages):
     made = {name for name in clicks(pages) if name not in ("genindex.html", "search.html")}
     sources = {str(path.relative_to(tree / "docs")) for path in (tree / "docs").rglob("*.md")}
     assert {re.sub(r"\.md$", ".html", name) for name in sources} <= made
-    assert {path.name for path in (tree / "build").iterdir()} == {"docs"}  # nothing half-made
+    assert {path.name for path in (tree / "build").iterdir()} == {"docs", "release"}  # no half
+
+
+def test_commands_of_the_readmes_are_shown_as_code(tree, pages):
+    code = " ".join(page.code for page in pages.values()).replace("\\ ", "")
+    texts = [text.read_text() for text in tree.rglob("*.md")]
+    found = [" ".join(command.split()) for text in texts for command in commands(text)]
+    assert found and [command for command in found if command not in code] == []
+
+
+def test_pages_show_what_the_program_prints_and_the_module_says(pages):
+    assert "material.poisson_ratio" in pages["keys.html"].text
+    assert "ellipsoid-indentation" in pages["cases.html"].text
+    if importlib.util.find_spec("pybind11"):
+        text = pages["api/python.html"].text
+        assert "step_fraction" in text and "an independent copy" in text.lower()
 
 
 def test_what_public_headers_declare_is_described(pages):

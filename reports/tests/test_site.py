@@ -55,7 +55,8 @@ def test_the_workflow_runs_what_is_there_and_uploads_what_it_makes():
     assert jobs["deploy"]["needs"] == "site"
     steps = jobs["site"]["steps"]
     scripts = [s["run"].split() for s in steps if s.get("run", "").startswith("bash ")]
-    assert [words[1] for words in scripts] == ["ci/verify", "ci/docs-site", "ci/site"]
+    made = ["ci/setup", "ci/verify", "ci/build", "ci/docs-site", "ci/site"]
+    assert [words[1] for words in scripts] == made
     assert all((ROOT / words[1]).is_file() for words in scripts)
     (upload,) = (s for s in steps if s.get("uses", "").startswith("actions/upload-pages"))
     assert upload["with"]["path"] == scripts[-1][2]
