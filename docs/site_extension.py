@@ -2,7 +2,7 @@
 
 - A link to a file of the tree, or its path between backquotes, leads to the page that shows it,
   so that the same text works on a code host and here. `{include}` in a page makes it show a file.
-- {program} shows what a command of the program prints; {failures} and {machines} are tables made
+- {printed} shows what a command of the program prints; {failures} and {machines} are tables made
   from stored measurements. None of this is typed by hand.
 """
 
@@ -119,7 +119,7 @@ def wrap(code, link):
     link += inner
 
 
-class Program(Directive):
+class Printed(Directive):
     """What a command of the program prints, the words of the command as they are."""
 
     required_arguments = 1
@@ -127,21 +127,17 @@ class Program(Directive):
 
     def run(self):
         """The command's output as a block; where there is no program, what would show it."""
-        words = self.arguments[0].split()
+        words = self.arguments[0]
         try:
             program = binary()
         except InputError as error:
             LOGGER.info("%s", error)
-            missing = (
-                f"This page was made without the program. It shows what sandglass {words} prints."
-            )
-            return [nodes.paragraph("", missing.replace(str(words), " ".join(words)))]
-        done = subprocess.run(
-            [program, *words], capture_output=True, text=True, cwd=ROOT, check=False
-        )
+            return [nodes.paragraph("", "This page was made without the program, which prints it.")]
+        command = [program, *words.split()]
+        done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
         if done.returncode:
-            raise self.error(f"sandglass {' '.join(words)}: {done.stderr}")
-        return [nodes.literal_block("", done.stdout, language="none")]
+            raise self.error(f"sandglass {words}: {done.stderr}")
+        return [nodes.literal_block("", done.stdout, language="none", classes=["printed"])]
 
 
 def table(titles, rows):
@@ -250,7 +246,7 @@ def take_mathjax_along(app, error):
 def setup(app):
     """Called by Sphinx."""
     app.add_transform(PathsToPages)
-    app.add_directive("program", Program)
+    app.add_directive("printed", Printed)
     app.add_directive("failures", Failures)
     app.add_directive("machines", Machines)
     app.connect("autodoc-process-docstring", blocks_of_code)
