@@ -12,6 +12,7 @@ import os
 import re
 import shutil
 import subprocess
+import textwrap
 from pathlib import Path
 
 from docutils import nodes
@@ -137,7 +138,14 @@ class Printed(Directive):
         done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
         if done.returncode:
             raise self.error(f"sandglass {words}: {done.stderr}")
-        return [nodes.literal_block("", done.stdout, language="none", classes=["printed"])]
+        text = "\n".join(map(folded, done.stdout.splitlines()))
+        return [nodes.literal_block("", text, language="none")]
+
+
+def folded(line, width=102):
+    """A line in parts that fit on a page, the later ones below the last column of the first."""
+    column = max((gap.end() for gap in re.finditer(r" {2,}", line[:width])), default=0)
+    return textwrap.fill(line, width, subsequent_indent=" " * column, break_on_hyphens=False)
 
 
 def table(titles, rows):
