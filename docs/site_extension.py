@@ -201,7 +201,7 @@ class Machines(Directive):
 
     def run(self):
         """A table with a row for each kind of stored file."""
-        return [table(["files", "machine", "built with"], machines())]
+        return [table(["files", "machine", "program"], machines())]
 
 
 def machines():
@@ -227,7 +227,7 @@ def built(data):
     """How the program was built with which a file was measured."""
     if "build_flags" in data:
         return f"{data['compiler']}; {data['build_flags']}"
-    return data.get("build") or data["versions"].get("build", data["versions"].get("sandglass", ""))
+    return data.get("build") or f"version {data['versions']['sandglass']}"
 
 
 def blocks_of_code(_app, _what, _name, _object, _options, lines):
