@@ -16,6 +16,11 @@ using Vector = std::array<double, 3>;
 /// One vector per node.
 using NodalField = std::vector<Vector>;
 
+/// The number of a node or an element as an index.
+constexpr std::size_t at(int n) {
+  return static_cast<std::size_t>(n);
+}
+
 /// |v|.
 inline double length(const Vector& v) {
   return std::hypot(v[0], v[1], v[2]);

@@ -10,10 +10,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 /// The corners, in VTK order, that agree with a point of the 3 x 3 x 3 lattice of a split element (each
 /// coordinate -1, 0 or 1) in every coordinate that is not zero.
 std::vector<std::size_t> parents_of(const std::array<int, 3>& point) {

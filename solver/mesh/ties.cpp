@@ -11,10 +11,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 const Tie* tie_of(const Ties& ties, int node) {
   const auto found =
       std::lower_bound(ties.begin(), ties.end(), node, [](const Tie& tie, int n) { return tie.node < n; });

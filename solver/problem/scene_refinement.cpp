@@ -12,10 +12,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 /// The nodes of a set at its edge: those of a boundary face that is not within the set. Throws InputError if
 /// there are none.
 std::vector<bool> edge_of(const Scene& scene, const RefinedMesh& refined, const std::string& name) {

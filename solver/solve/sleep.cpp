@@ -18,10 +18,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 // Shares of the allowed error: for the first motion, and for the effect of fixing a part on the rest. A tenth
 // is left for the changes under the full load.
 constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
