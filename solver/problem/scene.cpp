@@ -257,21 +257,10 @@ Mesh generate_mesh(const AnyGenerator& generator) {
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets element_sets_of_file) {
   Scene scene{.description = std::move(description),
               .mesh = std::move(mesh),
-              .ties = {},
-              .coarser = {},
-              .boundary = {},
               .sets = std::move(sets_of_file),
               .element_sets = std::move(element_sets_of_file),
-              .materials = {},
-              .constraints = {},
               .angles = {0.0},
-              .curves = {LoadCurve{}},
-              .loads = {},
-              .pressures = {},
-              .supports = {},
-              .initial_velocities = {},
-              .case_hash = {},
-              .mesh_hash = {}};
+              .curves = {LoadCurve{}}};
   const std::string file = scene.description.file.string();
   try {
     require_positive_jacobians(scene.mesh);

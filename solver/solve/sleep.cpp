@@ -44,19 +44,9 @@ std::vector<int> pushed_nodes(const Scene& scene) {
 Scene scene_of(const Scene& whole, const MeshPart& part) {
   Scene scene = {.description = whole.description,
                  .mesh = part.mesh,
-                 .ties = {},
-                 .coarser = {},
-                 .boundary = {},
-                 .sets = {},
-                 .element_sets = {},
                  .materials = materials_of(whole.materials, part.element_of),
-                 .constraints = {},
                  .angles = whole.angles,
                  .curves = whole.curves,
-                 .loads = {},
-                 .pressures = {},
-                 .supports = {},
-                 .initial_velocities = {},
                  .case_hash = whole.case_hash,
                  .mesh_hash = whole.mesh_hash};
   for (const auto& constraint : whole.constraints) {
