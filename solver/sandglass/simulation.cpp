@@ -23,6 +23,7 @@ class Simulation<Real>::Parts {
         from_(scene().constraints.size(), 0.0),
         to_(from_),
         imposed_(from_) {
+    leapfrog_.subcycle(model());
     choose_step();
     leapfrog_.body().evaluate_forces();
     leapfrog_.set_initial_velocities(scene().initial_velocities);

@@ -45,7 +45,9 @@ class CentralDifference {
         reactions_(model.scene().constraints.size(), 0.0),
         works_(reactions_.size(), 0.0),
         moved_(model.scene().angles.size()),
-        accelerations_(moved_.size()) {}
+        accelerations_(moved_.size()) {
+    leapfrog_.subcycle(model);
+  }
 
   Body<Real>& body() { return body_; }
   double time() const { return leapfrog_.time(); }
