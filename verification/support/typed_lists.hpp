@@ -174,7 +174,7 @@ constexpr int zero_energy_modes() {
     return Method::zero_energy_modes;
   } else {
     constexpr bool uncontrolled = std::is_same_v<typename Method::Hourglass, NoHourglassControl>;
-    return Method::integration_points == 1 && uncontrolled ? 18 : 6;
+    return integration_points<Method> == 1 && uncontrolled ? 18 : 6;
   }
 }
 
