@@ -102,12 +102,7 @@ void Body<Real>::evaluate_forces() {
 
 template <class Real>
 double Body<Real>::residual() const {
-  return residual(dot(force_, force_, layout().row_blocks));
-}
-
-template <class Real>
-double Body<Real>::residual(double free_square) const {
-  const double unbalanced = std::sqrt(free_square);
+  const double unbalanced = std::sqrt(dot(force_, force_, layout().row_blocks));
   const std::vector<double> all = of_all_constraints(reactions_);
   double carried_square = 0.0;
 #pragma omp simd reduction(+ : carried_square)
