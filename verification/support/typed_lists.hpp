@@ -8,6 +8,7 @@
 #include "element/methods.hpp"
 #include "material/laws.hpp"
 #include "mesh/generators.hpp"
+#include "support/nodal_form.hpp"
 
 /// Turns the solver's lists into typed tests, so that a new method, law or generator is tested without an
 /// edit.
