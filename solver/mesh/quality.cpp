@@ -10,18 +10,6 @@
 
 namespace sandglass {
 
-namespace {
-
-Vector centre_of(const NodalVectors<double>& X) {
-  Vector centre{};
-  for (int I = 0; I < 8; ++I) {
-    for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
-  }
-  return centre;
-}
-
-}  // namespace
-
 double scaled_jacobian(const NodalVectors<double>& X) {
   double smallest = 1.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -66,7 +54,7 @@ QualityTable quality_table(const Mesh& mesh) {
     table.largest = std::max(table.largest, quality);
     const double tenth = std::clamp(std::ceil(10.0 * quality), 0.0, 10.0);
     ++table.counts[static_cast<std::size_t>(tenth)];
-    table.worst.push_back({e, quality, centre_of(X)});
+    table.worst.push_back({e, quality, centre_of(mesh, mesh.cells[e])});
   }
   const auto end = table.worst.begin() + static_cast<long>(std::min<std::size_t>(10, table.worst.size()));
   std::partial_sort(table.worst.begin(), end, table.worst.end(), [](const auto& a, const auto& b) {
@@ -84,7 +72,7 @@ void require_positive_jacobians(const Mesh& mesh) {
     const double measure = smallest_measure(X);
     if (measure > 0.0) continue;
     if (++inverted > 10) continue;
-    const Vector centre = centre_of(X);
+    const Vector centre = centre_of(mesh, mesh.cells[e]);
     listed += fmt::format("\n  element {}: centre ({:.6g}, {:.6g}, {:.6g}), det J = {:.6g}", e, centre[0],
                           centre[1], centre[2], measure);
   }
