@@ -124,10 +124,14 @@ struct Formulation {
     return Kinematics::volume(motion, element.body);
   }
 
-  /// The smallest det F at the integration points.
+  /// The smallest det F at the integration points: the volume ratio unless the kinematics declare it.
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return Kinematics::smallest_jacobian(motion, element.body);
+    if constexpr (requires { Kinematics::smallest_jacobian(motion, element.body); }) {
+      return Kinematics::smallest_jacobian(motion, element.body);
+    } else {
+      return mean_jacobian(motion, element);
+    }
   }
 
   /// The volume ratio of the element.

@@ -176,12 +176,6 @@ struct OnePoint {
     return element.V;
   }
 
-  /// The smallest volume ratio det F at the integration points.
-  template <class T>
-  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + dilatation(motion, element);
-  }
-
   /// The element's volume over its reference volume: det F of the mean deformation.
   template <class T>
   static T dilatation(const ElementMotion<T>& motion, const Element<T>& element) {
