@@ -81,7 +81,7 @@ struct FourPoint : OnePoint {
     T W = T(0);
     for (std::size_t q = 0; q < 4; ++q) W = W + T(0.25) * at_point(law, q).isochoric_energy(now.H[q]);
     ElementEnergy<T> energy{element.V * (W + law.volumetric_energy(mean_dilatation(now.change))), T(0)};
-    if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now.q, control);
+    if constexpr (Hourglass::active) energy.hourglass = hourglass_energy<Hourglass>(now.q, control);
     return energy;
   }
 

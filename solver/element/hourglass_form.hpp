@@ -81,12 +81,6 @@ struct ReferenceHourglassControl {
     return element.resistance(r);
   }
 
-  /// r K r / 2, in J.
-  template <class T>
-  static T energy(const HourglassModes<T>& r, const Element<T>& element) {
-    return T(0.5) * double_dot(r, element.resistance(r));
-  }
-
   /// The bound (N/m) of HourglassMatrixControl for the matrix of the form.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {

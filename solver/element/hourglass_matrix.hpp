@@ -61,12 +61,6 @@ struct HourglassMatrixControl {
     return Q;
   }
 
-  /// r K r / 2, in J.
-  template <class T>
-  static T energy(const HourglassModes<T>& r, const Element<T>& element) {
-    return T(0.5) * double_dot(r, resistance(r, element));
-  }
-
   /// With G = gamma (x) I, G K G^T has the eigenvalues of K G^T G (N/m), bounded by `block_row_sum_bound`.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {

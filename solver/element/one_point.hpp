@@ -161,10 +161,10 @@ struct OnePoint {
       const HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
       if constexpr (FollowsDeformation<Hourglass>) {
         const auto followed = followed_deformation<Hourglass>(H, volume_change(H));
-        energy.hourglass = Hourglass::energy(convected(q, followed), control);
+        energy.hourglass = hourglass_energy<Hourglass>(convected(q, followed), control);
         if constexpr (GrowsWithDeformation<Hourglass>) energy.hourglass = followed.phi * energy.hourglass;
       } else {
-        energy.hourglass = Hourglass::energy(q, control);
+        energy.hourglass = hourglass_energy<Hourglass>(q, control);
       }
     }
     return energy;
