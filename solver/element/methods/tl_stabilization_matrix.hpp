@@ -12,7 +12,7 @@ struct TlStabilizationMatrix {
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, the stiffness that the mean-dilatation element adds when undeformed";
   using Kinematics = OnePoint;
-  using Hourglass = HourglassMatrixControl<StabilizationMatrix>;
+  using Hourglass = StabilizationMatrixControl;
 };
 
 }  // namespace sandglass
