@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "mesh/hexahedron.hpp"
+#include "mesh/node_elements.hpp"
 
 namespace sandglass {
 
@@ -84,15 +85,13 @@ int RefinedMesh::node_at(const Hexahedron& cell, const std::vector<std::size_t>&
 
 /// Marks elements at the nodes of marked ones that have been split less often, until there are none.
 void RefinedMesh::balance(std::vector<bool>& marked) const {
-  std::vector<std::vector<int>> at_node(mesh_.points.size());
-  for (std::size_t e = 0; e < mesh_.cells.size(); ++e)
-    for (const int n : mesh_.cells[e]) at_node[at(n)].push_back(static_cast<int>(e));
+  const NodeElements elements(mesh_);
   std::vector<int> todo;
   for (std::size_t e = 0; e < marked.size(); ++e)
     if (marked[e]) todo.push_back(static_cast<int>(e));
   const auto visit = [&](int e, const std::vector<int>& with) {
     // elements that have all of these nodes
-    for (const int other : at_node[at(with[0])]) {
+    for (const int other : elements.around(with[0])) {
       if (marked[at(other)] || splits_[at(other)] >= splits_[at(e)]) continue;
       const auto& cell = mesh_.cells[at(other)];
       const bool has_all = std::all_of(with.begin(), with.end(), [&](int n) {
