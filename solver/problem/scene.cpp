@@ -90,20 +90,21 @@ class ImposedPaths {
   std::map<std::pair<int, int>, Origin> imposed_;
 };
 
-/// The constraints of a case; their angles are added to those that are known.
-std::vector<Constraint> make_constraints(const Case& description, const NodalField& points,
-                                         const NodeSets& sets, std::vector<double>& angles) {
-  ImposedPaths imposed(description, angles);
-  for (const auto& displacement : description.displacements) {
-    for (const int node : node_set(description, sets, "displacement.set", displacement.set)) {
+/// Sets the constraints; their angles are added to those that are known.
+void make_constraints(Scene& scene) {
+  const NodalField& points = scene.mesh.points;
+  std::vector<double>& angles = scene.angles;
+  ImposedPaths imposed(scene.description, angles);
+  for (const auto& displacement : scene.description.displacements) {
+    for (const int node : node_set(scene, "displacement.set", displacement.set)) {
       for (std::size_t i = 0; i < 3; ++i) {
         if (!displacement.components[i]) continue;
         imposed.add(node, i, {{displacement.value[i]}}, displacement.set);
       }
     }
   }
-  for (const auto& turned : description.rotations) {
-    const auto& nodes = node_set(description, sets, "rotation.set", turned.set);
+  for (const auto& turned : scene.description.rotations) {
+    const auto& nodes = node_set(scene, "rotation.set", turned.set);
     const Vector center = turned.center.value_or(mean_position(points, nodes));
     const auto known = std::find(angles.begin(), angles.end(), turned.angle);
     const auto angle = static_cast<std::size_t>(known - angles.begin());
@@ -113,7 +114,8 @@ std::vector<Constraint> make_constraints(const Case& description, const NodalFie
       for (std::size_t i = 0; i < 3; ++i) imposed.add(node, i, paths[i], turned.set);
     }
   }
-  return imposed.constraints();
+  scene.constraints = imposed.constraints();
+  std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
 }
 
 /// The largest length (m) of the imposed displacements, and of a function of each node that turns: of its
@@ -143,7 +145,7 @@ double largest_length(const Scene& scene, const Turning& turning) {
 
 /// The boundary faces within the set that a load names. Throws InputError if there are none.
 std::vector<Quadrilateral> loaded_faces(const Scene& scene, const std::string& key, const std::string& name) {
-  const auto& nodes = node_set(scene.description, scene.sets, key, name);
+  const auto& nodes = node_set(scene, key, name);
   auto faces = faces_within(scene.boundary, nodes);
   if (faces.empty()) {
     throw InputError(fmt::format(
@@ -172,7 +174,7 @@ void make_loads(Scene& scene) {
   };
   for (const auto& [name, total, moment, on_nodes, curve] : description.forces) {
     if (on_nodes) {
-      const auto& nodes = node_set(description, scene.sets, "force.set", name);
+      const auto& nodes = node_set(scene, "force.set", name);
       for (const int node : nodes)
         add(number_of(curve, scene.curves), node, total, 1.0 / static_cast<double>(nodes.size()));
       continue;
@@ -202,21 +204,21 @@ void make_loads(Scene& scene) {
 }
 
 /// The sum of all initial velocities at each node; empty where a case has none.
-NodalField make_initial_velocities(const Case& description, const Mesh& mesh, const NodeSets& sets,
-                                   const Materials& materials) {
-  if (description.velocities.empty()) return {};
-  const auto masses = lumped_masses(mesh, element_masses(mesh, materials));
+NodalField make_initial_velocities(const Scene& scene) {
+  const Mesh& mesh = scene.mesh;
+  if (scene.description.velocities.empty()) return {};
+  const auto masses = lumped_masses(mesh, element_masses(mesh, scene.materials));
   std::vector<int> body(mesh.points.size());
   std::iota(body.begin(), body.end(), 0);
   NodalField sums(mesh.points.size());
-  for (const auto& velocity : description.velocities) {
-    const auto& nodes = velocity.set ? node_set(description, sets, "velocity.set", *velocity.set) : body;
+  for (const auto& velocity : scene.description.velocities) {
+    const auto& nodes = velocity.set ? node_set(scene, "velocity.set", *velocity.set) : body;
     const InitialMotion motion(velocity, mesh.points, masses, nodes);
     if (const auto axis = motion.axis_without_extent()) {
       throw InputError(fmt::format(
           "{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
           "one, 0 stands for no wave",
-          description.file.string(), velocity.half_waves[*axis], "xyz"[*axis],
+          scene.description.file.string(), velocity.half_waves[*axis], "xyz"[*axis],
           velocity.set.value_or("of all nodes"), "xyz"[*axis]));
     }
     for (const int node : nodes) {
@@ -228,26 +230,37 @@ NodalField make_initial_velocities(const Case& description, const Mesh& mesh, co
   return sums;
 }
 
-}  // namespace
-
-const std::vector<int>& node_set(const Case& description, const NodeSets& sets, const std::string& key,
-                                 const std::string& name) {
+/// The set of that name; `member` is "a node" or "an element", `origins` is where its sets come from.
+const std::vector<int>& named_set(const Scene& scene, const std::map<std::string, std::vector<int>>& sets,
+                                  const std::string& key, const std::string& name, const std::string& member,
+                                  const std::string& origins) {
+  const std::string place = fmt::format("{}: {} = '{}'", scene.description.file.string(), key, name);
   const auto found = sets.find(name);
-  if (found == sets.end() && sets.empty()) {
-    throw InputError(fmt::format(
-        "{}: {} = '{}' is not a node set of this case, which has none: [sets] gives rules for them, a "
-        "mesh from a file brings its physical groups (Gmsh), NSETs (Abaqus) or point arrays (VTK)",
-        description.file.string(), key, name));
-  }
   if (found == sets.end()) {
-    throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}",
-                                 description.file.string(), key, name, suggestion(name, names_in(sets))));
+    const auto known = names_in(sets);
+    throw InputError(
+        fmt::format("{} is not {} set of this case{}", place, member,
+                    known.empty() ? ", which has none: " + origins : "; " + suggestion(name, known)));
   }
   if (found->second.empty()) {
-    throw InputError(fmt::format("{}: {} = '{}' has no node in the mesh; a set needs at least one",
-                                 description.file.string(), key, name));
+    throw InputError(fmt::format("{} has no {} in the mesh; a set needs at least one", place,
+                                 member.substr(member.find(' ') + 1)));
   }
   return found->second;
+}
+
+}  // namespace
+
+const std::vector<int>& node_set(const Scene& scene, const std::string& key, const std::string& name) {
+  return named_set(scene, scene.sets, key, name, "a node",
+                   "[sets] gives rules for them, a mesh from a file brings its physical groups (Gmsh), NSETs "
+                   "(Abaqus) or point arrays (VTK)");
+}
+
+const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name) {
+  return named_set(scene, scene.element_sets, key, name, "an element",
+                   "[element_sets] gives rules for them, a mesh from a file brings its physical volumes "
+                   "(Gmsh), ELSETs (Abaqus) or cell arrays (VTK)");
 }
 
 Mesh generate_mesh(const AnyGenerator& generator) {
@@ -283,12 +296,10 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
   }
   scene.materials = make_materials(scene);
   refine(scene);
-  scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
-  std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
+  make_constraints(scene);
   tie(scene);
   make_loads(scene);
-  scene.initial_velocities =
-      make_initial_velocities(scene.description, scene.mesh, scene.sets, scene.materials);
+  scene.initial_velocities = make_initial_velocities(scene);
   scene.case_hash = case_hash(scene.description);
   scene.mesh_hash = mesh_hash(scene.mesh, scene.sets, scene.materials.of_element);
   return scene;

@@ -63,10 +63,10 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {},
 /// The mesh of a case whose mesh comes from a generator.
 Mesh generate_mesh(const AnyGenerator& generator);
 
-/// The nodes of a set that `key` of a case names. Throws InputError that names the file and the key if there
-/// is no such set, or if it is empty.
-const std::vector<int>& node_set(const Case& description, const NodeSets& sets, const std::string& key,
-                                 const std::string& name);
+/// The nodes, or elements, of a set that `key` of a case names. Throws InputError that names the file and the
+/// key if there is no such set, or if it is empty.
+const std::vector<int>& node_set(const Scene& scene, const std::string& key, const std::string& name);
+const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name);
 
 /// Largest imposed displacement, m: of a set that turns, the largest on its way, where a displacement besides
 /// the rotation counts in full; zero when the case is driven by forces alone.

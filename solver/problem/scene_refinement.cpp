@@ -7,17 +7,16 @@
 #include "base/error.hpp"
 #include "mesh/distances.hpp"
 #include "mesh/refinement.hpp"
-#include "problem/scene_materials.hpp"
 
 namespace sandglass {
 
 namespace {
 
-/// Marks `layers` layers of elements at the edge of a set: its nodes in a boundary face that is not within it.
-/// Throws InputError if there are none.
+/// Marks `layers` layers of elements at the edge of a set: its nodes in a boundary face that is not within
+/// it. Throws InputError if there are none.
 void mark_edge(const Scene& scene, const RefinedMesh& refined, const std::string& name, int layers,
                std::vector<bool>& marked) {
-  const auto set = refined.nodes_of(node_set(scene.description, scene.sets, "refine.around", name));
+  const auto set = refined.nodes_of(node_set(scene, "refine.around", name));
   const auto in_set = [&](int node) { return std::binary_search(set.begin(), set.end(), node); };
   std::vector<int> margin(refined.mesh().points.size(), 0);
   for (const auto& face : refined.boundary()) {

@@ -8,7 +8,6 @@
 
 #include "base/error.hpp"
 #include "mesh/interpolation.hpp"
-#include "problem/scene_materials.hpp"
 
 namespace sandglass {
 
@@ -43,7 +42,7 @@ void add_ties(const Scene& scene, const NodeTie& rule, std::map<int, Tie>& ties)
   }
   std::vector<int> nodes;
   NodalField points;
-  for (const int node : node_set(scene.description, scene.sets, "tie.set", rule.set)) {
+  for (const int node : node_set(scene, "tie.set", rule.set)) {
     if (is_corner[static_cast<std::size_t>(node)]) continue;
     nodes.push_back(node);
     points.push_back(mesh.points[static_cast<std::size_t>(node)]);
