@@ -12,7 +12,6 @@
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/quality.hpp"
-#include "problem/initial_motion.hpp"
 #include "problem/masses.hpp"
 #include "problem/scene_materials.hpp"
 #include "problem/scene_refinement.hpp"
@@ -203,29 +202,54 @@ void make_loads(Scene& scene) {
   }
 }
 
+/// Adds to `sums` what an initial velocity gives to its nodes at X (m): its value, as a wave where there is
+/// one, and spin x (X - centre of mass), m/s.
+void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::vector<int>& nodes,
+                const std::vector<double>& masses, NodalField& sums) {
+  const NodalField& points = scene.mesh.points;
+  NodalField places;
+  Vector centre{};
+  double mass = 0.0;
+  for (const int node : nodes) {
+    places.push_back(points[at(node)]);
+    mass += masses[at(node)];
+    for (std::size_t i = 0; i < 3; ++i) centre[i] += masses[at(node)] * points[at(node)][i];
+  }
+  for (double& x : centre) x /= mass;
+  const auto [low, high] = bounding_box(places);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (velocity.half_waves[i] == 0 || low[i] < high[i]) continue;
+    throw InputError(
+        fmt::format("{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
+                    "one, 0 stands for no wave",
+                    scene.description.file.string(), velocity.half_waves[i], "xyz"[i],
+                    velocity.set.value_or("of all nodes"), "xyz"[i]));
+  }
+  for (const int node : nodes) {
+    const Vector& X = points[at(node)];
+    double wave = 1.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int n = velocity.half_waves[i];
+      if (n != 0) wave *= std::cos(std::numbers::pi * n * (X[i] - low[i]) / (high[i] - low[i]));
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      sums[at(node)][i] += wave * velocity.value[i] + velocity.spin[j] * (X[k] - centre[k]) -
+                           velocity.spin[k] * (X[j] - centre[j]);
+    }
+  }
+}
+
 /// The sum of all initial velocities at each node; empty where a case has none.
 NodalField make_initial_velocities(const Scene& scene) {
-  const Mesh& mesh = scene.mesh;
   if (scene.description.velocities.empty()) return {};
-  const auto masses = lumped_masses(mesh, element_masses(mesh, scene.materials));
-  std::vector<int> body(mesh.points.size());
+  const auto masses = lumped_masses(scene.mesh, element_masses(scene.mesh, scene.materials));
+  std::vector<int> body(masses.size());
   std::iota(body.begin(), body.end(), 0);
-  NodalField sums(mesh.points.size());
+  NodalField sums(masses.size());
   for (const auto& velocity : scene.description.velocities) {
     const auto& nodes = velocity.set ? node_set(scene, "velocity.set", *velocity.set) : body;
-    const InitialMotion motion(velocity, mesh.points, masses, nodes);
-    if (const auto axis = motion.axis_without_extent()) {
-      throw InputError(fmt::format(
-          "{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
-          "one, 0 stands for no wave",
-          scene.description.file.string(), velocity.half_waves[*axis], "xyz"[*axis],
-          velocity.set.value_or("of all nodes"), "xyz"[*axis]));
-    }
-    for (const int node : nodes) {
-      const auto n = static_cast<std::size_t>(node);
-      const Vector v = motion.at(mesh.points[n]);
-      for (std::size_t i = 0; i < 3; ++i) sums[n][i] += v[i];
-    }
+    add_motion(scene, velocity, nodes, masses, sums);
   }
   return sums;
 }
