@@ -6,7 +6,6 @@
 
 #include "io/case_file.hpp"
 #include "sandglass/driven_problem.hpp"
-#include "sandglass/mesh_arrays.hpp"
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
