@@ -66,13 +66,14 @@ inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& ce
   return rows;
 }
 
-/// The centre of an element: the mean of its nodes.
-inline Vector centre_of(const Mesh& mesh, const Hexahedron& cell) {
-  Vector centre{};
-  for (const int node : cell) {
-    for (std::size_t i = 0; i < 3; ++i) centre[i] += mesh.points[static_cast<std::size_t>(node)][i] / 8.0;
+/// The mean of a nodal field at some nodes; of the points at an element's nodes it is the element's centre.
+template <class Nodes>
+Vector mean_at(const Nodes& nodes, const NodalField& field) {
+  Vector mean{};
+  for (const int node : nodes) {
+    for (std::size_t i = 0; i < 3; ++i) mean[i] += field[at(node)][i] / static_cast<double>(nodes.size());
   }
-  return centre;
+  return mean;
 }
 
 /// The largest distance between the vectors of two nodal fields; NaN if one of them contains NaN.

@@ -39,7 +39,7 @@ void require_positive_jacobians(const Mesh& mesh) {
     const double measure = smallest_measure(X);
     if (measure > 0.0) continue;
     if (++inverted > 10) continue;
-    const Vector centre = centre_of(mesh, mesh.cells[e]);
+    const Vector centre = mean_at(mesh.cells[e], mesh.points);
     listed += fmt::format("\n  element {}: centre ({:.6g}, {:.6g}, {:.6g}), det J = {:.6g}", e, centre[0],
                           centre[1], centre[2], measure);
   }

@@ -62,14 +62,10 @@ std::size_t RefinedMesh::Hash::operator()(const EdgeOrFace& corners) const {
 
 /// A new node in the middle of some corners of an element.
 int RefinedMesh::new_node(const Hexahedron& cell, const std::vector<std::size_t>& corners) {
-  Vector mean{};
   std::vector<int> parents;
   for (const std::size_t I : corners) parents.push_back(cell[I]);
   std::sort(parents.begin(), parents.end());
-  for (const int n : parents)
-    for (std::size_t i = 0; i < 3; ++i)
-      mean[i] += mesh_.points[at(n)][i] / static_cast<double>(parents.size());
-  mesh_.points.push_back(mean);
+  mesh_.points.push_back(mean_at(parents, mesh_.points));
   parents_.push_back(std::move(parents));
   return static_cast<int>(mesh_.points.size()) - 1;
 }

@@ -72,7 +72,7 @@ MaterialAxes<double> axes_by(const FibreRule& rule, const Mesh& mesh, std::size_
     return axes_along(uniform->fibre, uniform->sheet);
   }
   if (const auto* helix = std::get_if<HelicalFibres>(&rule)) {
-    return helical_axes(*helix, centre_of(mesh, mesh.cells[element]));
+    return helical_axes(*helix, mean_at(mesh.cells[element], mesh.points));
   }
   if (const auto* listed = std::get_if<ListedFibres>(&rule)) {
     if (listed->sheets.empty()) return axes_along(listed->fibres[element]);

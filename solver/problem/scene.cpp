@@ -21,17 +21,6 @@ namespace sandglass {
 
 namespace {
 
-/// The mean position of some nodes, m.
-Vector mean_position(const NodalField& points, const std::vector<int>& nodes) {
-  Vector mean{};
-  for (const int node : nodes) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      mean[i] += points[static_cast<std::size_t>(node)][i] / static_cast<double>(nodes.size());
-    }
-  }
-  return mean;
-}
-
 /// The paths of the three components of a node at X that turns about a center: with its arm r about the axis
 /// a, (R - 1)(X - c) = -(1 - cos) r + sin a x r.
 std::array<ImposedPath, 3> turning_paths(const ImposedRotation& turned, const Vector& X, const Vector& center,
@@ -104,7 +93,7 @@ void make_constraints(Scene& scene) {
   }
   for (const auto& turned : scene.description.rotations) {
     const auto& nodes = node_set(scene, "rotation.set", turned.set);
-    const Vector center = turned.center.value_or(mean_position(points, nodes));
+    const Vector center = turned.center.value_or(mean_at(nodes, points));
     const auto known = std::find(angles.begin(), angles.end(), turned.angle);
     const auto angle = static_cast<std::size_t>(known - angles.begin());
     if (known == angles.end()) angles.push_back(turned.angle);

@@ -106,12 +106,7 @@ Scene refined(const Scene& scene, std::vector<int> elements) {
 }
 
 NodalField prolonged(const CoarserMesh& coarser, NodalField u) {
-  for (const auto& corners : coarser.corners) {
-    Vector mean{};
-    for (const int n : corners)
-      for (std::size_t i = 0; i < 3; ++i) mean[i] += u[at(n)][i] / static_cast<double>(corners.size());
-    u.push_back(mean);
-  }
+  for (const auto& corners : coarser.corners) u.push_back(mean_at(corners, u));
   return u;
 }
 

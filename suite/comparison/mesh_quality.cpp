@@ -30,7 +30,7 @@ QualityTable quality_table(const Mesh& mesh) {
     table.largest = std::max(table.largest, quality);
     const double tenth = std::clamp(std::ceil(10.0 * quality), 0.0, 10.0);
     ++table.counts[static_cast<std::size_t>(tenth)];
-    table.worst.push_back({e, quality, centre_of(mesh, mesh.cells[e])});
+    table.worst.push_back({e, quality, mean_at(mesh.cells[e], mesh.points)});
   }
   const auto end = table.worst.begin() + static_cast<long>(std::min<std::size_t>(10, table.worst.size()));
   std::partial_sort(table.worst.begin(), end, table.worst.end(), [](const auto& a, const auto& b) {
