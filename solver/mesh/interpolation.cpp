@@ -86,16 +86,7 @@ class ElementGrid {
 
  private:
   void enter(std::size_t e) {
-    Vector low, high;
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-    for (const int node : mesh_.cells[e]) {
-      const Vector& X = mesh_.points[static_cast<std::size_t>(node)];
-      for (std::size_t i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], X[i]);
-        high[i] = std::max(high[i], X[i]);
-      }
-    }
+    auto [low, high] = bounding_box(values_at(mesh_.cells[e], mesh_.points));
     for (std::size_t i = 0; i < 3; ++i) {  // points outside the mesh lie within half an element of it
       const double reach = 0.5 * (high[i] - low[i]);
       low[i] -= reach;

@@ -66,6 +66,15 @@ inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& ce
   return rows;
 }
 
+/// The vectors of a nodal field at some nodes.
+template <class Nodes>
+NodalField values_at(const Nodes& nodes, const NodalField& field) {
+  NodalField values;
+  values.reserve(nodes.size());
+  for (const int node : nodes) values.push_back(field[at(node)]);
+  return values;
+}
+
 /// The mean of a nodal field at some nodes; of the points at an element's nodes it is the element's centre.
 template <class Nodes>
 Vector mean_at(const Nodes& nodes, const NodalField& field) {

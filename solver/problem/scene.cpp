@@ -196,16 +196,14 @@ void make_loads(Scene& scene) {
 void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::vector<int>& nodes,
                 const std::vector<double>& masses, NodalField& sums) {
   const NodalField& points = scene.mesh.points;
-  NodalField places;
   Vector centre{};
   double mass = 0.0;
   for (const int node : nodes) {
-    places.push_back(points[at(node)]);
     mass += masses[at(node)];
     for (std::size_t i = 0; i < 3; ++i) centre[i] += masses[at(node)] * points[at(node)][i];
   }
   for (double& x : centre) x /= mass;
-  const auto [low, high] = bounding_box(places);
+  const auto [low, high] = bounding_box(values_at(nodes, points));
   for (std::size_t i = 0; i < 3; ++i) {
     if (velocity.half_waves[i] == 0 || low[i] < high[i]) continue;
     throw InputError(
