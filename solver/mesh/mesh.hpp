@@ -50,7 +50,8 @@ using NodeSets = std::map<std::string, std::vector<int>>;
 using ElementSets = std::map<std::string, std::vector<int>>;
 
 /// The names of sets, in order.
-inline std::vector<std::string> names_in(const std::map<std::string, std::vector<int>>& sets) {
+template <class Set>
+std::vector<std::string> names_in(const std::map<std::string, Set>& sets) {
   std::vector<std::string> names;
   for (const auto& [name, members] : sets) names.push_back(name);
   return names;

@@ -48,9 +48,7 @@ void add_ties(const Scene& scene, const NodeTie& rule, std::map<int, Tie>& ties)
     points.push_back(mesh.points[static_cast<std::size_t>(node)]);
   }
   const auto is_driven = [&](int node) {
-    const auto first = std::lower_bound(scene.constraints.begin(), scene.constraints.end(), node,
-                                        [](const Constraint& c, int n) { return c.node < n; });
-    return first != scene.constraints.end() && first->node == node;
+    return std::ranges::binary_search(scene.constraints, node, {}, &Constraint::node);
   };
   const auto places = element_points(mesh, points);
   for (std::size_t n = 0; n < nodes.size(); ++n) {

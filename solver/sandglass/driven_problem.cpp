@@ -19,11 +19,8 @@ std::map<std::string, std::vector<Driven>> driven_sets(const Scene& scene) {
   const auto& constraints = scene.constraints;
   for (const auto& [name, nodes] : scene.sets) {
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      const auto first = std::lower_bound(constraints.begin(), constraints.end(), nodes[n],
-                                          [](const Constraint& c, int node) { return c.node < node; });
-      for (auto c = first; c != constraints.end() && c->node == nodes[n]; ++c) {
-        driven[name].push_back({static_cast<std::size_t>(std::distance(constraints.begin(), c)), n,
-                                static_cast<std::size_t>(c->component)});
+      for (const Constraint& c : std::ranges::equal_range(constraints, nodes[n], {}, &Constraint::node)) {
+        driven[name].push_back({static_cast<std::size_t>(&c - constraints.data()), n, at(c.component)});
       }
     }
   }
@@ -34,9 +31,7 @@ template <class Sets>
 const typename Sets::mapped_type& find(const Sets& sets, const std::string& name, const char* rule) {
   const auto found = sets.find(name);
   if (found != sets.end()) return found->second;
-  std::vector<std::string> known;
-  for (const auto& [set, entry] : sets) known.push_back(set);
-  throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, known)));
+  throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, names_in(sets))));
 }
 
 MethodChoice choice_of(const Case& description, const SimulationSettings& settings, Precision precision) {
