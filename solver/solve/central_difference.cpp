@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "problem/loading.hpp"
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/stable_step.hpp"
@@ -16,6 +15,25 @@
 namespace sandglass {
 
 namespace {
+
+/// The paper's loading curve (eq. 15) over relative time: from 0 to 1, with zero velocity and acceleration at
+/// both ends.
+constexpr double loading_curve(double relative_time) {
+  const double t = std::clamp(relative_time, 0.0, 1.0);
+  return t * t * t * (10.0 + t * (-15.0 + t * 6.0));
+}
+
+/// Its first derivative by relative time.
+constexpr double loading_curve_rate(double relative_time) {
+  const double t = std::clamp(relative_time, 0.0, 1.0);
+  return 30.0 * t * t * (1.0 - t) * (1.0 - t);
+}
+
+/// Its second derivative by relative time.
+constexpr double loading_curve_acceleration(double relative_time) {
+  const double t = std::clamp(relative_time, 0.0, 1.0);
+  return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t);
+}
 
 /// Displacements (m) at the share s of a step of h s between displacements and velocities (m/s) at its ends:
 /// of third order, so that what is told of a motion does not depend on where the steps fall.
