@@ -7,7 +7,7 @@ namespace sandglass {
 
 std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& face) {
   std::array<Vector, 4> corners;
-  for (std::size_t I = 0; I < 4; ++I) corners[I] = points[static_cast<std::size_t>(face[I])];
+  for (std::size_t I = 0; I < 4; ++I) corners[I] = points[at(face[I])];
   return corners;
 }
 

@@ -16,7 +16,7 @@ using Vector = std::array<double, 3>;
 /// One vector per node.
 using NodalField = std::vector<Vector>;
 
-/// The number of a node or an element as an index.
+/// The number of a node, an element or a component as an index.
 constexpr std::size_t at(int n) {
   return static_cast<std::size_t>(n);
 }
@@ -61,8 +61,8 @@ std::vector<std::string> names_in(const std::map<std::string, Set>& sets) {
 inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& cell) {
   NodalVectors<double> rows;
   for (int I = 0; I < 8; ++I) {
-    const Vector& row = field[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])];
-    for (int i = 0; i < 3; ++i) rows(I, i) = row[static_cast<std::size_t>(i)];
+    const Vector& row = field[at(cell[at(I)])];
+    for (int i = 0; i < 3; ++i) rows(I, i) = row[at(i)];
   }
   return rows;
 }

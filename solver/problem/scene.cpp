@@ -98,7 +98,7 @@ void make_constraints(Scene& scene) {
     const auto angle = static_cast<std::size_t>(known - angles.begin());
     if (known == angles.end()) angles.push_back(turned.angle);
     for (const int node : nodes) {
-      const auto paths = turning_paths(turned, points[static_cast<std::size_t>(node)], center, angle);
+      const auto paths = turning_paths(turned, points[at(node)], center, angle);
       for (std::size_t i = 0; i < 3; ++i) imposed.add(node, i, paths[i], turned.set);
     }
   }

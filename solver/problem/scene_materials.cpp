@@ -28,7 +28,7 @@ Materials assigned_materials(const Scene& scene) {
       continue;
     }
     for (const int e : element_set(scene, "materials.elements", name)) {
-      std::uint16_t& material = of_element[static_cast<std::size_t>(e)];
+      std::uint16_t& material = of_element[at(e)];
       if (material != none) {
         throw InputError(fmt::format("{}: element {} is in '{}' and in '{}'; an element has one material",
                                      scene.description.file.string(), e, regions[material].elements, name));

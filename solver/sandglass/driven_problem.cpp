@@ -66,10 +66,10 @@ const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
 MeshWithSets checked(MeshArrays arrays) {
   std::vector<bool> met(arrays.points.size(), false);
   const auto meet = [&](const std::string& name, int node) {
-    if (node < 0 || static_cast<std::size_t>(node) >= met.size()) {
+    if (node < 0 || at(node) >= met.size()) {
       throw InputError(fmt::format("mesh: {} names node {}; it must be in [0, {})", name, node, met.size()));
     }
-    met[static_cast<std::size_t>(node)] = true;
+    met[at(node)] = true;
   };
   for (auto& [name, nodes] : arrays.sets) {
     for (const int node : nodes) meet(fmt::format("set '{}'", name), node);

@@ -101,7 +101,7 @@ class Simulation<Real>::Parts {
     for (std::size_t k = 0; k < to_.size(); ++k) {
       Constraint& constraint = present.constraints[k];
       constraint.path = {{to_[k]}};
-      displacements[constraint.node][static_cast<std::size_t>(constraint.component)] = to_[k];
+      displacements[constraint.node][at(constraint.component)] = to_[k];
     }
     scale_load(present.description, factor_to_);
     present.description.rotations.clear();

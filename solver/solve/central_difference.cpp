@@ -171,8 +171,7 @@ class CentralDifference {
     NodalField v = leapfrog_.free_velocities();
     for (const auto& [node, component, path] : model_.scene().constraints) {
       const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], loading(time())));
-      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
-          loading_rate(time()) * by_factor;
+      v[at(node)][at(component)] = loading_rate(time()) * by_factor;
     }
     follow(model_.scene().ties, v);
     return v;
@@ -206,7 +205,7 @@ class CentralDifference {
 
   /// The force (N) that accelerates the lumped mass of a driven component.
   double inertia(const Constraint& constraint) const {
-    const double mass = model_.masses()[static_cast<std::size_t>(constraint.node)], T = ramp_time();
+    const double mass = model_.masses()[at(constraint.node)], T = ramp_time();
     double force = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
       force += mass * constraint.path.share[i] * accelerations_[constraint.path.angle][i];
