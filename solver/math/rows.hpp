@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "math/lanes.hpp"
+#include "math/pack.hpp"
 
 /// Nodal values as the time loop stores them, and how they get into packs and back.
 namespace sandglass {
