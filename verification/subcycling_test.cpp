@@ -11,7 +11,7 @@
 #include "io/case_file.hpp"
 #include "material/viscoelastic.hpp"
 #include "mesh/refinement.hpp"
-#include "sandglass/mesh_arrays.hpp"
+#include "sandglass/driven_problem.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/leapfrog.hpp"
 #include "support/random_hexahedra.hpp"
