@@ -55,8 +55,8 @@ class SmallStrainLaw {
 /// OnePoint with the law replaced by its undeformed tangent, and correct to first order in displacement
 /// gradients; a finite rotation causes a spurious strain of 1 - cos(angle). This is the model of surgery
 /// simulators that superpose or condense responses (Bro-Nielsen and Cotin 1996). Small-strain theory itself
-/// never fails: elements count as inverted by det(I + H), as with any other method, for they are as
-/// impossible.
+/// never fails and would silently return inverted elements, which are as impossible for a body as with any
+/// other method: det(I + H) tells them.
 struct LinearOnePoint : OnePoint {
   static constexpr bool small_strain = true;  ///< stresses follow from sym(H)
 

@@ -7,12 +7,12 @@
 #include "element/formulation.hpp"
 
 /// Properties of methods at compile time. A method's header in `element/methods/` declares name, summary,
-/// Kinematics and Hourglass, and where they apply `zero_energy_modes`, the number of
-/// modes without energy by design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to
-/// the one that it approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for
-/// small strains; `SharesKernelsOf`, a method with the same element; `KinematicsOnParallelepipeds`,
-/// kinematics with the same forces on meshes of parallelepipeds; `batches`, true for kernels that are also
-/// compiled for bodies side by side.
+/// Kinematics and Hourglass, and where they apply `zero_energy_modes`, the number of modes without energy by
+/// design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to the one that it
+/// approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for small strains;
+/// `SharesKernelsOf`, a method with the same element; `KinematicsOnParallelepipeds`, kinematics with the same
+/// forces on meshes of parallelepipeds; `batches`, true for kernels that are also compiled for bodies side by
+/// side.
 namespace sandglass {
 
 /// An hourglass control that resists only velocities declares `damps_only`: it dissipates energy and gives no
