@@ -7,9 +7,9 @@
 #include "app/foreign_files.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
+#include "comparison/mesh_quality.hpp"
 #include "io/case_file.hpp"
 #include "io/mesh_file.hpp"
-#include "mesh/quality.hpp"
 
 namespace sandglass {
 

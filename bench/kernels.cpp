@@ -12,7 +12,7 @@
 #include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
 #include "element/methods.hpp"
-#include "math/lanes.hpp"
+#include "math/pack.hpp"
 
 namespace sandglass {
 namespace {

@@ -81,20 +81,20 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
     EXPECT_GT(time, previous);
     previous = time;
     const auto& group = "/frames/" + frame;
-    EXPECT_EQ(file.read_doubles(group + "/velocity").shape, (std::vector<std::size_t>{18, 3}));
-    EXPECT_EQ(file.read_doubles(group + "/jacobian").shape, (std::vector<std::size_t>{4}));
-    EXPECT_EQ(file.read_doubles(group + "/hourglass_energy_density").shape, (std::vector<std::size_t>{4}));
+    EXPECT_EQ(file.read<double>(group + "/velocity").shape, (std::vector<std::size_t>{18, 3}));
+    EXPECT_EQ(file.read<double>(group + "/jacobian").shape, (std::vector<std::size_t>{4}));
+    EXPECT_EQ(file.read<double>(group + "/hourglass_energy_density").shape, (std::vector<std::size_t>{4}));
     EXPECT_EQ(file.read_text_attribute(group + "/hourglass_energy_density", "unit"), "J/m^3");
   }
   // The first frame is the initial state.
   EXPECT_EQ(file.read_number_attribute("/frames/0000", "time"), 0.0);
   EXPECT_EQ(read_nodal_field(file, "/frames/0000/displacement", 18), NodalField(18));
-  EXPECT_EQ(file.read_doubles("/frames/0000/jacobian").entries, std::vector<double>(4, 1.0));
+  EXPECT_EQ(file.read<double>("/frames/0000/jacobian").entries, std::vector<double>(4, 1.0));
   // The last is the answer, with the densities that sum to its hourglass energy.
   const auto last = "/frames/" + frames.back();
   EXPECT_EQ(read_nodal_field(file, last + "/displacement", 18), answer.u);
   double sum = 0.0;
-  for (const double density : file.read_doubles(last + "/hourglass_energy_density").entries) {
+  for (const double density : file.read<double>(last + "/hourglass_energy_density").entries) {
     sum += density * 0.1 * 0.1 * 0.2 / 4;
   }
   const double hourglass = strain_energies(model, answer.u).hourglass;
@@ -106,12 +106,12 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
       {"external_work", "J"}, {"residual", "-"},       {"step_size", "ramp"},  {"adaption_energy", "J"}};
   EXPECT_EQ(file.names_in("/history").size(), columns.size());
   for (const auto& [name, unit] : columns) {
-    EXPECT_EQ(file.read_doubles("/history/" + name).shape, std::vector<std::size_t>{rows}) << name;
+    EXPECT_EQ(file.read<double>("/history/" + name).shape, std::vector<std::size_t>{rows}) << name;
     EXPECT_EQ(file.read_text_attribute("/history/" + name, "unit"), unit) << name;
   }
   const auto energies = strain_energies(model, answer.u);
-  EXPECT_EQ(file.read_doubles("/history/strain_energy").entries.back(), energies.strain);
-  EXPECT_EQ(file.read_doubles("/history/hourglass_energy").entries.back(), energies.hourglass);
+  EXPECT_EQ(file.read<double>("/history/strain_energy").entries.back(), energies.strain);
+  EXPECT_EQ(file.read<double>("/history/hourglass_energy").entries.back(), energies.hourglass);
 }
 
 /// Numbers that all differ come back from the places with their names.
@@ -146,7 +146,7 @@ TEST(ResultFile, every_number_has_its_name) {
   }
   const auto file = Hdf5File::open(folder / "result.h5");
   const auto read = [&](const std::string& name) {
-    return file.read_doubles("/frames/0000/" + name).entries;
+    return file.read<double>("/frames/0000/" + name).entries;
   };
   EXPECT_EQ(file.read_number_attribute("/frames/0000", "time"), frame.time);
   EXPECT_EQ(read_nodal_field(file, "/frames/0000/displacement", 18), frame.u);
@@ -157,7 +157,7 @@ TEST(ResultFile, every_number_has_its_name) {
   double expected = 0.0;
   for (const auto* name : {"time", "kinetic_energy", "strain_energy", "hourglass_energy", "external_work",
                            "residual", "step_size", "adaption_energy"}) {
-    EXPECT_EQ(file.read_doubles(std::string("/history/") + name).entries, (std::vector<double>{++expected}));
+    EXPECT_EQ(file.read<double>(std::string("/history/") + name).entries, (std::vector<double>{++expected}));
   }
 }
 

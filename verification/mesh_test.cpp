@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "comparison/mesh_quality.hpp"
 #include "io/case_file.hpp"
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"

@@ -25,7 +25,7 @@ struct HeldBar {
     for (int d = 0; d < depth; ++d) {
       std::vector<bool> marked;
       for (const auto& cell : refined.mesh().cells) {
-        const Vector X = centre_of(refined.mesh(), cell);
+        const Vector X = mean_at(cell, refined.mesh().points);
         marked.push_back(std::hypot(X[0], X[2] - 1.5 / n) < 1.5 / n / (1 << d));
       }
       refined.split(std::move(marked));

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/case_file.hpp"
-#include "sandglass/mesh_arrays.hpp"
+#include "sandglass/driven_problem.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 #include "support/allocations.hpp"

@@ -259,6 +259,16 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   }
 };
 
+/// The distance, in packs, between computing and prefetching element constants that do not remain in a core's
+/// caches from step to step: long enough for memory to respond, short enough for the first-level cache.
+inline constexpr std::size_t packs_ahead = 3;
+
+/// Prefetches `size` bytes from `start` on.
+inline void prefetch(const void* start, std::size_t size) {
+  constexpr std::size_t cache_line = 64;
+  for (std::size_t n = 0; n < size; n += cache_line) __builtin_prefetch(static_cast<const char*>(start) + n);
+}
+
 /// The loop of a time step. `LoopLaw` is the law that the loop is compiled for: that of the assembly, or an
 /// elastic law that the compiler can inline.
 template <class Levels, class Law, class LoopLaw, class Number>

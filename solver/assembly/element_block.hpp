@@ -9,7 +9,7 @@
 #include "assembly/layout.hpp"
 #include "base/error.hpp"
 #include "element/hourglass_settings.hpp"
-#include "math/lanes.hpp"
+#include "math/pack.hpp"
 
 namespace sandglass {
 

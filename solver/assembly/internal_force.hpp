@@ -87,16 +87,14 @@ class InternalForce {
   /// its nodes. An element is promoted to the lowest level at which no node is displaced by more than
   /// `length` (m), and demoted to the lowest at which none is by more than `demoting_length` <= length, never
   /// if that is 0. Elements that fill otherwise empty lanes may be at a higher level.
-  virtual Adaptation adapt(State<Real>& /*state*/, const Rows<Real>& /*mobility*/, double /*length*/,
-                           double /*demoting_length*/) const {
-    return {};
-  }
+  virtual Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
+                           double demoting_length) const = 0;
 
   /// The level of each element, 0 the cheapest; empty if the method has only one.
-  virtual std::vector<double> levels(const State<Real>& /*state*/) const { return {}; }
+  virtual std::vector<double> levels(const State<Real>& state) const = 0;
 
   /// Sets the levels. Throws InputError if one is not a level of the method: they may come from a file.
-  virtual void set_levels(State<Real>& /*state*/, const std::vector<double>& /*levels*/) const {}
+  virtual void set_levels(State<Real>& state, const std::vector<double>& levels) const = 0;
 
   /// Makes displacements, increments and history known to all ranks.
   virtual void gather(State<Real>& state) const = 0;

@@ -14,10 +14,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 /// The number of elements that fit into a processor's second-level cache with their nodes.
 constexpr std::size_t elements_per_chunk = 2048;
 /// Meshes below this size form one chunk: dividing them would cost more than threads gain.

@@ -13,7 +13,6 @@
 #include "assembly/element_block.hpp"
 #include "assembly/face_gather.hpp"
 #include "assembly/internal_force.hpp"
-#include "assembly/prefetch.hpp"
 #include "base/error.hpp"
 #include "base/type_list.hpp"
 #include "element/hourglass_none.hpp"
@@ -106,6 +105,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       }
     }
     undeformed_plan_ = std::move(plan);
+    constexpr std::size_t cached_bytes = std::size_t{2} << 20U;  // that a core may keep in its own caches
     using Cheapest = typename std::tuple_element_t<0, Parts>::Element;
     streams_ = layout_->packs() * sizeof(Cheapest) > cached_bytes;
   }

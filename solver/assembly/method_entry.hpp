@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "assembly/internal_force.hpp"
-#include "math/lanes.hpp"
+#include "math/pack.hpp"
 
 namespace sandglass {
 

@@ -5,19 +5,6 @@
 /// The definition of `method_entry`, for the source file of each method; see CMakeLists.txt.
 namespace sandglass {
 
-namespace detail {
-
-template <class Method>
-std::optional<double> auto_kappa_of(const CalledLaw& law, KappaModulus modulus) {
-  if constexpr (Method::Hourglass::takes_kappa) {
-    return Method::Hourglass::auto_kappa(law, modulus);
-  } else {
-    return std::nullopt;
-  }
-}
-
-}  // namespace detail
-
 template <class Method>
 MethodEntry method_entry() {
   MethodEntry entry = method_facts<Method>();
@@ -28,7 +15,10 @@ MethodEntry method_entry() {
     entry.assemble_batch_double = &assemble_batch<Method, Pack<double>>;
     entry.assemble_batch_float = &assemble_batch<Method, Pack<float>>;
   }
-  entry.auto_kappa = &detail::auto_kappa_of<Method>;
+  entry.auto_kappa = [](const CalledLaw& law, KappaModulus modulus) -> std::optional<double> {
+    if constexpr (Method::Hourglass::takes_kappa) return Method::Hourglass::auto_kappa(law, modulus);
+    return std::nullopt;
+  };
   return entry;
 }
 

@@ -15,8 +15,8 @@ MethodEntry method_facts() {
   return {
       .name = Method::name,
       .summary = Method::summary,
-      .integration_points = Method::integration_points,
-      .controls_hourglass = Method::integration_points > 1 || !std::is_same_v<Hourglass, NoHourglassControl>,
+      .integration_points = integration_points<Method>,
+      .controls_hourglass = integration_points<Method> > 1 || !std::is_same_v<Hourglass, NoHourglassControl>,
       .damps_only = DampsOnly<Hourglass>,
       .takes_kappa = Hourglass::takes_kappa,
       .kappa_affects_equilibrium = kappa_affects_equilibrium<Method>,

@@ -8,10 +8,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 /// The lower and the upper face of an element across each parent axis, as local nodes; every pair is the
 /// element in VTK order, rotated.
 using LocalFaces = std::array<std::array<std::size_t, 4>, 2>;

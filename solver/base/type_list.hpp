@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -33,21 +31,14 @@ std::vector<std::string> names_of(TypeList<Types...> /*list*/) {
   return {std::string(Types::name)...};
 }
 
-/// The index of a type in a list, from 0.
-template <class Type, class... Types>
-constexpr std::size_t index_in(TypeList<Types...> /*list*/) {
-  std::size_t index = 0;
-  static_cast<void>(((std::is_same_v<Type, Types> || (++index, false)) || ...));
-  return index;
-}
-
 namespace detail {
-template <class List>
-struct VariantOf;
+
+// Without bodies: they are for their types alone.
 template <class... Types>
-struct VariantOf<TypeList<Types...>> {
-  using type = std::variant<Types...>;
-};
+std::variant<Types...> variant_of(TypeList<Types...>);
+template <template <class> class Wrapper, class... Types>
+TypeList<Wrapper<Types>...> wrapped(TypeList<Types...>);
+
 template <class... Lists>
 struct Concatenated;
 template <class... Types>
@@ -59,13 +50,6 @@ struct Concatenated<TypeList<First...>, TypeList<Second...>, Rest...> {
   using type = typename Concatenated<TypeList<First..., Second...>, Rest...>::type;
 };
 
-template <template <class> class Wrapper, class List>
-struct Wrapped;
-template <template <class> class Wrapper, class... Types>
-struct Wrapped<Wrapper, TypeList<Types...>> {
-  using type = TypeList<Wrapper<Types>...>;
-};
-
 }  // namespace detail
 
 /// Lists one after another as one list.
@@ -74,10 +58,10 @@ using Concatenated = typename detail::Concatenated<Lists...>::type;
 
 /// The list of Wrapper<Type> for each type of a list.
 template <template <class> class Wrapper, class List>
-using Wrapped = typename detail::Wrapped<Wrapper, List>::type;
+using Wrapped = decltype(detail::wrapped<Wrapper>(List{}));
 
 /// A value that is one of the types of a list.
 template <class List>
-using VariantOf = typename detail::VariantOf<List>::type;
+using VariantOf = decltype(detail::variant_of(List{}));
 
 }  // namespace sandglass

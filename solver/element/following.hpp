@@ -79,6 +79,16 @@ Tensor<T> stress_of_phi(const HourglassModes<T>& r, const HourglassModes<T>& s, 
   return stress;
 }
 
+/// The energy (J) of a control at hourglass displacements q (m): q . Q / 2, unless the control declares it.
+template <class Hourglass, class T>
+T hourglass_energy(const HourglassModes<T>& q, const typename Hourglass::template Element<T>& control) {
+  if constexpr (requires { Hourglass::energy(q, control); }) {
+    return Hourglass::energy(q, control);
+  } else {
+    return T(0.5) * double_dot(q, Hourglass::resistance(q, control));
+  }
+}
+
 /// A bound (N/m) of the tangent of E. A displacement v of the nodes has the spatial gradient L = v^T g and
 /// changes r by F^-1 v^T gamma, with g = h F^-1 and gamma the shape vectors of the current configuration.
 /// With s = dE0/dr, Q = s F^-1 and K = E0'',
@@ -99,7 +109,7 @@ T following_bound(const Matrix<T, 8, 4>& gamma, const NodalVectors<T>& g, const 
   const T mixed = T(4.0 / 3.0) * sqrt(double_dot(d, d) * gg * double_dot(gamma_Q, gamma_Q));
   constexpr NeoHookean phi_minus_one{.young_modulus = 4.0 / 3.0, .poisson_ratio = 0.0};  // mu/2 = 1/3
   const T growth =
-      Hourglass::energy(r, control) * gradient_bound(phi_minus_one.isochoric_tangent_bound(H), g);
+      hourglass_energy<Hourglass>(r, control) * gradient_bound(phi_minus_one.isochoric_tangent_bound(H), g);
   return followed.phi * (material + geometric) + mixed + growth;
 }
 

@@ -124,10 +124,14 @@ struct Formulation {
     return Kinematics::volume(motion, element.body);
   }
 
-  /// The smallest det F at the integration points.
+  /// The smallest det F at the integration points: the volume ratio unless the kinematics declare it.
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return Kinematics::smallest_jacobian(motion, element.body);
+    if constexpr (requires { Kinematics::smallest_jacobian(motion, element.body); }) {
+      return Kinematics::smallest_jacobian(motion, element.body);
+    } else {
+      return mean_jacobian(motion, element);
+    }
   }
 
   /// The volume ratio of the element.
@@ -143,46 +147,6 @@ struct Formulation {
                            const History<T>& history, const LawAtStep& law) {
     return Kinematics::template stiffness_bound<Hourglass>(motion, element.body, element.hourglass,
                                                            history.hourglass, recalling(law, history.law));
-  }
-};
-
-/// A single element without history, from nodal displacements u (m) to nodal forces (N): the functions above
-/// without modes, for set-up and tests.
-template <class Kernel>
-struct NodalForm : Kernel {
-  static_assert(!Kernel::remembers && !Kernel::needs_increment && !Kernel::needs_coordinates &&
-                !Kernel::averages_over_nodes);
-
-  template <class T, class Element, class Law>
-  static NodalVectors<T> force(const NodalVectors<T>& u, const Element& element, const Law& law) {
-    typename Kernel::template History<T> none;
-    return from_modes(Kernel::force(Kernel::deformation(motion(u), element), element, none, law));
-  }
-
-  template <class T, class Element, class Law>
-  static ElementEnergy<T> energy(const NodalVectors<T>& u, const Element& element, const Law& law) {
-    return Kernel::energy(motion(u), element, typename Kernel::template History<T>{}, law);
-  }
-
-  template <class T, class Element>
-  static T smallest_jacobian(const NodalVectors<T>& u, const Element& element) {
-    return Kernel::smallest_jacobian(motion(u), element);
-  }
-
-  template <class T, class Element>
-  static T mean_jacobian(const NodalVectors<T>& u, const Element& element) {
-    return Kernel::mean_jacobian(motion(u), element);
-  }
-
-  template <class T, class Element, class Law>
-  static T stiffness_bound(const NodalVectors<T>& u, const Element& element, const Law& law) {
-    return Kernel::stiffness_bound(motion(u), element, typename Kernel::template History<T>{}, law);
-  }
-
- private:
-  template <class T>
-  static ElementMotion<T> motion(const NodalVectors<T>& u) {
-    return {.u = to_modes(u), .increment = {}, .X = {}, .inverse_step = T(0), .dilatation = {}};
   }
 };
 

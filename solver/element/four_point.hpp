@@ -17,26 +17,13 @@ namespace sandglass {
 /// as the mean-dilatation element.
 ///
 /// The fourth mode would couple with the others through the mean of xi eta zeta, which is not zero over
-/// alternate corners. It is left to an hourglass control.
-struct FourPoint {
-  /// The constants: the geometry of the one-point element.
-  template <class T>
-  using Element = OnePoint::Element<T>;
-
+/// alternate corners. It is left to an hourglass control. Constants are those of the one-point element.
+struct FourPoint : OnePoint {
   static constexpr int points = 4;
-  static constexpr bool needs_increment = false;
-  static constexpr bool needs_coordinates = false;
   static constexpr bool averages_pressure = true;
 
   /// Whether forces depend, to third order, on which corners the numbering of the nodes puts first.
   static constexpr bool alternates_corners = true;
-
-  static Element<double> precompute(const NodalVectors<double>& X) { return OnePoint::precompute(X); }
-
-  template <class T>
-  static Element<T> geometry(const Modes<T>& x) {
-    return OnePoint::geometry(x);
-  }
 
   /// The deformation at each point.
   template <class T>
@@ -94,14 +81,8 @@ struct FourPoint {
     T W = T(0);
     for (std::size_t q = 0; q < 4; ++q) W = W + T(0.25) * at_point(law, q).isochoric_energy(now.H[q]);
     ElementEnergy<T> energy{element.V * (W + law.volumetric_energy(mean_dilatation(now.change))), T(0)};
-    if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now.q, control);
+    if constexpr (Hourglass::active) energy.hourglass = hourglass_energy<Hourglass>(now.q, control);
     return energy;
-  }
-
-  /// Reference volume, m^3.
-  template <class T>
-  static T volume(const ElementMotion<T>& /*motion*/, const Element<T>& element) {
-    return element.V;
   }
 
   template <class T>

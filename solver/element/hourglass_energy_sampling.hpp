@@ -43,12 +43,6 @@ struct EnergySamplingControl {
     return element.S * q;
   }
 
-  /// (1/2) q S q, in J.
-  template <class T>
-  static T energy(const HourglassModes<T>& q, const Element<T>& element) {
-    return T(0.5) * double_dot(q, element.S * q);
-  }
-
   /// gamma S gamma^T has the eigenvalues of S gamma^T gamma, N/m.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {

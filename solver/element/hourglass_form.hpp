@@ -1,7 +1,7 @@
 #pragma once
 
-#include "element/hourglass_matrix.hpp"
 #include "element/one_point.hpp"
+#include "element/stabilization_matrix.hpp"
 #include "material/laws.hpp"
 
 /// Physical hourglass stiffnesses, without a parameter: they follow from an element's shape and its law's
@@ -81,16 +81,10 @@ struct ReferenceHourglassControl {
     return element.resistance(r);
   }
 
-  /// r K r / 2, in J.
-  template <class T>
-  static T energy(const HourglassModes<T>& r, const Element<T>& element) {
-    return T(0.5) * double_dot(r, element.resistance(r));
-  }
-
-  /// The bound (N/m) of HourglassMatrixControl for the matrix of the form.
+  /// The bound (N/m) of StabilizationMatrixControl for the matrix of the form.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {
-    return HourglassMatrixControl<Form>::stiffness_bound(gamma, {symmetric_part(matrix_of<T>(element))});
+    return StabilizationMatrixControl::stiffness_bound(gamma, {symmetric_part(matrix_of<T>(element))});
   }
 };
 

@@ -62,12 +62,6 @@ struct ModalSamplingControl : FromGeometry<ModalSamplingControl> {
     return Q;
   }
 
-  /// (1/2) sum_a k_a |q_a|^2, in J.
-  template <class T>
-  static T energy(const HourglassModes<T>& q, const Element<T>& element) {
-    return T(0.5) * double_dot(q, resistance(q, element));
-  }
-
   /// sum_a k_a gamma_a gamma_a^T has the eigenvalues of K gamma^T gamma, N/m.
   template <class T>
   static T stiffness_bound(const Matrix<T, 8, 4>& gamma, const Element<T>& element) {

@@ -54,18 +54,11 @@ class SmallStrainLaw {
 /// The uniform strain hexahedron of small-strain elasticity: f = K u with a constant, symmetric K. It is
 /// OnePoint with the law replaced by its undeformed tangent, and correct to first order in displacement
 /// gradients; a finite rotation causes a spurious strain of 1 - cos(angle). This is the model of surgery
-/// simulators that superpose or condense responses (Bro-Nielsen and Cotin 1996).
-struct LinearOnePoint {
+/// simulators that superpose or condense responses (Bro-Nielsen and Cotin 1996). Small-strain theory itself
+/// never fails and would silently return inverted elements, which are as impossible for a body as with any
+/// other method: det(I + H) tells them.
+struct LinearOnePoint : OnePoint {
   static constexpr bool small_strain = true;  ///< stresses follow from sym(H)
-  static constexpr bool needs_increment = false;
-  static constexpr bool needs_coordinates = false;
-
-  template <class T>
-  using Element = OnePoint::Element<T>;
-  template <class T>
-  using Deformation = OnePoint::Deformation<T>;
-
-  static Element<double> precompute(const NodalVectors<double>& X) { return OnePoint::precompute(X); }
 
   /// As for OnePoint, without the change of volume, which small strains do not need.
   template <class Hourglass, class T>
@@ -91,23 +84,6 @@ struct LinearOnePoint {
                                  const typename Hourglass::template Element<T>& control,
                                  const NoHistory<T>& history, const Law& law) {
     return OnePoint::energy<Hourglass>(motion, element, control, history, SmallStrainLaw<Law>(law));
-  }
-
-  template <class T>
-  static T volume(const ElementMotion<T>& motion, const Element<T>& element) {
-    return OnePoint::volume(motion, element);
-  }
-
-  /// det(I + H) of the displacements. Small-strain theory itself never fails and would silently return
-  /// inverted elements, which are as impossible for a body as with any other method.
-  template <class T>
-  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return OnePoint::smallest_jacobian(motion, element);
-  }
-
-  template <class T>
-  static T dilatation(const ElementMotion<T>& motion, const Element<T>& element) {
-    return OnePoint::dilatation(motion, element);
   }
 
   /// The bound (N/m) of the undeformed OnePoint for all displacements: the stiffness is constant.

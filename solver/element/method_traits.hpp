@@ -7,12 +7,12 @@
 #include "element/formulation.hpp"
 
 /// Properties of methods at compile time. A method's header in `element/methods/` declares name, summary,
-/// integration_points, Kinematics and Hourglass, and where they apply `zero_energy_modes`, the number of
-/// modes without energy by design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to
-/// the one that it approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for
-/// small strains; `SharesKernelsOf`, a method with the same element; `KinematicsOnParallelepipeds`,
-/// kinematics with the same forces on meshes of parallelepipeds; `batches`, true for kernels that are also
-/// compiled for bodies side by side.
+/// Kinematics and Hourglass, and where they apply `zero_energy_modes`, the number of modes without energy by
+/// design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to the one that it
+/// approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for small strains;
+/// `SharesKernelsOf`, a method with the same element; `KinematicsOnParallelepipeds`, kinematics with the same
+/// forces on meshes of parallelepipeds; `batches`, true for kernels that are also compiled for bodies side by
+/// side.
 namespace sandglass {
 
 /// An hourglass control that resists only velocities declares `damps_only`: it dissipates energy and gives no
@@ -26,6 +26,10 @@ concept DampsOnly = requires {
 template <class Method>
 inline constexpr bool kappa_affects_equilibrium =
     Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
+
+/// The number of integration points of a method's elements; of an adaptive one those of the lowest level.
+template <class Method>
+inline constexpr int integration_points = integration_points_of<typename Method::Kinematics>();
 
 /// Whether a method resists volume changes at several points of an element or around its nodes, and not their
 /// average by one pressure.

@@ -161,10 +161,10 @@ struct OnePoint {
       const HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
       if constexpr (FollowsDeformation<Hourglass>) {
         const auto followed = followed_deformation<Hourglass>(H, volume_change(H));
-        energy.hourglass = Hourglass::energy(convected(q, followed), control);
+        energy.hourglass = hourglass_energy<Hourglass>(convected(q, followed), control);
         if constexpr (GrowsWithDeformation<Hourglass>) energy.hourglass = followed.phi * energy.hourglass;
       } else {
-        energy.hourglass = Hourglass::energy(q, control);
+        energy.hourglass = hourglass_energy<Hourglass>(q, control);
       }
     }
     return energy;
@@ -174,12 +174,6 @@ struct OnePoint {
   template <class T>
   static T volume(const ElementMotion<T>& /*motion*/, const Element<T>& element) {
     return element.V;
-  }
-
-  /// The smallest volume ratio det F at the integration points.
-  template <class T>
-  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + dilatation(motion, element);
   }
 
   /// The element's volume over its reference volume: det F of the mean deformation.

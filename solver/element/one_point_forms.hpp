@@ -21,11 +21,6 @@ struct OnePointForm {
   }
 
   template <class T, class Element>
-  static T smallest_jacobian(const ElementMotion<T>& motion, const Element& element) {
-    return OnePoint::smallest_jacobian(motion, Form::geometry(motion, element));
-  }
-
-  template <class T, class Element>
   static T dilatation(const ElementMotion<T>& motion, const Element& element) {
     return OnePoint::dilatation(motion, Form::geometry(motion, element));
   }

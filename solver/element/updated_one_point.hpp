@@ -82,12 +82,6 @@ struct UpdatedOnePoint {
     return OnePoint::geometry(motion.X).V;
   }
 
-  /// The smallest volume ratio det F at the integration points.
-  template <class T>
-  static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    return T(1) + dilatation(motion, element);
-  }
-
   /// det F as this element sees it.
   template <class T>
   static T dilatation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {

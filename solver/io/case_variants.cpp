@@ -97,26 +97,20 @@ std::vector<CaseTables> read_case_tables(const std::filesystem::path& path) {
   cases[0].root = parse(path);
   const auto axes = read_axes(cases[0].root, path);
   if (axes.empty()) return cases;
-  std::vector<std::vector<std::string>> combinations{{}};
-  for (const auto& axis : axes) {
-    std::vector<std::vector<std::string>> longer;
-    for (const auto& combination : combinations) {
-      for (const auto& name : axis.names) {
-        longer.push_back(combination);
-        longer.back().push_back(name);
-      }
-    }
-    combinations = std::move(longer);
-  }
+  std::size_t combinations = 1;
+  for (const auto& axis : axes) combinations *= axis.names.size();
   cases.clear();
-  for (auto& names : combinations) {
-    toml::table root = parse(path);
+  for (std::size_t number = 0; number < combinations; ++number) {
+    cases.push_back({parse(path), {}});
+    auto& [root, names] = cases.back();
     toml::table variants = std::move(*root["variants"].as_table());
     root.erase("variants");
-    for (std::size_t n = 0; n < axes.size(); ++n) {
-      merge(root, take_variant(variants, axes[n].key, names[n]));
+    std::size_t each = combinations;  // combinations that share the names so far
+    for (const auto& axis : axes) {
+      each /= axis.names.size();
+      names.push_back(axis.names[number / each % axis.names.size()]);
+      merge(root, take_variant(variants, axis.key, names.back()));
     }
-    cases.push_back({std::move(root), std::move(names)});
   }
   return cases;
 }

@@ -26,7 +26,7 @@ void write_history(Hdf5File& file, const std::vector<HistoryRow>& history) {
 }
 
 std::vector<HistoryRow> read_history(const Hdf5File& file) {
-  const auto values = file.read_doubles("/history");
+  const auto values = file.read<double>("/history");
   if (values.shape.size() != 2 || values.shape[1] != history_columns.size()) {
     throw InputError(fmt::format("{}: dataset '/history' must have {} columns", file.path().string(),
                                  history_columns.size()));
@@ -77,7 +77,7 @@ RunSoFar read_checkpoint_file(const std::filesystem::path& path, const Identity&
     run.frames.push_back(read_frame(file, frame_group(n), n_nodes, n_elements));
   }
   for (const auto& name : file.names_in("/state")) {
-    run.point.arrays[name] = file.read_doubles("/state/" + name).entries;
+    run.point.arrays[name] = file.read<double>("/state/" + name).entries;
   }
   return run;
 }

@@ -38,10 +38,6 @@ class Identifier {
 /// Datasets of at least this many entries are compressed; below, the filter costs more than it saves.
 constexpr std::size_t compress_from = 4096;
 
-std::vector<hsize_t> dimensions(const std::vector<std::size_t>& shape) {
-  return {shape.begin(), shape.end()};
-}
-
 hid_t native(double /*tag*/) {
   return H5T_NATIVE_DOUBLE;
 }
@@ -129,12 +125,8 @@ struct Hdf5File::Handle {
     if (file >= 0) H5Fclose(file);
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(fmt::format("{}: {}", path.string(), what));
-  }
-
   void require(bool condition, const std::string& what) const {
-    if (!condition) fail(what);
+    if (!condition) throw InputError(fmt::format("{}: {}", path.string(), what));
   }
 
   void require_written(bool condition, const std::string& what) const {
@@ -142,67 +134,14 @@ struct Hdf5File::Handle {
     throw ComputationError(fmt::format("{}: {}: {}", path.string(), what, reason_of_failure()));
   }
 
-  template <class T>
-  void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const T> entries) {
-    const auto dims = dimensions(shape);
-    const Identifier space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
-    const Identifier links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-    H5Pset_create_intermediate_group(links.get(), 1);
-    const Identifier creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.get(), false);  // the same content gives the same bytes
-    const auto count = static_cast<std::size_t>(storage.ranks->count());
-    if (storage.compressed && count == 1 && entries.size() >= compress_from) {
-      H5Pset_chunk(creation.get(), static_cast<int>(dims.size()), dims.data());
-      H5Pset_shuffle(creation.get());
-      H5Pset_deflate(creation.get(), 4);
-    }
-    const Identifier set(
-        H5Dcreate2(file, name.c_str(), native(T{}), space.get(), links.get(), creation.get(), H5P_DEFAULT),
-        H5Dclose);
-    require_written(set.valid(), fmt::format("cannot create dataset '{}'", name));
-    // Each rank writes some of the entries along the first axis.
-    const auto rank = static_cast<std::size_t>(storage.ranks->rank());
-    const std::size_t first = shape[0] * rank / count, last = shape[0] * (rank + 1) / count;
-    std::vector<hsize_t> begin(dims.size()), part = dims;
-    begin[0] = first;
-    part[0] = last - first;
-    const Identifier memory(H5Screate_simple(static_cast<int>(dims.size()), part.data(), nullptr), H5Sclose);
-    if (first < last) {
-      H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, begin.data(), nullptr, part.data(), nullptr);
-    } else {
-      H5Sselect_none(space.get());
-      H5Sselect_none(memory.get());
-    }
-    const Identifier transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-    storage.ranks->write_together(transfer.get());
-    const T* from = entries.data() + (shape[0] > 0 ? entries.size() / shape[0] * first : 0);
-    require_written(H5Dwrite(set.get(), native(T{}), memory.get(), space.get(), transfer.get(), from) >= 0,
-                    fmt::format("cannot write dataset '{}'", name));
-  }
-
-  template <class T>
-  FileArray<T> read(const std::string& name) const {
-    const Identifier set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
-    require(
-        set.valid(),
-        fmt::format("dataset '{}' is missing; this is not a file that this program or its reference wrote",
-                    name));
-    const Identifier type(H5Dget_type(set.get()), H5Tclose);
-    require(is_number(type), fmt::format("dataset '{}' must hold numbers", name));
-    const Identifier space(H5Dget_space(set.get()), H5Sclose);
-    require(H5Sget_simple_extent_type(space.get()) == H5S_SIMPLE,
-            fmt::format("dataset '{}' must be an array", name));
-    std::vector<hsize_t> dims(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
-    H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
-    FileArray<T> array{{dims.begin(), dims.end()}, {}};
-    const std::size_t entries = entries_of(array.shape);
-    require(entries <= most_bytes_per_byte(set) * size / H5Tget_size(type.get()),
-            fmt::format("dataset '{}' claims {} values, more than a file of {} bytes can hold", name, entries,
-                        size));
-    array.entries.resize(entries);
-    require(H5Dread(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, array.entries.data()) >= 0,
-            fmt::format("dataset '{}' cannot be read; the file is damaged or holds another type", name));
-    return array;
+  void write_attribute(const std::string& object, const std::string& name, hid_t type,
+                       const void* value) const {
+    const Identifier space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Identifier attribute(H5Acreate_by_name(file, object.c_str(), name.c_str(), type, space.get(),
+                                                 H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose);
+    require_written(attribute.valid() && H5Awrite(attribute.get(), type, value) >= 0,
+                    fmt::format("cannot write attribute '{}'", name));
   }
 };
 
@@ -267,58 +206,97 @@ std::vector<std::string> Hdf5File::names_in(const std::string& group) const {
   std::vector<std::string> names;
   const Identifier id(H5Gopen2(handle_->file, group.c_str(), H5P_DEFAULT), H5Gclose);
   if (!id.valid()) return names;
-  H5G_info_t info{};
-  H5Gget_info(id.get(), &info);
-  for (hsize_t n = 0; n < info.nlinks; ++n) {
-    const auto length =
-        H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, nullptr, 0, H5P_DEFAULT);
-    handle_->require(length > 0, fmt::format("group '{}' cannot be read; the file is damaged", group));
-    std::string name(static_cast<std::size_t>(length), '\0');
-    H5Lget_name_by_idx(id.get(), ".", H5_INDEX_NAME, H5_ITER_INC, n, name.data(), name.size() + 1,
-                       H5P_DEFAULT);
-    names.push_back(name);
-  }
+  const auto add = [](hid_t /*group*/, const char* name, const H5L_info_t* /*info*/, void* to) -> herr_t {
+    static_cast<std::vector<std::string>*>(to)->emplace_back(name);
+    return 0;
+  };
+  handle_->require(H5Literate(id.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names) >= 0,
+                   fmt::format("group '{}' cannot be read; the file is damaged", group));
   return names;
 }
 
+template <class T>
 void Hdf5File::write(const std::string& name, const std::vector<std::size_t>& shape,
-                     std::span<const double> entries) {
-  handle_->write(name, shape, entries);
+                     std::span<const T> entries) {
+  const std::vector<hsize_t> dims(shape.begin(), shape.end());
+  const Identifier space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
+  const Identifier links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links.get(), 1);
+  const Identifier creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);  // the same content gives the same bytes
+  const auto count = static_cast<std::size_t>(handle_->storage.ranks->count());
+  if (handle_->storage.compressed && count == 1 && entries.size() >= compress_from) {
+    H5Pset_chunk(creation.get(), static_cast<int>(dims.size()), dims.data());
+    H5Pset_shuffle(creation.get());
+    H5Pset_deflate(creation.get(), 4);
+  }
+  const Identifier set(H5Dcreate2(handle_->file, name.c_str(), native(T{}), space.get(), links.get(),
+                                  creation.get(), H5P_DEFAULT),
+                       H5Dclose);
+  handle_->require_written(set.valid(), fmt::format("cannot create dataset '{}'", name));
+  // Each rank writes some of the entries along the first axis.
+  const auto rank = static_cast<std::size_t>(handle_->storage.ranks->rank());
+  const std::size_t first = shape[0] * rank / count, last = shape[0] * (rank + 1) / count;
+  std::vector<hsize_t> begin(dims.size()), part = dims;
+  begin[0] = first;
+  part[0] = last - first;
+  const Identifier memory(H5Screate_simple(static_cast<int>(dims.size()), part.data(), nullptr), H5Sclose);
+  if (first < last) {
+    H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, begin.data(), nullptr, part.data(), nullptr);
+  } else {
+    H5Sselect_none(space.get());
+    H5Sselect_none(memory.get());
+  }
+  const Identifier transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  handle_->storage.ranks->write_together(transfer.get());
+  const T* from = entries.data() + (shape[0] > 0 ? entries.size() / shape[0] * first : 0);
+  handle_->require_written(
+      H5Dwrite(set.get(), native(T{}), memory.get(), space.get(), transfer.get(), from) >= 0,
+      fmt::format("cannot write dataset '{}'", name));
 }
 
-void Hdf5File::write(const std::string& name, const std::vector<std::size_t>& shape,
-                     std::span<const std::int64_t> entries) {
-  handle_->write(name, shape, entries);
+template <class T>
+FileArray<T> Hdf5File::read(const std::string& name) const {
+  const Identifier set(H5Dopen2(handle_->file, name.c_str(), H5P_DEFAULT), H5Dclose);
+  handle_->require(
+      set.valid(),
+      fmt::format("dataset '{}' is missing; this is not a file that this program or its reference wrote",
+                  name));
+  const Identifier type(H5Dget_type(set.get()), H5Tclose);
+  handle_->require(is_number(type), fmt::format("dataset '{}' must hold numbers", name));
+  const Identifier space(H5Dget_space(set.get()), H5Sclose);
+  handle_->require(H5Sget_simple_extent_type(space.get()) == H5S_SIMPLE,
+                   fmt::format("dataset '{}' must be an array", name));
+  std::vector<hsize_t> dims(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
+  H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
+  FileArray<T> array{{dims.begin(), dims.end()}, {}};
+  const std::size_t entries = entries_of(array.shape);
+  handle_->require(entries <= most_bytes_per_byte(set) * handle_->size / H5Tget_size(type.get()),
+                   fmt::format("dataset '{}' claims {} values, more than a file of {} bytes can hold", name,
+                               entries, handle_->size));
+  array.entries.resize(entries);
+  handle_->require(
+      H5Dread(set.get(), native(T{}), H5S_ALL, H5S_ALL, H5P_DEFAULT, array.entries.data()) >= 0,
+      fmt::format("dataset '{}' cannot be read; the file is damaged or holds another type", name));
+  return array;
 }
 
-FileArray<double> Hdf5File::read_doubles(const std::string& name) const {
-  return handle_->read<double>(name);
-}
-
-FileArray<std::int64_t> Hdf5File::read_integers(const std::string& name) const {
-  return handle_->read<std::int64_t>(name);
-}
+template void Hdf5File::write(const std::string&, const std::vector<std::size_t>&, std::span<const double>);
+template void Hdf5File::write(const std::string&, const std::vector<std::size_t>&,
+                              std::span<const std::int64_t>);
+template FileArray<double> Hdf5File::read(const std::string&) const;
+template FileArray<std::int64_t> Hdf5File::read(const std::string&) const;
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, const std::string& value) {
   const Identifier type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), H5T_VARIABLE);  // h5py reads this kind as a text, the fixed kind as bytes
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  const Identifier space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Identifier attribute(H5Acreate_by_name(handle_->file, object.c_str(), name.c_str(), type.get(),
-                                               space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                             H5Aclose);
   const char* text = value.c_str();
-  handle_->require_written(attribute.valid() && H5Awrite(attribute.get(), type.get(), &text) >= 0,
-                           fmt::format("cannot write attribute '{}'", name));
+  handle_->write_attribute(object, name, type.get(), &text);
 }
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, double value) {
-  const Identifier space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Identifier attribute(H5Acreate_by_name(handle_->file, object.c_str(), name.c_str(), H5T_NATIVE_DOUBLE,
-                                               space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                             H5Aclose);
-  handle_->require_written(attribute.valid() && H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, &value) >= 0,
-                           fmt::format("cannot write attribute '{}'", name));
+  handle_->write_attribute(object, name, H5T_NATIVE_DOUBLE, &value);
 }
 
 bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {

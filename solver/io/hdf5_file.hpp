@@ -57,13 +57,12 @@ class Hdf5File {
   /// Names of the objects in a group, in alphabetical order; empty when there is no such group.
   std::vector<std::string> names_in(const std::string& group) const;
 
-  /// Writes a dataset by rows, groups on the way made as needed; compressed when it is large.
-  void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const double> entries);
-  void write(const std::string& name, const std::vector<std::size_t>& shape,
-             std::span<const std::int64_t> entries);
-
-  FileArray<double> read_doubles(const std::string& name) const;
-  FileArray<std::int64_t> read_integers(const std::string& name) const;
+  /// Writes a dataset by rows, groups on the way made as needed; compressed when it is large. T: double or
+  /// std::int64_t.
+  template <class T>
+  void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const T> entries);
+  template <class T>
+  FileArray<T> read(const std::string& name) const;
 
   /// Attributes; `object` is "/" for the file itself.
   void write_attribute(const std::string& object, const std::string& name, const std::string& value);

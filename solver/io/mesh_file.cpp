@@ -34,7 +34,7 @@ std::map<std::string, std::vector<int>> read_sets(const Hdf5File& file, const st
   std::map<std::string, std::vector<int>> sets;
   for (const auto& name : file.names_in(group)) {
     const std::string dataset = fmt::format("{}/{}", group, name);
-    const auto members = file.read_integers(dataset).entries;
+    const auto members = file.read<std::int64_t>(dataset).entries;
     if (members.size() > count) {
       throw InputError(fmt::format("{}: {} has {} {}s; allowed are the {} of the mesh, each once",
                                    file.path().string(), dataset, members.size(), what, count));
@@ -101,7 +101,7 @@ void write_mesh_file(const Scene& scene, const std::filesystem::path& path) {
 }
 
 NodalField read_nodal_field(const Hdf5File& file, const std::string& name, std::size_t n_nodes) {
-  const auto array = file.read_doubles(name);
+  const auto array = file.read<double>(name);
   if (array.shape != std::vector<std::size_t>{n_nodes, 3}) {
     throw InputError(fmt::format("{}: dataset '{}' has shape {}; it must be [{}, 3], one row per node",
                                  file.path().string(), name, array.shape, n_nodes));
@@ -119,7 +119,7 @@ NodalField read_nodal_field(const Hdf5File& file, const std::string& name, std::
 
 MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   const auto file = Hdf5File::open(path);
-  const auto cells = file.read_integers("/mesh/cells");
+  const auto cells = file.read<std::int64_t>("/mesh/cells");
   if (cells.shape.size() != 2 || cells.shape[1] != 8 || cells.shape[0] == 0) {
     throw InputError(fmt::format(
         "{}: dataset '/mesh/cells' has shape {}; it must be [elements, 8], hexahedra in VTK order",
@@ -132,7 +132,7 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
                     "refined, and [[refine]]",
                     path.string()));
   }
-  const auto points = file.read_doubles("/mesh/points");
+  const auto points = file.read<double>("/mesh/points");
   const std::size_t n_nodes = points.shape.empty() ? 0 : points.shape[0];
   MeshWithSets result;
   result.mesh.points = read_nodal_field(file, "/mesh/points", n_nodes);

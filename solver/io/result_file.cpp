@@ -43,7 +43,7 @@ void write_frame(Hdf5File& file, const std::string& group, const Frame& frame) {
 Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_nodes,
                  std::size_t n_elements) {
   const auto read_elements = [&](const std::string& name) {
-    auto values = file.read_doubles(group + name);
+    auto values = file.read<double>(group + name);
     if (values.shape != std::vector<std::size_t>{n_elements}) {
       throw InputError(fmt::format("{}: dataset '{}' must hold one value for each of {} elements",
                                    file.path().string(), group + name, n_elements));

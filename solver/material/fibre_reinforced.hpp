@@ -62,14 +62,6 @@ struct FibreReinforced : QuadraticVolume<Law> {
     return stress;
   }
 
- protected:
-  /// F S F^T for symmetric S.
-  template <class T>
-  static Tensor<T> to_space(const Tensor<T>& S, const Tensor<T>& H) {
-    const Tensor<T> FS = S + H * S;
-    return FS + FS * transpose(H);
-  }
-
  private:
   constexpr const Law& law() const { return static_cast<const Law&>(*this); }
 };

@@ -146,13 +146,6 @@ class ViscoelasticPoint : public VolumeOfElastic<ViscoelasticPoint<Law, Memory>>
     return T(terms_[i].share) * memory_.S - memory_.decayed[i];
   }
 
-  /// F Q F^T for symmetric Q.
-  template <class T>
-  static Tensor<T> to_space(const Tensor<T>& Q, const Tensor<T>& H) {
-    const Tensor<T> FQ = Q + H * Q;
-    return FQ + FQ * transpose(H);
-  }
-
   /// Advances the memory by one step to the isochoric stress P = F S of the elastic law; returns sum_i Q_i.
   template <class T>
   Tensor<T> advance_memory(const Tensor<T>& P, const Tensor<T>& cof_F, const VolumeChange<T>& change) const {

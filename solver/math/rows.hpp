@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "math/lanes.hpp"
+#include "math/pack.hpp"
 
 /// Nodal values as the time loop stores them, and how they get into packs and back.
 namespace sandglass {
@@ -40,10 +40,25 @@ constexpr Place place_of_row(std::size_t row) {
   return static_cast<Place>(4 * row);
 }
 
-namespace detail {
-
+/// W numbers in the compiler's vectors: W / 4 rows side by side.
 template <class T, int W>
-using VectorOfWidth = typename VectorOf<T, W>::Vector;
+using RowVector = typename detail::VectorOf<T, W>::Vector;
+
+/// W numbers from `numbers` on.
+template <int W, class T>
+RowVector<T, W> load(const T* numbers) {
+  RowVector<T, W> vector;
+  std::memcpy(&vector, numbers, sizeof vector);
+  return vector;
+}
+
+/// Writes a vector to `numbers`.
+template <class T, class Vector>
+void store(const Vector& vector, T* numbers) {
+  std::memcpy(numbers, &vector, sizeof vector);
+}
+
+namespace detail {
 
 /// A vector of lanes of two vectors: lane l of the result is lane pick(l, W), where lanes of the second
 /// vector are numbered from W on.
@@ -88,11 +103,9 @@ constexpr int high_pairs(int lane, int W) {
 
 /// The rows at place[0], place[4], place[8], ... side by side.
 template <int Width, class T>
-VectorOfWidth<T, Width> load_rows(const T* rows, const Place* place) {
+RowVector<T, Width> load_rows(const T* rows, const Place* place) {
   if constexpr (Width == 4) {
-    VectorOfWidth<T, 4> row;
-    std::memcpy(&row, rows + *place, sizeof row);
-    return row;
+    return load<4>(rows + *place);
   } else {
     return permute<in_order, Width>(load_rows<Width / 2>(rows, place),
                                     load_rows<Width / 2>(rows, place + Width / 2));
@@ -101,12 +114,9 @@ VectorOfWidth<T, Width> load_rows(const T* rows, const Place* place) {
 
 /// Adds vectors of four to the rows at place[0], place[4], place[8], ...
 template <int Width, class T>
-void add_to_rows(T* rows, const Place* place, VectorOfWidth<T, Width> values) {
+void add_to_rows(T* rows, const Place* place, RowVector<T, Width> values) {
   if constexpr (Width == 4) {
-    VectorOfWidth<T, 4> row;
-    std::memcpy(&row, rows + *place, sizeof row);
-    row += values;
-    std::memcpy(rows + *place, &row, sizeof row);
+    store(load<4>(rows + *place) + values, rows + *place);
   } else {
     add_to_rows<Width / 2>(rows, place, permute<in_order, Width / 2>(values, values));
     add_to_rows<Width / 2>(rows, place + Width / 2, permute<second_half, Width / 2>(values, values));
@@ -154,7 +164,7 @@ void scatter_add(const std::array<Number, 3>& x, T* rows, const Place* place) {
   constexpr int W = Lanes<Number>::width;
   if constexpr (detail::transposes<Number>) {
     using namespace detail;
-    const VectorOfWidth<T, W> zero{};
+    const RowVector<T, W> zero{};
     const auto add = [&](int lane, auto xy, auto z, bool upper) {
       add_to_rows<W>(rows, place + lane,
                      upper ? permute<high_pairs, W>(xy, z) : permute<low_pairs, W>(xy, z));

@@ -59,4 +59,11 @@ constexpr Tensor<T> left_cauchy_green_minus_identity(const Tensor<T>& H) {
   return e;
 }
 
+/// F S F^T for symmetric S.
+template <class T>
+constexpr Tensor<T> to_space(const Tensor<T>& S, const Tensor<T>& H) {
+  const Tensor<T> FS = S + H * S;
+  return FS + FS * transpose(H);
+}
+
 }  // namespace sandglass

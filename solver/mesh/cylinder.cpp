@@ -43,7 +43,7 @@ OGrid unit_disc(int n, int rings, double core_size, double core_bulge) {
     const double s = static_cast<double>(ring) / rings;
     std::vector<int> outer;
     for (const int core_node : loop) {
-      const auto c = static_cast<std::size_t>(core_node);
+      const auto c = at(core_node);
       outer.push_back(static_cast<int>(grid.points.size()));
       grid.points.push_back({(1.0 - s) * grid.points[c][0] + s * directions[c][0],
                              (1.0 - s) * grid.points[c][1] + s * directions[c][1]});

@@ -4,14 +4,6 @@
 
 namespace sandglass {
 
-namespace {
-
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
-}  // namespace
-
 /// Calls visit(n) for the nodes that share an element with a node, including itself, some more than once.
 template <class Visit>
 void Distances::for_neighbours(int node, const Visit& visit) const {

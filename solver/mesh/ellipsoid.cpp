@@ -32,8 +32,8 @@ Mesh EllipsoidMesh::build() const {
     for (const auto& face : faces) {
       Hexahedron cell{};
       for (std::size_t c = 0; c < 4; ++c) {
-        cell[c] = below[static_cast<std::size_t>(face[c])];
-        cell[c + 4] = above[static_cast<std::size_t>(face[c])];
+        cell[c] = below[at(face[c])];
+        cell[c + 4] = above[at(face[c])];
       }
       mesh.cells.push_back(cell);
     }

@@ -5,17 +5,9 @@
 
 namespace sandglass {
 
-namespace {
-
-Triple<double> triple(const Vector& v) {
-  return {{v[0], v[1], v[2]}};
-}
-
-}  // namespace
-
 std::array<Vector, 4> corners_of(const NodalField& points, const Quadrilateral& face) {
   std::array<Vector, 4> corners;
-  for (std::size_t I = 0; I < 4; ++I) corners[I] = points[static_cast<std::size_t>(face[I])];
+  for (std::size_t I = 0; I < 4; ++I) corners[I] = points[at(face[I])];
   return corners;
 }
 
@@ -28,7 +20,7 @@ std::array<FacePoint, 4> gauss_points_of(const std::array<Vector, 4>& corners) {
     Triple<double> X{}, along_xi{}, along_eta{};
     for (std::size_t I = 0; I < 4; ++I) {
       const auto [s, t] = signs[I];
-      const Triple<double> X_I = triple(corners[I]);
+      const Triple<double> X_I{corners[I]};
       result[q].N[I] = (1.0 + s * xi) * (1.0 + t * eta) / 4.0;
       X += result[q].N[I] * X_I;
       along_xi += (s * (1.0 + t * eta) / 4.0) * X_I;
@@ -77,8 +69,8 @@ std::vector<NodalLoad> consistent_loads(const NodalField& points, const std::vec
       inertia += point.area * (double_dot(r, r) * identity<double>() - r * transpose(r));
     }
   }
-  const Triple<double> a = (1.0 / area) * triple(total);
-  const Triple<double> b = inverse(inertia) * triple(moment);
+  const Triple<double> a = (1.0 / area) * Triple<double>{total};
+  const Triple<double> b = inverse(inertia) * Triple<double>{moment};
   std::map<int, Vector> forces;
   for (const auto& face : faces) {
     for (const auto& point : gauss_points_of(corners_of(points, face))) {

@@ -16,8 +16,8 @@ namespace sandglass {
 std::array<double, 8> shape_functions(const Vector& xi) {
   std::array<double, 8> N{};
   for (int I = 0; I < 8; ++I) {
-    N[static_cast<std::size_t>(I)] = (1.0 + corner_signs(I, 0) * xi[0]) * (1.0 + corner_signs(I, 1) * xi[1]) *
-                                     (1.0 + corner_signs(I, 2) * xi[2]) / 8.0;
+    N[at(I)] = (1.0 + corner_signs(I, 0) * xi[0]) * (1.0 + corner_signs(I, 1) * xi[1]) *
+               (1.0 + corner_signs(I, 2) * xi[2]) / 8.0;
   }
   return N;
 }
@@ -33,7 +33,7 @@ Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
   Vector value{};
   for (int I = 0; I < 8; ++I) {
     for (int i = 0; i < 3; ++i) {
-      value[static_cast<std::size_t>(i)] += N[static_cast<std::size_t>(I)] * nodal(I, i);
+      value[at(i)] += N[at(I)] * nodal(I, i);
     }
   }
   return value;
@@ -45,17 +45,17 @@ std::optional<Vector> parent_point(NodalVectors<double> nodes, const Vector& X) 
   constexpr int most_steps = 25;
   constexpr double converged = 1e-13, far_away = 10.0;
   for (int I = 0; I < 8; ++I) {
-    for (int i = 0; i < 3; ++i) nodes(I, i) -= X[static_cast<std::size_t>(i)];
+    for (int i = 0; i < 3; ++i) nodes(I, i) -= X[at(i)];
   }
   Vector xi{};
   for (int step = 0; step < most_steps; ++step) {
-    const Vector at = trilinear(nodes, xi);
+    const Vector there = trilinear(nodes, xi);
     const Tensor<double> inverse_jacobian = inverse(parent_jacobian(nodes, xi));
     double moved = 0.0;
     for (int i = 0; i < 3; ++i) {
       double d = 0.0;
-      for (int j = 0; j < 3; ++j) d -= inverse_jacobian(i, j) * at[static_cast<std::size_t>(j)];
-      xi[static_cast<std::size_t>(i)] += d;
+      for (int j = 0; j < 3; ++j) d -= inverse_jacobian(i, j) * there[at(j)];
+      xi[at(i)] += d;
       moved = std::max(moved, std::abs(d));
     }
     if (!(parent_distance(xi) < far_away)) return std::nullopt;
@@ -74,8 +74,7 @@ class ElementGrid {
     for (std::size_t i = 0; i < 3; ++i) {
       counts_[i] = std::max(1, static_cast<int>(std::ceil((high[i] - low_[i]) / spacing_)));
     }
-    bins_.resize(static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1]) *
-                 static_cast<std::size_t>(counts_[2]));
+    bins_.resize(at(counts_[0]) * at(counts_[1]) * at(counts_[2]));
     for (std::size_t e = 0; e < mesh.cells.size(); ++e) enter(e);
   }
 
@@ -86,16 +85,7 @@ class ElementGrid {
 
  private:
   void enter(std::size_t e) {
-    Vector low, high;
-    low.fill(std::numeric_limits<double>::infinity());
-    high.fill(-std::numeric_limits<double>::infinity());
-    for (const int node : mesh_.cells[e]) {
-      const Vector& X = mesh_.points[static_cast<std::size_t>(node)];
-      for (std::size_t i = 0; i < 3; ++i) {
-        low[i] = std::min(low[i], X[i]);
-        high[i] = std::max(high[i], X[i]);
-      }
-    }
+    auto [low, high] = bounding_box(values_at(mesh_.cells[e], mesh_.points));
     for (std::size_t i = 0; i < 3; ++i) {  // points outside the mesh lie within half an element of it
       const double reach = 0.5 * (high[i] - low[i]);
       low[i] -= reach;
@@ -115,7 +105,7 @@ class ElementGrid {
   std::size_t number(const std::array<int, 3>& p) const {
     std::size_t n = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      n = n * static_cast<std::size_t>(counts_[i]) + static_cast<std::size_t>(p[i]);
+      n = n * at(counts_[i]) + at(p[i]);
     }
     return n;
   }

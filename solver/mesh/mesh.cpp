@@ -35,12 +35,11 @@ std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) 
       last = std::max(last, keys.back()[0]);
     }
   }
-  std::vector<std::vector<std::size_t>> by_first_node(static_cast<std::size_t>(last + 1));
-  for (std::size_t f = 0; f < keys.size(); ++f)
-    by_first_node[static_cast<std::size_t>(keys[f][0])].push_back(f);
+  std::vector<std::vector<std::size_t>> by_first_node(at(last + 1));
+  for (std::size_t f = 0; f < keys.size(); ++f) by_first_node[at(keys[f][0])].push_back(f);
   std::vector<Quadrilateral> boundary;
   for (std::size_t f = 0; f < keys.size(); ++f) {
-    const auto& near = by_first_node[static_cast<std::size_t>(keys[f][0])];
+    const auto& near = by_first_node[at(keys[f][0])];
     const auto same = [&](std::size_t other) { return keys[other] == keys[f]; };
     if (std::count_if(near.begin(), near.end(), same) == 1) boundary.push_back(faces[f]);
   }
@@ -50,7 +49,7 @@ std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells) 
 std::vector<bool> nodes_of(const std::vector<Quadrilateral>& faces, std::size_t nodes) {
   std::vector<bool> on_faces(nodes, false);
   for (const auto& face : faces) {
-    for (const int node : face) on_faces[static_cast<std::size_t>(node)] = true;
+    for (const int node : face) on_faces[at(node)] = true;
   }
   return on_faces;
 }

@@ -16,6 +16,11 @@ using Vector = std::array<double, 3>;
 /// One vector per node.
 using NodalField = std::vector<Vector>;
 
+/// The number of a node, an element or a component as an index.
+constexpr std::size_t at(int n) {
+  return static_cast<std::size_t>(n);
+}
+
 /// |v|.
 inline double length(const Vector& v) {
   return std::hypot(v[0], v[1], v[2]);
@@ -45,7 +50,8 @@ using NodeSets = std::map<std::string, std::vector<int>>;
 using ElementSets = std::map<std::string, std::vector<int>>;
 
 /// The names of sets, in order.
-inline std::vector<std::string> names_in(const std::map<std::string, std::vector<int>>& sets) {
+template <class Set>
+std::vector<std::string> names_in(const std::map<std::string, Set>& sets) {
   std::vector<std::string> names;
   for (const auto& [name, members] : sets) names.push_back(name);
   return names;
@@ -55,19 +61,29 @@ inline std::vector<std::string> names_in(const std::map<std::string, std::vector
 inline NodalVectors<double> gather(const NodalField& field, const Hexahedron& cell) {
   NodalVectors<double> rows;
   for (int I = 0; I < 8; ++I) {
-    const Vector& row = field[static_cast<std::size_t>(cell[static_cast<std::size_t>(I)])];
-    for (int i = 0; i < 3; ++i) rows(I, i) = row[static_cast<std::size_t>(i)];
+    const Vector& row = field[at(cell[at(I)])];
+    for (int i = 0; i < 3; ++i) rows(I, i) = row[at(i)];
   }
   return rows;
 }
 
-/// The centre of an element: the mean of its nodes.
-inline Vector centre_of(const Mesh& mesh, const Hexahedron& cell) {
-  Vector centre{};
-  for (const int node : cell) {
-    for (std::size_t i = 0; i < 3; ++i) centre[i] += mesh.points[static_cast<std::size_t>(node)][i] / 8.0;
+/// The vectors of a nodal field at some nodes.
+template <class Nodes>
+NodalField values_at(const Nodes& nodes, const NodalField& field) {
+  NodalField values;
+  values.reserve(nodes.size());
+  for (const int node : nodes) values.push_back(field[at(node)]);
+  return values;
+}
+
+/// The mean of a nodal field at some nodes; of the points at an element's nodes it is the element's centre.
+template <class Nodes>
+Vector mean_at(const Nodes& nodes, const NodalField& field) {
+  Vector mean{};
+  for (const int node : nodes) {
+    for (std::size_t i = 0; i < 3; ++i) mean[i] += field[at(node)][i] / static_cast<double>(nodes.size());
   }
-  return centre;
+  return mean;
 }
 
 /// The largest distance between the vectors of two nodal fields; NaN if one of them contains NaN.

@@ -2,14 +2,6 @@
 
 namespace sandglass {
 
-namespace {
-
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
-}  // namespace
-
 MeshPart part_of_mesh(const Mesh& mesh, const std::vector<bool>& marked) {
   const std::size_t nodes = mesh.points.size();
   std::vector<bool> inside(nodes, false), outside(nodes, false);

@@ -2,14 +2,6 @@
 
 namespace sandglass {
 
-namespace {
-
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
-}  // namespace
-
 NodeElements::NodeElements(const Mesh& mesh) : first_(mesh.points.size() + 1, 0) {
   for (const auto& cell : mesh.cells) {
     for (const int node : cell) ++first_[at(node) + 1];

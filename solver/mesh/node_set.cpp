@@ -38,7 +38,8 @@ std::vector<int> select_elements(const Mesh& mesh, const NodeSetRule& rule) {
   const double tolerance = 1e-9 * diagonal(mesh.points);
   std::vector<int> elements;
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
-    if (selects(rule, centre_of(mesh, mesh.cells[e]), tolerance)) elements.push_back(static_cast<int>(e));
+    if (selects(rule, mean_at(mesh.cells[e], mesh.points), tolerance))
+      elements.push_back(static_cast<int>(e));
   }
   return elements;
 }

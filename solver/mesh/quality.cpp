@@ -10,32 +10,6 @@
 
 namespace sandglass {
 
-namespace {
-
-Vector centre_of(const NodalVectors<double>& X) {
-  Vector centre{};
-  for (int I = 0; I < 8; ++I) {
-    for (int i = 0; i < 3; ++i) centre[static_cast<std::size_t>(i)] += X(I, i) / 8.0;
-  }
-  return centre;
-}
-
-}  // namespace
-
-double scaled_jacobian(const NodalVectors<double>& X) {
-  double smallest = 1.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const std::array<double, 3> at{corner_signs(corner, 0), corner_signs(corner, 1), corner_signs(corner, 2)};
-    Tensor<double> edges = parent_jacobian(X, at);  // columns: half edge vectors at the corner
-    for (int j = 0; j < 3; ++j) {
-      const double length = std::hypot(edges(0, j), edges(1, j), edges(2, j));
-      for (int i = 0; i < 3; ++i) edges(i, j) /= length;
-    }
-    smallest = std::min(smallest, determinant(edges));
-  }
-  return smallest;
-}
-
 double smallest_measure(const NodalVectors<double>& X) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto& xi : gauss_points()) smallest = std::min(smallest, determinant(parent_jacobian(X, xi)));
@@ -57,25 +31,6 @@ Shapes shapes_in(const Mesh& mesh) {
   return regular ? Shapes::parallelepipeds : Shapes::any;
 }
 
-QualityTable quality_table(const Mesh& mesh) {
-  QualityTable table;
-  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
-    const auto X = gather(mesh.points, mesh.cells[e]);
-    const double quality = scaled_jacobian(X);
-    table.smallest = std::min(table.smallest, quality);
-    table.largest = std::max(table.largest, quality);
-    const double tenth = std::clamp(std::ceil(10.0 * quality), 0.0, 10.0);
-    ++table.counts[static_cast<std::size_t>(tenth)];
-    table.worst.push_back({e, quality, centre_of(X)});
-  }
-  const auto end = table.worst.begin() + static_cast<long>(std::min<std::size_t>(10, table.worst.size()));
-  std::partial_sort(table.worst.begin(), end, table.worst.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.scaled_jacobian, a.number) < std::pair(b.scaled_jacobian, b.number);
-  });
-  table.worst.erase(end, table.worst.end());
-  return table;
-}
-
 void require_positive_jacobians(const Mesh& mesh) {
   std::string listed;
   int inverted = 0;
@@ -84,7 +39,7 @@ void require_positive_jacobians(const Mesh& mesh) {
     const double measure = smallest_measure(X);
     if (measure > 0.0) continue;
     if (++inverted > 10) continue;
-    const Vector centre = centre_of(X);
+    const Vector centre = mean_at(mesh.cells[e], mesh.points);
     listed += fmt::format("\n  element {}: centre ({:.6g}, {:.6g}, {:.6g}), det J = {:.6g}", e, centre[0],
                           centre[1], centre[2], measure);
   }

@@ -4,9 +4,6 @@
 
 namespace sandglass {
 
-/// The smallest scaled Jacobian of a hexahedron's corners: det of the three unit edge vectors; 1 for a box.
-double scaled_jacobian(const NodalVectors<double>& X);
-
 /// The smallest det(dX/dxi) at the eight Gauss points, m^3.
 double smallest_measure(const NodalVectors<double>& X);
 
@@ -15,22 +12,6 @@ enum class Shapes { any, parallelepipeds };
 
 /// Whether all elements are parallelepipeds, up to the roundoff of coordinates.
 Shapes shapes_in(const Mesh& mesh);
-
-/// The quality of the elements of a mesh: the distribution of their scaled Jacobians.
-struct QualityTable {
-  struct Element {
-    std::size_t number;      ///< in the mesh, from 0 on
-    double scaled_jacobian;  ///< of its worst corner
-    Vector centre;           ///< mean of its nodes, m
-  };
-  double smallest = 1.0;
-  double largest = 0.0;
-  std::array<int, 11> counts{};  ///< of elements at or below zero, and in each tenth of (0, 1]
-  std::vector<Element> worst;    ///< at most ten, the worst first
-};
-
-/// The quality of all elements of a mesh.
-QualityTable quality_table(const Mesh& mesh);
 
 /// Throws InputError when an element has det(dX/dxi) <= 0 at a Gauss point; the error lists the first ten
 /// with number, centre and determinant.

@@ -5,14 +5,11 @@
 #include <unordered_set>
 
 #include "mesh/hexahedron.hpp"
+#include "mesh/node_elements.hpp"
 
 namespace sandglass {
 
 namespace {
-
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
 
 /// The corners, in VTK order, that agree with a point of the 3 x 3 x 3 lattice of a split element (each
 /// coordinate -1, 0 or 1) in every coordinate that is not zero.
@@ -65,14 +62,10 @@ std::size_t RefinedMesh::Hash::operator()(const EdgeOrFace& corners) const {
 
 /// A new node in the middle of some corners of an element.
 int RefinedMesh::new_node(const Hexahedron& cell, const std::vector<std::size_t>& corners) {
-  Vector mean{};
   std::vector<int> parents;
   for (const std::size_t I : corners) parents.push_back(cell[I]);
   std::sort(parents.begin(), parents.end());
-  for (const int n : parents)
-    for (std::size_t i = 0; i < 3; ++i)
-      mean[i] += mesh_.points[at(n)][i] / static_cast<double>(parents.size());
-  mesh_.points.push_back(mean);
+  mesh_.points.push_back(mean_at(parents, mesh_.points));
   parents_.push_back(std::move(parents));
   return static_cast<int>(mesh_.points.size()) - 1;
 }
@@ -88,15 +81,13 @@ int RefinedMesh::node_at(const Hexahedron& cell, const std::vector<std::size_t>&
 
 /// Marks elements at the nodes of marked ones that have been split less often, until there are none.
 void RefinedMesh::balance(std::vector<bool>& marked) const {
-  std::vector<std::vector<int>> at_node(mesh_.points.size());
-  for (std::size_t e = 0; e < mesh_.cells.size(); ++e)
-    for (const int n : mesh_.cells[e]) at_node[at(n)].push_back(static_cast<int>(e));
+  const NodeElements elements(mesh_);
   std::vector<int> todo;
   for (std::size_t e = 0; e < marked.size(); ++e)
     if (marked[e]) todo.push_back(static_cast<int>(e));
   const auto visit = [&](int e, const std::vector<int>& with) {
     // elements that have all of these nodes
-    for (const int other : at_node[at(with[0])]) {
+    for (const int other : elements.around(with[0])) {
       if (marked[at(other)] || splits_[at(other)] >= splits_[at(e)]) continue;
       const auto& cell = mesh_.cells[at(other)];
       const bool has_all = std::all_of(with.begin(), with.end(), [&](int n) {

@@ -11,13 +11,8 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 const Tie* tie_of(const Ties& ties, int node) {
-  const auto found =
-      std::lower_bound(ties.begin(), ties.end(), node, [](const Tie& tie, int n) { return tie.node < n; });
+  const auto found = std::ranges::lower_bound(ties, node, {}, &Tie::node);
   return found != ties.end() && found->node == node ? &*found : nullptr;
 }
 

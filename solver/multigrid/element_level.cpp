@@ -6,7 +6,7 @@
 
 #include "assembly/chunk_sum.hpp"
 #include "assembly/face_gather.hpp"
-#include "element/one_point.hpp"
+#include "element/linear_one_point.hpp"
 #include "math/pack.hpp"
 
 namespace sandglass {
@@ -158,21 +158,10 @@ class Elements final : public ElementLevel {
                 sizeof(lanes));
   }
 
-  /// 2 mu V sym(H).
-  static Tensor<Number> weighted_stress(const Number& twice_mu_V, const Tensor<Number>& H) {
-    const Number half = Number(0.5f) * twice_mu_V;
-    Tensor<Number> T;
-    for (int i = 0; i < 3; ++i) {
-      T(i, i) = twice_mu_V * H(i, i);
-      for (int j = i + 1; j < 3; ++j) T(i, j) = T(j, i) = half * (H(i, j) + H(j, i));
-    }
-    return T;
-  }
-
   /// The forces of A on the displacements with these modes, and of a pressure.
   static Modes<Number> forces(const Block& block, const Modes<Number>& u, const Tensor<Number>& H,
                               const Number& weighted_pressure) {
-    Tensor<Number> T = weighted_stress(block.stress, H);
+    Tensor<Number> T = weighted_strain(block.stress, H);
     for (int i = 0; i < 3; ++i) T(i, i) = T(i, i) + weighted_pressure;
     return OnePoint::modal_forces(T, block.hourglass * OnePoint::hourglass_displacements(u, H, block.body),
                                   block.body.c, block.body);

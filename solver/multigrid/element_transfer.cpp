@@ -70,7 +70,7 @@ ElementTransfer::ElementTransfer(const Mesh& mesh, const Layout& layout, const E
 void ElementTransfer::sample(const Mesh& mesh, std::size_t element) {
   const Grid& grid = grid_.grid();
   const auto cell = static_cast<std::uint32_t>(elements_.cells()[element]);
-  const Vector middle = centre_of(mesh, mesh.cells[element]);
+  const Vector middle = mean_at(mesh.cells[element], mesh.points);
   const Grid::Location place = grid.locate(middle);
   boxes_[cell] = place.box;
   contents_[place.box].cells.push_back(cell);

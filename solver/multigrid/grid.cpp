@@ -6,14 +6,7 @@
 namespace sandglass {
 
 Vector extent(const Mesh& mesh, const Hexahedron& cell) {
-  Vector low = mesh.points[static_cast<std::size_t>(cell[0])], high = low;
-  for (const int n : cell) {
-    const Vector& X = mesh.points[static_cast<std::size_t>(n)];
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], X[i]);
-      high[i] = std::max(high[i], X[i]);
-    }
-  }
+  const auto [low, high] = bounding_box(values_at(cell, mesh.points));
   return {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
 }
 

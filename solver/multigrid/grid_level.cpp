@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "math/matrix.hpp"
-#include "math/row_vector.hpp"
 
 namespace sandglass {
 

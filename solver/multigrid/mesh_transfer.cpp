@@ -10,7 +10,7 @@ MeshTransfer::MeshTransfer(const CoarserMesh& coarser_mesh, const Layout& fine_l
   std::vector<std::vector<std::pair<std::uint32_t, float>>> from_coarse(fine_layout.rows()),
       from_fine(coarse_layout.rows());
   const auto row_in = [](const Layout& layout, int node) {
-    return static_cast<std::uint32_t>(layout.row_of_node[static_cast<std::size_t>(node)]);
+    return static_cast<std::uint32_t>(layout.row_of_node[at(node)]);
   };
   const auto add = [&](int fine_node, int coarse_node, float weight) {
     const std::uint32_t from = row_in(coarse_layout, coarse_node), to = row_in(fine_layout, fine_node);
@@ -30,7 +30,7 @@ MeshTransfer::MeshTransfer(const CoarserMesh& coarser_mesh, const Layout& fine_l
   from_coarse_ = weights(from_coarse);
   from_fine_ = weights(from_fine);
   for (std::size_t e = 0; e < coarser_mesh.element_of.size(); ++e) {
-    const auto of = static_cast<std::size_t>(coarser_mesh.element_of[e]);
+    const auto of = at(coarser_mesh.element_of[e]);
     cells_.emplace_back(fine.cells()[e], coarse.cells()[of]);
   }
 }

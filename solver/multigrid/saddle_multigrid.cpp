@@ -33,8 +33,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
   for (const CoarserMesh& next : coarser) {
     if (!materials.empty()) {
       std::vector<std::uint16_t> own(next.mesh.cells.size());
-      for (std::size_t e = 0; e < materials.size(); ++e)
-        own[static_cast<std::size_t>(next.element_of[e])] = materials[e];
+      for (std::size_t e = 0; e < materials.size(); ++e) own[at(next.element_of[e])] = materials[e];
       materials = std::move(own);
     }
     auto own = std::make_unique<Layout>(make_layout(next.mesh, layout.width, SpareRows::where_needed,
@@ -42,7 +41,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
     Rows<float> own_free(own->rows()), own_springs(springs.empty() ? 0 : own->rows());
     for (std::size_t row = 0; row < own->nodes; ++row) {
       const int node = own->node_of_row[row];
-      const auto finest = static_cast<std::size_t>(layout.row_of_node[static_cast<std::size_t>(node)]);
+      const auto finest = at(layout.row_of_node[at(node)]);
       // A node that is tied on the finest mesh is tied on all.
       if (!is_tied(next.ties, node)) own_free[row] = free[finest];
       if (!springs.empty()) own_springs[row] = springs[finest];

@@ -11,10 +11,6 @@ namespace sandglass {
 
 namespace {
 
-Triple<double> triple(const Vector& v) {
-  return {{v[0], v[1], v[2]}};
-}
-
 /// A direction with length one, found without overflow. Throws InputError for zero.
 Triple<double> unit(const Triple<double>& direction, std::string_view what) {
   const auto& [x, y, z] = direction.entries;
@@ -43,21 +39,20 @@ Triple<double> most_nearly_across(const Triple<double>& unit) {
 MaterialAxes<double> helical_axes(const HelicalFibres& helix, const Vector& place) {
   Triple<double> axis{};
   axis(helix.axis, 0) = 1.0;
-  const Triple<double> outward = across(triple(place) - triple(helix.center), axis);
+  const Triple<double> outward = across(Triple<double>{place} - Triple<double>{helix.center}, axis);
   const double r = std::sqrt(double_dot(outward, outward));
   const Triple<double> radial = unit(outward, "radius from the axis of the fibres");
   const double share = std::clamp((r - helix.radii[0]) / (helix.radii[1] - helix.radii[0]), 0.0, 1.0);
   const double angle = helix.angles[0] + share * (helix.angles[1] - helix.angles[0]);
   const Triple<double> fibre = std::cos(angle) * cross(axis, radial) + std::sin(angle) * axis;
-  return axes_along({fibre(0, 0), fibre(1, 0), fibre(2, 0)},
-                    Vector{radial(0, 0), radial(1, 0), radial(2, 0)});
+  return axes_along(fibre.entries, radial.entries);
 }
 
 }  // namespace
 
 MaterialAxes<double> axes_along(const Vector& fibre, const std::optional<Vector>& sheet) {
-  const Triple<double> f = unit(triple(fibre), "fibres");
-  const Triple<double> hint = sheet ? unit(triple(*sheet), "sheets") : most_nearly_across(f);
+  const Triple<double> f = unit({fibre}, "fibres");
+  const Triple<double> hint = sheet ? unit({*sheet}, "sheets") : most_nearly_across(f);
   const Triple<double> rest = across(hint, f);
   if (!(double_dot(rest, rest) > 1e-12))
     throw InputError("the direction of the sheets is that of the fibres");
@@ -77,7 +72,7 @@ MaterialAxes<double> axes_by(const FibreRule& rule, const Mesh& mesh, std::size_
     return axes_along(uniform->fibre, uniform->sheet);
   }
   if (const auto* helix = std::get_if<HelicalFibres>(&rule)) {
-    return helical_axes(*helix, centre_of(mesh, mesh.cells[element]));
+    return helical_axes(*helix, mean_at(mesh.cells[element], mesh.points));
   }
   if (const auto* listed = std::get_if<ListedFibres>(&rule)) {
     if (listed->sheets.empty()) return axes_along(listed->fibres[element]);

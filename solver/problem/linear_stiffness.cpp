@@ -10,10 +10,13 @@ namespace {
 template <class Kernel, class Law>
 ElementStiffness stiffness_of(const typename Kernel::template Element<double>& element, const Law& law) {
   ElementStiffness K;
+  typename Kernel::template History<double> none;
   for (std::size_t column = 0; column < 24; ++column) {
     NodalVectors<double> unit{};
     unit.entries[column] = 1.0;
-    const NodalVectors<double> force = Kernel::force(unit, element, law);
+    const ElementMotion<double> motion{to_modes(unit), {}, {}, 0.0, {}};
+    const NodalVectors<double> force =
+        from_modes(Kernel::force(Kernel::deformation(motion, element), element, none, law));
     for (std::size_t row = 0; row < 24; ++row) K.entries[24 * row + column] = force.entries[row];
   }
   return K;
@@ -31,7 +34,7 @@ void for_each_stiffness(const Model& model,
       const Materials& materials = model.scene().materials;
       for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
         const Hexahedron& cell = mesh.cells[e];
-        using Kernel = NodalForm<FormulationOf<Method, CalledLaw>>;
+        using Kernel = FormulationOf<Method, CalledLaw>;
         const CalledLaw called = elastic_law(kernel_law(materials.list[materials.of(e)]));
         const auto law = called.with_axes(materials.axes.empty() ? nullptr : &materials.axes[e]);
         const auto element = Kernel::precompute(gather(mesh.points, cell), law, settings);

@@ -26,20 +26,19 @@ std::vector<Model::LoadRates> load_rates_of(const Scene& scene, const std::vecto
     double edges = 0.0;
     for (std::size_t I = 0; I < 2; ++I) {
       const auto edge = [&](std::size_t a, std::size_t b) {
-        return distance(scene.mesh.points[static_cast<std::size_t>(face[a])],
-                        scene.mesh.points[static_cast<std::size_t>(face[b])]);
+        return distance(scene.mesh.points[at(face[a])], scene.mesh.points[at(face[b])]);
       };
       edges += std::max(edge(I, I + 1), edge(I + 2, (I + 3) % 4));
     }
     for (const int node : face) {
-      const auto n = static_cast<std::size_t>(node);
+      const auto n = at(node);
       at_nodes[n].square += 0.5 * edges * most / masses[n];
     }
   }
   for (const auto& support : scene.supports) {
     for (const auto& point : gauss_points_of(corners_of(scene.mesh.points, support.face))) {
       for (std::size_t I = 0; I < 4; ++I) {
-        const auto n = static_cast<std::size_t>(support.face[I]);
+        const auto n = at(support.face[I]);
         at_nodes[n].square += support.stiffness * point.N[I] * point.area / masses[n];
         at_nodes[n].damping += support.damping * point.N[I] * point.area / masses[n];
       }
@@ -48,7 +47,7 @@ std::vector<Model::LoadRates> load_rates_of(const Scene& scene, const std::vecto
   std::vector<Model::LoadRates> rates(scene.mesh.cells.size());
   for (std::size_t e = 0; e < rates.size(); ++e) {
     for (const int node : scene.mesh.cells[e]) {
-      const auto& [square, damping] = at_nodes[static_cast<std::size_t>(node)];
+      const auto& [square, damping] = at_nodes[at(node)];
       rates[e].square = std::max(rates[e].square, square);
       rates[e].damping = std::max(rates[e].damping, damping);
     }

@@ -12,7 +12,6 @@
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/quality.hpp"
-#include "problem/initial_motion.hpp"
 #include "problem/masses.hpp"
 #include "problem/scene_materials.hpp"
 #include "problem/scene_refinement.hpp"
@@ -21,17 +20,6 @@
 namespace sandglass {
 
 namespace {
-
-/// The mean position of some nodes, m.
-Vector mean_position(const NodalField& points, const std::vector<int>& nodes) {
-  Vector mean{};
-  for (const int node : nodes) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      mean[i] += points[static_cast<std::size_t>(node)][i] / static_cast<double>(nodes.size());
-    }
-  }
-  return mean;
-}
 
 /// The paths of the three components of a node at X that turns about a center: with its arm r about the axis
 /// a, (R - 1)(X - c) = -(1 - cos) r + sin a x r.
@@ -90,30 +78,32 @@ class ImposedPaths {
   std::map<std::pair<int, int>, Origin> imposed_;
 };
 
-/// The constraints of a case; their angles are added to those that are known.
-std::vector<Constraint> make_constraints(const Case& description, const NodalField& points,
-                                         const NodeSets& sets, std::vector<double>& angles) {
-  ImposedPaths imposed(description, angles);
-  for (const auto& displacement : description.displacements) {
-    for (const int node : node_set(description, sets, "displacement.set", displacement.set)) {
+/// Sets the constraints; their angles are added to those that are known.
+void make_constraints(Scene& scene) {
+  const NodalField& points = scene.mesh.points;
+  std::vector<double>& angles = scene.angles;
+  ImposedPaths imposed(scene.description, angles);
+  for (const auto& displacement : scene.description.displacements) {
+    for (const int node : node_set(scene, "displacement.set", displacement.set)) {
       for (std::size_t i = 0; i < 3; ++i) {
         if (!displacement.components[i]) continue;
         imposed.add(node, i, {{displacement.value[i]}}, displacement.set);
       }
     }
   }
-  for (const auto& turned : description.rotations) {
-    const auto& nodes = node_set(description, sets, "rotation.set", turned.set);
-    const Vector center = turned.center.value_or(mean_position(points, nodes));
+  for (const auto& turned : scene.description.rotations) {
+    const auto& nodes = node_set(scene, "rotation.set", turned.set);
+    const Vector center = turned.center.value_or(mean_at(nodes, points));
     const auto known = std::find(angles.begin(), angles.end(), turned.angle);
     const auto angle = static_cast<std::size_t>(known - angles.begin());
     if (known == angles.end()) angles.push_back(turned.angle);
     for (const int node : nodes) {
-      const auto paths = turning_paths(turned, points[static_cast<std::size_t>(node)], center, angle);
+      const auto paths = turning_paths(turned, points[at(node)], center, angle);
       for (std::size_t i = 0; i < 3; ++i) imposed.add(node, i, paths[i], turned.set);
     }
   }
-  return imposed.constraints();
+  scene.constraints = imposed.constraints();
+  std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
 }
 
 /// The largest length (m) of the imposed displacements, and of a function of each node that turns: of its
@@ -143,7 +133,7 @@ double largest_length(const Scene& scene, const Turning& turning) {
 
 /// The boundary faces within the set that a load names. Throws InputError if there are none.
 std::vector<Quadrilateral> loaded_faces(const Scene& scene, const std::string& key, const std::string& name) {
-  const auto& nodes = node_set(scene.description, scene.sets, key, name);
+  const auto& nodes = node_set(scene, key, name);
   auto faces = faces_within(scene.boundary, nodes);
   if (faces.empty()) {
     throw InputError(fmt::format(
@@ -172,7 +162,7 @@ void make_loads(Scene& scene) {
   };
   for (const auto& [name, total, moment, on_nodes, curve] : description.forces) {
     if (on_nodes) {
-      const auto& nodes = node_set(description, scene.sets, "force.set", name);
+      const auto& nodes = node_set(scene, "force.set", name);
       for (const int node : nodes)
         add(number_of(curve, scene.curves), node, total, 1.0 / static_cast<double>(nodes.size()));
       continue;
@@ -201,53 +191,87 @@ void make_loads(Scene& scene) {
   }
 }
 
+/// Adds to `sums` what an initial velocity gives to its nodes at X (m): its value, as a wave where there is
+/// one, and spin x (X - centre of mass), m/s.
+void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::vector<int>& nodes,
+                const std::vector<double>& masses, NodalField& sums) {
+  const NodalField& points = scene.mesh.points;
+  Vector centre{};
+  double mass = 0.0;
+  for (const int node : nodes) {
+    mass += masses[at(node)];
+    for (std::size_t i = 0; i < 3; ++i) centre[i] += masses[at(node)] * points[at(node)][i];
+  }
+  for (double& x : centre) x /= mass;
+  const auto [low, high] = bounding_box(values_at(nodes, points));
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (velocity.half_waves[i] == 0 || low[i] < high[i]) continue;
+    throw InputError(
+        fmt::format("{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
+                    "one, 0 stands for no wave",
+                    scene.description.file.string(), velocity.half_waves[i], "xyz"[i],
+                    velocity.set.value_or("of all nodes"), "xyz"[i]));
+  }
+  for (const int node : nodes) {
+    const Vector& X = points[at(node)];
+    double wave = 1.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int n = velocity.half_waves[i];
+      if (n != 0) wave *= std::cos(std::numbers::pi * n * (X[i] - low[i]) / (high[i] - low[i]));
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      sums[at(node)][i] += wave * velocity.value[i] + velocity.spin[j] * (X[k] - centre[k]) -
+                           velocity.spin[k] * (X[j] - centre[j]);
+    }
+  }
+}
+
 /// The sum of all initial velocities at each node; empty where a case has none.
-NodalField make_initial_velocities(const Case& description, const Mesh& mesh, const NodeSets& sets,
-                                   const Materials& materials) {
-  if (description.velocities.empty()) return {};
-  const auto masses = lumped_masses(mesh, element_masses(mesh, materials));
-  std::vector<int> body(mesh.points.size());
+NodalField make_initial_velocities(const Scene& scene) {
+  if (scene.description.velocities.empty()) return {};
+  const auto masses = lumped_masses(scene.mesh, element_masses(scene.mesh, scene.materials));
+  std::vector<int> body(masses.size());
   std::iota(body.begin(), body.end(), 0);
-  NodalField sums(mesh.points.size());
-  for (const auto& velocity : description.velocities) {
-    const auto& nodes = velocity.set ? node_set(description, sets, "velocity.set", *velocity.set) : body;
-    const InitialMotion motion(velocity, mesh.points, masses, nodes);
-    if (const auto axis = motion.axis_without_extent()) {
-      throw InputError(fmt::format(
-          "{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
-          "one, 0 stands for no wave",
-          description.file.string(), velocity.half_waves[*axis], "xyz"[*axis],
-          velocity.set.value_or("of all nodes"), "xyz"[*axis]));
-    }
-    for (const int node : nodes) {
-      const auto n = static_cast<std::size_t>(node);
-      const Vector v = motion.at(mesh.points[n]);
-      for (std::size_t i = 0; i < 3; ++i) sums[n][i] += v[i];
-    }
+  NodalField sums(masses.size());
+  for (const auto& velocity : scene.description.velocities) {
+    const auto& nodes = velocity.set ? node_set(scene, "velocity.set", *velocity.set) : body;
+    add_motion(scene, velocity, nodes, masses, sums);
   }
   return sums;
 }
 
-}  // namespace
-
-const std::vector<int>& node_set(const Case& description, const NodeSets& sets, const std::string& key,
-                                 const std::string& name) {
+/// The set of that name; `member` is "a node" or "an element", `origins` is where its sets come from.
+const std::vector<int>& named_set(const Scene& scene, const std::map<std::string, std::vector<int>>& sets,
+                                  const std::string& key, const std::string& name, const std::string& member,
+                                  const std::string& origins) {
+  const std::string place = fmt::format("{}: {} = '{}'", scene.description.file.string(), key, name);
   const auto found = sets.find(name);
-  if (found == sets.end() && sets.empty()) {
-    throw InputError(fmt::format(
-        "{}: {} = '{}' is not a node set of this case, which has none: [sets] gives rules for them, a "
-        "mesh from a file brings its physical groups (Gmsh), NSETs (Abaqus) or point arrays (VTK)",
-        description.file.string(), key, name));
-  }
   if (found == sets.end()) {
-    throw InputError(fmt::format("{}: {} = '{}' is not a node set of this case; {}",
-                                 description.file.string(), key, name, suggestion(name, names_in(sets))));
+    const auto known = names_in(sets);
+    throw InputError(
+        fmt::format("{} is not {} set of this case{}", place, member,
+                    known.empty() ? ", which has none: " + origins : "; " + suggestion(name, known)));
   }
   if (found->second.empty()) {
-    throw InputError(fmt::format("{}: {} = '{}' has no node in the mesh; a set needs at least one",
-                                 description.file.string(), key, name));
+    throw InputError(fmt::format("{} has no {} in the mesh; a set needs at least one", place,
+                                 member.substr(member.find(' ') + 1)));
   }
   return found->second;
+}
+
+}  // namespace
+
+const std::vector<int>& node_set(const Scene& scene, const std::string& key, const std::string& name) {
+  return named_set(scene, scene.sets, key, name, "a node",
+                   "[sets] gives rules for them, a mesh from a file brings its physical groups (Gmsh), NSETs "
+                   "(Abaqus) or point arrays (VTK)");
+}
+
+const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name) {
+  return named_set(scene, scene.element_sets, key, name, "an element",
+                   "[element_sets] gives rules for them, a mesh from a file brings its physical volumes "
+                   "(Gmsh), ELSETs (Abaqus) or cell arrays (VTK)");
 }
 
 Mesh generate_mesh(const AnyGenerator& generator) {
@@ -257,21 +281,10 @@ Mesh generate_mesh(const AnyGenerator& generator) {
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets element_sets_of_file) {
   Scene scene{.description = std::move(description),
               .mesh = std::move(mesh),
-              .ties = {},
-              .coarser = {},
-              .boundary = {},
               .sets = std::move(sets_of_file),
               .element_sets = std::move(element_sets_of_file),
-              .materials = {},
-              .constraints = {},
               .angles = {0.0},
-              .curves = {LoadCurve{}},
-              .loads = {},
-              .pressures = {},
-              .supports = {},
-              .initial_velocities = {},
-              .case_hash = {},
-              .mesh_hash = {}};
+              .curves = {LoadCurve{}}};
   const std::string file = scene.description.file.string();
   try {
     require_positive_jacobians(scene.mesh);
@@ -294,12 +307,10 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
   }
   scene.materials = make_materials(scene);
   refine(scene);
-  scene.constraints = make_constraints(scene.description, scene.mesh.points, scene.sets, scene.angles);
-  std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
+  make_constraints(scene);
   tie(scene);
   make_loads(scene);
-  scene.initial_velocities =
-      make_initial_velocities(scene.description, scene.mesh, scene.sets, scene.materials);
+  scene.initial_velocities = make_initial_velocities(scene);
   scene.case_hash = case_hash(scene.description);
   scene.mesh_hash = mesh_hash(scene.mesh, scene.sets, scene.materials.of_element);
   return scene;

@@ -36,21 +36,21 @@ struct FaceSupport {
 struct Scene {
   Case description;
   Mesh mesh;
-  Ties ties;                            ///< of nodes, to such as are not tied
-  std::vector<CoarserMesh> coarser;     ///< the meshes before each refinement, the last first
-  std::vector<Quadrilateral> boundary;  ///< faces on the boundary of the body
-  NodeSets sets;
-  ElementSets element_sets;
-  Materials materials;
-  std::vector<Constraint> constraints;  ///< sorted by node, then component
-  std::vector<double> angles;           ///< rad, of paths; the first is zero, for those that do not turn
-  std::vector<LoadCurve> curves;        ///< of loads; the first is that of the case
-  std::vector<NodalLoad> loads;         ///< dead forces at the factor one, sorted by curve and node
-  std::vector<FacePressure> pressures;
-  std::vector<FaceSupport> supports;
-  NodalField initial_velocities;  ///< m/s; empty: at rest. Imposed components do not obey them
-  std::string case_hash;
-  std::string mesh_hash;
+  Ties ties = {};                            ///< of nodes, to such as are not tied
+  std::vector<CoarserMesh> coarser = {};     ///< the meshes before each refinement, the last first
+  std::vector<Quadrilateral> boundary = {};  ///< faces on the boundary of the body
+  NodeSets sets = {};
+  ElementSets element_sets = {};
+  Materials materials = {};
+  std::vector<Constraint> constraints = {};  ///< sorted by node, then component
+  std::vector<double> angles = {};           ///< rad, of paths; the first is zero, for those that do not turn
+  std::vector<LoadCurve> curves = {};        ///< of loads; the first is that of the case
+  std::vector<NodalLoad> loads = {};         ///< dead forces at the factor one, sorted by curve and node
+  std::vector<FacePressure> pressures = {};
+  std::vector<FaceSupport> supports = {};
+  NodalField initial_velocities = {};  ///< m/s; empty: at rest. Imposed components do not obey them
+  std::string case_hash = {};
+  std::string mesh_hash = {};
 };
 
 /// Sets by their rules, materials of the elements, constraints from the imposed displacements and rotations,
@@ -63,10 +63,10 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {},
 /// The mesh of a case whose mesh comes from a generator.
 Mesh generate_mesh(const AnyGenerator& generator);
 
-/// The nodes of a set that `key` of a case names. Throws InputError that names the file and the key if there
-/// is no such set, or if it is empty.
-const std::vector<int>& node_set(const Case& description, const NodeSets& sets, const std::string& key,
-                                 const std::string& name);
+/// The nodes, or elements, of a set that `key` of a case names. Throws InputError that names the file and the
+/// key if there is no such set, or if it is empty.
+const std::vector<int>& node_set(const Scene& scene, const std::string& key, const std::string& name);
+const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name);
 
 /// Largest imposed displacement, m: of a set that turns, the largest on its way, where a displacement besides
 /// the rotation counts in full; zero when the case is driven by forces alone.

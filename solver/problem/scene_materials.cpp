@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/names.hpp"
 
 namespace sandglass {
 
@@ -29,7 +28,7 @@ Materials assigned_materials(const Scene& scene) {
       continue;
     }
     for (const int e : element_set(scene, "materials.elements", name)) {
-      std::uint16_t& material = of_element[static_cast<std::size_t>(e)];
+      std::uint16_t& material = of_element[at(e)];
       if (material != none) {
         throw InputError(fmt::format("{}: element {} is in '{}' and in '{}'; an element has one material",
                                      scene.description.file.string(), e, regions[material].elements, name));
@@ -50,25 +49,6 @@ Materials assigned_materials(const Scene& scene) {
 }
 
 }  // namespace
-
-const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name) {
-  const std::string file = scene.description.file.string();
-  const auto found = scene.element_sets.find(name);
-  if (found == scene.element_sets.end()) {
-    const auto known = names_in(scene.element_sets);
-    throw InputError(fmt::format(
-        "{}: {} = '{}' is not an element set of this case{}", file, key, name,
-        known.empty()
-            ? ", which has none: [element_sets] gives rules for them, a mesh from a file brings its "
-              "physical volumes (Gmsh), ELSETs (Abaqus) or cell arrays (VTK)"
-            : "; " + suggestion(name, known)));
-  }
-  if (found->second.empty()) {
-    throw InputError(
-        fmt::format("{}: {} = '{}' has no element in the mesh; a set needs at least one", file, key, name));
-  }
-  return found->second;
-}
 
 Materials make_materials(const Scene& scene) {
   Materials materials = assigned_materials(scene);

@@ -9,8 +9,4 @@ namespace sandglass {
 /// not there or empty, and for fibres without a direction or for another number of elements.
 Materials make_materials(const Scene& scene);
 
-/// The elements of a set that `key` of a case names. Throws InputError if there is no such set or no element
-/// in it.
-const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name);
-
 }  // namespace sandglass

@@ -5,50 +5,33 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "mesh/distances.hpp"
 #include "mesh/refinement.hpp"
-#include "problem/scene_materials.hpp"
 
 namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
-/// The nodes of a set at its edge: those of a boundary face that is not within the set. Throws InputError if
-/// there are none.
-std::vector<bool> edge_of(const Scene& scene, const RefinedMesh& refined, const std::string& name) {
-  const auto set = refined.nodes_of(node_set(scene.description, scene.sets, "refine.around", name));
+/// Marks `layers` layers of elements at the edge of a set: its nodes in a boundary face that is not within
+/// it. Throws InputError if there are none.
+void mark_edge(const Scene& scene, const RefinedMesh& refined, const std::string& name, int layers,
+               std::vector<bool>& marked) {
+  const auto set = refined.nodes_of(node_set(scene, "refine.around", name));
   const auto in_set = [&](int node) { return std::binary_search(set.begin(), set.end(), node); };
-  std::vector<bool> edge(refined.mesh().points.size(), false);
+  std::vector<int> margin(refined.mesh().points.size(), 0);
   for (const auto& face : refined.boundary()) {
     if (std::all_of(face.begin(), face.end(), in_set)) continue;
     for (const int node : face) {
-      if (in_set(node)) edge[at(node)] = true;
+      if (in_set(node)) margin[at(node)] = layers;
     }
   }
-  if (std::find(edge.begin(), edge.end(), true) == edge.end()) {
+  if (std::find(margin.begin(), margin.end(), layers) == margin.end()) {
     throw InputError(fmt::format(
         "{}: refine.around = '{}' has no edge: its nodes must be on the boundary, and some at faces that "
         "are not within it; elements = NAME refines an element set",
         scene.description.file.string(), name));
   }
-  return edge;
-}
-
-/// Marks the elements that have a marked node, and those at their nodes, and so on, `layers` times in all.
-void mark_around(const Mesh& mesh, std::vector<bool> nodes, int layers, std::vector<bool>& marked) {
-  for (int layer = 0; layer < layers; ++layer) {
-    std::vector<bool> reached = nodes;
-    for (std::size_t e = 0; e < marked.size(); ++e) {
-      const auto& cell = mesh.cells[e];
-      if (!std::any_of(cell.begin(), cell.end(), [&](int node) { return nodes[at(node)]; })) continue;
-      marked[e] = true;
-      for (const int node : cell) reached[at(node)] = true;
-    }
-    nodes = std::move(reached);
-  }
+  Distances(refined.mesh()).mark(std::move(margin), marked);
 }
 
 /// The elements that a rule wants split in the present mesh, after `splits` splits.
@@ -65,9 +48,7 @@ void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined
     }
   }
   if (splits >= rule.depth) return;
-  if (!rule.around.empty()) {
-    mark_around(refined.mesh(), edge_of(scene, refined, rule.around), rule.layers, marked);
-  }
+  if (!rule.around.empty()) mark_edge(scene, refined, rule.around, rule.layers, marked);
   if (!rule.elements.empty()) {
     const auto& set = element_set(scene, "refine.elements", rule.elements);
     for (const int e : refined.elements_of(set)) marked[at(e)] = true;
@@ -125,12 +106,7 @@ Scene refined(const Scene& scene, std::vector<int> elements) {
 }
 
 NodalField prolonged(const CoarserMesh& coarser, NodalField u) {
-  for (const auto& corners : coarser.corners) {
-    Vector mean{};
-    for (const int n : corners)
-      for (std::size_t i = 0; i < 3; ++i) mean[i] += u[at(n)][i] / static_cast<double>(corners.size());
-    u.push_back(mean);
-  }
+  for (const auto& corners : coarser.corners) u.push_back(mean_at(corners, u));
   return u;
 }
 

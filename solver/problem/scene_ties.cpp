@@ -8,7 +8,6 @@
 
 #include "base/error.hpp"
 #include "mesh/interpolation.hpp"
-#include "problem/scene_materials.hpp"
 
 namespace sandglass {
 
@@ -18,7 +17,7 @@ namespace {
 constexpr double tolerance = 1e-6;
 
 [[noreturn]] void refuse(const Scene& scene, const NodeTie& rule, int node, const std::string& what) {
-  const Vector& X = scene.mesh.points[static_cast<std::size_t>(node)];
+  const Vector& X = scene.mesh.points[at(node)];
   throw InputError(fmt::format("{}: tie.set = '{}': the node {} at ({}, {}, {}) m {}",
                                scene.description.file.string(), rule.set, node, X[0], X[1], X[2], what));
 }
@@ -38,20 +37,18 @@ void add_ties(const Scene& scene, const NodeTie& rule, std::map<int, Tie>& ties)
   Mesh mesh{scene.mesh.points, {}};
   std::vector<bool> is_corner(mesh.points.size(), false);
   for (const int e : element_set(scene, "tie.elements", rule.elements)) {
-    mesh.cells.push_back(scene.mesh.cells[static_cast<std::size_t>(e)]);
-    for (const int node : mesh.cells.back()) is_corner[static_cast<std::size_t>(node)] = true;
+    mesh.cells.push_back(scene.mesh.cells[at(e)]);
+    for (const int node : mesh.cells.back()) is_corner[at(node)] = true;
   }
   std::vector<int> nodes;
   NodalField points;
-  for (const int node : node_set(scene.description, scene.sets, "tie.set", rule.set)) {
-    if (is_corner[static_cast<std::size_t>(node)]) continue;
+  for (const int node : node_set(scene, "tie.set", rule.set)) {
+    if (is_corner[at(node)]) continue;
     nodes.push_back(node);
-    points.push_back(mesh.points[static_cast<std::size_t>(node)]);
+    points.push_back(mesh.points[at(node)]);
   }
   const auto is_driven = [&](int node) {
-    const auto first = std::lower_bound(scene.constraints.begin(), scene.constraints.end(), node,
-                                        [](const Constraint& c, int n) { return c.node < n; });
-    return first != scene.constraints.end() && first->node == node;
+    return std::ranges::binary_search(scene.constraints, node, {}, &Constraint::node);
   };
   const auto places = element_points(mesh, points);
   for (std::size_t n = 0; n < nodes.size(); ++n) {

@@ -8,7 +8,6 @@
 #include "base/parallel.hpp"
 #include "io/case_file.hpp"
 #include "sandglass/driven_problem.hpp"
-#include "sandglass/mesh_arrays.hpp"
 #include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/stable_step.hpp"

@@ -19,11 +19,8 @@ std::map<std::string, std::vector<Driven>> driven_sets(const Scene& scene) {
   const auto& constraints = scene.constraints;
   for (const auto& [name, nodes] : scene.sets) {
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      const auto first = std::lower_bound(constraints.begin(), constraints.end(), nodes[n],
-                                          [](const Constraint& c, int node) { return c.node < node; });
-      for (auto c = first; c != constraints.end() && c->node == nodes[n]; ++c) {
-        driven[name].push_back({static_cast<std::size_t>(std::distance(constraints.begin(), c)), n,
-                                static_cast<std::size_t>(c->component)});
+      for (const Constraint& c : std::ranges::equal_range(constraints, nodes[n], {}, &Constraint::node)) {
+        driven[name].push_back({static_cast<std::size_t>(&c - constraints.data()), n, at(c.component)});
       }
     }
   }
@@ -34,9 +31,7 @@ template <class Sets>
 const typename Sets::mapped_type& find(const Sets& sets, const std::string& name, const char* rule) {
   const auto found = sets.find(name);
   if (found != sets.end()) return found->second;
-  std::vector<std::string> known;
-  for (const auto& [set, entry] : sets) known.push_back(set);
-  throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, known)));
+  throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, names_in(sets))));
 }
 
 MethodChoice choice_of(const Case& description, const SimulationSettings& settings, Precision precision) {
@@ -66,6 +61,36 @@ const std::vector<Driven>& DrivenProblem::driven(const std::string& set) const {
 
 const std::vector<int>& DrivenProblem::nodes(const std::string& set) const {
   return find(scene_.sets, set, "is not known");
+}
+
+MeshWithSets checked(MeshArrays arrays) {
+  std::vector<bool> met(arrays.points.size(), false);
+  const auto meet = [&](const std::string& name, int node) {
+    if (node < 0 || at(node) >= met.size()) {
+      throw InputError(fmt::format("mesh: {} names node {}; it must be in [0, {})", name, node, met.size()));
+    }
+    met[at(node)] = true;
+  };
+  for (auto& [name, nodes] : arrays.sets) {
+    for (const int node : nodes) meet(fmt::format("set '{}'", name), node);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  }
+  std::fill(met.begin(), met.end(), false);
+  for (std::size_t n = 0; n < arrays.points.size(); ++n) {
+    for (const double x : arrays.points[n]) {
+      if (!std::isfinite(x)) throw InputError(fmt::format("mesh: node {} is at {}; it must be finite", n, x));
+    }
+  }
+  for (std::size_t e = 0; e < arrays.cells.size(); ++e) {
+    for (const int node : arrays.cells[e]) meet(fmt::format("cell {}", e), node);
+  }
+  const auto alone = std::find(met.begin(), met.end(), false);
+  if (met.empty() || alone != met.end()) {
+    throw InputError(fmt::format("mesh: node {} of {} belongs to no cell; each must, and there must be some",
+                                 std::distance(met.begin(), alone), met.size()));
+  }
+  return {{std::move(arrays.points), std::move(arrays.cells)}, std::move(arrays.sets)};
 }
 
 void require_in_range(const char* name, double value, const Range& range) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/parameter.hpp"
-#include "problem/model.hpp"
+#include "io/mesh_file.hpp"
 #include "sandglass/simulation.hpp"
 
 /// What simulations and batches share.
@@ -17,6 +17,10 @@ inline constexpr Precision precision_of =
 
 /// Throws InputError, which names what `name` is, if the value is out of range.
 void require_in_range(const char* name, double value, const Range& range);
+
+/// Arrays of a program as a mesh with sets, each sorted. Throws InputError when a cell or set names a node
+/// that the mesh has not, when a node belongs to no cell or stands nowhere, and when there are none.
+MeshWithSets checked(MeshArrays arrays);
 
 /// The number of equal steps of at most `step` (s) in a time (s); of n times `step` it is n.
 double steps_in(double seconds, double step);

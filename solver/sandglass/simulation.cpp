@@ -6,7 +6,6 @@
 
 #include "io/case_file.hpp"
 #include "sandglass/driven_problem.hpp"
-#include "sandglass/mesh_arrays.hpp"
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
@@ -23,6 +22,7 @@ class Simulation<Real>::Parts {
         from_(scene().constraints.size(), 0.0),
         to_(from_),
         imposed_(from_) {
+    leapfrog_.subcycle(model());
     choose_step();
     leapfrog_.body().evaluate_forces();
     leapfrog_.set_initial_velocities(scene().initial_velocities);
@@ -101,7 +101,7 @@ class Simulation<Real>::Parts {
     for (std::size_t k = 0; k < to_.size(); ++k) {
       Constraint& constraint = present.constraints[k];
       constraint.path = {{to_[k]}};
-      displacements[constraint.node][static_cast<std::size_t>(constraint.component)] = to_[k];
+      displacements[constraint.node][at(constraint.component)] = to_[k];
     }
     scale_load(present.description, factor_to_);
     present.description.rotations.clear();

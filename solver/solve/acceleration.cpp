@@ -6,16 +6,6 @@
 
 namespace sandglass {
 
-void Acceleration::clear() {
-  pairs_.clear();
-  has_step_ = false;
-}
-
-void Acceleration::moved(const MixedVector& step) {
-  step_ = step;
-  has_step_ = true;
-}
-
 /// Adds the last step and the change of the residual along it.
 void Acceleration::remember(const MixedVector& residual) {
   if (pairs_.size() == most_pairs) {

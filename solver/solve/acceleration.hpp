@@ -16,14 +16,20 @@ class Acceleration {
   explicit Acceleration(const MixedBlocks& blocks) : blocks_(blocks) {}
 
   /// Forgets all steps.
-  void clear();
+  void clear() {
+    pairs_.clear();
+    has_step_ = false;
+  }
 
   /// From the residual at the present point, replaces it by the least one and sets `step` to what leads
   /// there.
   void combine(MixedVector& residual, MixedVector& step);
 
   /// Tells the step that was taken since.
-  void moved(const MixedVector& step);
+  void moved(const MixedVector& step) {
+    step_ = step;
+    has_step_ = true;
+  }
 
  private:
   /// The number of steps it remembers.

@@ -62,11 +62,10 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
   const Blocks::Range local = layout().row_blocks.local();
   for (std::size_t k = 0; k < reactions_.size(); ++k) {
     const auto& [node, component, path] = scene_.constraints[k];
-    const auto row = static_cast<std::size_t>(layout().row_of_node[static_cast<std::size_t>(node)]);
+    const auto row = at(layout().row_of_node[at(node)]);
     if (layout().owns(node)) own_constraints_.push_back(k);
     if (4 * row < local.first || 4 * row >= local.last) continue;
-    constraints_.push_back(
-        {k, row, static_cast<std::size_t>(component), rounded<Real>(path.share), path.angle});
+    constraints_.push_back({k, row, at(component), rounded<Real>(path.share), path.angle});
   }
 }
 
@@ -102,12 +101,7 @@ void Body<Real>::evaluate_forces() {
 
 template <class Real>
 double Body<Real>::residual() const {
-  return residual(dot(force_, force_, layout().row_blocks));
-}
-
-template <class Real>
-double Body<Real>::residual(double free_square) const {
-  const double unbalanced = std::sqrt(free_square);
+  const double unbalanced = std::sqrt(dot(force_, force_, layout().row_blocks));
   const std::vector<double> all = of_all_constraints(reactions_);
   double carried_square = 0.0;
 #pragma omp simd reduction(+ : carried_square)
@@ -165,13 +159,13 @@ Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) cons
   const Layout& layout = elements_.layout();
   Rows<Real> rows(layout.rows());
   for (std::size_t r = 0; r < layout.nodes; ++r) {
-    const auto value = static_cast<Real>(nodal[static_cast<std::size_t>(layout.node_of_row[r])]);
+    const auto value = static_cast<Real>(nodal[at(layout.node_of_row[r])]);
     for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value;
   }
   ties_.clear(rows);
   for (const auto& [node, component, path] : scene_.constraints) {
-    const int row = layout.row_of_node[static_cast<std::size_t>(node)];
-    rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(component)] = Real(0);
+    const int row = layout.row_of_node[at(node)];
+    rows[at(row)][at(component)] = Real(0);
   }
   return rows;
 }

@@ -59,9 +59,6 @@ class Body {
   /// |free forces| over the norm of reactions and loads together; |free forces| (N) if these are zero.
   double residual() const;
 
-  /// The same from the square of the norm of the free forces (N^2).
-  double residual(double free_square) const;
-
   /// Moves to displacements `target` (m); `impose` sets constrained components and tied nodes afterwards.
   void move_to(const Rows<Real>& target);
 

@@ -8,15 +8,32 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "problem/loading.hpp"
 #include "solve/adaption.hpp"
-#include "solve/field.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/stable_step.hpp"
 
 namespace sandglass {
 
 namespace {
+
+/// The paper's loading curve (eq. 15) over relative time: from 0 to 1, with zero velocity and acceleration at
+/// both ends.
+constexpr double loading_curve(double relative_time) {
+  const double t = std::clamp(relative_time, 0.0, 1.0);
+  return t * t * t * (10.0 + t * (-15.0 + t * 6.0));
+}
+
+/// Its first derivative by relative time.
+constexpr double loading_curve_rate(double relative_time) {
+  const double t = std::clamp(relative_time, 0.0, 1.0);
+  return 30.0 * t * t * (1.0 - t) * (1.0 - t);
+}
+
+/// Its second derivative by relative time.
+constexpr double loading_curve_acceleration(double relative_time) {
+  const double t = std::clamp(relative_time, 0.0, 1.0);
+  return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t);
+}
 
 /// Displacements (m) at the share s of a step of h s between displacements and velocities (m/s) at its ends:
 /// of third order, so that what is told of a motion does not depend on where the steps fall.
@@ -33,6 +50,15 @@ NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, c
   return between;
 }
 
+/// The energy (J) of nodes with these masses (kg) and velocities (m/s).
+double kinetic_energy(const std::vector<double>& masses, const NodalField& v) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < v.size(); ++n) {
+    sum += masses[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
+  }
+  return 0.5 * sum;
+}
+
 /// The quantities of the scheme, one function each; the order of calls is in `integrate_body`.
 template <class Real>
 class CentralDifference {
@@ -45,7 +71,9 @@ class CentralDifference {
         reactions_(model.scene().constraints.size(), 0.0),
         works_(reactions_.size(), 0.0),
         moved_(model.scene().angles.size()),
-        accelerations_(moved_.size()) {}
+        accelerations_(moved_.size()) {
+    leapfrog_.subcycle(model);
+  }
 
   Body<Real>& body() { return body_; }
   double time() const { return leapfrog_.time(); }
@@ -143,8 +171,7 @@ class CentralDifference {
     NodalField v = leapfrog_.free_velocities();
     for (const auto& [node, component, path] : model_.scene().constraints) {
       const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], loading(time())));
-      v[static_cast<std::size_t>(node)][static_cast<std::size_t>(component)] =
-          loading_rate(time()) * by_factor;
+      v[at(node)][at(component)] = loading_rate(time()) * by_factor;
     }
     follow(model_.scene().ties, v);
     return v;
@@ -178,7 +205,7 @@ class CentralDifference {
 
   /// The force (N) that accelerates the lumped mass of a driven component.
   double inertia(const Constraint& constraint) const {
-    const double mass = model_.masses()[static_cast<std::size_t>(constraint.node)], T = ramp_time();
+    const double mass = model_.masses()[at(constraint.node)], T = ramp_time();
     double force = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
       force += mass * constraint.path.share[i] * accelerations_[constraint.path.angle][i];
@@ -225,9 +252,8 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   const auto report = [&] {
     NodalField v = scheme.velocities();
     energies = body.energies();
-    observer.history({scheme.time(), 0.5 * weighted_dot(model.masses(), v, v), energies.strain,
-                      energies.hourglass, scheme.external_work(), body.residual(), scheme.step_size(),
-                      scheme.adaption_energy()});
+    observer.history({scheme.time(), kinetic_energy(model.masses(), v), energies.strain, energies.hourglass,
+                      scheme.external_work(), body.residual(), scheme.step_size(), scheme.adaption_energy()});
     if (frame_due()) {
       observer.frame(body.frame(scheme.time(), std::move(v)));
       ++frames;

@@ -22,7 +22,7 @@ NodalField forces_of_rotations(const Model& model, const Handles& handles) {
   for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
     const Constraint& c = scene.constraints[k];
     if (handles.of_constraint[k] >= 0) continue;
-    u[static_cast<std::size_t>(c.node)][static_cast<std::size_t>(c.component)] = final_value(scene, c);
+    u[at(c.node)][at(c.component)] = final_value(scene, c);
   }
   const Model exact(scene, {.method = model.choice().method, .kappa = model.choice().kappa});
   NodalField forces = internal_forces(exact, u);
@@ -53,7 +53,7 @@ std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layou
     loads.push_back(forces_of_rotations(model, handles));
     for (const auto& [node, force, curve] : scene.loads) {
       const double factor = scene.curves[curve].at(1.0, 1.0);
-      for (std::size_t i = 0; i < 3; ++i) loads[0][static_cast<std::size_t>(node)][i] += factor * force[i];
+      for (std::size_t i = 0; i < 3; ++i) loads[0][at(node)][i] += factor * force[i];
     }
   }
   const CondensedResponse<Real> response(model, handles, all_nodes(scene), loads);
@@ -70,7 +70,7 @@ std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layou
   }
   Rows<Real> rows(layout.rows());
   for (std::size_t r = 0; r < layout.nodes; ++r) {
-    const auto& value = u[static_cast<std::size_t>(layout.node_of_row[r])];
+    const auto& value = u[at(layout.node_of_row[r])];
     for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value[i];
   }
   return {std::move(rows), seconds};

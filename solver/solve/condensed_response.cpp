@@ -18,17 +18,13 @@ namespace sandglass {
 
 namespace {
 
-std::size_t index(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 /// For each node the nodes that share an element with it, if both have free components.
 std::vector<std::vector<int>> neighbours_of(const Mesh& mesh, const std::vector<int>& components) {
   std::vector<std::set<int>> sets(mesh.points.size());
   for (const auto& cell : mesh.cells) {
     for (const int a : cell) {
       for (const int b : cell) {
-        if (a != b && components[index(a)] > 0 && components[index(b)] > 0) sets[index(a)].insert(b);
+        if (a != b && components[at(a)] > 0 && components[at(b)] > 0) sets[at(a)].insert(b);
       }
     }
   }
@@ -59,26 +55,24 @@ class FreeStiffness {
   /// displacements.
   void balance(const NodalField& f, NodalField& u) {
     for (std::size_t n = 0; n < row_.size(); ++n) {
-      if (row_[n] >= 0) right_side_[index(row_[n])] = -f[n / 3][n % 3];
+      if (row_[n] >= 0) right_side_[at(row_[n])] = -f[n / 3][n % 3];
     }
     factor_.solve(right_side_);
     for (std::size_t n = 0; n < row_.size(); ++n) {
-      if (row_[n] >= 0) u[n / 3][n % 3] = right_side_[index(row_[n])];
+      if (row_[n] >= 0) u[n / 3][n % 3] = right_side_[at(row_[n])];
     }
   }
 
  private:
-  static std::size_t component(const Hexahedron& cell, int m) {
-    return 3 * index(cell[index(m / 3)]) + index(m % 3);
-  }
+  static std::size_t component(const Hexahedron& cell, int m) { return 3 * at(cell[at(m / 3)]) + at(m % 3); }
 
   /// Numbers the free components, -1 for the others, by layers of their nodes, which start next to the driven
   /// set that minimises the work. Returns the sizes of the layers.
   std::vector<int> number_rows(const Scene& scene) {
     std::vector<int> components(scene.mesh.points.size(), 3);  // number of free ones of each node
     for (const auto& c : scene.constraints) {
-      row_[3 * index(c.node) + index(c.component)] = -1;
-      --components[index(c.node)];
+      row_[3 * at(c.node) + at(c.component)] = -1;
+      --components[at(c.node)];
     }
     const auto neighbours = neighbours_of(scene.mesh, components);
     std::vector<std::vector<int>> layers;
@@ -90,7 +84,7 @@ class FreeStiffness {
       double work = 0.0;
       for (const auto& layer : found) {
         int size = 0;
-        for (const int node : layer) size += components[index(node)];
+        for (const int node : layer) size += components[at(node)];
         found_sizes.push_back(size);
         work += std::pow(size, 3);
       }
@@ -104,12 +98,12 @@ class FreeStiffness {
     for (const auto& layer : layers) {
       for (const int node : layer) {
         for (std::size_t i = 0; i < 3; ++i) {
-          int& row = row_[3 * index(node) + i];
+          int& row = row_[3 * at(node) + i];
           if (row >= 0) row = next++;
         }
       }
     }
-    right_side_.resize(index(next));
+    right_side_.resize(at(next));
     return sizes;
   }
 
@@ -139,12 +133,12 @@ class FreeStiffness {
   static std::vector<int> nodes_next_to(const Scene& scene, const std::string& set,
                                         const std::vector<int>& components) {
     std::vector<bool> member(scene.mesh.points.size(), false);
-    for (const int node : scene.sets.at(set)) member[index(node)] = true;
+    for (const int node : scene.sets.at(set)) member[at(node)] = true;
     std::set<int> neighbours;
     for (const auto& cell : scene.mesh.cells) {
-      if (std::none_of(cell.begin(), cell.end(), [&](int node) { return member[index(node)]; })) continue;
+      if (std::none_of(cell.begin(), cell.end(), [&](int node) { return member[at(node)]; })) continue;
       std::copy_if(cell.begin(), cell.end(), std::inserter(neighbours, neighbours.end()),
-                   [&](int node) { return components[index(node)] > 0; });
+                   [&](int node) { return components[at(node)] > 0; });
     }
     return {neighbours.begin(), neighbours.end()};
   }
@@ -159,7 +153,7 @@ template <class Visit>
 void for_each_held(const Scene& scene, const Handles& handles, const Visit& visit) {
   for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
     const Constraint& c = scene.constraints[k];
-    if (handles.of_constraint[k] >= 0) visit(c, 3 * index(handles.of_constraint[k]) + index(c.component));
+    if (handles.of_constraint[k] >= 0) visit(c, 3 * at(handles.of_constraint[k]) + at(c.component));
   }
 }
 
@@ -178,7 +172,7 @@ Handles handles_of_sets(const Scene& scene) {
   for (std::size_t h = 0; h < displacements.size(); ++h) {
     for (const int node : scene.sets.at(displacements[h].set)) {
       for (int i = 0; i < 3; ++i) {
-        if (displacements[h].components[index(i)]) handle.try_emplace({node, i}, static_cast<int>(h));
+        if (displacements[h].components[at(i)]) handle.try_emplace({node, i}, static_cast<int>(h));
       }
     }
   }
@@ -227,18 +221,17 @@ CondensedResponse<Real>::CondensedResponse(const Model& model, const Handles& ha
   const auto add_column = [&](NodalField u, const NodalField& load, const auto& take) {
     K_ff.balance(difference(internal_forces(exact, u), load), u);
     const NodalField f = difference(internal_forces(exact, u), load);
-    for_each_held(scene, handles, [&](const Constraint& c, std::size_t row) {
-      take(row, f[index(c.node)][index(c.component)]);
-    });
+    for_each_held(scene, handles,
+                  [&](const Constraint& c, std::size_t row) { take(row, f[at(c.node)][at(c.component)]); });
     for (const int node : outputs_) {
-      for (const double component : u[index(node)]) response_.push_back(static_cast<Real>(component));
+      for (const double component : u[at(node)]) response_.push_back(static_cast<Real>(component));
     }
   };
   const NodalField nothing(scene.mesh.points.size());
   for (std::size_t column = 0; column < columns(); ++column) {
     NodalField u = nothing;
     for_each_held(scene, handles, [&](const Constraint& c, std::size_t row) {
-      if (row == column) u[index(c.node)][index(c.component)] = 1.0;
+      if (row == column) u[at(c.node)][at(c.component)] = 1.0;
     });
     add_column(std::move(u), nothing,
                [&](std::size_t row, double force) { stiffness_[row * columns() + column] += force; });

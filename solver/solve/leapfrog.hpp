@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solve/explicit_step.hpp"
+#include "solve/body.hpp"
 
 namespace sandglass {
 
@@ -42,18 +42,18 @@ struct LeapfrogClock {
 template <class Real>
 class Leapfrog {
  public:
-  /// Undeformed and at rest, with the subcycles of the case. `damping` is mass-proportional, 1/s.
-  Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping)
-      : explicit_step_(model, elements), clock_{.damping = damping} {
-    body().subcycle(model, explicit_step_.inverse_masses());
-  }
+  /// Undeformed and at rest. `damping` is mass-proportional, 1/s.
+  Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping);
 
-  Body<Real>& body() { return explicit_step_.body(); }
-  const Body<Real>& body() const { return explicit_step_.body(); }
+  Body<Real>& body() { return body_; }
+  const Body<Real>& body() const { return body_; }
+
+  /// See Body::subcycle.
+  void subcycle(const Model& model) { body_.subcycle(model, inverse_masses_); }
 
   /// See Body::stable_step.
   StableStep stable_step(const Model& model, double given_step = 0.0) {
-    return body().stable_step(model, explicit_step_.inverse_masses(), given_step);
+    return body_.stable_step(model, inverse_masses_, given_step);
   }
 
   double time() const { return clock_.time; }  ///< s, of the displacements
@@ -68,8 +68,15 @@ class Leapfrog {
   /// loads at the new time.
   template <class Impose>
   void advance(double next_step, const Impose& impose) {
-    const auto [keep, gain] = clock_.advance(next_step);
-    explicit_step_.take(next_step, keep, gain, impose);
+    take(next_step, clock_.advance(next_step), impose);
+  }
+
+  /// A step of `step` s with given coefficients; suite/benchmark/ measures its time. Allocates nothing.
+  template <class Impose>
+  void take(double step, LeapfrogClock::Coefficients coefficients, const Impose& impose) {
+    move(step, coefficients);
+    impose(body_);
+    body_.evaluate_forces();
   }
 
   /// Velocities (m/s) at the time of the displacements: the mean of those half a step before and after,
@@ -79,7 +86,7 @@ class Leapfrog {
   /// The data that the next step depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
-    body().keep(archive);
+    body_.keep(archive);
     archive("time", clock_.time);
     archive("step", clock_.step);
     archive("step size", clock_.step_size);
@@ -87,7 +94,10 @@ class Leapfrog {
   }
 
  private:
-  ExplicitStep<Real> explicit_step_;
+  void move(double step, LeapfrogClock::Coefficients coefficients);
+
+  Body<Real> body_;
+  Rows<Real> inverse_masses_;  // of nodes (1/kg), zero on constrained components
   LeapfrogClock clock_;
 };
 

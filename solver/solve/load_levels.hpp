@@ -34,9 +34,7 @@ inline double first_load(const Model& model) {
     F += length(gravity.value) * std::accumulate(masses.begin(), masses.end(), 0.0);
   }
   for (const auto& pressure : scene.pressures) {
-    std::array<Vector, 4> corners;
-    for (std::size_t I = 0; I < 4; ++I)
-      corners[I] = scene.mesh.points[static_cast<std::size_t>(pressure.face[I])];
+    const auto corners = corners_of(scene.mesh.points, pressure.face);
     for (const Vector& force : pressure_forces(corners)) F += std::abs(pressure.pressure) * length(force);
   }
   const double turn = F * l * l * 6.0 / (mu * h * h * h * h);

@@ -48,11 +48,10 @@ Rows<float> springs_of(const Scene& scene, const Layout& layout) {
   for (const auto& support : scene.supports) {
     for (const auto& point : gauss_points_of(corners_of(scene.mesh.points, support.face))) {
       for (std::size_t I = 0; I < 4; ++I) {
-        const int row = layout.row_of_node[static_cast<std::size_t>(support.face[I])];
+        const int row = layout.row_of_node[at(support.face[I])];
         for (std::size_t i = 0; i < 3; ++i) {
           const double n = point.normal.entries[i] / point.area, share = support.only_normal ? n * n : 1.0;
-          springs[static_cast<std::size_t>(row)][i] +=
-              static_cast<float>(support.stiffness * share * point.N[I] * point.area);
+          springs[at(row)][i] += static_cast<float>(support.stiffness * share * point.N[I] * point.area);
         }
       }
     }
@@ -226,11 +225,11 @@ template <class Real>
 void MixedBody<Real>::average_pressures(const std::vector<int>& element_of) {
   std::vector<double> volumes(p_.size(), 0.0), sums(p_.size(), 0.0);  // of the coarser mesh, which is smaller
   for (std::size_t e = 0; e < p_.size(); ++e) {
-    volumes[static_cast<std::size_t>(element_of[e])] += volume(e);
-    sums[static_cast<std::size_t>(element_of[e])] += volume(e) * static_cast<double>(p_[e]);
+    volumes[at(element_of[e])] += volume(e);
+    sums[at(element_of[e])] += volume(e) * static_cast<double>(p_[e]);
   }
   for (std::size_t e = 0; e < p_.size(); ++e) {
-    const auto whole = static_cast<std::size_t>(element_of[e]);
+    const auto whole = at(element_of[e]);
     p_[e] = static_cast<Real>(sums[whole] / volumes[whole]);
   }
 }
@@ -257,7 +256,7 @@ double MixedBody<Real>::potential(const Multipliers* multipliers) const {
     double work = 0.0;
     for (std::size_t c = first; c < last; ++c) {
       if (body_.layout().elements[c] < 0) continue;
-      const auto e = static_cast<std::size_t>(body_.layout().elements[c]);
+      const auto e = at(body_.layout().elements[c]);
       const auto m = static_cast<double>(multipliers->pressures[e]);
       const double change = volume_change(e, *multipliers);
       work += volume(e) * change * (m - 0.5 * multipliers->given_up[materials_.of(e)] * change);

@@ -18,10 +18,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 // Shares of the allowed error: for the first motion, and for the effect of fixing a part on the rest. A tenth
 // is left for the changes under the full load.
 constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
@@ -48,19 +44,9 @@ std::vector<int> pushed_nodes(const Scene& scene) {
 Scene scene_of(const Scene& whole, const MeshPart& part) {
   Scene scene = {.description = whole.description,
                  .mesh = part.mesh,
-                 .ties = {},
-                 .coarser = {},
-                 .boundary = {},
-                 .sets = {},
-                 .element_sets = {},
                  .materials = materials_of(whole.materials, part.element_of),
-                 .constraints = {},
                  .angles = whole.angles,
                  .curves = whole.curves,
-                 .loads = {},
-                 .pressures = {},
-                 .supports = {},
-                 .initial_velocities = {},
                  .case_hash = whole.case_hash,
                  .mesh_hash = whole.mesh_hash};
   for (const auto& constraint : whole.constraints) {
@@ -130,48 +116,36 @@ class PartObserver final : public Observer {
   std::size_t elements_;
 };
 
-/// The displacements of a part of a body under its first load, from a guess for the whole, divided by that
-/// load, which is so small that answers are proportional to it.
-class FirstAnswer {
- public:
-  FirstAnswer(const Model& model, const MeshPart& part) : model_(model), part_(part) {}
+Vector scaled(const Vector& v, double factor) {
+  return {factor * v[0], factor * v[1], factor * v[2]};
+}
 
-  /// Sets u (m) at the nodes of the part; returns the number of evaluations of forces.
-  long find(NodalField& u) const {
-    return std::visit([&](const auto& elements) { return find(u, *elements); }, model_.internal_force());
-  }
-
- private:
-  /// The share of the residual at the guess that may remain. Even a small residual is what wakes the
-  /// surroundings.
-  static constexpr double share_left = 0.05;
-  static constexpr long most_evaluations = 1000;
-
-  template <class Real>
-  long find(NodalField& whole, const InternalForce<Real>& elements) const {
-    const double load = first_load(model_);
-    NodalField u;
-    for (const int node : part_.node_of) u.push_back(scaled(whole[at(node)], load));
-    Equilibrium<Real> search(model_, elements);
-    search.body().state() = state_at(elements, u);
-    search.body().impose(load);
-    search.take_own_pressures();
-    search.start(Effort::brief);
-    const double enough = share_left * search.residual();
-    while (search.residual() > enough && search.evaluations() < most_evaluations && search.step()) {
-    }
-    u = search.body().field(search.body().state().u);
-    for (std::size_t n = 0; n < u.size(); ++n) whole[at(part_.node_of[n])] = scaled(u[n], 1.0 / load);
-    return search.evaluations();
-  }
-
-  static Vector scaled(const Vector& v, double factor) {
-    return {factor * v[0], factor * v[1], factor * v[2]};
-  }
-
-  const Model& model_;
-  const MeshPart& part_;
-};
+/// Sets the displacements u (m) of a whole body at the nodes of a part to those of the part's model under its
+/// first load, from a guess, divided by that load, which is so small that answers are proportional to it.
+/// Returns the number of evaluations of forces.
+long find_first_answer(const Model& model, const MeshPart& part, NodalField& whole) {
+  // Even a small residual is what wakes the surroundings.
+  constexpr double share_left = 0.05;  // of the residual at the guess
+  constexpr long most_evaluations = 1000;
+  const double load = first_load(model);
+  NodalField u;
+  for (const int node : part.node_of) u.push_back(scaled(whole[at(node)], load));
+  return std::visit(
+      [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
+        Equilibrium<Real> search(model, *elements);
+        search.body().state() = state_at(*elements, u);
+        search.body().impose(load);
+        search.take_own_pressures();
+        search.start(Effort::brief);
+        const double enough = share_left * search.residual();
+        while (search.residual() > enough && search.evaluations() < most_evaluations && search.step()) {
+        }
+        u = search.body().field(search.body().state().u);
+        for (std::size_t n = 0; n < u.size(); ++n) whole[at(part.node_of[n])] = scaled(u[n], 1.0 / load);
+        return search.evaluations();
+      },
+      model.internal_force());
+}
 
 /// The first motion of a body, computed only as far as it reaches.
 class FirstMotion {
@@ -240,7 +214,7 @@ class FirstMotion {
     const NodalField before = u_;
     const MeshPart part = part_of_mesh(scene_.mesh, awake_);
     const Scene scene = scene_of(scene_, part);
-    evaluations_ += FirstAnswer(Model(scene, choice_), part).find(u_);
+    evaluations_ += find_first_answer(Model(scene, choice_), part, u_);
     const double change = largest_distance(u_, before);
     const double falls = std::min(slowest, change / change_), factor = std::max(falls, falls_);
     left_ = change * factor / (1.0 - factor);
@@ -288,7 +262,7 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
     if (part.element_of.size() < first.elements()) {
       NodalField neglecting(motion.size());
       for (const int node : part.node_of) neglecting[at(node)] = motion[at(node)];
-      evaluations += FirstAnswer(model, part).find(neglecting);
+      evaluations += find_first_answer(model, part, neglecting);
       if (largest_distance(neglecting, motion) > share_of_holding * share * unit) continue;
     }
     PartObserver forwarding(observer, part, scene.mesh.cells.size());

@@ -19,7 +19,14 @@ double step_of(const Model& model, std::size_t element, double stiffness) {
   return step_of(square, model.load_rates().empty() ? Model::LoadRates{} : model.load_rates()[element]);
 }
 
-std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
+}  // namespace
+
+std::vector<double> stable_steps(const Model& model, std::vector<double> steps) {
+  for (std::size_t e = 0; e < steps.size(); ++e) steps[e] = step_of(model, e, steps[e]);
+  return steps;
+}
+
+StableStep stable_step(const Model& model, const NodalField& u) {
   std::vector<double> bounds(model.element_masses().size());
   std::visit(
       [&](const auto& elements) {
@@ -29,22 +36,7 @@ std::vector<double> stiffness_bounds(const Model& model, const NodalField& u) {
         elements->stiffness_bounds(state, bounds);
       },
       model.internal_force());
-  return bounds;
-}
-
-}  // namespace
-
-std::vector<double> stable_steps(const Model& model, const NodalField& u) {
-  return stable_steps(model, stiffness_bounds(model, u));
-}
-
-std::vector<double> stable_steps(const Model& model, std::vector<double> steps) {
-  for (std::size_t e = 0; e < steps.size(); ++e) steps[e] = step_of(model, e, steps[e]);
-  return steps;
-}
-
-StableStep stable_step(const Model& model, const NodalField& u) {
-  return stable_step(model, stiffness_bounds(model, u));
+  return stable_step(model, bounds);
 }
 
 StableStep stable_step(const Model& model, std::span<const double> bounds) {

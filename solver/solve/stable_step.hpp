@@ -13,20 +13,17 @@ struct StableStep {
   int element;  ///< the element that determines it
 };
 
-/// 2 / omega_max (s) of each element at displacements u (m), with omega_max^2 <= stiffness bound / (rho V /
-/// 8) and what springs and pressures add. The largest frequency of a mesh is at most the largest of its
+/// 2 / omega_max (s) of each element from bounds of their stiffness (N/m), with omega_max^2 <= bound / (rho V
+/// / 8) and what springs and pressures add. The largest frequency of a mesh is at most the largest of its
 /// elements, so that the smallest of these steps is stable. Dashpots c, which act half a step late, shorten
 /// it: omega^2 dt^2 + 2 c/m dt <= 4.
-std::vector<double> stable_steps(const Model& model, const NodalField& u);
-
-/// The same from bounds of the elements' stiffness (N/m).
 std::vector<double> stable_steps(const Model& model, std::vector<double> stiffness_bounds);
 
 /// The smallest of them.
-StableStep stable_step(const Model& model, const NodalField& u);
-
-/// The same from bounds of the elements' stiffness (N/m).
 StableStep stable_step(const Model& model, std::span<const double> stiffness_bounds);
+
+/// The same at displacements u (m).
+StableStep stable_step(const Model& model, const NodalField& u);
 
 /// The stable step (s) of a body whose elements alone have frequencies up to a square (1/s^2).
 double stable_step_of(const Model& model, double square);

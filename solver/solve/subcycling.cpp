@@ -15,10 +15,6 @@ namespace sandglass {
 
 namespace {
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 /// Of each node itself, or the nodes that it follows.
 class FreeNodes {
  public:

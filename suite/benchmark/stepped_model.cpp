@@ -12,8 +12,7 @@
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/work.hpp"
 #include "solve/adaption.hpp"
-#include "solve/explicit_step.hpp"
-#include "solve/stable_step.hpp"
+#include "solve/leapfrog.hpp"
 
 namespace sandglass {
 
@@ -28,11 +27,11 @@ class SteppedModelOf final : public SteppedModel {
       : field_(start != nullptr ? *start : wavy_field(scene)),
         model_(scene, choice),
         elements_(*std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force())),
-        step_(model_, elements_) {
+        leapfrog_(model_, elements_, 0.0) {
     const double imposed = largest_imposed(scene);
     if (imposed > 0.0) loading_ = relative_height * element_size(scene) / imposed;
     if (start != nullptr) loading_ = 1.0;
-    Body<Real>& body = step_.body();
+    Body<Real>& body = leapfrog_.body();
     body.state() = state_at(elements_, field_);
     body.impose(loading_);
     Adaption<Real>(model_, body).apply(body, Demotion::never);
@@ -40,27 +39,26 @@ class SteppedModelOf final : public SteppedModel {
     Rows<Real>& increment = body.state().increment;
     std::fill(increment.begin(), increment.end(), Row<Real>{});  // it stands still
     start_ = body.state();
-    stable_step_ = body.stable_step(model_, step_.inverse_masses()).step;
+    stable_step_ = leapfrog_.stable_step(model_).step;
     constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
     step_size_ = step_fraction * stable_step_;
-    keep_ = (1.0 - damping) / (1.0 + damping);
-    gain_ = step_size_ * step_size_ / (1.0 + damping);
+    coefficients_ = {(1.0 - damping) / (1.0 + damping), step_size_ * step_size_ / (1.0 + damping)};
   }
 
   NodalField forces() override { return forces_on_the_way(elements_, field_); }
 
   void restart() override {
-    step_.body().state() = start_;
-    step_.body().evaluate_forces();
+    leapfrog_.body().state() = start_;
+    leapfrog_.body().evaluate_forces();
   }
 
   void step() override {
-    step_.take(step_size_, keep_, gain_, [this](Body<Real>& body) { body.impose(loading_); });
+    leapfrog_.take(step_size_, coefficients_, [this](Body<Real>& body) { body.impose(loading_); });
   }
 
   void require_healthy() override {
     try {
-      step_.body().require_healthy(0);
+      leapfrog_.body().require_healthy(0);
     } catch (const ComputationError& error) {
       throw ComputationError(fmt::format("bench of {} with {}: the waves of the start were too much: {}",
                                          model_.scene().description.name, model_.choice().method,
@@ -79,13 +77,12 @@ class SteppedModelOf final : public SteppedModel {
   NodalField field_;
   Model model_;
   const InternalForce<Real>& elements_;
-  ExplicitStep<Real> step_;
+  Leapfrog<Real> leapfrog_;
   State<Real> start_;
   double loading_ = 0.0;
   double stable_step_ = 0.0;
   double step_size_ = 0.0;
-  double keep_ = 0.0;
-  double gain_ = 0.0;
+  LeapfrogClock::Coefficients coefficients_{};
 };
 
 }  // namespace

@@ -109,9 +109,7 @@ Comparison read_comparison(const Case& description) {
 
 Comparison read_comparison(const Scene& scene) {
   Comparison comparison = read_comparison(scene.description);
-  const auto require_set = [&](const char* key, const std::string& set) {
-    node_set(scene.description, scene.sets, key, set);
-  };
+  const auto require_set = [&](const char* key, const std::string& set) { node_set(scene, key, set); };
   if (comparison.profile) require_set("profile.set", comparison.profile->set);
   for (const auto& published : comparison.published) require_set("published.set", published.set);
   return comparison;

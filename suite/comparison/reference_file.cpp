@@ -27,7 +27,7 @@ void require_hash(const Hdf5File& file, const std::string& attribute, const std:
 
 /// Throws InputError unless the answers of a motion are told at the times of the scene's frames.
 void require_times(const Hdf5File& file, const std::vector<double>& expected, const Scene& scene) {
-  const auto found = file.read_doubles("/times");
+  const auto found = file.read<double>("/times");
   const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-12 * b; };
   if (std::equal(found.entries.begin(), found.entries.end(), expected.begin(), expected.end(), same)) return;
   throw InputError(

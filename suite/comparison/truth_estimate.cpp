@@ -36,10 +36,6 @@ constexpr double accuracy_of_estimate = 1e-3;
 /// that succeeds takes ten or twenty, or a hundred from rest.
 constexpr int most_evaluations_near = 500;
 
-std::size_t at(int n) {
-  return static_cast<std::size_t>(n);
-}
-
 /// Means of the elements' displacement gradients, weighted by volume, at the nodes of one material.
 class RecoveredGradients {
  public:

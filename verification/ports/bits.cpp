@@ -9,6 +9,7 @@
 
 #include "element/methods.hpp"
 #include "math/pack.hpp"
+#include "support/nodal_form.hpp"
 #include "support/random_hexahedra.hpp"
 
 namespace sandglass::verification {

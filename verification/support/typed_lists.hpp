@@ -8,6 +8,7 @@
 #include "element/methods.hpp"
 #include "material/laws.hpp"
 #include "mesh/generators.hpp"
+#include "support/nodal_form.hpp"
 
 /// Turns the solver's lists into typed tests, so that a new method, law or generator is tested without an
 /// edit.
@@ -174,7 +175,7 @@ constexpr int zero_energy_modes() {
     return Method::zero_energy_modes;
   } else {
     constexpr bool uncontrolled = std::is_same_v<typename Method::Hourglass, NoHourglassControl>;
-    return Method::integration_points == 1 && uncontrolled ? 18 : 6;
+    return integration_points<Method> == 1 && uncontrolled ? 18 : 6;
   }
 }
 

@@ -11,7 +11,6 @@ struct LinearPerturbation {
   static constexpr std::string_view name = "linear";
   static constexpr std::string_view summary =
       "one point, small strain, perturbation hourglass control: valid for small strains and rotations only";
-  static constexpr int integration_points = 1;
   using Kinematics = LinearOnePoint;
   using Hourglass = PerturbationHourglassControl;
 };
@@ -20,7 +19,6 @@ struct LinearCondensed {
   static constexpr std::string_view name = "linear-condensed";
   static constexpr std::string_view summary =
       "linear, solved once for all loads: answers are superposed from the response to unit displacements";
-  static constexpr int integration_points = 1;
   static constexpr bool condensed = true;
   using SharesKernelsOf = LinearPerturbation;
   using Kinematics = LinearPerturbation::Kinematics;

@@ -11,7 +11,6 @@ struct T4 {
   static constexpr std::string_view name = "t4";
   static constexpr std::string_view summary =
       "linear tetrahedra, both cuts of a hexahedron into five: locks as nu -> 1/2";
-  static constexpr int integration_points = 10;
   using Kinematics = Tetrahedra<OwnPressure>;
   using Hourglass = NoHourglassControl;
 };

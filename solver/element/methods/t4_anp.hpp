@@ -10,7 +10,6 @@ namespace sandglass {
 struct T4Anp {
   static constexpr std::string_view name = "t4-anp";
   static constexpr std::string_view summary = "the same tetrahedra with pressures averaged at the nodes";
-  static constexpr int integration_points = 10;
   using Kinematics = Tetrahedra<NodalPressure>;
   using Hourglass = NoHourglassControl;
 };

@@ -17,7 +17,6 @@ struct TlAdaptive {
   static constexpr std::string_view name = "tl-adaptive";
   static constexpr std::string_view summary =
       "one, four or eight points, each element as many as the requested accuracy needs";
-  static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = ModalSamplingControl;
   using Levels = TypeList<TlModalSampling, TlFourPoint, TlMeanDilatation>;

@@ -12,7 +12,6 @@ struct TlAssumedStrain {
   static constexpr std::string_view name = "tl-assumed-strain";
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, assumed strain of Belytschko and Bindeman (ASQBI), undeformed shape";
-  static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = ReferenceHourglassControl<AssumedStrain>;
 };

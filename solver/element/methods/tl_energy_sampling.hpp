@@ -11,7 +11,6 @@ struct TlEnergySampling {
   static constexpr std::string_view name = "tl-energy-sampling";
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, the missing part of the shear energy restored: no parameter";
-  static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = EnergySamplingControl;
 };

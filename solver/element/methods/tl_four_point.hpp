@@ -11,7 +11,6 @@ struct TlFourPoint {
   static constexpr std::string_view name = "tl-four-point";
   static constexpr std::string_view summary =
       "four points on the element's mean parallelepiped, one pressure: nearly eight, from one point's memory";
-  static constexpr int integration_points = 4;
   using Kinematics = FourPoint;
   using Hourglass = LastModeControl;
 };

@@ -10,7 +10,6 @@ namespace sandglass {
 struct TlFull {
   static constexpr std::string_view name = "tl-full";
   static constexpr std::string_view summary = "eight points, displacement element: locks as nu -> 1/2";
-  static constexpr int integration_points = 8;
   using Kinematics = EightPoint<PointPressure>;
   using Hourglass = NoHourglassControl;
 };

@@ -11,7 +11,6 @@ struct TlMeanDilatation {
   static constexpr std::string_view name = "tl-mean-dilatation";
   static constexpr std::string_view summary =
       "eight points, one pressure per element: the golden's own element";
-  static constexpr int integration_points = 8;
   static constexpr bool batches = true;
   using Kinematics = EightPoint<MeanPressure>;
   using Hourglass = NoHourglassControl;

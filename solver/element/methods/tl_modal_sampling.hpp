@@ -11,7 +11,6 @@ struct TlModalSampling {
   static constexpr std::string_view name = "tl-modal-sampling";
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, a stiffness for each hourglass mode from its shear energy: no parameter";
-  static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = ModalSamplingControl;
 };

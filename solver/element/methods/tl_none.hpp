@@ -11,7 +11,6 @@ struct TlNone {
   static constexpr std::string_view name = "tl-none";
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, no hourglass control: fails visibly";
-  static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
   using Hourglass = NoHourglassControl;
 };

@@ -11,7 +11,6 @@ struct TlPerturbation {
   static constexpr std::string_view name = "tl-perturbation";
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, perturbation hourglass control (the paper)";
-  static constexpr int integration_points = 1;
   static constexpr bool batches = true;
   using Kinematics = OnePoint;
   using KinematicsOnParallelepipeds = ParallelepipedOnePoint;

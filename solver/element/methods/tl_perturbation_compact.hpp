@@ -11,7 +11,6 @@ struct TlPerturbationCompact {
   static constexpr std::string_view name = "tl-perturbation-compact";
   static constexpr std::string_view summary =
       "tl-perturbation with its geometry recomputed in each step instead of loaded";
-  static constexpr int integration_points = 1;
   using Kinematics = CompactOnePoint;
   using Hourglass = PerturbationHourglassControl;
 };

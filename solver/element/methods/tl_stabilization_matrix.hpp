@@ -11,9 +11,8 @@ struct TlStabilizationMatrix {
   static constexpr std::string_view name = "tl-stabilization-matrix";
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, the stiffness that the mean-dilatation element adds when undeformed";
-  static constexpr int integration_points = 1;
   using Kinematics = OnePoint;
-  using Hourglass = HourglassMatrixControl<StabilizationMatrix>;
+  using Hourglass = StabilizationMatrixControl;
 };
 
 }  // namespace sandglass

@@ -13,7 +13,6 @@ struct UlAssumedStrain {
   static constexpr std::string_view name = "ul-assumed-strain";
   static constexpr std::string_view summary =
       "one point, Updated Lagrangian, assumed strain (ASQBI) of the current shape: LS-DYNA's type 6";
-  static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RateHourglassControl<AssumedStrain>;
   using AtSmallStrain = TlAssumedStrain;

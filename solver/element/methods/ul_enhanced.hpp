@@ -13,7 +13,6 @@ struct UlEnhanced {
   static constexpr std::string_view name = "ul-enhanced";
   static constexpr std::string_view summary =
       "one point, Updated Lagrangian, enhanced assumed strain after Puso: ABAQUS's costlier control";
-  static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RateHourglassControl<EnhancedStrain>;
   using AtSmallStrain = TlEnhanced;

@@ -12,7 +12,6 @@ struct UlPerturbation {
   static constexpr std::string_view name = "ul-perturbation";
   static constexpr std::string_view summary =
       "one point, Updated Lagrangian, the same control integrated in time and rotated, as in ABAQUS";
-  static constexpr int integration_points = 1;
   using Kinematics = UpdatedOnePoint;
   using Hourglass = RatePerturbationControl;
   using AtSmallStrain = TlPerturbation;

@@ -13,7 +13,6 @@ struct UlViscous {
   static constexpr std::string_view summary =
       "one point, Updated Lagrangian, viscous control: LS-DYNA's and OpenRadioss's default; no effect in "
       "equilibrium";
-  static constexpr int integration_points = 1;
   static constexpr int zero_energy_modes = 18;  // it resists velocities only
   using Kinematics = UpdatedOnePoint;
   using Hourglass = ViscousHourglassControl;
