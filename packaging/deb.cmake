@@ -22,4 +22,21 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
   "libfmt-dev, libhdf5-dev, libmuparser-dev, libxxhash-dev, python3-meshio, python3-scipy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, gmsh, paraview, python3-nibabel")
+
+# Licence and changes where Debian wants them, in the package alone.
+set(CHANGES ${CMAKE_BINARY_DIR}/changelog)
+string(TIMESTAMP NOW "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(WRITE ${CHANGES}.Debian "sandglass (${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) bookworm; urgency=medium
+
+  * Made by ci/package; what is new is in changelog.gz.
+
+ -- ${CPACK_PACKAGE_CONTACT}  ${NOW}
+")
+configure_file(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${CHANGES} COPYONLY)
+foreach(file ${CHANGES} ${CHANGES}.Debian)
+  execute_process(COMMAND gzip -9nc ${file} OUTPUT_FILE ${file}.gz)
+endforeach()
+install(FILES ${CHANGES}.gz ${CHANGES}.Debian.gz DESTINATION share/doc/sandglass COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/sandglass RENAME copyright COMPONENT debian EXCLUDE_FROM_ALL)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};sandglass;ALL;/;${CMAKE_BINARY_DIR};sandglass;debian;/")
 include(CPack)

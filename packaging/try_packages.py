@@ -151,7 +151,7 @@ def try_packages(system, deb, wheel):
 
 
 def why_not(folder):
-    """Why the packages in a folder cannot be tried on this machine; an empty text where they can."""
+    """Why the packages in a folder cannot be tried on this machine; empty where they can."""
     if os.geteuid() != 0:
         return "making a bare Debian needs root"
     for tool in ("debootstrap", "unshare"):
