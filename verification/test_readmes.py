@@ -124,7 +124,8 @@ def installed(command):
     if "reference/solve.py" in command:
         return importlib.util.find_spec("dolfinx") is not None
     program = command.split()[0]
-    return program not in ("gmsh", "ccx", "podman", "snakemake", "sudo") or shutil.which(program) is not None
+    others = ("gmsh", "ccx", "podman", "snakemake", "sudo")
+    return program not in others or shutil.which(program) is not None
 
 
 @pytest.fixture(scope="module")
