@@ -15,8 +15,7 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = Path(__file__).resolve().parent
-# The instructions of this very processor where there is no common set for packages.
-PRESET = "portable" if platform.machine() == "x86_64" else "release"
+PRESET = "portable"
 BUILD = ROOT / "build" / PRESET
 
 
@@ -35,6 +34,8 @@ class Build(build_ext):
 
     def run(self):
         options = [f"-DPython_EXECUTABLE={sys.executable}", "-DSANDGLASS_PYTHON=ON"]
+        if platform.machine() != "x86_64":  # no common set of instructions is chosen for others
+            options.append("-DSANDGLASS_ARCH=native")
         try:
             import pybind11
 
