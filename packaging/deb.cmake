@@ -7,11 +7,11 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "explicit solver for soft solids, with a verification suite
- Total Lagrangian hexahedra with one integration point and hourglass control,
- for real-time simulation of soft bodies, with cases and references to choose
- the cheapest method that is accurate enough. Brings the program sandglass, the
- C++ library with its CMake configuration, and the Python module sandglass.
- Needs a processor with AVX2, FMA and BMI2.")
+Total Lagrangian hexahedra with one integration point and hourglass control,
+for real-time simulation of soft bodies, with cases and references to choose
+the cheapest method that is accurate enough. Brings the program sandglass, the
+C++ library with its CMake configuration, and the Python module sandglass.
+Needs a processor with AVX2, FMA and BMI2.")
 
 # The libraries that program and module load are looked up in them. The module is for the Python of the system; the files of other
 # programs (exchange/) go through Python as well.
