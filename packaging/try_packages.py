@@ -127,12 +127,13 @@ def try_packages(system, deb, wheel):
         shutil.copy(package, system.home)
 
     system.run("apt-get update")
-    system.run(f"apt-get install -y ./{deb.name}")
+    system.run(f"apt-get install -y --reinstall ./{deb.name}")
     use(system, case, run, "/usr/lib/python3/dist-packages")
 
     system.run("apt-get install -y --no-install-recommends cmake g++ make")
     system.run("cmake -S cpp -B example && cmake --build example")
     system.run(f"example/step_a_scene {case} moved 0.03 0 0", says="1.000 s, force")
+    system.run("example/step_a_scene hook.toml tip 0 0 -0.001", says="1.000 s, force")
     for version in ("0.9", "2.0"):
         (system.home / "later").mkdir(exist_ok=True)
         (system.home / "later/CMakeLists.txt").write_text(LATER.format(version))
