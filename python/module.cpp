@@ -194,6 +194,7 @@ PYBIND11_MODULE(sandglass, m) {
   using namespace sandglass;
   using namespace pybind11::literals;
   m.doc() = "Sandglass, an explicit solver for soft solids, step by step.";
+  m.attr("__version__") = SANDGLASS_VERSION;
 
   py::register_exception<InputError>(m, "InputError", PyExc_ValueError);
   py::register_exception<ComputationError>(m, "ComputationError", PyExc_RuntimeError);

@@ -95,8 +95,8 @@ def test_the_installed_program_has_its_cases(prefix, tmp_path):
     assert (moved / "share/sandglass/reference/golden/column.h5").exists()
 
 
-def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
-    """Uses its own copies of exchange/ and common/, not those of the source."""
+def test_what_is_installed_reads_and_writes_for_other_programs(prefix, tmp_path):
+    """Program and module use their own copies of exchange/ and common/, not those of the source."""
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     program = moved / "bin" / "sandglass"
     run(program, "mesh", "column", "-o", tmp_path / "column.vtu", cwd=tmp_path)
@@ -110,6 +110,18 @@ def test_the_installed_program_writes_for_other_programs(prefix, tmp_path):
         text=True,
     )
     assert done.returncode == 2 and "the copy" in done.stderr
+
+    modules = moved / "lib/python3/dist-packages"
+    if not modules.exists():
+        return  # built without it
+    script = "import sandglass, sys; sandglass.Simulation(sys.argv[1])"
+    done = subprocess.run(
+        ["/usr/bin/python3", "-c", script, ROOT / "exchange/example/hook.toml"],
+        env={"PYTHONPATH": str(modules)},
+        capture_output=True,
+        text=True,
+    )
+    assert "mesh.file: the copy" in done.stderr
 
 
 AVX2 = """

@@ -29,6 +29,7 @@ PYTHON_FOLDERS = {
     "bench": ("bench", "common", "exchange", "reference", *COMPILED),
     "common": ("common",),
     "exchange": ("common", "exchange", *COMPILED),
+    "packaging": ("packaging",),
     "reference": ("common", "reference", *COMPILED),
     "reports": ("common", "reports", "results"),
     "results": ("common", "exchange", "results", *COMPILED),

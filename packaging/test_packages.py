@@ -1,0 +1,50 @@
+"""Packages, where they are made, are installed and used on a bare Debian; one version for all."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+from command_line import PATIENCE, ROOT
+from try_packages import why_not
+
+PACKAGES = ROOT / "build/packages"
+TRY = [sys.executable, ROOT / "packaging/try_packages.py"]
+
+
+def found(pattern, file):
+    return re.search(pattern, (ROOT / file).read_text(), re.MULTILINE).groups()
+
+
+def test_one_version_everywhere():
+    """CMakeLists.txt has it; the newest entry of the changelog has its date, too."""
+    (version,) = found(r"^project\(sandglass VERSION (\d+\.\d+\.\d+) ", "CMakeLists.txt")
+    newest = found(r"^## Unreleased\n(?:(?!## ).*\n)*## (\S+) - (\d{4}-\d\d-\d\d)$", "CHANGELOG.md")
+    assert newest[0] == version
+    citation = r"^version: (\S+)\ndate-released: (\S+)$"
+    assert found(citation, "CITATION.cff") == newest
+    title = found(r"^# Sandglass (\S+)$", f"packaging/release-{version}.md")
+    assert title == (version,)
+    (wanted,) = found(r"^find_package\(sandglass (\S+) REQUIRED\)", "examples/cpp/CMakeLists.txt")
+    assert wanted.split(".")[0] == version.split(".")[0]
+
+
+def test_the_wheel_has_the_version_of_the_project(tmp_path):
+    pytest.importorskip("setuptools")
+    (version,) = found(r"^project\(sandglass VERSION (\S+) ", "CMakeLists.txt")
+    command = [sys.executable, "setup.py", "--quiet", "--version"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout.split()[-1:] == [version], done.stderr
+
+
+def test_without_packages_it_says_what_to_do(tmp_path):
+    done = subprocess.run([*TRY, tmp_path], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert re.fullmatch(r"error: .+\n", done.stderr)
+
+
+@pytest.mark.skipif(why_not(PACKAGES) != "", reason=why_not(PACKAGES))
+def test_they_are_installed_and_used_on_a_bare_debian():
+    """Minutes, most of them for what apt fetches."""
+    done = subprocess.run(TRY, capture_output=True, text=True, timeout=3600 * PATIENCE)
+    assert done.returncode == 0, done.stdout + done.stderr
