@@ -3,6 +3,10 @@
 import numpy as np
 import pytest
 from blocks import CASE, distorted_block, write_mesh
+from loads import JIT_OPTIONS
+
+# Here most forms are evaluated a few times, and compiling them takes most of the time.
+JIT_OPTIONS["cffi_extra_compile_args"] = ["-O1", "-g0"]
 
 
 @pytest.fixture
