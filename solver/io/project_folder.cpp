@@ -26,7 +26,7 @@ fs::path own_prefix() {
 
 fs::path project_folder(const std::string& name) {
   std::error_code ignored;
-  const fs::path installed = (own_prefix() / SANDGLASS_SHARE / name).lexically_normal();
+  fs::path installed = (own_prefix() / SANDGLASS_SHARE / name).lexically_normal();
   if (fs::is_directory(installed, ignored)) return installed;
   const fs::path source = fs::path(SANDGLASS_SOURCE) / name;
   return fs::is_directory(source, ignored) ? source : fs::path(SANDGLASS_PREFIX) / SANDGLASS_SHARE / name;

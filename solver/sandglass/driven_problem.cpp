@@ -19,8 +19,9 @@ std::map<std::string, std::vector<Driven>> driven_sets(const Scene& scene) {
   const auto& constraints = scene.constraints;
   for (const auto& [name, nodes] : scene.sets) {
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      for (const Constraint& c : std::ranges::equal_range(constraints, nodes[n], {}, &Constraint::node)) {
-        driven[name].push_back({static_cast<std::size_t>(&c - constraints.data()), n, at(c.component)});
+      auto c = std::ranges::lower_bound(constraints, nodes[n], {}, &Constraint::node);
+      for (; c != constraints.end() && c->node == nodes[n]; ++c) {
+        driven[name].push_back({static_cast<std::size_t>(c - constraints.begin()), n, at(c->component)});
       }
     }
   }
