@@ -21,6 +21,7 @@ NEEDED = ("sphinx", "myst_parser", "breathe", "furo")
 PUBLIC = ("solver/sandglass/simulation.hpp", "solver/sandglass/batch.hpp", "solver/base/error.hpp")
 # What a stranger asks, and what the page that answers says.
 ANSWERS = {
+    "How do I install it?": "makes a Debian package and a wheel",
     "How do I apply pressure?": 'set = "loaded" value = 300.0',
     "Which kappa?": "Leave it at auto",
     "How do I cite it?": "CITATION.cff",
