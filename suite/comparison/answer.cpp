@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "comparison/reference_file.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 
@@ -61,14 +62,6 @@ Answer resting_answer(const Model& model, Observer& observer) {
 }
 
 }  // namespace
-
-std::vector<double> answer_times(const Case& description) {
-  if (description.quasi_static) return {1.0};
-  const DynamicsSettings& settings = description.dynamics;
-  std::vector<double> times;
-  for (int n = 1; n <= settings.frames; ++n) times.push_back(settings.duration * n / settings.frames);
-  return times;
-}
 
 Answer compute_answer(const Model& model, Observer& observer) {
   return model.scene().description.quasi_static ? resting_answer(model, observer)

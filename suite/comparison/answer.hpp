@@ -23,10 +23,6 @@ struct Answer {
   double step_seconds = 0.0;  ///< wall time of a step
 };
 
-/// The times (s) at which the answer of a case is told: the ends of the frames of a motion; of an answer at
-/// rest one, where the load is full.
-std::vector<double> answer_times(const Case& description);
-
 /// The answer of a model, in motion where its case is dynamic; else that it is not in equilibrium. The
 /// observer is asked whether to go on. Throws as `relax` and `integrate` do.
 Answer compute_answer(const Model& model, Observer& observer);

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "comparison/answer.hpp"
 #include "io/hdf5_file.hpp"
 #include "io/mesh_file.hpp"
 
@@ -45,6 +44,14 @@ OwnError read_own_error(const std::filesystem::path& path) {
   const double largest = file.read_number_attribute("/", "own_error_max");
   return {std::isfinite(largest) ? std::optional(largest) : std::nullopt,
           file.read_text_attribute("/", "own_error_note")};
+}
+
+std::vector<double> answer_times(const Case& description) {
+  if (description.quasi_static) return {1.0};
+  const DynamicsSettings& settings = description.dynamics;
+  std::vector<double> times;
+  for (int n = 1; n <= settings.frames; ++n) times.push_back(settings.duration * n / settings.frames);
+  return times;
 }
 
 Displacements read_reference(const std::filesystem::path& path, const Scene& scene) {
