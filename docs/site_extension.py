@@ -21,6 +21,7 @@ from sphinx import addnodes
 from sphinx.transforms import SphinxTransform
 from sphinx.util import logging
 
+from check_links import PUBLISHED
 from common.errors import InputError
 from common.program import ROOT, binary
 
@@ -36,8 +37,6 @@ MATHJAX_PARTS = (
     "jax/output/SVG/fonts/TeX",
     "extensions",
 )
-# What `ci/site` puts beside the documentation, and where.
-PUBLISHED = {"build/report/index.html": "report/index.html"}
 INCLUDE = re.compile(r"^```\{include\} (\S+)$", re.MULTILINE)
 LOGGER = logging.getLogger(__name__)
 
