@@ -10,9 +10,9 @@ namespace sandglass {
 
 namespace {
 
-/// The steps in which the norm must halve.
+/// The steps in which the norm must halve. A body that buckles descends far before its norm falls.
 constexpr int accelerated_patience = 12, patient_patience = 100, multiplied_patience = 100,
-              descent_patience = 100;
+              descent_patience = 300;
 
 /// The method of multipliers ends when the norm has fallen to this share.
 constexpr double multiplied_share = 0.1;

@@ -163,9 +163,11 @@ class Search {
     return body().healthy();
   }
 
-  bool arrived() const {
-    return load_levels_.full() ? equilibrium_.residual() < tolerance()
-                               : load_levels_.far_enough(equilibrium_);
+  /// Whether the search may end. Below the full load it may not where an element is inverted: residuals there
+  /// are still large, and further steps mend it.
+  bool arrived() {
+    if (load_levels_.full()) return equilibrium_.residual() < tolerance();
+    return load_levels_.far_enough(equilibrium_) && body().healthy();
   }
 
   /// Lets elements choose their levels at the present displacements; whether the search must continue. At the
