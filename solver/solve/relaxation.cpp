@@ -159,15 +159,16 @@ class Search {
       stagnation = Stagnation(epsilon, amplification_);
       equilibrium_.start(load_levels_.effort());
     }
-    result_.stagnated = !arrived();
-    return body().healthy();
+    const bool healthy = body().healthy();
+    result_.stagnated = healthy && !arrived();
+    return healthy;
   }
 
-  /// Whether the search may end. Below the full load it may not where an element is inverted: residuals there
-  /// are still large, and further steps mend it.
+  /// Whether the search may end. Where an element is inverted it may not: another equilibrium may be near.
   bool arrived() {
-    if (load_levels_.full()) return equilibrium_.residual() < tolerance();
-    return load_levels_.far_enough(equilibrium_) && body().healthy();
+    const bool near =
+        load_levels_.full() ? equilibrium_.residual() < tolerance() : load_levels_.far_enough(equilibrium_);
+    return near && body().healthy();
   }
 
   /// Lets elements choose their levels at the present displacements; whether the search must continue. At the

@@ -140,8 +140,12 @@ RefinedAnswer::RefinedAnswer(Scene scene, double accuracy, int threads, const No
 void RefinedAnswer::refine() {
   Scene finer = refined(scene_, largest_share(error_indicators(scene_, u_), refined_share));
   const NodalField guess = prolonged(finer.coarser.front(), u_);
-  NodalField u = find_answer(finer, &guess, threads_);
-  before_ = std::exchange(u_, std::move(u));
+  try {
+    before_ = std::exchange(u_, find_answer(finer, &guess, threads_));
+  } catch (const ComputationError& error) {
+    throw ComputationError(fmt::format("no answer was found on the refined mesh of {} elements: {}",
+                                       finer.mesh.cells.size(), error.what()));
+  }
   scene_ = std::move(finer);
 }
 
