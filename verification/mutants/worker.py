@@ -115,7 +115,8 @@ class Worker:
             archive = self.folder / "tree.tar"
             self._run(["git", "-C", ROOT, "archive", "-o", archive, self._revision])
             self._run(["tar", "-xf", archive, "-C", self.tree])
-            self._run(["cmake", "--preset", PRESET])
+            # A precompiled header would outlive its mutant, and make each one compile everything.
+            self._run(["cmake", "--preset", PRESET, "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"])
             self._run(["ninja", "-C", self.build, "-j1"])
         except BaseException:
             self.__exit__()
