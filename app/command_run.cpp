@@ -9,6 +9,7 @@
 #include "app/execution_options.hpp"
 #include "app/kappa_option.hpp"
 #include "app/machine.hpp"
+#include "app/mpi_ranks.hpp"
 #include "app/progress.hpp"
 #include "app/run_report.hpp"
 #include "app/workspace.hpp"
@@ -309,6 +310,7 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
 int run_case(const RunOptions& options) {
   const Given given = parse(options);
   require_sensible(options);
+  warn_if_bound(*options.ranks, options.threads);
   const Scene scene = read_scene(find_case(options.name));
   require_quasi_static(options, scene.description);
   const auto refined = refine_as_requested(options, given, scene);

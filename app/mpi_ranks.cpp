@@ -1,6 +1,7 @@
 #include "app/mpi_ranks.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <cstdlib>
 
@@ -132,5 +133,13 @@ std::shared_ptr<const Ranks> join_ranks() {
 }
 
 #endif
+
+void warn_if_bound(const Ranks& ranks, int threads) {
+  const int processors = omp_get_num_procs();  // that this process may run on
+  const bool by_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
+  if (!by_mpirun || ranks.rank() > 0 || threads <= processors) return;
+  fmt::print(stderr, "warning: the {} threads of a rank share {} processor{}; give mpirun --bind-to none\n",
+             threads, processors, processors == 1 ? "" : "s");
+}
 
 }  // namespace sandglass

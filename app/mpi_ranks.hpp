@@ -10,4 +10,8 @@ namespace sandglass {
 /// InputError if mpirun starts several processes of a program without MPI: each would do the whole work.
 std::shared_ptr<const Ranks> join_ranks();
 
+/// Warns on standard error if mpirun has bound this process, the first one, to fewer processors than it has
+/// threads.
+void warn_if_bound(const Ranks& ranks, int threads);
+
 }  // namespace sandglass

@@ -36,9 +36,11 @@ def block_in_motion(duration):
     return dynamic(text + PRESSURE, duration=duration, ramp_time=0.02, frames=4)
 
 
-def start(ranks, *arguments, program=PROGRAM):
-    """Start a run on so many ranks."""
+def start(ranks, *arguments, program=PROGRAM, bound=False):
+    """Start a run on so many ranks, each bound to one processor or to none."""
     words, environment = under_mpirun(ranks, program, *arguments)
+    if bound:
+        words[words.index("none")] = "core"
     environment["OMP_WAIT_POLICY"] = "passive"
     pipe = subprocess.PIPE
     return subprocess.Popen(words, stdout=pipe, stderr=pipe, text=True, env=environment)
@@ -112,6 +114,15 @@ def test_what_ranks_cannot_share_is_refused(arguments, message):
     code, out, err = outcome_of(2, *arguments)
     assert code == 2
     assert err.count("error: ") == 1 and message in err
+
+
+def test_threads_that_mpirun_binds_to_one_processor_are_told():
+    arguments = ("run", "column", "--threads", 2)
+    told = "warning: the 2 threads of a rank share 1 processor; give mpirun --bind-to none"
+    code, out, err = outcome_of(1, *arguments, bound=True)
+    assert code == 0 and err.count(told) == 1
+    code, out, err = outcome_of(1, *arguments)
+    assert code == 0 and "warning" not in err
 
 
 def test_help_is_printed_once_and_is_no_error():
