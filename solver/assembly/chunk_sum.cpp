@@ -91,11 +91,11 @@ void sum_of(const Layout& layout, Real* rows, const AddChunk& add) {
 
 }  // namespace
 
-void sum_over_chunks(const Layout& layout, double* rows, const AddChunk& add) {
+void sum_called_chunks(const Layout& layout, double* rows, const AddChunk& add) {
   sum_of(layout, rows, add);
 }
 
-void sum_over_chunks(const Layout& layout, float* rows, const AddChunk& add) {
+void sum_called_chunks(const Layout& layout, float* rows, const AddChunk& add) {
   sum_of(layout, rows, add);
 }
 

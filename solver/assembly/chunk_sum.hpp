@@ -6,6 +6,10 @@
 
 namespace sandglass {
 
+/// What `sum_over_chunks` does, compiled once.
+void sum_called_chunks(const Layout& layout, double* rows, const std::function<void(std::size_t)>& add);
+void sum_called_chunks(const Layout& layout, float* rows, const std::function<void(std::size_t)>& add);
+
 /// Clears the rows, four numbers each, and calls add(c) for every chunk c, which adds to them. Each thread
 /// takes a run of chunks in the order 0, 2, 1, 4, 3, ...: at every node the even chunk adds before the odd
 /// one, for any number of threads and ranks, and data shared by neighbours is still in the cache. The last
@@ -13,13 +17,9 @@ namespace sandglass {
 ///
 /// Ranks send the rows of their first and last chunk to the ranks below and above. They compute those first,
 /// and all others while the messages travel. Afterwards the rows of `Layout::row_blocks` are complete.
-void sum_over_chunks(const Layout& layout, double* rows, const std::function<void(std::size_t)>& add);
-void sum_over_chunks(const Layout& layout, float* rows, const std::function<void(std::size_t)>& add);
-
-/// The same, without a copy of `add`, which would allocate.
 template <class Real, class Add>
 void sum_over_chunks(const Layout& layout, Real* rows, const Add& add) {
-  sum_over_chunks(layout, rows, std::function<void(std::size_t)>(std::cref(add)));
+  sum_called_chunks(layout, rows, std::cref(add));  // a copy would allocate
 }
 
 }  // namespace sandglass

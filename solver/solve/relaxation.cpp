@@ -111,6 +111,7 @@ class Search {
     result_.energies = body().energies();
     result_.steps = equilibrium_.evaluations() + evaluations_of_estimates_;
     result_.residual = equilibrium_.residual();
+    result_.inverted = !body().healthy();
     result_.adaption_seconds = adaption_.seconds();
     observer_.frame(body().frame(time(), no_velocity_));
     return std::move(result_);
@@ -310,7 +311,10 @@ bool in_equilibrium(const Relaxation& relaxation, Precision precision) {
 std::string outcome(const Relaxation& relaxation, Precision precision) {
   if (relaxation.converged) return "at rest";
   if (relaxation.interrupted) return fmt::format("interrupted at step {}", relaxation.steps);
-  if (!relaxation.stagnated) return fmt::format("not at rest after {} steps", relaxation.steps);
+  if (!relaxation.stagnated) {
+    return fmt::format("not at rest after {} steps{}", relaxation.steps,
+                       relaxation.inverted ? ", and elements are inverted" : "");
+  }
   if (in_equilibrium(relaxation, precision)) return "at rest within the rounding of single precision";
   return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
 }

@@ -12,6 +12,7 @@ struct Relaxation {
   double residual = 0.0;     ///< |force on free components| / |reactions and loads|
   bool converged = false;    ///< residual below the tolerance
   bool stagnated = false;    ///< the residual stopped falling above the tolerance
+  bool inverted = false;     ///< an element is inverted at u, or no longer finite
   bool interrupted = false;  ///< the observer ended the run
   StrainEnergies energies;   ///< at u
   double seconds = 0.0;      ///< wall time from the model to the answer
