@@ -182,6 +182,15 @@ TYPED_TEST(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
   EXPECT_TRUE(contains(outcome(answer, choice.precision), "not at rest"));
 }
 
+TEST(Outcome, says_that_elements_are_inverted) {
+  Relaxation answer;
+  answer.steps = 7;
+  EXPECT_EQ(outcome(answer, Precision::double_precision), "not at rest after 7 steps");
+  answer.inverted = true;
+  EXPECT_EQ(outcome(answer, Precision::double_precision),
+            "not at rest after 7 steps, and elements are inverted");
+}
+
 /// The residual must fall below the tolerance; to reach it is not enough. With the residual of an answer for
 /// tolerance the search goes the same way, bit by bit, and must go on from there.
 TYPED_TEST(StepperTest, residual_at_the_tolerance_is_not_yet_rest) {

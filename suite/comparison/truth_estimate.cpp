@@ -144,7 +144,8 @@ void RefinedAnswer::refine() {
     before_ = std::exchange(u_, find_answer(finer, &guess, threads_));
   } catch (const ComputationError& error) {
     throw ComputationError(fmt::format("no answer was found on the refined mesh of {} elements: {}",
-                                       finer.mesh.cells.size(), error.what()));
+                                       finer.mesh.cells.size(), error.what()),
+                           error.breakdown());
   }
   scene_ = std::move(finer);
 }
