@@ -14,6 +14,7 @@ import run
 from clean_runs import CleanRuns
 from command_line import ROOT
 from common.errors import InputError
+from worker import programs_of
 
 PATCHES = patches.read_patches()
 
@@ -53,6 +54,12 @@ def test_table_survives_being_written_anew(tmp_path, monkeypatch):
     monkeypatch.setattr(outcomes, "STORE", tmp_path / "none")
     outcomes.write_table(PATCHES, "0123456789ab")
     assert outcomes.rows_of(table.read_text()) == rows
+
+
+def test_every_test_program_is_run():
+    """They are read from the build's list, in which a program without a file is not there."""
+    programs = {program.name for program in programs_of(ROOT) if not program.is_python}
+    assert programs == {file.stem for file in (ROOT / "verification").glob("*_test.cpp")}
 
 
 def test_names_choose_mutants_and_that_of_the_clean_tree_none():
