@@ -85,7 +85,7 @@ def programs_of(tree):
     """All of them, in the order of the files that list them."""
     text = (tree / "verification" / "CMakeLists.txt").read_text(encoding="utf-8")
     programs = []
-    # The library, the headers that are compiled before, and the programs.
+    # A library, the target whose precompiled headers are shared, and the programs.
     for library, names in re.findall(r"^add_tests\((\w+) \w+\n([^)]*)\)", text, re.MULTILINE):
         programs += [Program(n, False, library != "sandglass_options") for n in names.split()]
     return programs + [Program(folder, True, True) for folder in PYTHON_FOLDERS]
