@@ -45,8 +45,6 @@ class CondensedModelOf final : public SteppedModel {
                                        model_.scene().description.name, model_.choice().method));
   }
 
-  std::optional<double> stable_step() const override { return std::nullopt; }
-
   Work work() const override {
     const auto elements = static_cast<double>(model_.scene().mesh.cells.size());
     return {response_.operations() / elements, response_.bytes() / elements};

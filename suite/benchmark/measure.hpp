@@ -35,6 +35,7 @@ struct Entry {
   Candidate* candidate;
   const NodalField* reference;  ///< forces, N
   double limit;                 ///< of the relative difference
+  int threads = 1;              ///< of the candidate; with one it stays on one processor
 };
 
 /// What was measured of one entry.
