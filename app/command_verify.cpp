@@ -166,9 +166,13 @@ void print_verdict(const Verdict& v) {
   const std::string_view finding = v.finding ? name_of(*v.finding) : "";
   fmt::print("{:<24}{:>13} |{}|{}|{:>8}{:>7}{}{:>8}{:>9.2f}  {}{}\n", v.method, kappa, percents(v.golden),
              percents(v.truth), percent(v.hourglass_energy_ratio), v.operations, cost_columns(v),
-             v.search ? v.search->evaluations : v.motion ? v.motion->steps : 0L,
-             v.search ? v.search->seconds : v.motion ? v.motion->seconds : 0.0, finding,
-             v.ok() ? "" : fmt::format("{}{}", finding.empty() ? "" : "; ", v.status));
+             v.search   ? v.search->evaluations
+             : v.motion ? v.motion->steps
+                        : 0L,
+             v.search   ? v.search->seconds
+             : v.motion ? v.motion->seconds
+                        : 0.0,
+             finding, v.ok() ? "" : fmt::format("{}{}", finding.empty() ? "" : "; ", v.status));
 }
 
 void print_verdicts(const std::vector<Verdict>& verdicts) {
@@ -176,18 +180,21 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
   if (std::all_of(verdicts.begin(), verdicts.end(), in_tables)) return;
   fmt::print(
       "errors in % of the imposed displacement, in motion the largest over time: max over all nodes, max "
-      "over the profile, rms;\noperations and ns per element and step, by the loop of `bench`; mean step of the "
-      "case's own motion, and seconds per\nsimulated second with it; evaluations and seconds of the search for "
-      "equilibrium, or steps and seconds of a motion, other\nruns beside; finding: good means at most 1 %, or "
+      "over the profile, rms;\noperations and ns per element and step, by the loop of `bench`; mean step of "
+      "the "
+      "case's own motion, and seconds per\nsimulated second with it; evaluations and seconds of the search "
+      "for "
+      "equilibrium, or steps and seconds of a motion, other\nruns beside; finding: good means at most 1 %, "
+      "or "
       "the golden's own distance from the truth\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
     if (in_tables(*v)) continue;
     if (case_name == nullptr || *case_name != v->case_name) {
       case_name = &v->case_name;
-      fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>7}{:>8}{:>9}{:>9}{:>8}{:>9}  {}\n", *case_name, "kappa",
-                 "against the golden", "against the truth", "hg/int%", "ops", "ns/step", "step ms", "s/sim. s",
-                 v->motion ? "steps" : "evals", "found, s", "finding");
+      fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>7}{:>8}{:>9}{:>9}{:>8}{:>9}  {}\n", *case_name,
+                 "kappa", "against the golden", "against the truth", "hg/int%", "ops", "ns/step", "step ms",
+                 "s/sim. s", v->motion ? "steps" : "evals", "found, s", "finding");
     }
     print_verdict(*v);
   }

@@ -27,15 +27,15 @@ struct BenchPlan {
 
 /// Times and what follows from them.
 struct Speed {
-  Spread ns;                        ///< per element and step, of batches
-  double p50_us;                    ///< of single steps
-  double p99_us;                    ///< of single steps
-  double max_us;                    ///< of single steps
-  long steps;                       ///< timed
-  double gflops;                    ///< counted operations over the median
-  double peak_share;                ///< of the peak with this number of threads
-  double gbs;                       ///< estimated bytes over the median
-  double memory_share;              ///< of the triad in memory; above 1 when a mesh stays in a cache
+  Spread ns;            ///< per element and step, of batches
+  double p50_us;        ///< of single steps
+  double p99_us;        ///< of single steps
+  double max_us;        ///< of single steps
+  long steps;           ///< timed
+  double gflops;        ///< counted operations over the median
+  double peak_share;    ///< of the peak with this number of threads
+  double gbs;           ///< estimated bytes over the median
+  double memory_share;  ///< of the triad in memory; above 1 when a mesh stays in a cache
   double roofline_fraction;
   std::optional<double> to_tl_perturbation;  ///< time over that of tl-perturbation, same kernel and numbers
   std::optional<double> speedup;  ///< time of the scalar double kernel over this one, same method and threads
@@ -72,9 +72,9 @@ using OwnMotions = std::map<std::string, OwnMotion>;
 OwnMotions follow_own_motions(const Scene& scene, const std::vector<std::string>& methods,
                               const Proceed& proceed);
 
-/// Measures all variants on a scene in turn, from where their motions end; without a motion from waves. When they do not all fit into memory, those that do are measured
-/// together and the others after them. Condensed methods are left out where their factorisation would take
-/// too long.
+/// Measures all variants on a scene in turn, from where their motions end; without a motion from waves. When
+/// they do not all fit into memory, those that do are measured together and the others after them. Condensed
+/// methods are left out where their factorisation would take too long.
 std::vector<BenchRecord> bench(const Scene& scene, const OwnMotions& motions, const BenchPlan& plan,
                                MachineSpeed& machine, const Proceed& proceed);
 

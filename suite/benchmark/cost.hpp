@@ -28,8 +28,8 @@ bool same_work(const MethodChoice& a, const MethodChoice& b);
 
 /// Times the steps of all tasks on this machine with the loop of `bench`: batches of all in turn, in another
 /// order each time, on one processor if all run on one thread. Bodies stand where their own motion ends, or,
-/// where it fails, are stirred by waves. One that cannot be set up gets a status. Throws ComputationError when
-/// told to end.
+/// where it fails, are stirred by waves. One that cannot be set up gets a status. Throws ComputationError
+/// when told to end.
 std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Proceed& proceed);
 
 }  // namespace sandglass

@@ -83,8 +83,7 @@ Scene in_own_motion(const Scene& scene) {
   if (!scene.description.quasi_static) return moving;
   const double crossing = crossing_time(scene), duration = own_motion_crossings * crossing;
   moving.description.quasi_static = false;
-  moving.description.dynamics = {
-      .duration = duration, .damping = own_motion_damping / crossing, .frames = 1};
+  moving.description.dynamics = {.duration = duration, .damping = own_motion_damping / crossing, .frames = 1};
   for (auto& curve : moving.curves) curve = stretched(std::move(curve), duration);
   return moving;
 }

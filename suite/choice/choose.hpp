@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "choice/evaluation.hpp"
 #include "choice/ladder.hpp"
 #include "comparison/step_cost.hpp"
-#include "choice/evaluation.hpp"
 
 namespace sandglass {
 
@@ -60,8 +60,9 @@ using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 /// answer that is measured against the truth, meshes that are too coarse are refined where that element errs,
 /// until it is near enough. For a motion, meshes are tried with longer steps in the same way
 /// (longer_steps.hpp). Then the rungs are timed, put in the order of their cost per simulated second at
-/// the mean step of the scene's own motion (own_motion.hpp), and climbed. Throws InputError for an unknown method and a stored reference that is not there,
-/// ComputationError where the reference finds no answer or when told to end.
+/// the mean step of the scene's own motion (own_motion.hpp), and climbed. Throws InputError for an unknown
+/// method and a stored reference that is not there, ComputationError where the reference finds no answer or
+/// when told to end.
 Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress);
 
 /// Why nothing suffices, in sentences; or what is to be known of the choice.

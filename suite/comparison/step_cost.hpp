@@ -12,10 +12,10 @@ inline constexpr double answers_per_second = 1000.0;
 /// What the explicit steps of a method cost on a scene and machine. The cost of a static equilibrium is
 /// another quantity; see Verdict.
 struct StepCost {
-  double seconds = 0.0;         ///< of a step, or of a condensed answer; median
-  double lower_quartile = 0.0;  ///< s
-  double upper_quartile = 0.0;  ///< s
-  bool condensed = false;       ///< an answer instead of a step
+  double seconds = 0.0;                  ///< of a step, or of a condensed answer; median
+  double lower_quartile = 0.0;           ///< s
+  double upper_quartile = 0.0;           ///< s
+  bool condensed = false;                ///< an answer instead of a step
   std::optional<double> mean_step = {};  ///< s, over the scene's own motion; none: no steps, or it fails
   std::string remark = {};               ///< about the steps of the motion; mostly empty
 

@@ -61,10 +61,10 @@ struct Verdict {
   double stable_step = 0.0;          ///< s, at rest; 0 where unknown
   long operations = 0;               ///< per element and step
   double residual = 0.0;
-  double hourglass_energy_ratio = 0.0;       ///< hourglass over strain energy
-  std::optional<SearchCost> search = {};     ///< of a quasi-static case
-  std::optional<MotionCost> motion = {};     ///< of a dynamic case
-  std::optional<StepCost> step_cost = {};    ///< measured apart, by benchmark/cost.hpp; else none
+  double hourglass_energy_ratio = 0.0;          ///< hourglass over strain energy
+  std::optional<SearchCost> search = {};        ///< of a quasi-static case
+  std::optional<MotionCost> motion = {};        ///< of a dynamic case
+  std::optional<StepCost> step_cost = {};       ///< measured apart, by benchmark/cost.hpp; else none
   std::string family = {};                      ///< what the case shares with its variants
   std::vector<std::string> variants = {};       ///< of the case
   std::vector<PublishedResult> published = {};  ///< one for each published value of the case
