@@ -139,12 +139,14 @@ TEST(Verdict, json_names_each_kind_of_cost) {
   Verdict v = verdict("tl-none", {}, false, 0.5);
   v.elements = 1000;
   v.search = SearchCost{.seconds = 3.0, .evaluations = 16};
-  v.step_cost = StepCost{.seconds = 2e-5, .lower_quartile = 1e-5, .upper_quartile = 4e-5, .mean_step = 5e-4};
+  v.step_cost = StepCost{
+      .seconds = 2e-5, .lower_quartile = 1e-5, .upper_quartile = 4e-5, .checks = 2e-6, .mean_step = 5e-4};
   const std::string text = to_json({}, {v}, {});
-  for (const char* part : {"\"ns_per_element_step\": 20.0", "\"ns_lower_quartile\": 10.0",
-                           "\"ns_upper_quartile\": 40.0", "\"mean_step_seconds\": 0.0005",
-                           "\"seconds_per_simulated_second\": 0.04", "\"equilibrium_seconds\": 3.0",
-                           "\"evaluations\": 16", "\"steps\": null", "\"motion_seconds\": null"}) {
+  for (const char* part :
+       {"\"ns_per_element_step\": 20.0", "\"ns_lower_quartile\": 10.0", "\"ns_upper_quartile\": 40.0",
+        "\"mean_step_seconds\": 0.0005", "\"check_ns_per_element_step\": 2.0",
+        "\"seconds_per_simulated_second\": 0.044", "\"equilibrium_seconds\": 3.0", "\"evaluations\": 16",
+        "\"steps\": null", "\"motion_seconds\": null"}) {
     EXPECT_TRUE(contains(text, part)) << part << text;
   }
   v.search.reset();

@@ -163,7 +163,8 @@ TEST(StepCost, follows_from_step_and_mean_step) {
     EXPECT_LE(costing.cost->seconds, costing.cost->upper_quartile);
   }
   const StepCost& step = *costings[0].cost;
-  EXPECT_DOUBLE_EQ(*step.per_simulated_second(), step.seconds / *motion.mean_step);
+  EXPECT_DOUBLE_EQ(*step.per_simulated_second(), (step.seconds + step.checks) / *motion.mean_step);
+  EXPECT_GT(step.checks, 0.0);
   EXPECT_EQ(costings[1].cost->seconds, step.seconds);
   EXPECT_FALSE(costings[2].cost->mean_step);
   EXPECT_DOUBLE_EQ(*costings[2].cost->per_simulated_second(), 1000.0 * costings[2].cost->seconds);

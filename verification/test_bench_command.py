@@ -16,6 +16,7 @@ FIGURES = (
     "ns_best",
     "ns_lower_quartile",
     "ns_upper_quartile",
+    "check_ns_per_element_step",
     "ratio_to_tl_perturbation",
     "speedup_over_scalar_double",
     "step_p50_us",

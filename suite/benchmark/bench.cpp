@@ -8,6 +8,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "benchmark/condensed_model.hpp"
+#include "benchmark/cost.hpp"
 #include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
 
@@ -15,7 +16,7 @@ namespace sandglass {
 
 namespace {
 
-Speed speed_of(const Timing& timing, const BenchRecord& record, double memory_gbs) {
+Speed speed_of(const Timing& timing, const BenchRecord& record, const Scene& scene, double memory_gbs) {
   const auto elements = static_cast<double>(record.elements);
   Speed speed{};
   speed.ns = spread_of(timing.seconds_per_step);
@@ -23,6 +24,7 @@ Speed speed_of(const Timing& timing, const BenchRecord& record, double memory_gb
                          &speed.ns.worst}) {
     *figure *= 1e9 / elements;
   }
+  speed.check_ns = 1e9 * checks_per_step(timing, scene) / elements;
   speed.p50_us = 1e6 * quantile(timing.seconds_of_a_step, 0.5);
   speed.p99_us = 1e6 * quantile(timing.seconds_of_a_step, 0.99);
   speed.max_us = 1e6 * quantile(timing.seconds_of_a_step, 1.0);
@@ -123,7 +125,7 @@ std::vector<MethodChoice> variants_of(const BenchPlan& plan) {
 
 std::optional<double> BenchRecord::per_simulated_second() const {
   if (!speed || !mean_step) return std::nullopt;
-  return 1e-9 * speed->ns.median * static_cast<double>(elements) / *mean_step;
+  return 1e-9 * (speed->ns.median + speed->check_ns) * static_cast<double>(elements) / *mean_step;
 }
 
 OwnMotions follow_own_motions(const Scene& scene, const std::vector<std::string>& methods,
@@ -172,7 +174,8 @@ std::vector<BenchRecord> bench(const Scene& scene, const OwnMotions& motions, co
       record.ceiling = machine.ceiling(record.choice.precision, threads, working_set);
       record.status = timings[n].status;
       record.force_difference = timings[n].force_difference;
-      if (record.status == "ok") record.speed = speed_of(timings[n], record, machine.memory_gbs(threads));
+      if (record.status == "ok")
+        record.speed = speed_of(timings[n], record, scene, machine.memory_gbs(threads));
       records.push_back(std::move(record));
     }
   }

@@ -28,6 +28,7 @@ struct BenchPlan {
 /// Times and what follows from them.
 struct Speed {
   Spread ns;            ///< per element and step, of batches
+  double check_ns;      ///< per element and step, of the checks of a run between steps
   double p50_us;        ///< of single steps
   double p99_us;        ///< of single steps
   double max_us;        ///< of single steps

@@ -37,6 +37,7 @@ Json to_record(const BenchRecord& record) {
           {"ns_upper_quartile", figure([](const Speed& s) { return s.ns.upper_quartile; })},
           {"ratio_to_tl_perturbation", figure([](const Speed& s) { return s.to_tl_perturbation; })},
           {"speedup_over_scalar_double", figure([](const Speed& s) { return s.speedup; })},
+          {"check_ns_per_element_step", figure([](const Speed& s) { return s.check_ns; })},
           {"mean_step_seconds", or_null(record.mean_step)},
           {"seconds_per_simulated_second", or_null(record.per_simulated_second())},
           {"step_p50_us", figure([](const Speed& s) { return s.p50_us; })},

@@ -48,7 +48,8 @@ Timed make_timed(const CostTask& task, std::size_t number, const Proceed& procee
 }
 
 /// Times models that are in memory together.
-void time_together(std::vector<Timed>& group, std::vector<Costing>& costings, const Proceed& proceed) {
+void time_together(std::span<const CostTask> tasks, std::vector<Timed>& group, std::vector<Costing>& costings,
+                   const Proceed& proceed) {
   std::vector<Entry> entries;
   for (const auto& timed : group) entries.push_back(timed.entry());
   const auto timings = measure(entries, {.repetitions = repetitions}, proceed);
@@ -58,11 +59,16 @@ void time_together(std::vector<Timed>& group, std::vector<Costing>& costings, co
     cost.seconds = seconds.median;
     cost.lower_quartile = seconds.lower_quartile;
     cost.upper_quartile = seconds.upper_quartile;
+    cost.checks = checks_per_step(timings[n], *tasks[group[n].task].scene);
   }
   group.clear();
 }
 
 }  // namespace
+
+double checks_per_step(const Timing& timing, const Scene& scene) {
+  return spread_of(timing.seconds_of_a_check).median / scene.description.dynamics.check_interval;
+}
 
 bool same_work(const MethodChoice& a, const MethodChoice& b) {
   return a.method == b.method && a.precision == b.precision && a.accuracy == b.accuracy &&
@@ -95,10 +101,10 @@ std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Procee
     const auto elements = static_cast<double>(tasks[n].scene->mesh.cells.size());
     taken += 2.0 * group.back().model->work().bytes * elements;
     if (taken < room) continue;
-    time_together(group, costings, proceed);
+    time_together(tasks, group, costings, proceed);
     taken = 0.0;
   }
-  time_together(group, costings, proceed);
+  time_together(tasks, group, costings, proceed);
   for (std::size_t n = 0; n < tasks.size(); ++n) {
     costings[n] = costings[twin[n]];
     if (!costings[n].cost || tasks[n].motion == nullptr) continue;

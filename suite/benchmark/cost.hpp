@@ -23,6 +23,9 @@ struct Costing {
   std::string status = "ok";
 };
 
+/// The checks of a run, shared out over its steps, s.
+double checks_per_step(const Timing& timing, const Scene& scene);
+
 /// Whether two tasks do the same work in a step: kappa does not change it.
 bool same_work(const MethodChoice& a, const MethodChoice& b);
 

@@ -53,6 +53,8 @@ void time_batches(const Entry& entry, int steps, Timing& timing) {
     timing.seconds_of_a_step.push_back(seconds_between(before, now));
     before = now;
   }
+  candidate.check();
+  timing.seconds_of_a_check.push_back(seconds_between(before, Clock::now()));
 }
 
 }  // namespace
@@ -76,6 +78,7 @@ std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSetting
     candidate.require_healthy();
     timings[n].seconds_per_step.clear();
     timings[n].seconds_of_a_step.clear();
+    timings[n].seconds_of_a_check.clear();
     order.push_back(n);
   }
   for (int repetition = 0; repetition < settings.repetitions; ++repetition) {

@@ -54,6 +54,11 @@ class SteppedModelOf final : public SteppedModel {
     leapfrog_.take(step_size_, coefficients_, [this](Body<Real>& body) { body.impose(loading_); });
   }
 
+  void check() override {
+    require_healthy();
+    stable_step_ = leapfrog_.stable_step(model_).step;
+  }
+
   void require_healthy() override {
     try {
       leapfrog_.body().require_healthy(0);
@@ -75,7 +80,7 @@ class SteppedModelOf final : public SteppedModel {
   Leapfrog<Real> leapfrog_;
   State<Real> start_;
   double loading_ = 0.0;
-  double step_size_ = 0.0;
+  double step_size_ = 0.0, stable_step_ = 0.0;
   LeapfrogClock::Coefficients coefficients_{};
 };
 

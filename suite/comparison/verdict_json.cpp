@@ -39,6 +39,7 @@ void add_cost(Json& record, const Verdict& verdict) {
   record["ns_per_element_step"] = ns(&StepCost::seconds);
   record["ns_lower_quartile"] = ns(&StepCost::lower_quartile);
   record["ns_upper_quartile"] = ns(&StepCost::upper_quartile);
+  record["check_ns_per_element_step"] = ns(&StepCost::checks);
   record["mean_step_seconds"] = cost ? or_null(cost->mean_step) : Json(nullptr);
   record["step_remark"] = cost ? cost->remark : "";
   record["seconds_per_simulated_second"] = cost ? or_null(cost->per_simulated_second()) : Json(nullptr);
