@@ -231,7 +231,9 @@ def test_rest(block):
         assert 0 < seconds[0] <= seconds[1] <= seconds[2]
         # They are shares of the evaluations.
         for share in (seconds[0] / seconds[2], seconds[1] / seconds[2]):
-            assert record["steps"] * share == pytest.approx(round(record["steps"] * share))
+            assert record["evaluations"] * share == pytest.approx(
+                round(record["evaluations"] * share)
+            )
         assert record["precision"] == "float" or record["residual"] < 1e-8
 
 

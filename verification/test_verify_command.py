@@ -62,7 +62,10 @@ def test_verify_gives_the_same_figures_for_any_number_of_threads(block):
         assert sandglass("verify", block, "-j", threads, "--json", verdicts).returncode == 0
         records = json.loads(verdicts.read_text())["records"]
         figures.append(
-            [(r["method"], r["kappa"], r["evaluations"], r["golden"], r["residual"]) for r in records]
+            [
+                (r["method"], r["kappa"], r["evaluations"], r["golden"], r["residual"])
+                for r in records
+            ]
         )
     assert figures[0] == figures[1]
 
