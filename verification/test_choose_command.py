@@ -136,9 +136,10 @@ def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
     assert not chosen.exists() and document["chosen"] is None
     assert "nothing suffices" in outcome.stdout and "was not written" in outcome.stdout
     words = " ".join(document["remarks"])
-    assert "cannot be shown" in words and "no method mends it" in words and "the nearest" in words
+    assert "nothing can be shown" in words and "no method can be nearer" in words
+    assert "the nearest" in words
     assert all(r["reason"] and r["outcome"] == "refused" for r in document["rungs"])
-    assert all(remark in outcome.stdout for remark in document["remarks"])
+    assert all(remark in " ".join(outcome.stdout.split()) for remark in document["remarks"])
 
 
 def test_without_a_stored_golden_it_is_the_same_choice_as_with_one(block):

@@ -1,8 +1,11 @@
 #include "io/case_variants.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 
 #include "base/error.hpp"
+#include "base/names.hpp"
 #include "io/table_reader.hpp"
 
 namespace sandglass {
@@ -15,14 +18,41 @@ struct Axis {
   toml::source_position position;
 };
 
-/// What `parse()` reads of a file, or of a text of that name.
-template <class Parse>
-toml::table parsed(const std::string& name, const Parse& parse) {
+/// A line of a text, from 1.
+std::string line_of(const std::string& text, std::size_t number) {
+  std::istringstream stream(text);
+  std::string line;
+  for (std::size_t n = 0; n < number && std::getline(stream, line); ++n) {
+  }
+  return line;
+}
+
+/// What is wrong with a line that is no TOML: the parser's words, or those of the slip that they hide.
+std::string parse_rule(std::string_view description, const std::string& line) {
+  // The parser meets the end of the line, or of the file, in the middle of a text.
+  const bool in_text = description.find(" string: ") != std::string_view::npos;
+  if (in_text && (description.find("control characters") != std::string_view::npos ||
+                  description.ends_with("end-of-file"))) {
+    return "a quote is open: the text has no end";
+  }
+  std::istringstream words(line);
+  for (std::string word; words >> word;) {
+    word.erase(0, word.find_first_not_of("[={"));
+    word.erase(word.find_last_not_of(",]}") + 1);
+    if (const auto hint = decimal_comma_hint(word); !hint.empty())
+      return fmt::format("{}{}", description, hint);
+  }
+  return std::string(description);
+}
+
+/// The document of a text; messages call it `name`.
+toml::table parse(const std::string& text, const std::string& name) {
   try {
-    return parse();
+    return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    throw InputError(
-        fmt::format("{}:{}: is not TOML: {}", name, error.source().begin.line, error.description()));
+    const auto line = error.source().begin.line;
+    throw InputError(fmt::format("{}:{}: is not TOML: {}", name, line,
+                                 parse_rule(error.description(), line_of(text, line))));
   }
 }
 
@@ -31,7 +61,11 @@ toml::table parse(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: no such case file", path.string()));
   }
-  return parsed(path.string(), [&] { return toml::parse_file(path.string()); });
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  return parse(text.str(), path.string());
 }
 
 bool fits_a_file_name(const std::string& name) {
@@ -47,7 +81,7 @@ std::vector<std::string> read_names(TableReader& variants, const std::string& ke
       table.fail("name", fmt::format("= '{}' must consist of letters, digits, '.', '_' and '-'", name));
     }
     if (std::find(names.begin(), names.end(), name) != names.end()) {
-      table.fail("name", fmt::format("= '{}' is there twice; every variant needs its own", name));
+      table.fail("name", fmt::format("= '{}' appears twice; every variant needs its own name", name));
     }
     names.push_back(std::move(name));
   }
@@ -119,15 +153,15 @@ CaseTables read_case_tables(const std::filesystem::path& path, const std::vector
   for (auto& tables : read_case_tables(path)) {
     if (tables.variants == variants) return std::move(tables);
   }
-  throw InputError(fmt::format("{}: has no variant '{}' any more", path.string(), fmt::join(variants, "-")));
+  throw InputError(fmt::format("{}: no longer has a variant '{}'", path.string(), fmt::join(variants, "-")));
 }
 
 CaseTables parse_case_text(const std::string& text, const std::string& name) {
-  CaseTables tables{parsed(name, [&] { return toml::parse(text, name); }), {}};
+  CaseTables tables{parse(text, name), {}};
   for (const char* key : {"mesh", "variants"}) {
     if (tables.root.contains(key)) {
       TableReader(tables.root, name, "")
-          .fail(key, "must not be here: the mesh comes beside the text, one case");
+          .fail(key, "must not be here: the text is one case, and its mesh comes separately");
     }
   }
   return tables;
