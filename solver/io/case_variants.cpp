@@ -27,22 +27,22 @@ std::string line_of(const std::string& text, std::size_t number) {
   return line;
 }
 
-/// What is wrong with a line that is no TOML: the parser's words, or those of the slip that they hide.
-std::string parse_rule(std::string_view description, const std::string& line) {
-  // The parser meets the end of the line, or of the file, in the middle of a text.
-  const bool in_text = description.find(" string: ") != std::string_view::npos;
-  if (in_text && (description.find("control characters") != std::string_view::npos ||
-                  description.ends_with("end-of-file"))) {
-    return "a quote is open: the text has no end";
-  }
+/// Whether the parser met the end of a line, or of the file, in the middle of a text.
+bool in_open_quote(std::string_view description) {
+  return description.find(" string: ") != std::string_view::npos &&
+         (description.find("control characters") != std::string_view::npos ||
+          description.ends_with("end-of-file"));
+}
+
+/// What a decimal comma in a line should be; empty where there is none.
+std::string comma_hint(const std::string& line) {
   std::istringstream words(line);
   for (std::string word; words >> word;) {
-    word.erase(0, word.find_first_not_of("[={"));
+    word.erase(0, word.find_last_of("[={") + 1);
     word.erase(word.find_last_not_of(",]}") + 1);
-    if (const auto hint = decimal_comma_hint(word); !hint.empty())
-      return fmt::format("{}{}", description, hint);
+    if (auto hint = decimal_comma_hint(word); !hint.empty()) return hint;
   }
-  return std::string(description);
+  return "";
 }
 
 /// The document of a text; messages call it `name`.
@@ -50,9 +50,19 @@ toml::table parse(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    const auto line = error.source().begin.line;
-    throw InputError(fmt::format("{}:{}: is not TOML: {}", name, line,
-                                 parse_rule(error.description(), line_of(text, line))));
+    std::size_t line = error.source().begin.line;
+    std::string rule(error.description());
+    if (in_open_quote(rule)) {
+      if (rule.ends_with("end-of-file")) {  // the quote that is open is the last of three in a row
+        const std::string before =
+            text.substr(0, std::min(text.size(), std::max(text.rfind("\"\"\"") + 1, text.rfind("'''") + 1)));
+        line = 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
+      }
+      rule = "a quote is open: the text has no end";
+    } else {
+      rule += comma_hint(line_of(text, line));
+    }
+    throw InputError(fmt::format("{}:{}: is not TOML: {}", name, line, rule));
   }
 }
 
