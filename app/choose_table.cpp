@@ -43,7 +43,7 @@ std::string head_text(const Scene& scene, const Choice& choice) {
              "us/step: median of a step, or of a condensed answer, on this machine with {} "
              "thread{}; s/sim. s: wall time of a simulated second at the mean step of the case's own motion, "
              "or of {:.0f} condensed answers: what a real-time loop pays, and the order of "
-             "the rows; run: what the run of a motion took",
+             "the rows; run s: the same, as the run of a motion took it",
              demand.threads, demand.threads == 1 ? "" : "s", answers_per_second));
 }
 
@@ -159,9 +159,11 @@ std::string choose_table(const Scene& scene, const Choice& choice) {
   for (const auto& remark : remarks(choice)) text += line("note: " + remark);
   if (!choice.chosen) return text;
   const Attempt& chosen = choice.attempts[*choice.chosen];
-  return text + line(fmt::format("choose {}, {}: {} at most, {:.3g} s for a simulated second",
-                                 name_of(chosen.rung), chosen.rung.mesh->name(),
-                                 percent(*chosen.evaluation.error), *chosen.cost->per_simulated_second()));
+  if (!chosen.cost->remark.empty()) text += line("note: " + chosen.cost->remark);
+  return text +
+         line(fmt::format("choose {}, {}: {} at most, {} s for a simulated second", name_of(chosen.rung),
+                          chosen.rung.mesh->name(), percent(*chosen.evaluation.error),
+                          number_or_dash(chosen.cost->per_simulated_second())));
 }
 
 }  // namespace sandglass

@@ -96,7 +96,7 @@ void add_choose_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "choose",
       "the cheapest method, precision and mesh that is accurate enough for a case on this machine.\n"
-      "Tries them from the cheapest on and tells why each was refused; exit code 1 when nothing suffices");
+      "Tries them from the cheapest on, and says why others were rejected; exit code 1 if nothing suffices");
   command->add_option("CASE", options->name, "name or file of a case")->required();
   command
       ->add_option("--tolerance", options->tolerance,
@@ -104,7 +104,7 @@ void add_choose_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--against", options->against,
-                   "measure errors against the case's stored 'golden' or 'truth'; without it against "
+                   "measure errors against the case's stored 'golden' or 'truth'; by default against "
                    "tl-mean-dilatation on the same mesh, computed here")
       ->check(CLI::IsMember({"golden", "truth"}));
   command->add_flag("--realtime", options->real_time, "a simulated second must take at most a second");

@@ -72,7 +72,7 @@ Displacements twin_of(const Scene& scene) {
   return std::move(answer.u);
 }
 
-/// What displacements alone tell: how much work they took is not known, so that locking is not told.
+/// What displacements alone show. How much work they took is not known, so locking is never found.
 Finding finding_of(const Scene& scene, const References& references, const Displacements& u) {
   const double unit = displacement_unit(scene, *references.golden);
   Symptoms found = symptoms(scene, u, 0.0, *references.golden, unit);
@@ -163,7 +163,7 @@ int run(const ScoreOptions& options) {
 void add_score_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App* command =
-      app.add_subcommand("score", "how near displacements of any program are to the references");
+      app.add_subcommand("score", "compare displacements computed by any program with the references");
   command
       ->add_option("FILE", options->file,
                    "displacements, of Sandglass or of another program; exchange/README.md lists the formats")
@@ -171,11 +171,11 @@ void add_score_command(CLI::App& app, int& exit_code) {
   command->add_option("--case", options->case_name, "name or file of the case that they answer")
       ->type_name("CASE")
       ->required();
-  command->add_option("--name", options->name, "what the method is called; the file's name when left out");
+  command->add_option("--name", options->name, "name of the method; by default that of the file");
   command->add_option("--field", options->matching.field, "name of the displacements in the file");
   command
       ->add_option("--tolerance", options->matching.tolerance,
-                   "distance at which two nodes are one, as a fraction of the diagonal of the nodes")
+                   "nodes nearer than this are the same, as a fraction of the diagonal of the mesh")
       ->capture_default_str();
   command->add_option("--json", options->json, "write the figures to this file, as `verify --json` does");
   command

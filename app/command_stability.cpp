@@ -182,12 +182,10 @@ void add_stability_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--methods", options->methods, "only these methods, with spaces between")
       ->type_name("METHOD");
-  command
-      ->add_option("--folder", options->folder,
-                   "keeps every finished cell; what is there is not computed again")
+  command->add_option("--folder", options->folder, "folder of finished cells, which are not computed again")
       ->capture_default_str();
   command->add_option("--json", options->json, "write all maps to this file");
-  command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
+  command->add_option("-j,--threads", options->threads, "runs at the same time; 0 for one per processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_flag("--describe", options->describe, "print the axes with their ranges and usual values");

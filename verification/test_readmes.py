@@ -144,6 +144,13 @@ def followed(tmp_path_factory):
     return follow
 
 
+def test_commands_between_blocks_of_any_kind_are_found():
+    """The end of a block with a directive is no beginning of another, which would hide what follows."""
+    block = "```{literalinclude} file\n:language: toml\n```\n"
+    found = parts(f"{block}\ntext\n\n    first\n\n{block}\n    second\n\n```\n    output\n```\n")
+    assert [(part.kind, part.text) for part in found] == [("command", "first"), ("command", "second")]
+
+
 @pytest.mark.parametrize("document", FOLLOWED)
 def test_a_document_is_followed(document, followed):
     followed(document)
