@@ -262,7 +262,7 @@ def rows_of(text):
 
 @pytest.mark.parametrize("arguments", [(), ("--all",)])
 def test_what_is_printed_fits_a_terminal_and_says_what_the_file_says(tmp_path, arguments):
-    """The chosen row is marked; all that was rejected is counted by its reason, and shown on demand."""
+    """The chosen row is marked; what was rejected is counted by reason, and shown on demand."""
     outcome, document = choose(copied("column", tmp_path), "--tolerance", "2%", *arguments)
     assert outcome.returncode == 0, outcome.stderr
     assert max(map(len, outcome.stdout.splitlines())) <= 100

@@ -145,10 +145,14 @@ def followed(tmp_path_factory):
 
 
 def test_commands_between_blocks_of_any_kind_are_found():
-    """The end of a block with a directive is no beginning of another, which would hide what follows."""
+    """The end of a block with a directive does not begin another, which would hide the rest."""
     block = "```{literalinclude} file\n:language: toml\n```\n"
-    found = parts(f"{block}\ntext\n\n    first\n\n{block}\n    second\n\n```\n    output\n```\n")
-    assert [(part.kind, part.text) for part in found] == [("command", "first"), ("command", "second")]
+    output = "```\n    output\n```\n"
+    found = parts(f"{block}\ntext\n\n    first\n\n{block}\n    second\n\n{output}")
+    assert [(part.kind, part.text) for part in found] == [
+        ("command", "first"),
+        ("command", "second"),
+    ]
 
 
 @pytest.mark.parametrize("document", FOLLOWED)

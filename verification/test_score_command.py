@@ -1,4 +1,4 @@
-"""`sandglass score --limit`: which error a limit holds for, exit codes, what is printed and kept."""
+"""`sandglass score --limit`: the error that a limit holds for, exit codes, what is printed."""
 
 import json
 
@@ -25,7 +25,7 @@ def scored(answer, *arguments):
 
 
 def test_limits_just_above_and_below_the_errors(answer):
-    """Each figure against its own limit: max and rms differ, so that no one stands for the other."""
+    """Each figure has its own limit: max and rms differ, so that neither stands for the other."""
     outcome, record = scored(answer)
     assert outcome.returncode == 0 and "limit" not in outcome.stdout
     largest, mean = (record["golden"][f"{name}_relative_error"] for name in ("max", "rms"))
