@@ -349,9 +349,11 @@ void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks>
   options->ranks = std::move(ranks);
   CLI::App* command = app.add_subcommand("run", "compute a case with a method");
   command->add_option("CASE", options->name, "name or file of the case");
-  command->add_option("-m,--method", options->method,
-                      "method, see `sandglass methods`; without it that of the case's [method], else "
-                      "tl-perturbation in double with kappa auto");
+  command
+      ->add_option("-m,--method", options->method,
+                   "method, see `sandglass methods`; without it that of the case's [method], else "
+                   "tl-perturbation in double with kappa auto")
+      ->type_name("METHOD");
   command->add_option("-k,--kappa", options->kappa, "strength of the hourglass control, a number or 'auto'");
   command->add_option(
       "--kappa-modulus", options->kappa_modulus,

@@ -127,7 +127,7 @@ int map_stability(const StabilityOptions& options) {
   const Case description = find_case(options.name);
   if (!description.quasi_static) {
     throw InputError(
-        fmt::format("{}: a dynamic case has no maps; dynamic maps, too, start from a quasi-static case",
+        fmt::format("{}: is a dynamic case; all maps, dynamic ones too, start from a quasi-static case",
                     description.file.string()));
   }
   const auto maps = make_maps(options, description);
@@ -148,8 +148,8 @@ int map_stability(const StabilityOptions& options) {
   });
   if (!complete) {
     throw ComputationError(
-        fmt::format("stability: interrupted; the cells in {} are complete, and the same command goes "
-                    "on from them",
+        fmt::format("stability: interrupted; finished cells are in {}, and the same command continues "
+                    "from there",
                     options.folder));
   }
   std::vector<std::vector<Cell>> cells(maps.size());
@@ -180,14 +180,13 @@ void add_stability_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--values", options->values, "other values of an axis, AXIS=V1,V2,...")
       ->allow_extra_args(false);
-  command->add_option("--methods", options->methods, "only these methods, with spaces between");
-  command
-      ->add_option("--folder", options->folder,
-                   "keeps every finished cell; what is there is not computed again")
+  command->add_option("--methods", options->methods, "only these methods, with spaces between")
+      ->type_name("METHOD");
+  command->add_option("--folder", options->folder, "folder of finished cells, which are not computed again")
       ->capture_default_str();
   command->add_option("--json", options->json, "write all maps to this file");
-  command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
-      ->check(CLI::NonNegativeNumber)
+  command->add_option("-j,--threads", options->threads, "runs at the same time; 0 for one per processor")
+      ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_flag("--describe", options->describe, "print the axes with their ranges and usual values");
   command->callback([options, &exit_code] {

@@ -259,7 +259,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--no-costs", options->no_costs, "do not measure what steps cost");
   command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = verify(*options); });
 }

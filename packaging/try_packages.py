@@ -129,6 +129,9 @@ def try_packages(system, deb, wheel):
     system.run("apt-get update")
     system.run(f"apt-get install -y --reinstall ./{deb.name}")
     use(system, case, run, "/usr/lib/python3/dist-packages")
+    system.run(
+        "ls /usr/share/man/man1/sandglass.1 /usr/share/bash-completion/completions/sandglass"
+    )
 
     system.run("apt-get install -y --no-install-recommends cmake g++ make")
     system.run("cmake -S cpp -B example && cmake --build example")

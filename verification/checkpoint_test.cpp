@@ -249,7 +249,7 @@ TEST_F(CheckpointFileTest, of_another_run_is_refused_and_told_in_what) {
   EXPECT_TRUE(contains(text, "method: 'tl-full' in the checkpoint, 't4' in this run"));
   EXPECT_TRUE(contains(text, "revision: 'abc' in the checkpoint, 'abd' in this run"));
   EXPECT_EQ(text.find("precision"), std::string::npos);
-  EXPECT_TRUE(contains(text, "delete it to start anew"));
+  EXPECT_TRUE(contains(text, "delete it to start again"));
 }
 
 /// No bit can change unseen, be it in the seal, in the library's own structures, in numbers or behind them.

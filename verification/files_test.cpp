@@ -292,7 +292,7 @@ TEST(MeshFile, wrong_contents_are_refused) {
       contains(error_with({0, 1, 2, 3, 4, 5, 6, 8}, 8), "/mesh/cells names node 8; allowed are 0 to 7"));
   EXPECT_TRUE(contains(error_with({0, 1, 2, 3, 4, 5, 6, -1}, 8), "names node -1"));
   EXPECT_TRUE(contains(error_with({0, 1, 2, 3, 4, 5, 4, 4}, 8),
-                       "node 6 of /mesh/points belongs to no element, as do 2 in all"));
+                       "node 6 of /mesh/points belongs to no element (2 such nodes in all)"));
 }
 
 }  // namespace

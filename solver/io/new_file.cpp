@@ -66,7 +66,8 @@ fs::path temporary_path(const fs::path& path, int process) {
 NewFile::NewFile(const fs::path& path) : path_(path), temporary_(temporary_path(path, getpid())) {
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    throw InputError(fmt::format("{}: cannot be put in place: what stands there is no file", path.string()));
+    throw InputError(
+        fmt::format("{}: cannot be put in place: something that is not a file has this name", path.string()));
   }
   remove_abandoned(path);
   const int file = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -102,8 +103,8 @@ void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (!error && fs::is_directory(path, error)) return;
-  throw InputError(fmt::format("{}: cannot be made a folder: {}", path.string(),
-                               error ? error.message() : "something else stands there"));
+  throw InputError(fmt::format("{}: this folder cannot be created: {}", path.string(),
+                               error ? error.message() : "a file has this name"));
 }
 
 }  // namespace sandglass
