@@ -158,13 +158,12 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
   for (const Vector& d : u) largest = std::max(largest, length(d));
   fmt::print("largest displacement {}", length_text(largest));
   if (!volume_ratios.empty()) {
-    const auto smallest = std::min_element(volume_ratios.begin(), volume_ratios.end());
-    fmt::print("; smallest det F {:.3g}, the mean of element {}", *smallest,
-               smallest - volume_ratios.begin());
+    fmt::print("; smallest det F of an element {:.3g}",
+               *std::min_element(volume_ratios.begin(), volume_ratios.end()));
   }
   const bool quasi_static = scene.description.quasi_static;
   const double share = history.hourglass_share(quasi_static);
-  if (share > 0.0) fmt::print("; hourglass energy {:.2g} % of strain energy", 100.0 * share);
+  if (share > 0.0) fmt::print("; hourglass energy {:.3g} % of strain energy", 100.0 * share);
   const HistoryRow& row = history.last();
   fmt::print("\nenergies (J): strain {:.6g}, hourglass {:.6g}", row.strain, row.hourglass);
   // In a relaxation part of the external work is damped away, so that there its sum tells nothing.
@@ -183,7 +182,7 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
   if (share > much_hourglass) {
     fmt::print(
         stderr,
-        "warning: hourglass energy is {:.2g} % of strain energy, above {:g} %: the answer is in part that of "
+        "warning: hourglass energy is {:.3g} % of strain energy, above {:g} %: the answer is in part that of "
         "the hourglass control; compare with --method {}, which has no hourglass modes, or refine the mesh\n",
         100.0 * share, 100.0 * much_hourglass, golden_method);
   }

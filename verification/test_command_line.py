@@ -312,7 +312,7 @@ def test_run_tells_how_many_subcycles_it_took(block):
         (bar + end, 16, ", 4 subcycles, complete"),
         (bar + end, 2, ", 2 subcycles, complete"),
         (bar, 16, ", 1 subcycle, complete"),
-        (bar + end, 1, " s, complete"),
+        (bar + end, 1, "s, complete"),
     ]:
         block.write_text(dynamic(text, duration=0.1, subcycles=most))
         outcome = sandglass("run", block)
