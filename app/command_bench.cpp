@@ -254,7 +254,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--json", options->json, "write every figure to this file");
   command->callback([options, bodies, &exit_code] {
-    if (!options->json.empty()) require_place(options->json);
+    if (!options->json.empty()) require_place(options->json, {options->names.begin(), options->names.end()});
     exit_code = options->rest         ? run_rest(*options)
                 : bodies->count() > 0 ? run_bodies(*options)
                                       : run_bench(*options);

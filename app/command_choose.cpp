@@ -13,6 +13,7 @@
 #include "choice/case_writer.hpp"
 #include "choice/choose_json.hpp"
 #include "io/case_file.hpp"
+#include "io/new_file.hpp"
 #include "io/text_file.hpp"
 
 namespace sandglass {
@@ -60,14 +61,9 @@ int run_choose(const ChooseOptions& options) {
                 .all = options.all};
   if (!options.budget.empty()) demand.budget = parse_budget(options.budget);
   require_threads(options.threads);
-  for (const auto& place : {options.output, options.json}) {
-    if (!place.empty()) require_place(place);
-  }
   const Scene scene = read_scene(find_case(options.name));
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.output, scene.description.file, ignored)) {
-    throw InputError(
-        fmt::format("--output = '{}' is the case itself; it must be another file", options.output));
+  for (const auto& place : {options.output, options.json}) {
+    if (!place.empty()) require_place(place, files_of(scene.description));
   }
   watch_for_interrupt();
   std::optional<Choice> choice;

@@ -150,7 +150,11 @@ int run(const ScoreOptions& options) {
     throw InputError(
         fmt::format("{}: a dynamic case has no answer to score", scene.description.file.string()));
   }
-  if (!options.json.empty()) require_place(options.json);
+  if (!options.json.empty()) {
+    auto inputs = files_of(scene.description);
+    inputs.emplace_back(options.file);
+    require_place(options.json, inputs);
+  }
   const Verdict verdict = score(scene, options);
   print(verdict);
   const bool holds = check(limits, verdict, options.against);

@@ -14,6 +14,7 @@
 #include "base/names.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
+#include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "stability/cell_files.hpp"
 
@@ -125,6 +126,7 @@ void describe_axes() {
 
 int map_stability(const StabilityOptions& options) {
   const Case description = find_case(options.name);
+  if (!options.json.empty()) require_place(options.json, files_of(description));
   if (!description.quasi_static) {
     throw InputError(
         fmt::format("{}: is a dynamic case; all maps, dynamic ones too, start from a quasi-static case",

@@ -19,6 +19,7 @@
 #include "comparison/published_table.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
+#include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
@@ -218,7 +219,9 @@ int verify(const VerifyOptions& options) {
   const Precision precision = parse_precision(options.precision);
   watch_for_interrupt();
   const auto subjects = read_subjects(options.names);
-  if (!options.json.empty()) require_place(options.json);
+  for (const auto& subject : subjects) {
+    if (!options.json.empty()) require_place(options.json, files_of(subject.scene.description));
+  }
   if (!options.results.empty()) make_folder(options.results);
   const auto tasks = make_tasks(subjects, precision);
   Outcome outcome = run_all(tasks, options);

@@ -186,17 +186,16 @@ def test_the_written_case_is_the_users_own(block, tmp_path):
 
 def test_run_takes_the_method_of_the_case_unless_told(block):
     block.write_text(BLOCK + '\n[method]\nname = "tl-perturbation"\nkappa = 0.02\n')
-    assert "block tl-perturbation 0.02:" in sandglass("run", block).stdout
-    assert "block tl-perturbation 0.03:" in sandglass("run", block, "-k", "0.03").stdout
+    assert "tl-perturbation, kappa 0.02, double" in sandglass("run", block).stdout
+    assert "tl-perturbation, kappa 0.03, " in sandglass("run", block, "-k", "0.03").stdout
     assert "(auto)" in sandglass("run", block, "-k", "auto").stdout
     # The case's kappa applies to its own method only.
-    assert "block tl-full :" in sandglass("run", block, "-m", "tl-full").stdout
-    assert (
-        "block ul-perturbation 0.00649" in sandglass("run", block, "-m", "ul-perturbation").stdout
-    )
+    assert "tl-full, double" in sandglass("run", block, "-m", "tl-full").stdout
+    updated = sandglass("run", block, "-m", "ul-perturbation").stdout
+    assert "ul-perturbation, kappa 0.00649" in updated
     block.write_text(BLOCK + '\n[method]\nname = "tl-full"\nprecision = "float"\n')
-    assert "at rest within the rounding of single" in sandglass("run", block).stdout
-    assert "block tl-full : at rest after" in sandglass("run", block, "-p", "double").stdout
+    assert "tl-full, float" in sandglass("run", block).stdout
+    assert "tl-full, double" in sandglass("run", block, "-p", "double").stdout
 
 
 @pytest.mark.parametrize(

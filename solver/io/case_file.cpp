@@ -348,6 +348,15 @@ Case read_case_file(const std::filesystem::path& path) {
   return std::move(cases.front());
 }
 
+std::vector<std::filesystem::path> files_of(const Case& description) {
+  std::vector<std::filesystem::path> files{description.file};
+  if (const auto* mesh = std::get_if<MeshFile>(&description.mesh)) files.push_back(mesh->path);
+  for (const CaseMaterial& material : description.materials) {
+    if (const auto* listed = std::get_if<ListedFibres>(&material.fibres)) files.push_back(listed->file);
+  }
+  return files;
+}
+
 Scene read_scene(Case description) {
   if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
     MeshWithSets read = read_mesh_of(description, *file);

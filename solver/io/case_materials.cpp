@@ -16,7 +16,7 @@ namespace {
 ListedFibres read_fibre_file(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: cannot be read", path.string()));
-  ListedFibres listed;
+  ListedFibres listed{.fibres = {}, .sheets = {}, .file = path};
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;

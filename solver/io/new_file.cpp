@@ -95,7 +95,13 @@ void NewFile::commit() {
   synchronize(folder_of(path_));  // as far as the system does that to folders
 }
 
-void require_place(const fs::path& path) {
+void require_place(const fs::path& path, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code ignored;
+    if (!fs::equivalent(path, input, ignored)) continue;
+    throw InputError(fmt::format(
+        "{}: is what this command reads, and would be lost; name another file to write", path.string()));
+  }
   const NewFile tried(path);
 }
 
