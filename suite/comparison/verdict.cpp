@@ -111,9 +111,8 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
   if (references.golden) {
     verdict.symptoms = symptoms(scene, u, energies.strain + energies.hourglass, *references.golden,
                                 displacement_unit(scene, *references.golden));
-    verdict.finding = verdict.ok()
-                          ? diagnose(*verdict.symptoms, good_limit(golden_to_truth(scene, references)))
-                          : Finding::not_at_rest;
+    verdict.finding =
+        verdict.ok() ? judge(*verdict.symptoms, golden_to_truth(scene, references)) : Finding::not_at_rest;
   }
   fill_computed(scene, u.back(), verdict.published);
   return verdict;
