@@ -152,7 +152,7 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
       "over "
       "the profile, rms;\nstable step at rest; operations and time per element and evaluation, other runs "
       "beside; finding: good means at most 1 %, or\nthe golden's own distance from the truth, up to 10 %; "
-      "nearer to a golden farther off than that: not judged\n");
+      "beyond, up to that distance: not judged\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
     if (in_tables(*v)) continue;

@@ -8,8 +8,8 @@ import jinja2
 import markupsafe
 
 from common.files import write_whole, writing
-from sandglass_report import bending, bodies, interactive, kappa, lines, maps, measured, paper
-from sandglass_report import plates, provenance, published, replication, speed, style, tips, viewer
+from sandglass_report import bending, bodies, findings, interactive, kappa, lines, maps, measured
+from sandglass_report import paper, plates, provenance, published, replication, speed, style, tips, viewer
 from sandglass_report.points import make_points
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -131,6 +131,9 @@ def _of_verdicts(inputs, palette):
         "limits": sorted(verdicts.limits, key=lambda limit: limit.holds),
         "runs": verdicts.runs,
         "failed": [run for run in verdicts.runs if not run.ok],
+        "failures": findings.failures(verdicts),
+        "captions": {s.name: findings.caption(s, paper.METHOD) for s in subjects},
+        "sound": published.SOUND,
         "broken": [limit for limit in verdicts.limits if not limit.holds],
         "subjects": subjects,
         "palette": palette,

@@ -76,7 +76,18 @@ def _why_failed(row):
     tip = row[max(row)]
     if not tip.ok or tip.to_published is None:
         return "no answer"
-    return style.percent(tip.to_published, 2) if abs(tip.to_published - 1) > SOUND else ""
+    return deviation(tip.to_published) if abs(tip.to_published - 1) > SOUND else ""
+
+
+def deviation(ratio):
+    """How far a value is from the published one, in words; ratio: the value over the published."""
+    if ratio < 0:
+        return "of the wrong sign"
+    if ratio > 2:
+        return f"{style.plain(ratio, 2)} times the published value"
+    off = abs(ratio - 1)
+    # Close to 100 % the digits that matter come last: 99.96 %, not 100 %.
+    return f"{style.percent(off, 4 if off > 0.99 else 2)} too {'small' if ratio < 1 else 'large'}"
 
 
 def _answers(row):

@@ -101,9 +101,9 @@ Finding diagnose(const Symptoms& symptoms, double limit) {
 }
 
 Finding judge(const Symptoms& symptoms, const std::optional<double>& golden_to_truth) {
-  const double own = golden_to_truth.value_or(0.0);
-  if (own > largest_good_limit && symptoms.error <= own) return Finding::not_judged;
-  return diagnose(symptoms, good_limit(golden_to_truth));
+  const double limit = good_limit(golden_to_truth);
+  const bool within_doubt = symptoms.error > limit && symptoms.error <= golden_to_truth.value_or(0.0);
+  return within_doubt ? Finding::not_judged : diagnose(symptoms, limit);
 }
 
 }  // namespace sandglass

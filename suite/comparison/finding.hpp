@@ -13,7 +13,7 @@ namespace sandglass {
 /// What became of a run, in the words of the failure map.
 enum class Finding {
   good,          ///< as near the golden as the limit asks
-  not_judged,    ///< as near the golden as the golden is to the truth, which is too far to judge by
+  not_judged,    ///< farther, but no farther than the golden is from the truth: too far to judge by it
   inaccurate,    ///< farther, in none of the ways below
   hourglassing,  ///< farther, because nodes zigzag
   locking,       ///< farther, because the elements are too stiff
@@ -74,9 +74,9 @@ double good_limit(const std::optional<double>& golden_to_truth);
 Finding diagnose(const Symptoms& symptoms, double limit);
 
 /// The finding of a run that is compared with a stored golden, whose own distance from the truth is given
-/// where it is known. A golden farther from the truth than `largest_good_limit` cannot judge a run that is as
-/// near to the golden as that: the run may be better than the golden or worse. Farther runs are diagnosed,
-/// and never good.
+/// where it is known. Where that is more than `largest_good_limit`, the golden cannot judge a run that is
+/// farther from it than this limit but nearer than the truth: such a run may be better than the golden or
+/// worse.
 Finding judge(const Symptoms& symptoms, const std::optional<double>& golden_to_truth);
 
 }  // namespace sandglass
