@@ -132,7 +132,7 @@ def _of_verdicts(inputs, palette):
         "runs": verdicts.runs,
         "failed": [run for run in verdicts.runs if not run.ok],
         "failures": findings.failures(verdicts),
-        "captions": {s.name: findings.caption(s, paper.METHOD) for s in subjects},
+        "captions": {s.name: findings.caption(s, paper.METHOD, verdicts.limits) for s in subjects},
         "sound": published.SOUND,
         "broken": [limit for limit in verdicts.limits if not limit.holds],
         "subjects": subjects,
