@@ -59,6 +59,21 @@ def of_another_revision(source, verdicts):
     return own is not None and own != verdicts.provenance.get("revision")
 
 
+def elsewhere(facts, own):
+    """Machine and revision of a file in words where they are not the page's own, else nothing.
+
+    facts: of the file. own: those of the verdicts. What neither states counts as the same.
+    """
+    differs = any(
+        facts.get(name) != own.get(name)
+        for name in ("processor", "revision")
+        if name in facts and name in own
+    )
+    if not differs:
+        return ""
+    return f"{facts.get('processor', 'this machine')}, revision {facts.get('revision', 'unknown')}"
+
+
 def origins(subjects):
     """A CaseOrigin for every case."""
     return tuple(

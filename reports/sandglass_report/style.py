@@ -131,6 +131,14 @@ def plain(value, digits=3):
     return f"{value:.{decimals}f}"
 
 
+def power(value):
+    """A number like 1.2·10⁻⁸."""
+    if not value:
+        return "0"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa}·10{superscript(int(exponent))}"
+
+
 def superscript(number):
     """An integer in superscript digits."""
     return str(number).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))

@@ -1,0 +1,165 @@
+"""Whether the marks of the chart can be true: a page with a mark that cannot is not made.
+
+Each rule below is a function of Marks that yields a complaint for every mark that breaks it; its
+docstring is the rule. A cost of another loop, a step of another state or a value in another unit
+breaks at least one.
+"""
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+
+from common.errors import InputError
+from sandglass_report import paper
+from sandglass_report.measured import BENCH, OWN_MESH
+from sandglass_report.provenance import elsewhere
+
+# Soft bodies of millimetres and more: a sound wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
+# hundredth of that is another quantity, not a stiffer body.
+LEAST_STEP = 1e-6  # s
+# Eleven days for a second: nobody waited for it.
+MOST_WALL = 1e6  # s per simulated second
+# A step of the cheapest method takes a third of one of the costliest. Times that all agree are of
+# something that all methods have in common.
+LEAST_SPREAD = 0.05
+ENOUGH_METHODS = 5
+# Two measurements of one loop on one machine, of which one may have been busy.
+BENCH_AGREES = 1.3
+# The updated form computes the gradients of the shape functions anew in each step.
+UPDATED_AT_LEAST = 1.5
+OPERATIONS_AGREE = 2.0
+COUNTED = "kernel", "element"  # form and part of the flop table
+# seconds per simulated second times the mean step is a step; the factors are rounded to print.
+SAME = 0.01
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What the rules look at.
+
+    points: of the main chart. steps: of bench, if of the same origin. table: method -> operations
+    of an element and step in the flop table.
+    """
+
+    points: tuple
+    steps: tuple = ()
+    table: dict = field(default_factory=dict)
+
+    def own(self):
+        """The points of the methods as they come, on the cases' own meshes, in double."""
+        return [
+            p
+            for p in self.points
+            if p.as_it_comes and p.mesh == OWN_MESH and p.precision == "double" and p.counts
+        ]
+
+    def work(self, point):
+        """Operations per element and step: of the flop table or, with a costlier law, of the case.
+
+        On a mesh of equal elements tl-perturbation counts half of the table's, but saves hardly any
+        time: loading and storing the nodes remains. The table's count is therefore the least.
+        """
+        return max(self.table[point.method], point.operations or 0)
+
+    def by_case(self):
+        """case -> {method: Point} of own() with a time of a step."""
+        cases = defaultdict(dict)
+        for p in self.own():
+            if p.ns is not None and p.accuracy is None:
+                cases[p.case][p.method] = p
+        return cases
+
+
+def steps_are_of_soft_bodies(marks):
+    """A mean step is at least 1e-6 s"""
+    for p in marks.points:
+        if p.mean_step is not None and not p.mean_step >= LEAST_STEP:
+            yield f"{p.name}: mean step {p.mean_step:g} s"
+
+
+def seconds_can_be_waited_for(marks):
+    """A simulated second takes less than 1e6 s of wall time"""
+    for p in marks.points:
+        if p.simulated is not None and not 0 < p.simulated < MOST_WALL:
+            yield f"{p.name}: {p.simulated:g} s per simulated second"
+
+
+def seconds_are_those_of_the_step(marks):
+    """The time of a simulated second is that of a step over the mean step"""
+    for p in marks.points:
+        if None in (p.step, p.mean_step, p.simulated):
+            continue
+        expected = p.step / p.mean_step
+        if not abs(p.simulated / expected - 1) <= SAME:
+            yield (
+                f"{p.name}: {p.simulated:g} s per simulated second, but a step of {p.step:g} s and "
+                f"{p.mean_step:g} s of motion gives {expected:g} s"
+            )
+
+
+def methods_differ(marks):
+    """The time per element and step differs by more than 5 % over the methods of a case"""
+    for case, methods in marks.by_case().items():
+        times = [p.ns for p in methods.values()]
+        if len(times) >= ENOUGH_METHODS and max(times) < (1 + LEAST_SPREAD) * min(times):
+            yield f"{case}: all {len(times)} methods take {min(times):.4g} to {max(times):.4g} ns"
+
+
+def bench_agrees(marks):
+    """The time per element and step is within 30 % of that of bench on this machine and revision"""
+    timed = {(s.case, s.method): s.ns for s in marks.steps if s.precision == "double"}
+    for p in marks.own():
+        ns = timed.get((p.case, p.method))
+        if ns and p.ns and not 1 / BENCH_AGREES <= p.ns / ns <= BENCH_AGREES:
+            yield f"{p.name}: {p.ns:.4g} ns, but bench has {ns:.4g} ns"
+
+
+def updated_form_costs_more(marks):
+    """A step of ul-perturbation takes at least 1.5 times as long as one of tl-perturbation"""
+    for methods in marks.by_case().values():
+        total, updated = methods.get(paper.METHOD), methods.get(paper.UPDATED)
+        if total and updated and not updated.ns >= UPDATED_AT_LEAST * total.ns:
+            yield f"{updated.name}: {updated.ns:.4g} ns, {total.method} {total.ns:.4g} ns"
+
+
+def times_follow_operations(marks):
+    """Times per step over that of tl-perturbation are those of operations within a factor of two"""
+    for methods in marks.by_case().values():
+        counted = [p for p in methods.values() if p.method in marks.table]
+        unit = next((p for p in counted if p.method == paper.METHOD), None)
+        for p in counted if unit else ():
+            time, work = p.ns / unit.ns, marks.work(p) / marks.work(unit)
+            if not 1 / OPERATIONS_AGREE <= time / work <= OPERATIONS_AGREE:
+                yield (
+                    f"{p.name}: {time:.3g} times the time of {unit.method}, but {work:.3g} times "
+                    "its operations"
+                )
+
+
+RULES = (
+    steps_are_of_soft_bodies,
+    seconds_can_be_waited_for,
+    seconds_are_those_of_the_step,
+    methods_differ,
+    updated_form_costs_more,
+    times_follow_operations,
+    bench_agrees,
+)
+
+
+def complaints(marks):
+    """(rule in words, what breaks it) for all rules."""
+    return [(rule.__doc__, found) for rule in RULES for found in rule(marks)]
+
+
+def require_plausible(points, measured, own):
+    """Raises InputError naming the first marks that cannot be true, and the rules they break.
+
+    points: of the main chart. own: machine and revision of the verdicts.
+    """
+    same = not elsewhere(measured.facts_of(BENCH), own)
+    table = {c.method: c.total for c in measured.counts if (c.form, c.part) == COUNTED}
+    found = complaints(Marks(tuple(points), measured.steps if same else (), table))
+    if found:
+        told = "; ".join(f"{mark} [{rule}]" for rule, mark in found[:3])
+        more = f"; and {len(found) - 3} more" if len(found) > 3 else ""
+        raise InputError(f"the chart has marks that cannot be true: {told}{more}")

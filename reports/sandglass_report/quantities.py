@@ -1,0 +1,213 @@
+"""What each number of the page is: one list, from which axes, heads and their table are made.
+
+A number has one name, unit and definition wherever it is shown, and one command that makes it.
+"""
+
+from dataclasses import dataclass
+
+from sandglass_report import style
+
+VERIFY = "sandglass verify --json build/verdicts.json"
+LEAST_PLAIN = 1e-3  # smaller values are written with a power of ten
+MOTION = "of the case’s own damped motion"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of the page. name: in axes and prose; head: of a column of a table.
+
+    unit: of its values where they are shown as plain numbers, empty if each states its own.
+    field: where it is in the file that the command writes.
+    """
+
+    name: str
+    head: str
+    unit: str
+    definition: str
+    field: str
+    command: str = VERIFY
+    scale: float = 1.0  # from the stored value, in SI units or a fraction, to the unit
+
+    @property
+    def title(self):
+        """The title of an axis."""
+        return f"{self.name}, {self.unit}" if self.unit else self.name
+
+    @property
+    def column(self):
+        """The head of a column of plain numbers."""
+        return f"{self.head}, {self.unit}" if self.unit else self.head
+
+    def shown(self, value):
+        """A stored value as text in the unit; empty for None."""
+        if value is None:
+            return ""
+        if isinstance(value, int) and self.scale == 1.0:
+            return str(value)
+        value = self.scale * value
+        return style.plain(value) if value == 0 or abs(value) >= LEAST_PLAIN else style.power(value)
+
+
+QUANTITIES = {
+    "simulated": Quantity(
+        "wall time per simulated second",
+        "per simulated second",
+        "s",
+        "Seconds of wall time that one thread takes for a second of simulated time: the time of a step of "
+        f"the whole mesh over the mean step {MOTION} with this method. Below 1 s it keeps up with real time. "
+        "A condensed method has no step: a thousand answers are taken.",
+        "seconds_per_simulated_second",
+    ),
+    "step": Quantity(
+        "wall time per step of the whole mesh",
+        "per step",
+        "s",
+        "Wall time per element and step, times the elements of the mesh.",
+        "ns_per_element_step × elements",
+    ),
+    "equilibrium": Quantity(
+        "wall time to equilibrium",
+        "to equilibrium",
+        "s",
+        "Seconds of the search for static equilibrium, cycles of the multigrid method included; of "
+        "quasi-static cases only. Another program’s includes its set-up.",
+        "equilibrium_seconds",
+    ),
+    "ns": Quantity(
+        "wall time per element and step",
+        "per element and step",
+        "ns",
+        "Median over batches of explicit steps on the case’s own mesh, all methods in turn, one thread; "
+        "bars span the middle half of the batches.",
+        "ns_per_element_step, ns_lower_quartile, ns_upper_quartile",
+    ),
+    "mean_step": Quantity(
+        "mean step of the motion",
+        "mean step",
+        "ms",
+        f"Simulated time over steps, {MOTION} with this method.",
+        "mean_step_seconds",
+        scale=1e3,
+    ),
+    "stable_step": Quantity(
+        "stable step at rest",
+        "step at rest",
+        "ms",
+        "The longest stable step of central differences in the undeformed shape.",
+        "stable_step",
+        scale=1e3,
+    ),
+    "evaluations": Quantity(
+        "evaluations of the search",
+        "evaluations",
+        "",
+        "How often the search for equilibrium evaluated the forces of the whole mesh.",
+        "evaluations",
+    ),
+    "motion": Quantity(
+        "wall time of the motion",
+        "motion",
+        "s",
+        "Seconds of the whole motion, of cases that move.",
+        "motion_seconds",
+    ),
+    "steps": Quantity(
+        "steps of the motion", "steps", "", "Explicit steps of the whole motion.", "steps"
+    ),
+    "operations": Quantity(
+        "operations per element and step",
+        "operations",
+        "",
+        "Additions, multiplications, divisions and others of an element in one step, counted by running "
+        "the kernel with a number type that counts.",
+        "operations",
+    ),
+    "max": Quantity(
+        "largest error over all nodes",
+        "max",
+        "%",
+        "The largest distance of a node from where the reference has it, over the largest imposed displacement; "
+        "of a motion, the largest over time.",
+        "max_relative_error",
+        scale=100.0,
+    ),
+    "profile": Quantity(
+        "largest error on the profile line",
+        "profile",
+        "%",
+        "The same over the nodes of the case’s profile line.",
+        "profile_relative_error",
+        scale=100.0,
+    ),
+    "rms": Quantity(
+        "root mean square error",
+        "rms",
+        "%",
+        "The root mean square of these distances over all nodes.",
+        "rms_relative_error",
+        scale=100.0,
+    ),
+    "hourglass_energy_ratio": Quantity(
+        "hourglass energy over strain energy",
+        "hourglass",
+        "%",
+        "The energy in the hourglass control over the strain energy of the answer.",
+        "hourglass_energy_ratio",
+        scale=100.0,
+    ),
+    "residual": Quantity(
+        "residual",
+        "residual",
+        "",
+        "The unbalanced force over the reaction where the search ended.",
+        "residual",
+    ),
+    "kappa": Quantity(
+        "hourglass stiffness κ",
+        "κ",
+        "",
+        "The factor of the perturbation’s hourglass stiffness; auto is the value from the material.",
+        "kappa",
+    ),
+    "control": Quantity(
+        "operations of the hourglass control",
+        "control",
+        "",
+        "The part of the operations that the hourglass control needs: as the paper writes it, and as the kernel runs it.",
+        "total of part hourglass, form paper or kernel",
+        "sandglass flops --json build/flops.json",
+    ),
+    "published": Quantity(
+        "computed over published",
+        "ratio",
+        "",
+        "The computed displacement over the published value.",
+        "ratio",
+    ),
+    "distance": Quantity(
+        "distance from the published value",
+        "distance",
+        "%",
+        "How far the computed value is from the published one, over the published one.",
+        "|ratio − 1|",
+        scale=100.0,
+    ),
+}
+
+# The axes of the main chart, by the name of the Point's field; the first one is shown first.
+COSTS = ("simulated", "step", "equilibrium")
+FIGURES = ("max", "profile", "rms")
+# The columns of the table of all runs, after the errors: attributes of a Run.
+RUN_NUMBERS = (
+    "hourglass_energy_ratio",
+    "stable_step",
+    "mean_step",
+    "operations",
+    "ns",
+    "simulated",
+    "evaluations",
+    "equilibrium",
+    "steps",
+    "motion",
+    "residual",
+)
