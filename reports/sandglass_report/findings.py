@@ -74,7 +74,9 @@ def _of_kappas(subject, method):
     best = min(curve, key=lambda r: r.golden.max)
     if best.is_main or best.golden.max > 0.99 * run.golden.max:
         return ""
-    return f"With the best of {len(curve)} kappas, {best.kappa:g}: {style.percent(best.golden.max)}."
+    return (
+        f"With the best of {len(curve)} kappas, {best.kappa:g}: {style.percent(best.golden.max)}."
+    )
 
 
 def _of_all(subject):

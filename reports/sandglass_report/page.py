@@ -9,7 +9,17 @@ import markupsafe
 
 from common.files import write_whole, writing
 from sandglass_report import bending, bodies, findings, interactive, kappa, lines, maps, measured
-from sandglass_report import paper, plates, provenance, published, replication, speed, style, tips, viewer
+from sandglass_report import (
+    paper,
+    plates,
+    provenance,
+    published,
+    replication,
+    speed,
+    style,
+    tips,
+    viewer,
+)
 from sandglass_report.plausible import require_plausible
 from sandglass_report.points import make_points
 from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
