@@ -151,7 +151,8 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
       "errors in % of the imposed displacement, in motion the largest over time: max over all nodes, max "
       "over "
       "the profile, rms;\nstable step at rest; operations and time per element and evaluation, other runs "
-      "beside; finding: good means at most 1 %, or\nthe golden's own distance from the truth\n");
+      "beside; finding: good means at most 1 %, or\nthe golden's own distance from the truth, up to 10 %; "
+      "beyond, up to that distance: not judged\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
     if (in_tables(*v)) continue;

@@ -9,18 +9,19 @@ import jinja2
 import markupsafe
 
 from common.files import write_json, write_whole, writing
+from sandglass_report import bending, bodies, findings, headline, interactive, kappa, lines, maps
 from sandglass_report import (
-    bending,
-    bodies,
-    headline,
-    interactive,
-    kappa,
-    lines,
-    maps,
     measured,
     paper,
+    plates,
+    provenance,
+    published,
+    replication,
+    speed,
+    style,
+    tips,
+    viewer,
 )
-from sandglass_report import plates, provenance, published, replication, speed, style, tips, viewer
 from sandglass_report.plausible import require_plausible
 from sandglass_report.points import make_points
 from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
@@ -161,6 +162,9 @@ def _of_verdicts(inputs, palette):
         "limits": sorted(verdicts.limits, key=lambda limit: limit.holds),
         "runs": verdicts.runs,
         "failed": [run for run in verdicts.runs if not run.ok],
+        "failures": findings.failures(verdicts),
+        "captions": {s.name: findings.caption(s, paper.METHOD, verdicts.limits) for s in subjects},
+        "sound": published.SOUND,
         "broken": [limit for limit in verdicts.limits if not limit.holds],
         "subjects": subjects,
         "palette": palette,

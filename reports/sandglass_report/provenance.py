@@ -83,11 +83,20 @@ def origins(subjects):
             s.hashes.get("mesh_hash", ""),
             tuple(
                 (kind, _words(reference.attributes), _hash(reference.displacement))
-                for kind, reference in (("golden", s.golden), ("truth", s.truth))
+                for kind, reference in _references(s)
                 if reference is not None
             ),
         )
         for s in subjects
+    )
+
+
+def _references(subject):
+    """(kind, reference or None) of a case; the hash of a motion is that of the state shown."""
+    return (
+        ("golden", subject.golden),
+        ("golden, in motion", subject.motion),
+        ("truth", subject.truth),
     )
 
 
