@@ -13,7 +13,7 @@ from sandglass_report import paper
 from sandglass_report.measured import BENCH, OWN_MESH
 from sandglass_report.provenance import elsewhere
 
-# Soft bodies of millimetres and more: a sound wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
+# Soft bodies of millimetres and more: a wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
 # hundredth of that is another quantity, not a stiffer body.
 LEAST_STEP = 1e-6  # s
 # Eleven days for a second: nobody waited for it.
