@@ -1,25 +1,27 @@
 """The page: collects the data of the templates, and writes the page and its figures."""
 
 import base64
+import functools
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import jinja2
 import markupsafe
 
-from common.files import write_whole, writing
-from sandglass_report import bending, bodies, findings, interactive, kappa, lines, maps, measured
+from common.files import write_json, write_whole, writing
 from sandglass_report import (
+    bending,
+    bodies,
+    findings,
+    headline,
+    interactive,
+    kappa,
+    lines,
+    maps,
+    measured,
     paper,
-    plates,
-    provenance,
-    published,
-    replication,
-    speed,
-    style,
-    tips,
-    viewer,
 )
+from sandglass_report import plates, provenance, published, replication, speed, style, tips, viewer
 from sandglass_report.plausible import require_plausible
 from sandglass_report.points import make_points
 from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
@@ -60,6 +62,19 @@ class Inputs:
     refinement: plates.Plate | None = None
     second: dict = field(default_factory=dict)  # kind -> SecondProgram
     submissions: tuple = ()
+
+    @property
+    def elements(self):
+        """Case -> number of elements of its mesh, None without one."""
+        return {s.name: None if s.cells is None else len(s.cells) for s in self.subjects}
+
+    @functools.cached_property
+    def points(self):
+        """The points of the main chart. Raises InputError if one cannot be true."""
+        own = self.verdicts.provenance
+        points = make_points(self.verdicts.runs, self.elements, self.measured, own)
+        require_plausible(points, self.measured, own)
+        return tuple(points)
 
 
 @dataclass(frozen=True)
@@ -108,6 +123,10 @@ def write_report(inputs, page):
         more = [*bent, *(one.plate for one in others), *timed]
         for plate in (*_static_plates(inputs, palette, sections), *more):
             plates.save_plate(plate, folder)
+        shown = headline.headline(inputs.points, inputs.verdicts.provenance)
+        if shown is not None:
+            write_json(folder / f"{headline.NAME}.json", shown)
+            write_whole(folder / f"{headline.NAME}.svg", headline.figure(shown))
     write_whole(page, html)
     return len(html.encode())
 
@@ -165,10 +184,8 @@ def _of_verdicts(inputs, palette):
 def _of_measured(inputs, palette):
     """The templates' data about the main chart and the files of other commands."""
     found, names = inputs.measured, [subject.name for subject in inputs.subjects]
-    elements = {s.name: None if s.cells is None else len(s.cells) for s in inputs.subjects}
-    own = inputs.verdicts.provenance
-    points = make_points(inputs.verdicts.runs, elements, found, own)
-    require_plausible(points, found, own)
+    elements = inputs.elements
+    own, points = inputs.verdicts.provenance, inputs.points
     others = [s for s in inputs.submissions if elements.get(s.entry["case"])]
     programs = dict.fromkeys(s.entry["program"] for s in others)
     ladders = [name for name in names if any(rung.case == name for rung in found.rungs)]

@@ -9,7 +9,6 @@ from synthetic import HASHES
 from test_report_sections import section
 
 from sandglass_report.findings import VERBS
-from sandglass_report.published import deviation
 
 SUCCESS = VERBS["good"]
 
@@ -143,21 +142,6 @@ def test_a_method_that_does_not_take_the_case_has_not_failed(data):
     page = data.make()
     assert "settings fail" not in page
     assert "Cases that a method does not take: tl-full on column." in page
-
-
-@pytest.mark.parametrize(
-    ("ratio", "words"),
-    [
-        (0.00044, "99.96 % too small"),
-        (0.5, "50 % too small"),
-        (0.88, "12 % too small"),
-        (1.07, "7.0 % too large"),
-        (3.5, "3.5 times the published value"),
-        (-0.2, "of the wrong sign"),
-    ],
-)
-def test_a_distance_from_a_published_value_is_no_share_of_it(ratio, words):
-    assert deviation(ratio) == words
 
 
 def test_curves_over_the_truth_have_nothing_else_on_them(data):

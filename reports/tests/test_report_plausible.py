@@ -135,6 +135,15 @@ def test_operations_saved_on_equal_elements_are_not_held_against_the_others():
     assert broken(sound(tl_perturbation={"operations": 343}))[0] == set()
 
 
+@pytest.mark.parametrize(
+    ("ns", "true"), [(24.0, True), (78.0, True), (10.0, False), (180.0, False)]
+)
+def test_the_adaptive_method_may_have_one_to_eight_points(ns, true):
+    points = (*sound(), point("tl-adaptive", ns, 598))
+    found, _ = broken(points, table=TABLE | {"tl-adaptive": 598})
+    assert found == (set() if true else {times_follow_operations})
+
+
 def test_a_case_of_few_methods_may_have_equal_times():
     few = [point(m, 23.0, 598) for m in ("tl-none", "tl-perturbation", "tl-modal-sampling")]
     assert broken(few)[0] == set()

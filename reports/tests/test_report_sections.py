@@ -6,6 +6,8 @@ import re
 import pytest
 
 from sandglass_report.paper import TIMED_CASE
+from sandglass_report.published import _arrowheads, _why_failed
+from sandglass_report.verdicts import _tips
 
 OPTIONAL = "sandglass bench --threads", "sandglass flops", "reports/curves", "sandglass stability"
 
@@ -162,6 +164,33 @@ def test_a_published_benchmark_names_the_methods_that_fail(data):
     data.write_verdicts()
     unsound = re.search(r"Not sound here<.*?</p>", section(data.make(), "published"), re.S)[0]
     assert "tl-none" in unsound and "no answer" in unsound
+
+
+@pytest.mark.parametrize(
+    ("ratio", "words"),
+    [
+        (0.00044, "99.96 % too small"),
+        (0.5, "50 % too small"),
+        (1.25, "25 % too large"),
+        (-0.2, "in the wrong direction"),
+        (1.04, ""),
+    ],
+)
+def test_what_is_not_sound_says_how_far_off_it_is(data, ratio, words):
+    (tip,) = _tips("here", data.tip("tl-full", ratio, "4"))
+    assert _why_failed({4: tip}) == words
+
+
+def test_values_beyond_the_edges_are_arrowheads(data):
+    from synthetic import Axes
+
+    axes = Axes()
+    _arrowheads(axes, [(1, 5.0), (2, 1.0), (4, -9.0)], 0.0, 2.0, "red")
+    assert axes.lines == [([1], [2.0]), ([4], [0.0])]
+    published(data)
+    data.published[0]["values"][0] |= {"computed": -40.0, "ratio": 20.0}
+    data.write_verdicts()
+    assert "arrowheads" in section(data.make(figures=True), "published")
 
 
 def test_published_benchmarks_are_not_among_the_tips(data):
