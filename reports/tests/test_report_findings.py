@@ -160,3 +160,12 @@ def test_what_is_asked_comes_before_the_chart_and_is_defined_once(data):
     for word in ("golden", "truth", "kappa"):
         assert len(re.findall(rf"<dt>{word}</dt>", page)) == 1
     assert np.all([f'id="{name}"' in page for name in ("terms", "question")])
+
+
+@pytest.mark.parametrize(
+    ("elements", "seconds", "words"), [(2200, 0.11, "20,000"), (2200, 2.1, "1,000"), (9, 1.0, "9")]
+)
+def test_elements_in_real_time_take_a_second_of_a_second(elements, seconds, words):
+    from sandglass_report.headline import in_real_time
+
+    assert in_real_time(elements, seconds) == words
