@@ -35,7 +35,7 @@ def _costs(seconds):
 
 
 def _decades(errors):
-    """The exponents at which the axis of errors begins and ends; those that count as zero are left out."""
+    """The exponents at the ends of the axis of errors, without those that count as zero."""
     seen = [error for error in errors if error >= style.FLOOR]
     return math.floor(math.log10(min(seen))), math.ceil(math.log10(max(seen)))
 
@@ -117,7 +117,10 @@ def _axes(costs, errors, bottom):
     parts.append(_line(x, TOP - 6, x, bottom, dashed))
     parts.append(_text(x, bottom + 18, "real time, 1 s", "quiet end"))
     parts.append(_text(BARS[0], bottom + 18, "0", "quiet mid"))
-    note = "Arrow: below the axis. Golden: the simplest element that does not lock, on the same mesh; truth: much finer meshes."
+    note = (
+        "Arrow: below the axis. Golden: the simplest element that does not lock, on the same mesh; "
+        "truth: much finer meshes."
+    )
     parts.append(_text(16, bottom + 44, note, "quiet"))
     return parts
 

@@ -9,19 +9,19 @@ import jinja2
 import markupsafe
 
 from common.files import write_json, write_whole, writing
+from sandglass_report import bending, bodies, findings, headline, interactive, kappa, lines, maps
 from sandglass_report import (
-    bending,
-    bodies,
-    findings,
-    headline,
-    interactive,
-    kappa,
-    lines,
-    maps,
     measured,
     paper,
+    plates,
+    provenance,
+    published,
+    replication,
+    speed,
+    style,
+    tips,
+    viewer,
 )
-from sandglass_report import plates, provenance, published, replication, speed, style, tips, viewer
 from sandglass_report.plausible import require_plausible
 from sandglass_report.points import make_points
 from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS

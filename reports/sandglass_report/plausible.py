@@ -12,8 +12,9 @@ from common.errors import InputError
 from sandglass_report import paper
 from sandglass_report.measured import BENCH, OWN_MESH
 from sandglass_report.provenance import elsewhere
+from sandglass_report.style import FLOOR
 
-# Soft bodies of millimetres and more: a sound wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
+# Soft bodies of millimetres and more: a wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
 # hundredth of that is another quantity, not a stiffer body.
 LEAST_STEP = 1e-6  # s
 # Eleven days for a second: nobody waited for it.
@@ -28,8 +29,9 @@ BENCH_AGREES = 1.3
 UPDATED_AT_LEAST = 1.5
 OPERATIONS_AGREE = 2.0
 ADAPTIVE, EIGHT_POINTS = "tl-adaptive", "tl-mean-dilatation"
+AS_IT_COMES = OWN_MESH, "double", None, None  # mesh, numbers, kappa and accuracy of a rung
 COUNTED = "kernel", "element"  # form and part of the flop table
-# seconds per simulated second times the mean step is a step; the factors are rounded to print.
+# One division, or one relaxation to 1e-8 of the forces: what differs is rounded to be read.
 SAME = 0.01
 
 
@@ -37,13 +39,14 @@ SAME = 0.01
 class Marks:
     """What the rules look at.
 
-    points: of the main chart. steps: of bench, if of the same origin. table: method -> operations
-    of an element and step in the flop table.
+    points: of the main chart. steps: of bench, and rungs: of choose, if of the same origin.
+    table: method -> operations of an element and step in the flop table.
     """
 
     points: tuple
     steps: tuple = ()
     table: dict = field(default_factory=dict)
+    rungs: tuple = ()
 
     def own(self):
         """The points of the methods as they come, on the cases' own meshes, in double."""
@@ -140,6 +143,22 @@ def times_follow_operations(marks):
                 )
 
 
+def references_are_the_same(marks):
+    """The errors of verify and choose to one reference agree within 1 %"""
+    runs = {(p.case, p.method): p for p in marks.own() if p.ok and p.finding}
+    for rung in marks.rungs:
+        variant = rung.mesh, rung.precision, rung.kappa, rung.accuracy
+        p = runs.get((rung.case, rung.method)) if variant == AS_IT_COMES else None
+        error = p.error(rung.reference, "max") if p else None
+        if None in (error, rung.error):
+            continue
+        if abs(rung.error - error) > SAME * error + FLOOR:
+            yield (
+                f"{p.name}: error to the {rung.reference} {error:.4g}, but choose has "
+                f"{rung.error:.4g}"
+            )
+
+
 RULES = (
     steps_are_of_soft_bodies,
     seconds_can_be_waited_for,
@@ -148,6 +167,7 @@ RULES = (
     updated_form_costs_more,
     times_follow_operations,
     bench_agrees,
+    references_are_the_same,
 )
 
 
@@ -163,7 +183,8 @@ def require_plausible(points, measured, own):
     """
     same = not elsewhere(measured.facts_of(BENCH), own)
     table = {c.method: c.total for c in measured.counts if (c.form, c.part) == COUNTED}
-    found = complaints(Marks(tuple(points), measured.steps if same else (), table))
+    rungs = tuple(rung for rung in measured.rungs if not elsewhere(rung.facts, own))
+    found = complaints(Marks(tuple(points), measured.steps if same else (), table, rungs))
     if found:
         told = "; ".join(f"{mark} [{rule}]" for rule, mark in found[:3])
         more = f"; and {len(found) - 3} more" if len(found) > 3 else ""

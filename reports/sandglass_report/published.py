@@ -77,15 +77,18 @@ def _why_failed(row):
     tip = row[max(row)]
     if not tip.ok or tip.to_published is None:
         return "no answer"
-    return _distance(tip.to_published) if abs(tip.to_published - 1) > SOUND else ""
+    return deviation(tip.to_published) if abs(tip.to_published - 1) > SOUND else ""
 
 
-def _distance(ratio):
-    """How far a value is from the published one, in words. ratio: computed over published."""
-    if ratio <= 0:
-        return "in the wrong direction"
-    digits = 4 if 0.99 < 1 - ratio else 2  # 99.96 % too small is not nothing
-    return f"{style.percent(abs(ratio - 1), digits)} too {'small' if ratio < 1 else 'large'}"
+def deviation(ratio):
+    """How far a value is from the published one, in words; ratio: the value over the published."""
+    if ratio < 0:
+        return "of the wrong sign"
+    if ratio > 2:
+        return f"{style.plain(ratio, 2)} times the published value"
+    off = abs(ratio - 1)
+    # Close to 100 % the digits that matter come last: 99.96 %, not 100 %.
+    return f"{style.percent(off, 4 if off > 0.99 else 2)} too {'small' if ratio < 1 else 'large'}"
 
 
 def _answers(row):

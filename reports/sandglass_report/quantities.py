@@ -9,7 +9,7 @@ from sandglass_report import style
 
 VERIFY = "sandglass verify --json build/verdicts.json"
 LEAST_PLAIN = 1e-3  # smaller values are written with a power of ten
-MOTION = "of the case’s own damped motion"
+FLOPS = "sandglass flops --json build/flops.json"
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,10 @@ QUANTITIES = {
         "wall time per simulated second",
         "per simulated second",
         "s",
-        "Seconds of wall time that one thread takes for a second of simulated time: the time of a step of "
-        f"the whole mesh over the mean step {MOTION} with this method. Below 1 s it keeps up with real time. "
-        "A condensed method has no step: a thousand answers are taken.",
+        "Seconds of wall time that one thread takes for a second of simulated time: the time of "
+        "a step of the whole mesh over the mean step of the case’s own damped motion with this "
+        "method. Below 1 s it keeps up with real time. A condensed method has no step: a "
+        "thousand answers are taken.",
         "seconds_per_simulated_second",
     ),
     "step": Quantity(
@@ -69,25 +70,26 @@ QUANTITIES = {
         "wall time to equilibrium",
         "to equilibrium",
         "s",
-        "Seconds of the search for static equilibrium, cycles of the multigrid method included; of "
-        "quasi-static cases only. Another program’s includes its set-up.",
+        "Seconds of the search for static equilibrium, cycles of the multigrid method included, "
+        "while other runs shared the machine; of quasi-static cases only. Another program’s "
+        "includes its set-up.",
         "equilibrium_seconds",
     ),
     "ns": Quantity(
         "wall time per element and step",
         "per element and step",
         "ns",
-        "Median over batches of explicit steps on the case’s own mesh, all methods in turn, one thread; "
-        "bars span the middle half of the batches.",
+        "Median over batches of explicit steps on the case’s own mesh, all methods in turn, one "
+        "thread; bars span the middle half of the batches.",
         "ns_per_element_step, ns_lower_quartile, ns_upper_quartile",
     ),
     "mean_step": Quantity(
         "mean step of the motion",
         "mean step",
         "ms",
-        f"Simulated time over steps, {MOTION} with this method.",
+        "Simulated time over steps, of the case’s own damped motion with this method.",
         "mean_step_seconds",
-        scale=1e3,
+        scale=1000.0,
     ),
     "stable_step": Quantity(
         "stable step at rest",
@@ -95,7 +97,7 @@ QUANTITIES = {
         "ms",
         "The longest stable step of central differences in the undeformed shape.",
         "stable_step",
-        scale=1e3,
+        scale=1000.0,
     ),
     "evaluations": Quantity(
         "evaluations of the search",
@@ -112,22 +114,26 @@ QUANTITIES = {
         "motion_seconds",
     ),
     "steps": Quantity(
-        "steps of the motion", "steps", "", "Explicit steps of the whole motion.", "steps"
+        "steps of the motion",
+        "steps",
+        "",
+        "Explicit steps of the whole motion.",
+        "steps",
     ),
     "operations": Quantity(
         "operations per element and step",
         "operations",
         "",
-        "Additions, multiplications, divisions and others of an element in one step, counted by running "
-        "the kernel with a number type that counts.",
+        "Additions, multiplications, divisions and others of an element in one step, counted by "
+        "running the kernel with a number type that counts.",
         "operations",
     ),
     "max": Quantity(
         "largest error over all nodes",
         "max",
         "%",
-        "The largest distance of a node from where the reference has it, over the largest imposed displacement; "
-        "of a motion, the largest over time.",
+        "The largest distance of a node from where the reference has it, over the largest "
+        "imposed displacement; of a motion, the largest over time.",
         "max_relative_error",
         scale=100.0,
     ),
@@ -166,30 +172,88 @@ QUANTITIES = {
         "hourglass stiffness κ",
         "κ",
         "",
-        "The factor of the perturbation’s hourglass stiffness; auto is the value from the material.",
+        "The factor of the perturbation’s hourglass stiffness; auto is the value from the "
+        "material.",
         "kappa",
     ),
     "control": Quantity(
         "operations of the hourglass control",
-        "control",
+        "the control",
         "",
-        "The part of the operations that the hourglass control needs: as the paper writes it, and as the kernel runs it.",
-        "total of part hourglass, form paper or kernel",
-        "sandglass flops --json build/flops.json",
+        "The part of the operations that the hourglass control needs: as the paper writes it, "
+        "and as the kernel runs it.",
+        "total, of part hourglass in form paper or kernel",
+        FLOPS,
     ),
-    "published": Quantity(
+    "times_ours": Quantity(
+        "times as long as Sandglass",
+        "×",
+        "",
+        "What a step, a simulated second or the equilibrium takes another program, over what it "
+        "takes the nearest method of Sandglass on the same machine.",
+        "ns_per_element_step, time_step, seconds_to_rest",
+        "results/submit.py",
+    ),
+    "golden_to_truth": Quantity(
+        "distance of the golden from the truth",
+        "golden to truth",
+        "%",
+        "The golden’s error to the truth, computed from the two stored answers for this page.",
+        "displacement",
+        "reference/regenerate",
+        scale=100.0,
+    ),
+    "truths_error": Quantity(
+        "the truth’s own error",
+        "truth’s own error",
+        "%",
+        "An estimate from the truth on two meshes.",
+        "discretisation_error_max, discretisation_error_rms",
+        "reference/regenerate",
+        scale=100.0,
+    ),
+    "ratio": Quantity(
         "computed over published",
         "ratio",
         "",
-        "The computed displacement over the published value.",
-        "ratio",
+        "The computed displacement of a set over the published value, or over the truth’s.",
+        "ratio, ratio_to_truth",
     ),
     "distance": Quantity(
         "distance from the published value",
         "distance",
         "%",
         "How far the computed value is from the published one, over the published one.",
-        "|ratio − 1|",
+        "ratio",
+        scale=100.0,
+    ),
+    "map": Quantity(
+        "error in a cell of a failure map",
+        "error",
+        "%",
+        "The largest error over all nodes to the golden’s element, computed for the properties "
+        "of that cell.",
+        "symptoms.error",
+        "sandglass stability CASE --json build/stability/CASE.json",
+        scale=100.0,
+    ),
+    "growth": Quantity(
+        "seconds and steps to rest",
+        "seconds",
+        "s",
+        "Wall time from the model to rest, and evaluations, over the number of elements; one "
+        "thread.",
+        "seconds, steps",
+        "bench/growth.py --json reports/figures/growth.json",
+    ),
+    "refinement": Quantity(
+        "error to the truth over time",
+        "error",
+        "%",
+        "Error to the stored truth at the nodes of the case’s own mesh, over wall time from the "
+        "model to rest.",
+        "error_max, error_rms, seconds",
+        "bench/refinement.py --json reports/figures/refinement.json",
         scale=100.0,
     ),
 }

@@ -9,6 +9,7 @@ from synthetic import HASHES
 from test_report_sections import section
 
 from sandglass_report.findings import VERBS
+from sandglass_report.published import deviation
 
 SUCCESS = VERBS["good"]
 
@@ -26,7 +27,7 @@ def test_a_caption_claims_what_the_verdict_says(data, finding):
     data.records = data.records[:2]
     data.write_verdicts()
     words = found(data)
-    assert f"tl-perturbation {VERBS[finding]}: 8.32 % from the golden" in words
+    assert re.search(rf"tl-perturbation {VERBS[finding]}: 8.32 % from the golden", words)
     assert (SUCCESS in words) == (finding == "good")
     assert set(re.findall(r"[\d.]+ %", words)) == {"8.32 %"}  # no other number
 
@@ -50,7 +51,7 @@ def test_a_caption_names_the_best_kappa_only_where_it_is_better(data):
     assert "kappas" not in found(data)
     data.records[2] = data.run("tl-perturbation", 0.001, kappa=0.02)
     data.write_verdicts()
-    assert "With the best of 2 kappas, 0.02: 0.100 %." in found(data)
+    assert "The best of 2 kappas, 0.02, gives 0.100 %." in found(data)
 
 
 def test_a_caption_counts_findings_and_limits(data):
@@ -66,6 +67,13 @@ def test_a_golden_far_from_the_truth_is_said(data):
     assert "from the truth" not in found(data)
     data.write_reference("truth", data.answer * [1.0, 1.0, 1.5], element="P2-P1")
     assert "The golden is 40 % from the truth" in found(data)  # 0.5 * 0.4 m over 0.5 m
+
+
+def test_an_error_above_one_percent_is_good_only_for_a_reason(data):
+    data.write_reference("truth", data.answer * [1.0, 1.0, 1.05], element="P2-P1")
+    data.records[1] = data.run("tl-perturbation", 0.03, kappa=0.0065, auto=True)
+    data.write_verdicts()
+    assert "is good, given the golden’s own error of 4.0 %: 3.00 % from" in found(data)
 
 
 def without_golden(data):
@@ -142,6 +150,21 @@ def test_a_method_that_does_not_take_the_case_has_not_failed(data):
     page = data.make()
     assert "settings fail" not in page
     assert "Cases that a method does not take: tl-full on column." in page
+
+
+@pytest.mark.parametrize(
+    ("ratio", "words"),
+    [
+        (0.00044, "99.96 % too small"),
+        (0.5, "50 % too small"),
+        (0.88, "12 % too small"),
+        (1.07, "7.0 % too large"),
+        (3.5, "3.5 times the published value"),
+        (-0.2, "of the wrong sign"),
+    ],
+)
+def test_a_distance_from_a_published_value_is_no_share_of_it(ratio, words):
+    assert deviation(ratio) == words
 
 
 def test_curves_over_the_truth_have_nothing_else_on_them(data):

@@ -155,6 +155,28 @@ def test_other_meshes_numbers_and_machines_are_compared_with_no_bench():
         assert broken([point("tl-none", 900.0, 430, **changed)], steps_of_bench())[0] == set()
 
 
+def test_an_error_to_another_reference_is_noticed(data, capsys):
+    """Golden and truth exchanged in one of two programs."""
+    measured_in(data)
+    for record in data.records:
+        record["truth"] = record["golden"] | {"max_relative_error": 0.05}
+    data.write_verdicts()
+    rungs = [data.rung("tl-full", 1e-6, 0.05, precision="float")]
+    rungs += [data.rung("tl-full", 1e-6, 0.05, mesh="coarser"), data.rung("tl-full", 1e-6, None)]
+    data.write("curves/a.json", data.ladder([*rungs, data.rung("tl-full", 1e-6, 0.002)]))
+    data.make()
+    data.write("curves/a.json", data.ladder([*rungs, data.rung("tl-full", 1e-6, 0.05)]))
+    data.page.unlink()
+    assert main(data.arguments) == 2
+    told = "column, tl-full, double, own mesh: error to the golden 0.002, but choose has 0.05"
+    assert told in capsys.readouterr().err
+    data.write("curves/a.json", data.ladder([data.rung("tl-full", 1e-6, 0.05)], "truth"))
+    data.make()
+    other = data.ladder([data.rung("tl-full", 1e-6, 0.05)]) | {"revision": "another"}
+    data.write("curves/a.json", other)
+    data.make()
+
+
 def measured_in(data, **changed):
     """Makes the case's records those of METHODS, with other values for tl-none."""
     (data.folder / "results/column.tl-perturbation.0.02.h5").unlink()

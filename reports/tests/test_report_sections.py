@@ -172,7 +172,7 @@ def test_a_published_benchmark_names_the_methods_that_fail(data):
         (0.00044, "99.96 % too small"),
         (0.5, "50 % too small"),
         (1.25, "25 % too large"),
-        (-0.2, "in the wrong direction"),
+        (-0.2, "of the wrong sign"),
         (1.04, ""),
     ],
 )
@@ -190,7 +190,7 @@ def test_values_beyond_the_edges_are_arrowheads(data):
     published(data)
     data.published[0]["values"][0] |= {"computed": -40.0, "ratio": 20.0}
     data.write_verdicts()
-    assert "arrowheads" in section(data.make(figures=True), "published")
+    assert "An arrowhead" in section(data.make(figures=True), "published")
 
 
 def test_published_benchmarks_are_not_among_the_tips(data):
