@@ -20,6 +20,7 @@ VERBS = {
     "not taken": "does not take this case",
 }
 NOT_TAKEN = "not taken"  # in place of a finding
+USUAL_LIMIT = 0.01  # of good_limit in suite/comparison/finding.cpp
 LARGEST_GOOD = 0.1  # largest_good_limit of suite/comparison/finding.hpp
 
 
@@ -58,11 +59,19 @@ def _of_method(subject, method):
         return f"{method} {verb(judged(run))}: {run.status.removeprefix('failed: ')}."
     if run.golden is None or not run.finding:
         return f"No golden to judge {method} by."
-    words = f"{method} {verb(run.finding)}: {style.percent(run.golden.max)} from the golden at "
-    words += "the worst node"
+    words = f"{method} {verb(run.finding)}{_why_good(subject, run)}: "
+    words += f"{style.percent(run.golden.max)} from the golden at the worst node"
     if run.golden.profile is not None:
         words += f", {style.percent(run.golden.profile)} on the profile line"
     return words + "."
+
+
+def _why_good(subject, run):
+    """Why a run is good at more than the usual limit: the golden has an error, too."""
+    own = subject.golden_to_truth()
+    if run.finding != "good" or run.golden.max <= USUAL_LIMIT or own is None:
+        return ""
+    return f", given the golden’s own error of {style.percent(own.max, 2)}"
 
 
 def _of_kappas(subject, method):
@@ -75,7 +84,7 @@ def _of_kappas(subject, method):
     if best.is_main or best.golden.max > 0.99 * run.golden.max:
         return ""
     return (
-        f"With the best of {len(curve)} kappas, {best.kappa:g}: {style.percent(best.golden.max)}."
+        f"The best of {len(curve)} kappas, {best.kappa:g}, gives {style.percent(best.golden.max)}."
     )
 
 

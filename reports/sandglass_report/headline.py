@@ -110,13 +110,24 @@ def caption(document, drawn, glossary):
         "that very element, so its 0 % to the golden says nothing: it is "
         f"{shown(golden['truth'])} from the truth. `tl-perturbation` is {shown(ours['truth'])} "
         f"from the truth, and a simulated second takes it {plain(ours[seconds], 2)} s instead of "
-        f"{plain(golden[seconds], 2)} s. `tl-full` locks ({shown(at['tl-full']['truth'])}), and "
+        f"{plain(golden[seconds], 2)} s: one core moves about "
+        f"{in_real_time(document['elements'], ours[seconds])} elements of this size in real time "
+        f"with it. `tl-full` locks ({shown(at['tl-full']['truth'])}), and "
         f"small strains do not suffice here ({shown(at['linear']['truth'])}). `bash ci/verify` "
         f"makes the figure in `build/report/figures/`, `{COMMAND}` this text; the "
         f"[glossary]({glossary}) explains its words."
     )
     wrapped = textwrap.fill(words, LINE, break_on_hyphens=False, break_long_words=False)
     return f"![{in_words(document)}]({drawn})\n\n{wrapped}\n"
+
+
+def in_real_time(elements, seconds):
+    """Elements whose simulated second takes one second, as text with two digits.
+
+    elements: whose simulated second takes `seconds`, of wall time. Steps depend on the size of
+    elements, not on their number, so that the time grows with the number.
+    """
+    return f"{float(f'{elements / seconds:.2g}'):,.0f}"
 
 
 def in_words(document):

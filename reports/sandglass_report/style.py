@@ -52,6 +52,7 @@ FIGURE_NAMES = {
     "max_relative_error": "max, all nodes",
     "profile_relative_error": "max, profile line",
     "rms_relative_error": "rms",
+    "relative_error": "error",
 }
 
 

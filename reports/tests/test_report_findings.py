@@ -27,7 +27,7 @@ def test_a_caption_claims_what_the_verdict_says(data, finding):
     data.records = data.records[:2]
     data.write_verdicts()
     words = found(data)
-    assert f"tl-perturbation {VERBS[finding]}: 8.32 % from the golden" in words
+    assert re.search(rf"tl-perturbation {VERBS[finding]}: 8.32 % from the golden", words)
     assert (SUCCESS in words) == (finding == "good")
     assert set(re.findall(r"[\d.]+ %", words)) == {"8.32 %"}  # no other number
 
@@ -51,7 +51,7 @@ def test_a_caption_names_the_best_kappa_only_where_it_is_better(data):
     assert "kappas" not in found(data)
     data.records[2] = data.run("tl-perturbation", 0.001, kappa=0.02)
     data.write_verdicts()
-    assert "With the best of 2 kappas, 0.02: 0.100 %." in found(data)
+    assert "The best of 2 kappas, 0.02, gives 0.100 %." in found(data)
 
 
 def test_a_caption_counts_findings_and_limits(data):
@@ -67,6 +67,13 @@ def test_a_golden_far_from_the_truth_is_said(data):
     assert "from the truth" not in found(data)
     data.write_reference("truth", data.answer * [1.0, 1.0, 1.5], element="P2-P1")
     assert "The golden is 40 % from the truth" in found(data)  # 0.5 * 0.4 m over 0.5 m
+
+
+def test_an_error_above_one_percent_is_good_only_for_a_reason(data):
+    data.write_reference("truth", data.answer * [1.0, 1.0, 1.05], element="P2-P1")
+    data.records[1] = data.run("tl-perturbation", 0.03, kappa=0.0065, auto=True)
+    data.write_verdicts()
+    assert "is good, given the golden’s own error of 4.0 %: 3.00 % from" in found(data)
 
 
 def without_golden(data):
@@ -176,3 +183,12 @@ def test_what_is_asked_comes_before_the_chart_and_is_defined_once(data):
     for word in ("golden", "truth", "kappa"):
         assert len(re.findall(rf"<dt>{word}</dt>", page)) == 1
     assert np.all([f'id="{name}"' in page for name in ("terms", "question")])
+
+
+@pytest.mark.parametrize(
+    ("elements", "seconds", "words"), [(2200, 0.11, "20,000"), (2200, 2.1, "1,000"), (9, 1.0, "9")]
+)
+def test_elements_in_real_time_take_a_second_of_a_second(elements, seconds, words):
+    from sandglass_report.headline import in_real_time
+
+    assert in_real_time(elements, seconds) == words
