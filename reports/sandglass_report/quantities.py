@@ -246,12 +246,12 @@ QUANTITIES = {
         scale=100.0,
     ),
     "growth": Quantity(
-        "seconds and steps to rest",
+        "seconds and evaluations to rest",
         "seconds",
         "s",
-        "Wall time from the model to rest, and evaluations, over the number of elements; one "
-        "thread.",
-        "seconds, steps",
+        "Wall time from the model to rest, and evaluations of Sandglass or iterations of "
+        "Newton’s method, over the number of elements; one thread.",
+        "seconds, evaluations, iterations",
         "bench/growth.py --json reports/figures/growth.json",
     ),
     "refinement": Quantity(
