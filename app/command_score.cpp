@@ -77,7 +77,7 @@ Finding finding_of(const Scene& scene, const References& references, const Displ
   const double unit = displacement_unit(scene, *references.golden);
   Symptoms found = symptoms(scene, u, 0.0, *references.golden, unit);
   found.stiffness_ratio = 1.0;
-  return diagnose(found, good_limit(golden_to_truth(scene, references)));
+  return judge(found, golden_to_truth(scene, references));
 }
 
 Verdict score(const Scene& scene, const ScoreOptions& options) {

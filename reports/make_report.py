@@ -33,8 +33,8 @@ def make(options):
     subjects = read_subjects(
         verdicts, options.cases, options.reference, options.results, options.case
     )
-    files = options.bench, options.flops, options.rest
-    found = read_measured(*files, options.curves, options.maps, options.kept_maps)
+    files = options.bench, options.flops, options.curves, options.maps, options.kept_maps
+    found = read_measured(*files)
     evidence = read_evidence(options.claims, options.mutants, options.root, verdicts.limits)
     pictures = tuple(sorted(options.pictures.glob("stability.*.png")))
     growth = growth_plate(read_growth(options.growth)) if options.growth.exists() else None
@@ -75,7 +75,6 @@ def main(arguments=None):
     add("--reference", type=Path, default="reference", help="folder with golden/ and truth/")
     add("--bench", type=Path, default="build/bench.json", help="of sandglass bench --json")
     add("--flops", type=Path, default="build/flops.json", help="of sandglass flops --json")
-    add("--rest", type=Path, default="build/rest.json", help="of sandglass bench --rest --json")
     add("--curves", type=Path, default="build/curves", help="folder of sandglass choose --json")
     add("--maps", type=Path, default="build/stability", help="folder of sandglass stability --json")
     add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")

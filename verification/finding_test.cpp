@@ -62,7 +62,32 @@ TEST(HourglassContent, linear_fields_have_none_on_distorted_elements) {
 TEST(GoodLimit, is_one_percent_or_what_the_golden_is_worth) {
   EXPECT_EQ(good_limit({}), 0.01);
   EXPECT_EQ(good_limit(0.003), 0.01);
-  EXPECT_EQ(good_limit(0.12), 0.12);
+  EXPECT_EQ(good_limit(0.08), 0.08);
+}
+
+TEST(GoodLimit, is_never_more_than_ten_percent) {
+  EXPECT_EQ(good_limit(0.1), 0.1);
+  EXPECT_EQ(good_limit(0.35), 0.1);
+}
+
+/// A golden that is 35 % from the truth, as that of block-compression: up to 10 % from it a run is good, from
+/// there to 35 % it is neither good nor bad whatever the symptoms, and what is farther is diagnosed.
+TEST(Judge, a_golden_far_from_the_truth_does_not_judge_what_is_nearer_than_the_truth) {
+  EXPECT_EQ(judge({0.1, 0.9, 3.0, 1.5}, 0.35), Finding::good);
+  EXPECT_EQ(judge({0.101, 0.0, 1.0, 1.0}, 0.35), Finding::not_judged);
+  EXPECT_EQ(judge({0.237, 0.0, 1.0, 1.5}, 0.35), Finding::not_judged);
+  EXPECT_EQ(judge({0.35, 0.9, 3.0, 1.5}, 0.35), Finding::not_judged);
+  EXPECT_EQ(judge({0.36, 0.9, 3.0, 1.5}, 0.35), Finding::hourglassing);
+  EXPECT_EQ(judge({0.36, 0.0, 1.0, 1.5}, 0.35), Finding::locking);
+  EXPECT_EQ(judge({0.36, 0.0, 1.0, 1.0}, 0.35), Finding::inaccurate);
+  EXPECT_EQ(judge({std::nan(""), 0.0, 1.0, 1.0}, 0.35), Finding::inaccurate);
+}
+
+TEST(Judge, a_golden_near_the_truth_or_without_one_judges_all) {
+  EXPECT_EQ(judge({0.08, 0.9, 3.0, 1.5}, 0.08), Finding::good);
+  EXPECT_EQ(judge({0.09, 0.9, 3.0, 1.5}, 0.08), Finding::hourglassing);
+  EXPECT_EQ(judge({0.01, 0.9, 3.0, 1.5}, {}), Finding::good);
+  EXPECT_EQ(judge({0.02, 0.0, 1.0, 1.5}, {}), Finding::locking);
 }
 
 TEST(Diagnose, tells_the_ways_to_be_wrong_from_each_other) {

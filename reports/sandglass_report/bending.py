@@ -17,9 +17,8 @@ def bending_plates(tips, palette):
     found = {}
     for tip in tips:
         match = VARIANT.fullmatch(tip.variant)
-        ratio = tip.to_truth if tip.to_truth is not None else tip.to_published
-        if match and tip.ok and ratio is not None and palette.knows(tip.method):
-            found[tip.method, int(match["elements"]), float(match["nu"])] = ratio
+        if match and tip.ok and tip.to_truth is not None and palette.knows(tip.method):
+            found[tip.method, int(match["elements"]), float(match["nu"])] = tip.to_truth
     if not found:
         return ()
     elements = sorted({e for _, e, _ in found})
@@ -49,7 +48,10 @@ def bending_plates(tips, palette):
         )
         for nu in dict.fromkeys((ratios[0], *ratios[-2:]))
     )
-    note = "Deflection of the tip over that of the truth; 1 is exact, less is too stiff."
+    note = (
+        "Deflection of the tip over that of the truth; 1 is exact, less is too stiff. Values above "
+        f"{CEILING:g} are drawn as arrowheads at the edge."
+    )
     return (
         Plate("locking", "Locking: as the body becomes incompressible", locking, 3, note, legend),
         Plate("bending", "Bending: as elements become finer", bending, 3, note, legend),
@@ -71,6 +73,9 @@ def _panel(name, title, across, values, curves, palette):
             strokes = {"color": palette.colour(method), "lw": 1.0, "ms": 5}
             shown = [min(y, CEILING) for y in ys]
             axes.plot(xs, shown, f"-{palette.mark(method)}", **strokes, mew=0)
+            beyond = [x for x, y in known if y > CEILING]
+            above = [CEILING + 0.025] * len(beyond)
+            axes.plot(beyond, above, "^", color=strokes["color"], ms=6, mew=0)
         axes.set_ylim(0, CEILING + 0.05)
         axes.set_xlim(-0.3, len(values) - 0.7)
         axes.set_xticks(range(len(values)), [f"{v:g}" for v in values])

@@ -22,10 +22,12 @@ def view_of(points):
 
 
 def gallery_panel(subject):
-    """A case, undeformed and deformed, side by side at one scale; None if it has no mesh."""
-    if subject.points is None:
+    """A case, undeformed and deformed, side by side at one scale; its title says whose answer it
+    is. None if the case has no mesh, or none of the answers that `answer_to_show` allows."""
+    shown = answer_to_show(subject)
+    if subject.points is None or shown is None:
         return None
-    u, source = _best_known(subject)
+    u, source = shown
     view = view_of(subject.points)
     faces = boundary_faces(subject.cells)
     flat_width = np.ptp(view.project(subject.points)[0][:, 0])
@@ -39,9 +41,9 @@ def gallery_panel(subject):
         draw_surface(axes, subject.points + u + aside, faces, view, BODY, marked, True)
         frame(axes, limits)
 
-    alt = f"{subject.name}: undeformed (left) and deformed (right, {source})."
+    alt = f"{subject.name}: undeformed (left) and deformed (right: {source})."
     wide, high = limits[1] - limits[0]
-    return Panel(f"case.{subject.name}", subject.name, alt, draw, 300, round(300 * high / wide))
+    return Panel(f"case.{subject.name}", source, alt, draw, 300, round(300 * high / wide))
 
 
 def shape_plate(subject, experiment, palette):
@@ -90,12 +92,19 @@ def _scale_setters(subject, shapes):
     return [body for body in bodies if np.ptp(body, axis=0).max() < 1.6 * extent]
 
 
-def _best_known(subject):
-    """The displacement to show for a case, and its source."""
+def answer_to_show(subject):
+    """The displacement that stands for a case, (n, 3), m, and whose answer it is, in words.
+
+    That of the golden or, without one, of the method whose errors the page shows beside it: never
+    that of another method. None if there is neither.
+    """
     if subject.golden is not None:
-        return subject.golden.displacement, "golden"
-    (method, _), u = next(iter(subject.displacements.items()))
-    return u, method
+        return subject.golden.displacement, "the golden"
+    if subject.motion is not None:
+        when = f"{style.plain(subject.motion.time, 2)} s, where it has moved farthest"
+        return subject.motion.displacement, f"the golden at {when}"
+    u = subject.displacement(paper.METHOD)
+    return None if u is None else (u, f"{paper.METHOD}, as no golden is stored")
 
 
 def _marked(subject):

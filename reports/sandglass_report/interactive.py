@@ -8,6 +8,7 @@ from common.errors import InputError
 from sandglass_report import style
 from sandglass_report.measured import OWN_MESH
 from sandglass_report.points import families, fronts
+from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES
 
 # Findings of verify that mean failure, not inaccuracy.
 FAILURES = ("hourglassing", "locking", "inverted", "unstable", "not at rest")
@@ -20,13 +21,16 @@ OTHER = {"css": "--ink", "symbol": "star"}
 def chart_data(points, palette, others=()):
     """The data for chart.js: points, fronts, adaptive lines, and the methods' colours and marks.
 
-    others: Points of results/. They were timed on another machine, so no front has them.
+    others: Points of results/, which are drawn as stars. Those of another machine or revision are
+    neither on a front nor in the headline.
     """
     shown = [*points, *others]
     return {
         "own_mesh": OWN_MESH,
         "points": [p.as_record() | {"fails": not p.ok or p.finding in FAILURES} for p in shown],
-        "fronts": fronts(points),
+        "fronts": fronts(shown),
+        "costs": {name: _words(QUANTITIES[name]) for name in COSTS},
+        "figures": {name: _words(QUANTITIES[name]) for name in FIGURES},
         "families": families(points),
         "methods": {
             m: {"css": palette.css(m), "symbol": style.PLOTLY_MARKS[palette.mark(m)]}
@@ -34,6 +38,11 @@ def chart_data(points, palette, others=()):
         }
         | {p.method: OTHER for p in others},
     }
+
+
+def _words(quantity):
+    """What the script writes at axes and marks, and says on request."""
+    return {"title": quantity.name, "head": quantity.head, "definition": quantity.definition}
 
 
 @functools.cache

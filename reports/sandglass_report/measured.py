@@ -9,7 +9,6 @@ from sandglass_report.maps import read_maps
 
 BENCH = "sandglass bench --threads 1 --json build/bench.json"
 FLOPS = "sandglass flops --json build/flops.json"
-REST = "sandglass bench --rest --json build/rest.json"
 CURVES = "reports/curves"
 MAPS = "sandglass stability CASE --json build/stability/CASE.json"
 
@@ -33,11 +32,14 @@ class Rung:
     precision: str
     mesh: str
     elements: int
-    step_size: float | None  # s, of simulated time; None where nothing moves
+    step_size: float | None  # s, mean of the motion; None where nothing moves
     error: float | None  # largest of all nodes, a fraction of the imposed displacement
     reason: str  # why it is not enough; empty where it is
+    step_remark: str  # about steps of single states; mostly empty
+    facts: dict  # of its file: machine and revision
     name: str = key("rung")  # of method, kappa or accuracy, precision and mesh
     step: float | None = key("seconds")  # s of wall time
+    checks: float | None = key("check_seconds_per_step")  # s of wall time
     simulated: float | None = key("seconds_per_simulated_second")  # s of wall time
 
 
@@ -50,19 +52,8 @@ class Step:
     method: str
     precision: str
     ns: float = key("ns_per_element_step")  # median
-    stable_step: float | None = key("stable_step_seconds")
-
-
-@dataclass(frozen=True)
-class Rest:
-    """One record of `sandglass bench --rest --json`; seconds, None when it did not come to rest."""
-
-    case: str
-    method: str
-    precision: str
-    seconds: float | None = key("seconds_to_rest")
-    to_1_percent: float | None = key("seconds_to_1_percent")
-    to_0_1_percent: float | None = key("seconds_to_0_1_percent")
+    mean_step: float | None = key("mean_step_seconds")  # s; None for a box
+    simulated: float | None = key("seconds_per_simulated_second")
 
 
 @dataclass(frozen=True)
@@ -91,14 +82,17 @@ class Measured:
 
     rungs: tuple = ()
     steps: tuple = ()
-    rests: tuple = ()
     counts: tuple = ()
     maps: tuple = ()  # documents of sandglass stability
     sources: tuple = ()
 
+    def facts_of(self, command):
+        """Machine and revision of the file that a command made; empty if it is missing."""
+        return next((s.facts or {} for s in self.sources if s.command == command), {})
 
-def read_measured(bench, flops, rest, curves, maps, kept_maps):
-    """Measured from three files and three folders of JSON files, each of which may be absent.
+
+def read_measured(bench, flops, curves, maps, kept_maps):
+    """Measured from two files and three folders of JSON files, each of which may be absent.
 
     kept_maps: earlier maps, for cases that have none in maps.
     Raises InputError if a file exists but is broken.
@@ -113,7 +107,6 @@ def read_measured(bench, flops, rest, curves, maps, kept_maps):
 
     steps = [as_dataclass(Step, *one) for one in records(bench, BENCH) if _is_step(*one)]
     counts = [as_dataclass(Count, *one) for one in records(flops, FLOPS)]
-    rests = [as_dataclass(Rest, *one) for one in records(rest, REST)]
     rungs = []
     for path in _files(curves, CURVES, sources):
         rungs += rungs_of(path, _document(path, CURVES, sources))
@@ -122,7 +115,7 @@ def read_measured(bench, flops, rest, curves, maps, kept_maps):
         document = read_maps(path)
         if found.setdefault(document["case"], document) is document:
             sources.append(Source(str(path), MAPS, facts(document)))
-    return Measured(*map(tuple, (rungs, steps, rests, counts, found.values(), sources)))
+    return Measured(*map(tuple, (rungs, steps, counts, found.values(), sources)))
 
 
 def _files(folder, command, sources):
@@ -159,5 +152,6 @@ def rungs_of(path, document):
         "reference": REFERENCE_NAMES.get(name, name),
         "stands_in": name == STAND_IN,
         "tolerance": entry(path, document, "tolerance", NUMBER),
+        "facts": facts(document),
     }
     return [as_dataclass(Rung, *found, **known) for found in entries(path, document, "rungs")]

@@ -1,16 +1,30 @@
 """The page: collects the data of the templates, and writes the page and its figures."""
 
 import base64
+import functools
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import jinja2
 import markupsafe
 
-from common.files import write_whole, writing
-from sandglass_report import bending, bodies, interactive, kappa, lines, maps, measured, paper
-from sandglass_report import plates, provenance, published, replication, speed, style, tips, viewer
+from common.files import write_json, write_whole, writing
+from sandglass_report import bending, bodies, findings, headline, interactive, kappa, lines, maps
+from sandglass_report import (
+    measured,
+    paper,
+    plates,
+    provenance,
+    published,
+    replication,
+    speed,
+    style,
+    tips,
+    viewer,
+)
+from sandglass_report.plausible import require_plausible
 from sandglass_report.points import make_points
+from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -48,6 +62,19 @@ class Inputs:
     refinement: plates.Plate | None = None
     second: dict = field(default_factory=dict)  # kind -> SecondProgram
     submissions: tuple = ()
+
+    @property
+    def elements(self):
+        """Case -> number of elements of its mesh, None without one."""
+        return {s.name: None if s.cells is None else len(s.cells) for s in self.subjects}
+
+    @functools.cached_property
+    def points(self):
+        """The points of the main chart. Raises InputError if one cannot be true."""
+        own = self.verdicts.provenance
+        points = make_points(self.verdicts.runs, self.elements, self.measured, own)
+        require_plausible(points, self.measured, own)
+        return tuple(points)
 
 
 @dataclass(frozen=True)
@@ -96,6 +123,10 @@ def write_report(inputs, page):
         more = [*bent, *(one.plate for one in others), *timed]
         for plate in (*_static_plates(inputs, palette, sections), *more):
             plates.save_plate(plate, folder)
+        shown = headline.headline(inputs.points, inputs.verdicts.provenance)
+        if shown is not None:
+            write_json(folder / f"{headline.NAME}.json", shown)
+            write_whole(folder / f"{headline.NAME}.svg", headline.figure(shown))
     write_whole(page, html)
     return len(html.encode())
 
@@ -115,7 +146,8 @@ def _environment():
         "exact_percent": style.exact_percent,
         "svg": lambda panel: markupsafe.Markup(plates.inline_svg(panel)),
         "figure_name": lambda name: style.FIGURE_NAMES.get(name, name),
-        "scientific": _scientific,
+        "scientific": style.power,
+        "shown": lambda value, name: QUANTITIES[name].shown(value),
         "significant": style.plain,
     }
     return environment
@@ -124,19 +156,21 @@ def _environment():
 def _of_verdicts(inputs, palette):
     """The templates' data about runs, cases and limits."""
     verdicts, subjects = inputs.verdicts, inputs.subjects
-    costs = speed.cost_limits(verdicts.runs)
     return {
         "provenance": provenance.program(verdicts),
         "origins": provenance.origins(subjects),
         "limits": sorted(verdicts.limits, key=lambda limit: limit.holds),
         "runs": verdicts.runs,
         "failed": [run for run in verdicts.runs if not run.ok],
+        "failures": findings.failures(verdicts),
+        "captions": {s.name: findings.caption(s, paper.METHOD, verdicts.limits) for s in subjects},
+        "sound": published.SOUND,
         "broken": [limit for limit in verdicts.limits if not limit.holds],
         "subjects": subjects,
         "palette": palette,
         "colours": style.THEMED,
         "gallery": {subject.name: bodies.gallery_panel(subject) for subject in subjects},
-        "speed": {s.name: speed.speed_panels(s, palette, costs) for s in subjects},
+        "speed": {s.name: speed.speed_panels(s, palette) for s in subjects},
         "kappa": {s.name: kappa.kappa_panels(s, palette) for s in subjects},
         "kappa_methods": dict.fromkeys(run.method for run in verdicts.runs if not run.is_main),
         "tip_tables": tips.tip_tables(verdicts.tips),
@@ -150,9 +184,10 @@ def _of_verdicts(inputs, palette):
 def _of_measured(inputs, palette):
     """The templates' data about the main chart and the files of other commands."""
     found, names = inputs.measured, [subject.name for subject in inputs.subjects]
-    elements = {s.name: None if s.cells is None else len(s.cells) for s in inputs.subjects}
-    points = make_points(inputs.verdicts.runs, elements, found)
+    elements = inputs.elements
+    own, points = inputs.verdicts.provenance, inputs.points
     others = [s for s in inputs.submissions if elements.get(s.entry["case"])]
+    programs = dict.fromkeys(s.entry["program"] for s in others)
     ladders = [name for name in names if any(rung.case == name for rung in found.rungs)]
     map_texts = maps.map_texts(sorted(found.maps, key=lambda m: m["case"] != paper.FIRST_CASE))
     pictures = [p for p in inputs.pictures if p.stem not in {m.name for m in map_texts}]
@@ -160,18 +195,27 @@ def _of_measured(inputs, palette):
         "chart": interactive.chart_data(
             [p for p in points if palette.knows(p.method)],
             palette,
-            [s.as_point(elements[s.entry["case"]]) for s in others],
+            [s.as_point(elements[s.entry["case"]], own) for s in others],
         ),
-        "chart_programs": dict.fromkeys(s.label for s in others),
+        "chart_programs": {
+            program: "; ".join(
+                dict.fromkeys(s.elsewhere(own) for s in others if s.entry["program"] == program)
+            )
+            for program in programs
+        },
+        "chart_elsewhere": sorted({s.elsewhere(own) for s in others} - {""}),
+        "quantity": QUANTITIES,
+        "costs": COSTS,
+        "figures": FIGURES,
+        "run_numbers": RUN_NUMBERS,
         "chart_cases": names,
         "first_case": paper.FIRST_CASE if paper.FIRST_CASE in names else names[0],
         "ladder_cases": ladders,
         "missing_ladders": [name for name in names if name not in ladders],
         "plotly": interactive.packed_plotly(),
         "table_1": replication.table_1(found.counts),
-        "table_2": replication.table_2(found.steps),
+        "table_2": replication.table_2(points),
         "flops_command": measured.FLOPS,
-        "bench_command": measured.BENCH,
         "maps": map_texts,
         "outcomes": maps.OUTCOMES,
         "maps_command": measured.MAPS,
@@ -206,10 +250,8 @@ def _paper_section(experiment, subjects, palette):
 
 def _static_plates(inputs, palette, sections):
     """All figures that are also saved as files."""
-    verdicts, subjects = inputs.verdicts, inputs.subjects
-    costs = speed.cost_limits(verdicts.runs)
-    found = [speed.speed_plate(subjects, palette, costs)]
-    found += kappa.kappa_plates(subjects, palette)
+    subjects = inputs.subjects
+    found = kappa.kappa_plates(subjects, palette)
     for section in sections:
         found += [plate for plate in (section.shapes, section.line) if plate is not None]
     gallery = tuple(p for p in (bodies.gallery_panel(s) for s in subjects) if p is not None)
@@ -218,11 +260,3 @@ def _static_plates(inputs, palette, sections):
             plates.Plate("cases", "The cases, undeformed and deformed", gallery, len(gallery))
         )
     return found
-
-
-def _scientific(value):
-    """A number like 1.2·10⁻⁸."""
-    if not value:
-        return "0"
-    mantissa, exponent = f"{value:.1e}".split("e")
-    return f"{mantissa}·10{style.superscript(int(exponent))}"

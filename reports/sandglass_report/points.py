@@ -1,31 +1,33 @@
 """The points of the main chart: every method, mesh and precision with all errors and costs.
 
-Runs of `verify` provide the errors to both references; `choose` provides other precisions, coarser
-meshes, the adaptive family, and costs that were measured one at a time on an idle machine.
-Data of the same choice are merged into one point.
+Runs of `verify` provide the errors to both references and the costs of every method on the case's
+own mesh; `choose` provides other precisions, coarser meshes and the adaptive family. Data of the
+same choice are merged into one point; costs are as measured, never scaled.
 """
 
 import itertools
-import statistics
 from dataclasses import asdict, dataclass, field
 
 from sandglass_report import style
-from sandglass_report.verdicts import REFERENCES
 from sandglass_report.measured import OWN_MESH, STAND_IN
+from sandglass_report.provenance import elsewhere
+from sandglass_report.quantities import COSTS, FIGURES
 from sandglass_report.style import exact_percent
+from sandglass_report.verdicts import REFERENCES
 
-FIGURES = ("max", "profile", "rms")
-COSTS = ("step", "simulated", "rest")
 MESHES = ("all", "own")
 PRECISIONS = ("all", "double")
-VERIFY = "verify, other runs beside it"
-CHOOSE = "choose"
-SCALED = "verify, scaled to what choose measures"
+VERIFY = "sandglass verify"
+CHOOSE = "sandglass choose"
 
 
 @dataclass
 class Point:
-    """One choice on one case: errors (fractions, by figure) and costs (s); None if unknown."""
+    """One choice on one case: errors (fractions, by figure) and costs; None if unknown.
+
+    step, checks, simulated, equilibrium, mean_step: s, as defined in quantities.py; of the whole
+    mesh.
+    """
 
     case: str
     method: str
@@ -40,11 +42,33 @@ class Point:
     golden: dict = field(default_factory=dict)
     golden_is: str | None = None  # the method that stands for a golden that is not stored
     truth: dict = field(default_factory=dict)
+    ns: float | None = None  # per element and step
     step: float | None = None
+    checks: float | None = None
+    mean_step: float | None = None
+    step_remark: str = ""
     simulated: float | None = None
-    rest: float | None = None
+    equilibrium: float | None = None
+    evaluations: int | None = None
+    operations: int | None = None
+    stable_step: float | None = None  # s, at rest
     measured_by: str = VERIFY
+    elsewhere: str = ""  # machine and revision of its times if they are not those of the page
+    group: str | None = None  # what its switch is called, if not by its method
     judged: dict = field(default_factory=dict)  # (reference, tolerance) -> why it is not enough
+
+    @property
+    def name(self):
+        """Case, method and variant, for messages."""
+        kappa = f"kappa {self.kappa:g}" if self.kappa is not None else ""
+        asked = f"accuracy {exact_percent(self.accuracy)}" if self.accuracy else ""
+        words = (self.case, self.method, kappa, asked, self.precision, self.mesh)
+        return ", ".join(word for word in words if word)
+
+    @property
+    def counts(self):
+        """Whether its times may be compared with those of the page's own runs."""
+        return not self.elsewhere
 
     def error(self, reference, figure):
         """One error, or None."""
@@ -67,14 +91,14 @@ class Point:
         """The point as read by the page's script: rounded, without unknown values."""
         rounded = {k: _rounded(v) for k, v in asdict(self).items() if k != "judged"}
         rounded["finding"] = self.found()
-        return {k: v for k, v in rounded.items() if v not in (None, {})}
+        return {k: v for k, v in rounded.items() if v not in (None, "", {})}
 
 
-def make_points(runs, elements, measured):
+def make_points(runs, elements, measured, own):
     """Points of all cases of the verdicts, grouped by case.
 
     runs: of the verdicts. elements: case -> number of elements of its mesh, or None.
-    measured: the files of other commands.
+    measured: the files of other commands. own: machine and revision of the verdicts.
     """
     points = {}
     with_golden = {run.case for run in runs if run.golden is not None}
@@ -83,46 +107,19 @@ def make_points(runs, elements, measured):
         points[run.case, run.method, kappa, run.precision, OWN_MESH, None] = _of_run(
             run, elements.get(run.case)
         )
-    loaded = {key: point.step for key, point in points.items() if point.step is not None}
     for rung in measured.rungs:
         if rung.case in elements and rung.reference in REFERENCES:
             key = rung.case, rung.method, rung.kappa, rung.precision, rung.mesh, rung.accuracy
             point = points.setdefault(key, _of_rung(rung))
-            _add_rung(point, rung)
+            _add_rung(point, rung, own)
             if rung.stands_in and rung.case not in with_golden:
                 point.golden_is = STAND_IN
-    _bring_to_one_scale(points, loaded)
-    for rest in measured.rests:
-        point = points.get((rest.case, rest.method, None, rest.precision, OWN_MESH, None))
-        if point and rest.seconds is not None:
-            point.rest = rest.seconds
     order = {case: i for i, case in enumerate(elements)}
     return sorted(points.values(), key=lambda point: order[point.case])
 
 
-def _bring_to_one_scale(points, loaded):
-    """Scales the costs measured only by verify to those of choose, if both measured a case.
-
-    loaded: key of a point -> s, as measured by verify. Its runs share the machine, so their times
-    are too long by about the same factor, which is the median over the points that both measured.
-    """
-    factors = {}
-    for key, step in loaded.items():
-        if points[key].measured_by == CHOOSE:
-            factors.setdefault(points[key].case, []).append(points[key].step / step)
-    for key in loaded:
-        point = points[key]
-        if point.measured_by == VERIFY and point.case in factors:
-            factor = statistics.median(factors[point.case])
-            point.step *= factor
-            point.simulated = None if point.simulated is None else point.simulated * factor
-            point.measured_by = SCALED
-
-
 def _of_run(run, elements):
-    """The point of a run; its costs were measured while other runs were in progress."""
-    step = None if elements is None else 1e-9 * run.ns_per_element_step * elements
-    known = step is not None and step > 0
+    """The point of a run."""
     return Point(
         run.case,
         run.method,
@@ -136,10 +133,22 @@ def _of_run(run, elements):
         ok=run.ok,
         golden=_errors(run.golden),
         truth=_errors(run.truth),
-        step=step if known else None,
-        simulated=step / run.stable_step if known and run.stable_step > 0 else None,
-        rest=run.wall_seconds if run.ok else None,
+        ns=run.ns,
+        step=_of_mesh(run.ns, elements),
+        checks=_of_mesh(run.check_ns, elements),
+        mean_step=run.mean_step,
+        step_remark=run.step_remark,
+        simulated=run.simulated,
+        equilibrium=run.equilibrium if run.ok else None,
+        evaluations=run.evaluations if run.ok else None,
+        operations=run.operations,
+        stable_step=run.stable_step or None,
     )
+
+
+def _of_mesh(ns, elements):
+    """A time per element in seconds for the whole mesh; None if one is unknown."""
+    return None if ns is None or elements is None else 1e-9 * ns * elements
 
 
 def _of_rung(rung):
@@ -154,17 +163,23 @@ def _of_rung(rung):
         rung.elements,
         finding="",
         ok=False,  # until a rung brings an answer
+        measured_by="",
     )
 
 
-def _add_rung(point, rung):
+def _add_rung(point, rung, own):
     """Adds the data of a rung to a point. The cost measured first is kept."""
     point.judged.setdefault((rung.reference, rung.tolerance), rung.reason)
     if rung.error is not None:
         getattr(point, rung.reference).setdefault("max", rung.error)
         point.ok = point.ok or not point.finding
-    if rung.step is not None and point.measured_by != CHOOSE:
-        point.step, point.simulated, point.measured_by = rung.step, rung.simulated, CHOOSE
+    if rung.step is not None and point.step is None and point.simulated is None:
+        point.simulated = rung.simulated
+        if rung.step_size is not None:  # a condensed answer is no step
+            point.step, point.ns = rung.step, 1e9 * rung.step / rung.elements
+            point.checks = rung.checks
+            point.mean_step, point.step_remark = rung.step_size, rung.step_remark
+        point.measured_by, point.elsewhere = CHOOSE, elsewhere(rung.facts, own)
 
 
 def _errors(accuracy):
@@ -199,16 +214,22 @@ def pareto_front(costs, errors):
 def fronts(points):
     """The front of every view: 'case|reference|figure|cost|mesh|precision' -> positions.
 
-    A front consists of methods with their default settings that come to rest.
+    A front consists of methods with their default settings that come to rest, timed on the machine
+    and revision of the page.
     """
     found = {}
     for case in dict.fromkeys(point.case for point in points):
-        own = [i for i, p in enumerate(points) if p.case == case and p.as_it_comes and p.ok]
+        own = [i for i, p in enumerate(points) if p.case == case and may_lead(p)]
         for view in itertools.product(REFERENCES, FIGURES, COSTS, MESHES, PRECISIONS):
             positions = _front_of_view(points, own, *view)
             if positions:
                 found["|".join((case, *view))] = positions
     return found
+
+
+def may_lead(point):
+    """Whether a point may be on a front or in a headline."""
+    return point.as_it_comes and point.ok and point.counts
 
 
 def _front_of_view(points, positions, reference, figure, cost, mesh, precision):

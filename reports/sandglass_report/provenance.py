@@ -59,6 +59,21 @@ def of_another_revision(source, verdicts):
     return own is not None and own != verdicts.provenance.get("revision")
 
 
+def elsewhere(facts, own):
+    """Machine and revision of a file in words where they are not the page's own, else nothing.
+
+    facts: of the file. own: those of the verdicts. What neither states counts as the same.
+    """
+    differs = any(
+        facts.get(name) != own.get(name)
+        for name in ("processor", "revision")
+        if name in facts and name in own
+    )
+    if not differs:
+        return ""
+    return f"{facts.get('processor', 'this machine')}, revision {facts.get('revision', 'unknown')}"
+
+
 def origins(subjects):
     """A CaseOrigin for every case."""
     return tuple(
@@ -68,11 +83,20 @@ def origins(subjects):
             s.hashes.get("mesh_hash", ""),
             tuple(
                 (kind, _words(reference.attributes), _hash(reference.displacement))
-                for kind, reference in (("golden", s.golden), ("truth", s.truth))
+                for kind, reference in _references(s)
                 if reference is not None
             ),
         )
         for s in subjects
+    )
+
+
+def _references(subject):
+    """(kind, reference or None) of a case; the hash of a motion is that of the state shown."""
+    return (
+        ("golden", subject.golden),
+        ("golden, in motion", subject.motion),
+        ("truth", subject.truth),
     )
 
 

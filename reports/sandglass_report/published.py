@@ -7,6 +7,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from sandglass_report import axes as scales
 from sandglass_report import style
 from sandglass_report.plates import MUTED, TEXT, Panel, Plate
+from sandglass_report.quantities import QUANTITIES
 
 SOUND = 0.05  # of the published value: a method that is farther off on its finest mesh has failed
 OTHER = "other"  # in place of the mesh, of values that name none
@@ -57,7 +58,7 @@ def _benchmark(title, methods, palette):
     legend = tuple((m, palette.colour(m), palette.mark(m)) for m in methods)
     note = (
         f"Published: {one.published:g} ({one.source}). Dotted: other programs. Faint: not sound "
-        "here; values beyond the edges are drawn on them."
+        "here; values beyond the edges are arrowheads."
     )
     return Benchmark(
         title,
@@ -76,7 +77,18 @@ def _why_failed(row):
     tip = row[max(row)]
     if not tip.ok or tip.to_published is None:
         return "no answer"
-    return style.percent(tip.to_published, 2) if abs(tip.to_published - 1) > SOUND else ""
+    return deviation(tip.to_published) if abs(tip.to_published - 1) > SOUND else ""
+
+
+def deviation(ratio):
+    """How far a value is from the published one, in words; ratio: the value over the published."""
+    if ratio < 0:
+        return "of the wrong sign"
+    if ratio > 2:
+        return f"{style.plain(ratio, 2)} times the published value"
+    off = abs(ratio - 1)
+    # Close to 100 % the digits that matter come last: 99.96 %, not 100 %.
+    return f"{style.percent(off, 4 if off > 0.99 else 2)} too {'small' if ratio < 1 else 'large'}"
 
 
 def _answers(row):
@@ -100,12 +112,14 @@ def _over_meshes(name, one, methods, programs, palette):
         found = {mesh for _, row in (*methods.items(), *programs) for mesh in row} - {OTHER}
         axes.axhline(abs(one.published), color=MUTED, lw=0.9, ls="--")
         for method, row in methods.items():
-            points = [(m, _within(bottom, sign * t.computed, top)) for m, t in _answers(row)]
-            _line(axes, points, method, row, palette)
+            values = [(m, sign * t.computed) for m, t in _answers(row)]
+            _line(axes, _clipped(values, bottom, top), method, row, palette)
+            _arrowheads(axes, values, bottom, top, palette.colour(method))
         labels = []
         for program, values in programs:
             known = sorted((m, sign * v) for m, v in values.items() if m != OTHER)
-            points = [(mesh, _within(bottom, value, top)) for mesh, value in known]
+            points = _clipped(known, bottom, top)
+            _arrowheads(axes, known, bottom, top, TEXT)
             if not points:
                 axes.axhline(sign * values[OTHER], color=TEXT, lw=0.7, ls=":")
                 points = [(max(found), sign * values[OTHER])]
@@ -135,7 +149,9 @@ def _over_seconds(name, one, methods, palette):
     """The distance from the published value over the seconds to rest."""
     lines = {
         method: [
-            (tip.seconds, max(abs(tip.to_published - 1), style.FLOOR)) for _, tip in _answers(row)
+            (tip.seconds, max(abs(tip.to_published - 1), style.FLOOR))
+            for _, tip in _answers(row)
+            if tip.seconds
         ]
         for method, row in methods.items()
     }
@@ -147,12 +163,12 @@ def _over_seconds(name, one, methods, palette):
         seconds, errors = zip(*points)
         scales.log_scale(axes.xaxis, (min(seconds) / 1.5, max(seconds) * 1.5))
         scales.percent_scale(axes.yaxis, (max(min(errors), 1e-4) / 1.5, max(errors) * 1.5))
-        axes.set_xlabel("seconds to rest, other runs beside")
-        axes.set_ylabel("distance from the published value")
+        axes.set_xlabel(QUANTITIES["equilibrium"].title)
+        axes.set_ylabel(QUANTITIES["distance"].name)
 
-    alt = f"Distance from {one.published:g} over seconds to rest"
-    missing = "" if points else "no method came to rest"
-    return Panel(f"{name}.seconds", "Over seconds to rest", alt, draw, 420, 340, missing)
+    alt = f"Distance from {one.published:g} over {QUANTITIES['equilibrium'].title}"
+    missing = "" if points else "no method found equilibrium"
+    return Panel(f"{name}.seconds", "Over wall time", alt, draw, 420, 340, missing)
 
 
 def _line(axes, points, method, row, palette):
@@ -163,6 +179,16 @@ def _line(axes, points, method, row, palette):
         axes.plot(*zip(*points), **strokes, lw=1.0, ms=4.5, mew=0)
 
 
-def _within(low, value, high):
-    """A value, or the end of the interval that it lies beyond."""
-    return min(max(low, value), high)
+def _clipped(points, low, high):
+    """Points (x, y) with heights beyond an axis moved to its ends."""
+    return [(x, min(max(y, low), high)) for x, y in points]
+
+
+def _arrowheads(axes, points, low, high, colour):
+    """Arrowheads at the ends of an axis for points (x, y) beyond them, which would look real."""
+    for beyond, y, mark in (
+        ([x for x, y in points if y > high], high, "^"),
+        ([x for x, y in points if y < low], low, "v"),
+    ):
+        if beyond:
+            axes.plot(beyond, [y] * len(beyond), mark, color=colour, ms=8, mew=0, zorder=4)

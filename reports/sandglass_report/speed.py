@@ -1,58 +1,31 @@
-"""The chart of error against cost, with one point per method and kappa."""
-
-import math
-from dataclasses import replace
-
-import numpy as np
+"""The static chart of error against cost of a case, with one point per method and kappa."""
 
 from sandglass_report import axes as helpers
 from sandglass_report import style
+from sandglass_report.plates import Panel
+from sandglass_report.quantities import QUANTITIES
 from sandglass_report.verdicts import REFERENCES
-from sandglass_report.plates import Panel, Plate
 
-FIGURES = (("max", "max over all nodes"), ("rms", "rms over all nodes"))
+FIGURES = ("max", "rms")
+COST = QUANTITIES["simulated"]
+UNTIMED = "no run has a time per simulated second"
 MOST_LABELS = 4  # more names than these do not fit at their points
 
 
-def speed_panels(subject, palette, costs):
+def speed_panels(subject, palette):
     """Four panels of a case: max and rms error, to golden and truth, with the same scales."""
-    limits = error_limits(subject)
+    limits, costs = error_limits(subject), cost_limits(subject.runs)
     return tuple(
-        _panel(subject, palette, reference, figure, words, limits, costs)
-        for figure, words in FIGURES
+        _panel(subject, palette, reference, figure, limits, costs)
+        for figure in FIGURES
         for reference in REFERENCES
     )
 
 
-def speed_plate(subjects, palette, costs):
-    """All cases against the golden in one static figure, readable in a README."""
-    panels = [
-        replace(
-            _panel(subject, palette, "golden", "max", "max over all nodes", limits, costs),
-            title=subject.name,
-            width=290,
-            height=260,
-        )
-        for subject in subjects
-        for limits in [error_limits(subject)]
-    ]
-    return Plate(
-        "speed-accuracy",
-        "Speed and accuracy of every method: lower left is better",
-        tuple(panels),
-        min(3, len(subjects)),
-        note="Error: largest distance of any node from the golden, the mixed element on the same "
-        "mesh, in % of the imposed displacement. "
-        "Large marks: methods with default settings; small ones: other values of kappa; bar: "
-        "middle half of the timings. Triangle: below the scale.",
-        legend=tuple((m, palette.colour(m), palette.mark(m)) for m in palette.methods),
-    )
-
-
 def cost_limits(runs):
-    """Common limits of the cost axis, ns per element and step, with room for the labels."""
-    costs = [run.ns_per_element_step for run in runs if run.ns_per_element_step > 0]
-    return (min(costs) * 0.7, max(costs) * 1.45) if costs else (10.0, 1000.0)
+    """Limits of the cost axis, s of wall time per simulated second, with room for the labels."""
+    costs = [run.simulated for run in runs if run.simulated]
+    return (min(costs) * 0.7, max(costs) * 1.45) if costs else (0.1, 10.0)
 
 
 def error_limits(subject):
@@ -62,7 +35,7 @@ def error_limits(subject):
         for run in subject.runs
         for accuracy in (run.golden, run.truth)
         if accuracy is not None
-        for figure, _ in FIGURES
+        for figure in FIGURES
     ]
     shown = [error for error in errors if error > style.FLOOR]
     if not shown:
@@ -71,32 +44,35 @@ def error_limits(subject):
     return min(shown) / (4.0 if hidden else 1.6), max(shown) * 1.6
 
 
-def _panel(subject, palette, reference, figure, words, limits, costs):
+def _panel(subject, palette, reference, figure, limits, costs):
     found = [run for run in subject.runs if getattr(run, reference) is not None]
+    timed = [run for run in found if run.simulated]
+    words = QUANTITIES[figure].name
 
     def draw(axes):
         helpers.log_scale(axes.xaxis, costs)
         helpers.percent_scale(axes.yaxis, limits)
-        axes.set_xlabel("ns per element and step")
+        axes.set_xlabel(COST.title)
         axes.figure.canvas.draw()  # the layout must be final before labels are pushed apart
         labels = []  # x, y, colour, text, and the part of it that is kept if names do not fit
-        for method in dict.fromkeys(run.method for run in found):
-            of_method = [run for run in found if run.method == method]
+        for method in dict.fromkeys(run.method for run in timed):
+            of_method = [run for run in timed if run.method == method]
             labels += _draw_method(axes, of_method, palette, reference, figure, limits)
         crowded = len(labels) > MOST_LABELS
         texts = [(x, y, short if crowded else text, c) for x, y, c, text, short in labels]
         helpers.label_points(axes, [one for one in texts if one[2]][:MOST_LABELS])
-        _name_missing(axes, subject, reference)
+        _name_missing(axes, subject, reference, len(found) - len(timed))
 
+    missing = style.why_empty(subject, reference) if not found else "" if timed else UNTIMED
     return Panel(
         f"speed-accuracy.{subject.name}.{reference}.{figure}",
-        f"to the {reference}, {words}",
-        f"{subject.name}: {words} of the error to the {reference} against ns per element and step. "
-        + _in_words(found, reference, figure),
+        f"to the {reference}, {QUANTITIES[figure].head}",
+        f"{subject.name}: {words}, to the {reference}, against {COST.title}. "
+        + _in_words(timed, reference, figure),
         draw,
         290,
         250,
-        "" if found else style.why_empty(subject, reference),
+        missing,
     )
 
 
@@ -104,18 +80,15 @@ def _draw_method(axes, runs, palette, reference, figure, limits):
     """Points of one method, its kappa curve as a line; returns the main points' labels."""
     colour, mark = palette.colour(runs[0].method), palette.mark(runs[0].method)
     lowest = limits[0] * 1.5
-    # Kappa does not affect the work of a step, so all runs time the same work. The points are at
-    # the median of these times, and a bar at the main one shows their middle half.
-    times = [run.ns_per_element_step for run in runs]
-    early, x, late = np.quantile(times, (0.25, 0.5, 0.75))
     height = {id(run): max(getattr(getattr(run, reference), figure), lowest) for run in runs}
     if len(runs) > 1:
-        ys = sorted(height.values())
-        axes.plot([x, x], [ys[0], ys[-1]], color=colour, linewidth=0.8, alpha=0.4)
-        axes.plot([x] * len(ys), ys, color=colour, marker=mark, linestyle="", markersize=2.6)
+        xs, ys = zip(*sorted((run.simulated, height[id(run)]) for run in runs))
+        axes.plot(xs, ys, color=colour, linewidth=0.8, alpha=0.4)
+        axes.plot(xs, ys, color=colour, marker=mark, linestyle="", markersize=2.6)
     labels = []
     for run in (run for run in runs if run.is_main):
-        y = height[id(run)]
+        x, y = run.simulated, height[id(run)]
+        early, late = middle_half(run)
         axes.plot([early, late], [y, y], color=colour, linewidth=1.6, alpha=0.45)
         error = getattr(getattr(run, reference), figure)
         hidden = error < lowest
@@ -137,11 +110,26 @@ def _draw_method(axes, runs, palette, reference, figure, limits):
     return labels
 
 
-def _name_missing(axes, subject, reference):
-    """Lists the methods whose main run has no figure, so that their absence is visible."""
+def middle_half(run):
+    """The quartiles of a run's cost: those of its step, at its mean step; the cost if unknown."""
+    if not run.ns or run.ns_low is None or run.ns_high is None:
+        return run.simulated, run.simulated
+    checks = run.check_ns or 0.0
+    return tuple(
+        run.simulated * (ns + checks) / (run.ns + checks) for ns in (run.ns_low, run.ns_high)
+    )
+
+
+def _name_missing(axes, subject, reference, untimed):
+    """Lists the methods whose main run has no figure, so that their absence is visible.
+
+    untimed: the number of runs with a figure but without a time.
+    """
     missing = [r.method for r in subject.runs if r.is_main and getattr(r, reference) is None]
-    if missing:
-        words = "failed: " + ", ".join(missing)
+    told = ["failed: " + ", ".join(missing)] if missing else []
+    told += [f"{untimed} not timed"] if untimed else []
+    if told:
+        words = "; ".join(told)
         axes.text(
             1.0,
             1.02,
@@ -159,6 +147,5 @@ def _in_words(runs, reference, figure):
     parts = []
     for run in (run for run in runs if run.is_main):
         error = style.percent(getattr(getattr(run, reference), figure))
-        cost = run.ns_per_element_step
-        parts.append(f"{run.method}: {error} at {cost:.0f} ns" if math.isfinite(cost) else "")
+        parts.append(f"{run.method}: {error} at {run.simulated:.3g} {COST.unit}")
     return "; ".join(parts) or "No figures."

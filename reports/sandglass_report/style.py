@@ -52,6 +52,7 @@ FIGURE_NAMES = {
     "max_relative_error": "max, all nodes",
     "profile_relative_error": "max, profile line",
     "rms_relative_error": "rms",
+    "relative_error": "error",
 }
 
 
@@ -129,6 +130,14 @@ def plain(value, digits=3):
         return "0"
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
     return f"{value:.{decimals}f}"
+
+
+def power(value):
+    """A number like 1.2·10⁻⁸."""
+    if not value:
+        return "0"
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return f"{mantissa}·10{superscript(int(exponent))}"
 
 
 def superscript(number):

@@ -26,6 +26,15 @@ class Reference:
 
 
 @dataclass(frozen=True)
+class MotionGolden:
+    """The golden of a case in motion: where it has moved farthest, and the file's attributes."""
+
+    displacement: np.ndarray  # (n, 3), m, at `time`
+    time: float  # s
+    attributes: dict
+
+
+@dataclass(frozen=True)
 class Subject:
     """A case, its mesh (None if no run has a result file), its references and its runs."""
 
@@ -41,6 +50,7 @@ class Subject:
     sets: dict = field(default_factory=dict)
     golden: Reference | None = None
     truth: Reference | None = None
+    motion: MotionGolden | None = None  # of a case in motion, which has no single golden field
     displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
     hourglass: dict = field(default_factory=dict)  # the same -> energy density (m,), J/m^3
     hashes: dict = field(default_factory=dict)  # of the case and its mesh, as the results have them
@@ -114,14 +124,15 @@ def _read_subject(verdicts, name, case_files, references, results):
         raise InputError(f"{path}: not a case of this solver: {error!r}") from error
     files = _result_files(runs, results)
     mesh, displacements, hourglass, hashes = _read_results(files)
+    moves = tables["case"].get("answer") == "dynamic"
+    places = {
+        kind: path.parent / stored[kind] if kind in stored else references / folder / f"{name}.h5"
+        for kind, folder in (("golden", "motion" if moves else "golden"), ("truth", "truth"))
+    }
+    motion = _read_motion(places.pop("golden"), name, hashes) if moves else None
     stored_answers = {
-        kind: _read_reference(
-            path.parent / stored[kind] if kind in stored else references / kind / f"{name}.h5",
-            name,
-            hashes,
-            mesh.get("points"),
-        )
-        for kind in REFERENCES
+        kind: _read_reference(place, name, hashes, mesh.get("points"))
+        for kind, place in places.items()
     }
     subject = Subject(
         name=name,
@@ -134,6 +145,7 @@ def _read_subject(verdicts, name, case_files, references, results):
         displacements=displacements,
         hourglass=hourglass,
         hashes=hashes,
+        motion=motion,
         **mesh,
         **stored_answers,
     )
@@ -216,18 +228,40 @@ def _read_reference(path, name, hashes, points):
         if "displacement" not in file:
             raise InputError(f"{path}: dataset displacement is missing; not a reference")
         displacement = file["displacement"][...]
-    for key, expected in hashes.items():
-        if attributes.get(key) != expected:
-            raise InputError(
-                f"{path}: {key} is {attributes.get(key)}, but the runs have {expected}; the "
-                f"reference belongs to another case or mesh; run reference/regenerate {name}"
-            )
+    _require_hashes(path, name, attributes, hashes)
     if points is not None and displacement.shape != points.shape:
         raise InputError(
             f"{path}: displacement has shape {displacement.shape}, but the mesh of the runs has "
             f"{points.shape}; regenerate it: reference/regenerate {name}"
         )
     return Reference(displacement, attributes)
+
+
+def _read_motion(path, name, hashes):
+    """The MotionGolden in a file, None if there is no file."""
+    if not path.is_file():
+        return None
+    with _open(path) as file:
+        attributes = {key: text_of(value) for key, value in file.attrs.items()}
+        try:
+            frames = file["displacement"]
+            u = np.array([frames[number][...] for number in sorted(frames)])
+            times = file["times"][...]
+        except (KeyError, TypeError, ValueError) as error:
+            raise InputError(f"{path}: not the golden of a motion: {error}") from error
+    _require_hashes(path, name, attributes, hashes)
+    farthest = int(np.linalg.norm(u, axis=2).max(axis=1).argmax())
+    return MotionGolden(u[farthest], float(times[farthest]), attributes)
+
+
+def _require_hashes(path, name, attributes, hashes):
+    """Raises InputError unless a reference has the hashes of the case and mesh of the runs."""
+    for key, expected in hashes.items():
+        if attributes.get(key) != expected:
+            raise InputError(
+                f"{path}: {key} is {attributes.get(key)}, but the runs have {expected}; the "
+                f"reference belongs to another case or mesh; run reference/regenerate {name}"
+            )
 
 
 def _require_same_runs(subject, files):

@@ -25,6 +25,7 @@ class Nearest:
     element: str
     precision: str
     as_good: bool
+    version: str  # of Sandglass
     step: float | None
     simulated: float | None
     rest: float | None
@@ -36,7 +37,7 @@ class Nearest:
             for value, words in (
                 (self.step, "step"),
                 (self.simulated, "simulated second"),
-                (self.rest, "answer"),
+                (self.rest, "equilibrium"),
             )
             if value
         ]
@@ -82,8 +83,21 @@ class Submission:
             return "timed beside other programs"
         return self.nearest.in_words() if self.nearest else "nothing of ours to compare with"
 
-    def as_point(self, elements):
-        """The Point of the main chart. elements: number of those of the case."""
+    def elsewhere(self, own):
+        """Machine and revision of its times where they are not those of the page, else nothing.
+
+        own: machine and revision of the page, as in the verdicts. Another program has been timed
+        beside the entry of Sandglass that is nearest to it, whose revision counts.
+        """
+        version = self.entry["version"] if self.ours else self.nearest and self.nearest.version
+        same_machine = self.entry["machine"].startswith(own.get("processor", "unknown"))
+        if same_machine and version == f"{own.get('version')} ({own.get('revision')})":
+            return ""
+        beside = f", Sandglass {version}" if version else ""
+        return f"{self.entry['machine']}{beside}"
+
+    def as_point(self, elements, own):
+        """The Point of the main chart. elements: number of those of the case. own: of elsewhere."""
         entry, errors = self.entry, self.entry["errors"]
         ns, step = self.figure("ns_per_element_step"), self.figure("time_step")
         cost = 1e-9 * ns * elements if ns else None
@@ -100,10 +114,14 @@ class Submission:
             ok=True,
             golden=errors.get("golden", {}),
             truth=errors.get("truth", {}),
+            ns=ns,
             step=cost,
+            mean_step=step,
             simulated=cost / step if cost and step else None,
-            rest=self.figure("seconds_to_rest"),
+            equilibrium=self.figure("seconds_to_rest"),
             measured_by=f"results/{self.name}: {entry['build']}; {entry['machine']}",
+            elsewhere=self.elsewhere(own),
+            group=entry["program"],
         )
 
 
@@ -143,6 +161,7 @@ def _nearest(entry, ours):
         one["element"],
         one["precision"],
         bool(good),
+        one["version"],
         ratio("ns_per_element_step"),
         ratio("ns_per_element_step", lambda e: e["time_step"]) if steps else None,
         ratio("seconds_to_rest"),

@@ -25,11 +25,19 @@ class Run:
     truth: Accuracy | None
     operations: int  # per element and step
     stable_step: float  # s, at rest
-    steps: int
     residual: float
     hourglass_energy_ratio: float  # of the strain energy
-    ns_per_element_step: float
-    wall_seconds: float
+    step_remark: str  # about steps of single states; mostly empty
+    ns: float | None = key("ns_per_element_step")  # None: not measured, or there is no step
+    ns_low: float | None = key("ns_lower_quartile")
+    ns_high: float | None = key("ns_upper_quartile")
+    check_ns: float | None = key("check_ns_per_element_step")  # of checks, shared out over steps
+    mean_step: float | None = key("mean_step_seconds")  # s, of the case's own motion
+    simulated: float | None = key("seconds_per_simulated_second")
+    equilibrium: float | None = key("equilibrium_seconds")  # None for a case in motion
+    evaluations: int | None = key("evaluations")
+    motion: float | None = key("motion_seconds")  # None for a quasi-static case
+    steps: int | None = key("steps")
 
     @property
     def ok(self):
@@ -80,7 +88,7 @@ class Tip:
     published: float
     computed: float | None
     programs: tuple
-    seconds: float  # to rest
+    seconds: float | None  # to equilibrium or, of a case in motion, of the motion
     to_published: float | None = key("ratio")
     to_truth: float | None = key("ratio_to_truth")
 
@@ -144,12 +152,21 @@ def _tips(where, record):
         "ok": entry(where, record, "status", str) == "ok",
         "finding": entry(where, record, "finding", str, none_allowed=True) or "",
     }
-    known["seconds"] = entry(where, record, "wall_seconds", NUMBER)
+    known["seconds"] = _seconds(where, record)
     tips = []
     for place, value in entries(where, record, "values"):
         programs = tuple(as_dataclass(Program, *p) for p in entries(place, value, "programs"))
         tips.append(as_dataclass(Tip, place, record | value, programs=programs, **known))
     return tips
+
+
+def _seconds(where, record):
+    """What a run took: its search for equilibrium or, of a case in motion, its motion."""
+    known = (
+        entry(where, record, name, NUMBER, none_allowed=True)
+        for name in ("equilibrium_seconds", "motion_seconds")
+    )
+    return next((seconds for seconds in known if seconds is not None), None)
 
 
 def _limit(where, record):

@@ -127,11 +127,19 @@ class DataSet:
             "truth": None,
             "operations": 598,
             "stable_step": 1e-4,
-            "steps": 100,
             "residual": 1e-8,
             "hourglass_energy_ratio": 0.01,
             "ns_per_element_step": 120.0,
-            "wall_seconds": 0.5,
+            "ns_lower_quartile": 110.0,
+            "ns_upper_quartile": 150.0,
+            "check_ns_per_element_step": 40.0,
+            "mean_step_seconds": 8e-5,
+            "step_remark": "",
+            "seconds_per_simulated_second": 160e-9 * len(self.cells) / 8e-5,
+            "equilibrium_seconds": 0.5,
+            "evaluations": 100,
+            "motion_seconds": None,
+            "steps": None,
         }
 
     @staticmethod
@@ -141,7 +149,7 @@ class DataSet:
         value |= {"set": "tip", "component": "z", "programs": list(programs)}
         value["computed"] = None if ratio is None else -2.0 * ratio
         record = {"method": method, "kappa": None, "kappa_is_auto": False, "status": status}
-        record["wall_seconds"] = 0.5
+        record |= {"equilibrium_seconds": 0.5, "motion_seconds": None}
         return record | {
             "finding": None,
             "family": "beam",
@@ -171,6 +179,8 @@ class DataSet:
             "seconds_per_simulated_second": 1e3 * seconds,
             "error": error,
             "reason": "",
+            "step_remark": "",
+            "check_seconds_per_step": 0.0,
         } | changed
 
     @staticmethod
@@ -195,7 +205,8 @@ class DataSet:
             "precision": "double",
             "threads": 1,
             "ns_per_element_step": ns,
-            "stable_step_seconds": 1e-4,
+            "mean_step_seconds": 8e-5,
+            "seconds_per_simulated_second": 1e-9 * ns * elements / 8e-5 if ns else None,
         } | changed
 
     @staticmethod
@@ -212,7 +223,7 @@ class DataSet:
 
     def write_verdicts(self):
         """Writes verdicts.json from the records and limits as they are."""
-        document = {"version": "0", "compiler": "none", "processor": "none"}
+        document = {"version": "0", "compiler": "none", "processor": "none", "revision": "abc"}
         document |= {"records": self.records, "limits": self.limits, "published": self.published}
         (self.folder / "verdicts.json").write_text(json.dumps(document), encoding="utf-8")
 
@@ -238,7 +249,6 @@ class DataSet:
             f"--reference={self.folder}/reference",
             f"--bench={self.folder}/bench.json",
             f"--flops={self.folder}/flops.json",
-            f"--rest={self.folder}/rest.json",
             f"--curves={self.folder}/curves",
             f"--maps={self.folder}/maps",
             f"--submissions={self.folder}/submissions",

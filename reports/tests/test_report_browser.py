@@ -1,10 +1,18 @@
 """The page in a headless Chromium: it draws, its controls work, it requests nothing."""
 
+import json
+import time
+from pathlib import Path
+
 import pytest
-from browser import CHROMIUM, Browser
+from browser import CHROMIUM, PATIENCE, Browser
 from synthetic import DataSet
+from test_report_submissions import ENTRY
+
+from sandglass_report.quantities import COSTS, QUANTITIES
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+POINTS = "JSON.parse(document.querySelector('#chart-data').textContent).points"
 DRAWN = "document.querySelector('#chart').dataset.drawn"
 
 
@@ -86,9 +94,9 @@ def test_the_limits_grey_out_what_breaks_them(browser):
 def test_the_budget_counts_too(browser):
     choose(browser, "cost", "step")
     budget = "document.querySelector('[name=budget]')"
-    browser.run(f"{budget}.value = Math.log10(3e-6)")
+    browser.run(f"{budget}.value = Math.log10(1.7e-6)")
     choose(browser, "own", True)
-    assert [y for _, y in marks(browser)[0]] == [0.004]
+    assert [y for _, y in marks(browser)[0]] == [0.002]
     choose(browser, "own", False)
     choose(browser, "cost", "simulated")
 
@@ -101,7 +109,7 @@ def test_the_budget_counts_too(browser):
         ("curves", True, False, [0.002, 0.004, 0.004, 0.03, 0.2]),
         ("reference", "truth", "golden", [0.08]),
         ("figure", "profile", "max", [0.002, 0.2]),
-        ("cost", "rest", "simulated", [0.002, 0.2]),
+        ("cost", "equilibrium", "simulated", [0.002, 0.2]),
     ],
 )
 def test_switches_choose_what_is_shown(browser, name, value, back, errors):
@@ -127,21 +135,66 @@ def test_a_dragged_line_moves_its_slider(browser):
     choose(browser, "tolerance", -2)
 
 
-def test_a_mark_tells_everything(browser):
-    traces = "document.querySelector('#chart .plot').data"
-    texts = browser.run(f"{traces}.find((t) => t.text && t.y.includes(0.002)).text")
-    text = next(one for one in texts if "max 0.2 %" in one)
+def point_at(browser, error):
+    """Moves the mouse to the mark with an error, of the error axis; returns label and details."""
+    browser.run("document.querySelector('#chart .plot').scrollIntoView({block: 'center'})")
+    label = "document.querySelector('#chart .hoverlayer').textContent"
+    end = time.monotonic() + PATIENCE
+    while not browser.run(label):  # the page may still move under the mouse
+        assert time.monotonic() < end
+        x, y = browser.run(
+            f"""(() => {{
+              const plot = document.querySelector("#chart .plot");
+              const own = plot.data.filter((t) => t.mode === "markers");
+              const trace = own.find((t) => t.y.includes({error}));
+              const i = trace.y.indexOf({error}), box = plot.getBoundingClientRect();
+              const [h, v] = [plot._fullLayout.xaxis, plot._fullLayout.yaxis];
+              return [box.x + h._offset + h.c2p(trace.x[i]), box.y + v._offset + v.c2p(trace.y[i])];
+            }})()"""
+        )
+        for place in (x - 5, x + 1):
+            browser._call("Input.dispatchMouseEvent", type="mouseMoved", x=place, y=y)
+            browser.run("new Promise((done) => setTimeout(done, 100))")
+    return browser.run(label), browser.run("document.querySelector('#chart .told').innerText")
+
+
+def test_a_mark_tells_everything_beside_the_chart(browser):
+    choose(browser, "own", True)
+    choose(browser, "double", True)
+    label, text = point_at(browser, 0.002)
     for words in ("tl-perturbation", "column", "κ 0.0065 (auto)", "double", "12 elements"):
         assert words in text
-    for words in ("max 0.2 %", "max 8 %", "one step 4 µs", "coming to rest 500 ms", "finding"):
+    for words in ("max 0.2 %", "max 8 %", "per step 1.44 µs", "to equilibrium 500 ms", "finding"):
         assert words in text
+    for words in (
+        "120 ns per element and step, checks 40 ns",
+        "mean step 80 µs",
+        "100 evaluations",
+    ):
+        assert words in text
+    assert label == "tl-perturbation"  # more would cover other marks
+    choose(browser, "own", False)
+    choose(browser, "double", False)
+
+
+def test_an_axis_and_its_definition_are_those_of_the_cost(browser):
+    axis = "document.querySelector('#chart .plot').layout.xaxis.title.text"
+    for cost in COSTS:
+        choose(browser, "cost", cost)
+        assert browser.run(axis) == QUANTITIES[cost].name
+        meaning = browser.run("document.querySelector('#chart .meaning').textContent")
+        assert meaning == QUANTITIES[cost].definition
+        costs = {x for trace in marks(browser) for x, _ in trace}
+        known = browser.run(POINTS)
+        assert costs <= {point[cost] for point in known if cost in point}
+    choose(browser, "cost", "simulated")
 
 
 def test_the_front_is_the_one_that_python_found(browser):
     line = browser.run(
         "(() => { const t = document.querySelector('#chart .plot').data[0]; return [t.x, t.y] })()"
     )
-    assert line == [[0.001, 0.002, 0.004], [0.03, 0.004, 0.002]]
+    assert line == [[0.001, 0.002, 0.024], [0.03, 0.004, 0.002]]
 
 
 def test_the_viewer_turns_with_the_keys_and_changes_colours(browser):
@@ -160,6 +213,26 @@ def test_the_viewer_turns_with_the_keys_and_changes_colours(browser):
     volume = "const s = document.querySelector('#viewer [name=colour]'); s.value = 'volume'; "
     assert after(volume + "s.dispatchEvent(new Event('change', {bubbles: true}))") != first
     assert "volume" in browser.run("document.querySelector('#viewer .words').textContent")
+
+
+def test_the_ends_of_a_narrow_scale_of_volumes_are_not_1(tmp_path):
+    data = DataSet(tmp_path)
+    data.records[0] = data.run("tl-none", 1e-3)
+    data.write_verdicts()
+    data.make()
+    found = json.loads(data.page.read_text().partition('id="viewer-data">')[2].partition("</s")[0])
+    low, high = found["cases"]["column"]["limits"]["volume"]
+    found["cases"]["column"]["limits"]["volume"] = [0.9951, 1.0049]
+    text = data.page.read_text().replace(f'"volume":[{low},{high}]', '"volume":[0.9951,1.0049]')
+    data.page.write_text(text)
+    with Browser() as other:
+        other.open(data.page)
+        other.until("document.querySelector('#viewer').dataset.drawn")
+        choose_colour = "const s = document.querySelector('#viewer [name=colour]'); s.value = "
+        choose_colour += "'volume'; s.dispatchEvent(new Event('change', {bubbles: true}))"
+        other.run(f"(() => {{ {choose_colour} }})()")
+        other.until("document.querySelector('#viewer .high').textContent === '≥ 1.0049'")
+        assert other.run("document.querySelector('#viewer .low').textContent") == "≤ 0.9951"
 
 
 def test_on_a_phone_nothing_is_wider_than_the_screen_and_dark_is_dark(page):
@@ -204,5 +277,98 @@ def test_a_method_that_stands_for_the_golden_is_named(tmp_path, browser):
         told = "document.querySelector('#chart [name=reference]').options[0].textContent"
         assert other.run(told) == "tl-mean-dilatation (no golden)"
         axis = "document.querySelector('#chart .plot').layout.yaxis.title.text"
-        assert other.run(axis) == "error to tl-mean-dilatation, largest over all nodes"
-        assert browser.run(axis).startswith("error to the golden, ")
+        assert other.run(axis) == "largest error over all nodes, to tl-mean-dilatation"
+        assert browser.run(axis).endswith(", to the golden")
+
+
+def several_cases(folder):
+    """A page of four cases: a truth is missing, a profile, a search, and everything."""
+    data = DataSet(folder)
+    records, text = data.records, (data.folder / "cases/column.toml").read_text()
+    for record in records[1:3]:
+        record["truth"] = record["golden"] | {"max_relative_error": 30.0}
+    moving = {"equilibrium_seconds": None, "evaluations": None, "motion_seconds": 1.0, "steps": 9}
+    for name, changed in (("mute", {"golden": None, "finding": None}), ("moving", moving)):
+        (data.folder / f"cases/{name}.toml").write_text(text.replace('"column"', f'"{name}"'))
+        data.records += [record | {"case": name, "truth": None} | changed for record in records[:3]]
+        for path in list((data.folder / "results").glob("column.*")):
+            copy = data.folder / f"results/{path.name.replace('column', name, 1)}"
+            copy.write_bytes(path.read_bytes())
+    for record in data.records:
+        if record["case"] == "moving":
+            record["golden"] = record["golden"] | {"profile_relative_error": None}
+    data.write_verdicts()
+    data.make()
+    return data.page
+
+
+EVERY_VIEW = Path(__file__).with_name("every_view.js").read_text(encoding="utf-8")
+
+
+def test_no_combination_of_options_fails(tmp_path):
+    """All options of all cases, among them those without data; with all methods hidden, too."""
+    page = several_cases(tmp_path)
+    with Browser() as other:
+        other.open(page)
+        other.until(DRAWN)
+        found = other.run(EVERY_VIEW)
+        assert found == {"views": 3 * 2 * 3 * 3 * 8, "faults": []}
+        other.run("document.querySelector('[data-all=off]').click()")
+        assert other.run(EVERY_VIEW)["faults"] == []
+        assert other.complaints == []
+
+
+def disabled(browser):
+    """Texts of the options that cannot be chosen."""
+    options = "[...document.querySelectorAll('#chart option')].filter((o) => o.disabled)"
+    return browser.run(f"{options}.map((o) => o.textContent)")
+
+
+def test_options_without_data_are_disabled_and_a_wish_returns_with_the_data(tmp_path):
+    page = several_cases(tmp_path)
+    reference = "document.querySelector('#chart [name=reference]').value"
+    with Browser() as other:
+        other.open(page)
+        other.until(DRAWN)
+        assert disabled(other) == []
+        choose(other, "reference", "truth")
+        choose(other, "case", "moving")
+        assert other.run(reference) == "golden"
+        assert disabled(other) == [
+            "the truth (finer mesh): none for this case",
+            "largest error on the profile line: no profile line",
+            "to equilibrium: no search: the case moves",
+        ]
+        choose(other, "case", "mute")
+        assert sum(len(trace) for trace in marks(other)) == 0
+        assert "nothing to show" in other.run("document.querySelector('#chart .plot').textContent")
+        choose(other, "case", "column")
+        assert other.run(reference) == "truth"
+        # The truth is 3000 % away: drawn at the edge, with an arrowhead.
+        assert {y for trace in marks(other) for _, y in trace} == {10}
+        arrows = "document.querySelector('#chart .plot').data.find((t) => t.name === 'beyond').text"
+        assert other.run(arrows) == ["▲<br> "]
+
+
+def test_stars_of_another_machine_lead_nothing_and_share_a_switch(tmp_path):
+    data = DataSet(tmp_path)
+    for i, element in enumerate(("A", "B")):
+        entry = ENTRY | {"element": element, "ns_per_element_step": 0.1}
+        entry["errors"] = {"golden": {"max": 0.03 * i + 0.001, "rms": 0.001}}
+        data.write(f"submissions/{i}.json", entry)
+    data.make()
+    headline = "document.querySelector('.answer').textContent"
+    shown = "document.querySelectorAll('#chart .scatterlayer .point').length"
+    with Browser() as other:
+        other.open(data.page)
+        other.until(DRAWN)
+        assert "Cheapest within 1 % and 1 s: tl-perturbation" in other.run(headline)
+        assert "1 of 2 are within both" in other.run(headline)
+        assert other.run(shown) == 4
+        (star,) = other.run(
+            "[...document.querySelectorAll('[data-method=Other]')].map((b) => b.title)"
+        )
+        assert star == "CPU"
+        assert "timed elsewhere: CPU" in point_at(other, 0.031)[1]
+        other.run("document.querySelector('[data-method=Other]').click()")
+        assert other.run(shown) == 2

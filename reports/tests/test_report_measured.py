@@ -3,22 +3,23 @@
 import pytest
 
 from make_report import main
-from sandglass_report.measured import read_measured
+from sandglass_report.measured import OWN_MESH, read_measured
+from sandglass_report.points import Point
 from sandglass_report.replication import table_1, table_2
 
 
 def read(data):
     """The data set's optional files that exist."""
-    names = ("bench.json", "flops.json", "rest.json", "curves", "maps", "kept-maps")
+    names = ("bench.json", "flops.json", "curves", "maps", "kept-maps")
     return read_measured(*(data.folder / name for name in names))
 
 
 def test_what_is_absent_is_named_with_its_command(data):
     found = read(data)
-    assert not (found.rungs or found.steps or found.rests or found.counts or found.maps)
+    assert not (found.rungs or found.steps or found.counts or found.maps)
     assert all(source.facts is None for source in found.sources)
     commands = " ".join(source.command for source in found.sources)
-    for word in ("bench --threads", "flops", "bench --rest", "reports/curves", "stability CASE"):
+    for word in ("bench --threads", "flops", "reports/curves", "stability CASE"):
         assert word in commands
 
 
@@ -40,12 +41,20 @@ def test_table_1_counts_the_papers_form_and_the_kernels(data):
     assert updated.element is None
 
 
-def test_table_2_takes_a_step_of_the_whole_mesh_in_double_on_the_ellipsoid(data):
-    records = [data.timing("tl-perturbation", 999.0, precision="float")]
-    records += [data.timing("tl-perturbation", 999.0, "column", 12)]
-    records += [data.timing("tl-perturbation", 50.0), data.timing("ul-perturbation", 150.0)]
-    data.write("bench.json", {"records": records})
-    first, second, third = table_2(read(data).steps)
+def timed(method, ns, **changed):
+    """A point of the main chart on the paper's ellipsoid."""
+    known = {"case": "ellipsoid-indentation", "kappa": None, "as_it_comes": True, "accuracy": None}
+    known |= {"precision": "double", "mesh": OWN_MESH, "elements": 2200, "finding": "", "ok": True}
+    return Point(method=method, ns=ns, step=1e-9 * ns * 2200, **(known | changed))
+
+
+def test_table_2_takes_the_charts_step_of_the_whole_mesh_in_double_on_the_ellipsoid():
+    points = [timed("tl-perturbation", 999.0, precision="float")]
+    points += [timed("tl-perturbation", 999.0, case="column")]
+    points += [timed("tl-perturbation", 999.0, mesh="coarser")]
+    points += [timed("ul-enhanced", 999.0, elsewhere="another machine")]
+    points += [timed("tl-perturbation", 50.0), timed("ul-perturbation", 150.0)]
+    first, second, third = table_2(points)
     assert first.ours == pytest.approx(50e-6 * 2200)  # ms
     assert second.our_ratio == pytest.approx(3.0)
     assert second.paper_ratio == pytest.approx(10.6 / 2.1)
@@ -72,7 +81,6 @@ def test_kept_maps_stand_in_for_cases_that_were_not_swept_anew(data):
         ("bench.json", {"records": 1}, ("records = 1", "a list")),
         ("bench.json", {"records": [{"kernel": "pack", "threads": 1}]}, ("[0].ns_per_element",)),
         ("flops.json", {"records": [{"method": 1}]}, ("records[0].method = 1", "a text")),
-        ("rest.json", {"records": [{"case": "c"}]}, ("records[0].method", "missing")),
         ("curves/a.json", {"case": "c"}, ("reference", "missing")),
         ("maps/a.json", {"case": "c"}, ("limit", "missing")),
         ("kept-maps/a.json", {"case": "c"}, ("limit", "missing")),

@@ -8,7 +8,7 @@ from synthetic import DataSet
 from sandglass_report.interactive import chart_data
 from sandglass_report.verdicts import read_verdicts
 from sandglass_report.measured import read_measured
-from sandglass_report.points import CHOOSE, SCALED, families, fronts, make_points, pareto_front
+from sandglass_report.points import CHOOSE, VERIFY, families, fronts, make_points, pareto_front
 from sandglass_report.style import FLOOR, Palette
 
 
@@ -18,8 +18,8 @@ def points_of(data, *ladders):
         data.write(f"curves/{i}.json", ladder)
     verdicts = read_verdicts(data.folder / "verdicts.json")
     absent = data.folder / "absent"
-    measured = read_measured(*3 * [absent], data.folder / "curves", absent, absent)
-    points = make_points(verdicts.runs, {"column": 12}, measured)
+    measured = read_measured(*2 * [absent], data.folder / "curves", absent, absent)
+    points = make_points(verdicts.runs, {"column": 12}, measured, verdicts.provenance)
     return {p.method: p for p in points if p.as_it_comes and p.mesh == "own mesh"}, points
 
 
@@ -28,14 +28,26 @@ def test_a_run_is_a_point_with_its_costs_in_seconds(data):
     assert len(points) == 4
     point = found["tl-none"]
     assert point.step == pytest.approx(120e-9 * 12)
-    assert point.simulated == pytest.approx(point.step / 1e-4)
-    assert point.rest == 0.5
+    assert point.checks == pytest.approx(40e-9 * 12)
+    # At the mean step, not that at rest.
+    assert point.simulated == pytest.approx((point.step + point.checks) / 8e-5)
+    assert (point.equilibrium, point.evaluations) == (0.5, 100)
     assert point.golden["max"] == 0.2 and point.truth == {}
 
 
-def test_a_run_that_failed_says_so_and_has_no_time_to_rest(data):
+def test_a_run_that_failed_says_so_and_has_no_time_to_equilibrium(data):
     point = points_of(data)[0]["tl-full"]
-    assert not point.ok and point.rest is None and point.finding == "failed: <inverted>"
+    assert not point.ok and point.equilibrium is None and point.finding == "failed: <inverted>"
+
+
+def test_a_method_without_a_step_has_a_simulated_second_alone(data):
+    step = ("ns_per_element_step", "ns_lower_quartile", "ns_upper_quartile", "mean_step_seconds")
+    data.records[0] |= dict.fromkeys([*step, "check_ns_per_element_step"])
+    data.write_verdicts()
+    answer = data.rung("tl-none", 1e-6, 0.2, step_size=None)
+    point = points_of(data, data.ladder([answer]))[0]["tl-none"]
+    assert point.step is None and point.ns is None
+    assert point.simulated == data.records[0]["seconds_per_simulated_second"]
 
 
 def test_only_points_of_kappa_curves_do_not_come_so(data):
@@ -46,14 +58,33 @@ def test_only_points_of_kappa_curves_do_not_come_so(data):
     ]
 
 
-def test_a_rung_of_the_same_choice_brings_its_cost_to_the_runs_point(data):
-    ladder = data.ladder([data.rung("tl-perturbation", 3e-6, 0.9)])
-    truth = data.ladder([data.rung("tl-perturbation", 4e-6, 0.07)], "truth")
-    point = points_of(data, ladder, truth)[0]["tl-perturbation"]
-    assert (point.step, point.simulated) == (3e-6, 3e-3)  # the first one's
-    assert point.measured_by == CHOOSE
+def test_costs_of_verify_stand_and_a_ladder_brings_what_is_missing(data):
+    rungs = [data.rung("tl-perturbation", 3e-6, 0.9), data.rung("t4", 5e-6, 0.5)]
+    truth = data.ladder([data.rung("t4", 4e-6, 0.07)], "truth")
+    found, _ = points_of(data, data.ladder(rungs), truth)
+    point = found["tl-perturbation"]
+    assert point.step == pytest.approx(120e-9 * 12) and point.measured_by == VERIFY
     assert point.golden["max"] == 0.002  # verify's stands
+    point = found["t4"]
+    assert (point.step, point.simulated, point.mean_step) == (5e-6, 5e-3, 1e-3)  # the first one's
+    assert point.ns == pytest.approx(5e-6 / 12 * 1e9) and point.measured_by == CHOOSE
     assert point.truth == {"max": 0.07}
+
+
+def test_costs_are_never_scaled_to_those_of_others(data):
+    rungs = [data.rung(m, 0.1e-6, 0.01) for m in ("tl-perturbation", "tl-none")]
+    found, _ = points_of(data, data.ladder(rungs))
+    assert [p.step for p in found.values()] == pytest.approx(3 * [120e-9 * 12])
+
+
+@pytest.mark.parametrize("fact", ["revision", "processor"])
+def test_times_of_another_machine_or_revision_say_so_and_lead_nothing(data, fact):
+    ladder = data.ladder([data.rung("t4", 1e-9, 0.001)]) | {fact: "another"}
+    _, points = points_of(data, ladder)
+    (t4,) = (p for p in points if p.method == "t4")
+    assert "another" in t4.elsewhere
+    leading = {points[i].method for positions in fronts(points).values() for i in positions}
+    assert leading and "t4" not in leading
 
 
 def test_other_meshes_and_precisions_are_points_of_their_own(data):
@@ -94,19 +125,6 @@ def test_a_refusal_names_the_tolerance_that_it_is_for(data):
     assert found["tl-none"].found() == "good"  # verify's
 
 
-def test_costs_of_verify_alone_are_scaled_by_the_median_of_what_both_measured(data):
-    verify = 120e-9 * 12
-    data.records.append(data.run("tl-enhanced", 0.001))
-    data.records.append(data.run("tl-modal-sampling", 0.001))
-    data.write_verdicts()
-    times = {"tl-perturbation": 0.5, "tl-enhanced": 0.1, "tl-modal-sampling": 0.25}
-    rungs = [data.rung(m, share * verify, 0.01) for m, share in times.items()]
-    point = points_of(data, data.ladder(rungs))[0]["tl-none"]
-    assert point.measured_by == SCALED
-    assert point.step == pytest.approx(0.25 * verify)
-    assert point.simulated == pytest.approx(0.25 * verify / 1e-4)
-
-
 def test_a_choice_has_an_answer_when_any_rung_has_one_but_a_failed_run_stays_failed(data):
     lost = data.ladder([data.rung("t4", 1e-6, None), data.rung("linear", 1e-6, None)])
     rungs = [data.rung("t4", 1e-6, 0.5), data.rung("tl-full", 1e-6, 0.5)]
@@ -121,20 +139,6 @@ def test_a_choice_has_an_answer_when_any_rung_has_one_but_a_failed_run_stays_fai
 def test_a_ladder_of_a_case_that_was_not_run_is_left_out(data):
     _, points = points_of(data, data.ladder([data.rung("t4", 1e-6, 0.5)], case="elsewhere"))
     assert len(points) == 4
-
-
-def test_time_to_rest_is_that_of_bench_where_it_is_known(data):
-    record = {"case": "column", "method": "tl-none", "precision": "double"}
-    record |= {"seconds_to_rest": 0.125, "seconds_to_1_percent": None}
-    data.write("rest.json", {"records": [record | {"seconds_to_0_1_percent": None}]})
-    verdicts = read_verdicts(data.folder / "verdicts.json")
-    absent = data.folder / "absent"
-    measured = read_measured(absent, absent, data.folder / "rest.json", *3 * [absent])
-    points = make_points(verdicts.runs, {"column": 12}, measured)
-    assert {p.method: p.rest for p in points if p.method != "tl-perturbation"} == {
-        "tl-none": 0.125,
-        "tl-full": None,
-    }
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,8 @@ ENTRY = {
     "date": "2026-11-25",
 }
 
+OWN = {"processor": "CPU", "version": "1.0.0", "revision": "abc"}
+
 
 def ours(element, error, ns, **changed):
     """An entry of Sandglass."""
@@ -79,17 +81,41 @@ def test_if_none_is_as_accurate_the_most_accurate_is_and_the_page_says_so(tmp_pa
 def test_without_ours_on_the_machine_there_is_nothing_to_compare_with(tmp_path):
     (found,) = read(tmp_path, ENTRY)
     assert found.nearest is None
-    assert found.as_point(100).finding == "nothing of ours to compare with"
+    assert found.as_point(100, OWN).finding == "nothing of ours to compare with"
 
 
 def test_a_point_of_the_chart(tmp_path):
-    point = read(tmp_path, ENTRY, ours("a", 0.01, 60.0))[0].as_point(100)
+    point = read(tmp_path, ENTRY, ours("a", 0.01, 60.0))[0].as_point(100, OWN)
     assert point.step == pytest.approx(12e-6) and point.simulated == pytest.approx(6e-3)
-    assert point.rest == 3.0 and point.error("golden", "max") == 0.01
+    assert point.equilibrium == 3.0 and point.error("golden", "max") == 0.01
     assert point.measured_by == "results/0.json: native, GCC; CPU"
     data = chart_data([], Palette(("a",)), [point])
     assert data["methods"]["Other H8"]["symbol"] == "star" and not data["fronts"]
     assert data["points"][0]["method"] == "Other H8" and not data["points"][0]["fails"]
+    assert data["points"][0]["group"] == "Other"
+
+
+@pytest.mark.parametrize(
+    ("version", "machine", "elsewhere"),
+    [
+        ("1.0.0 (abc)", "CPU, one thread", ""),
+        ("1.0.0 (abc)", "Other CPU", "Other CPU, Sandglass 1.0.0 (abc)"),
+        ("0.1.0 (old)", "CPU, one thread", "CPU, one thread, Sandglass 0.1.0 (old)"),
+    ],
+)
+def test_a_star_leads_only_if_timed_on_this_machine_with_this_revision(
+    tmp_path, version, machine, elsewhere
+):
+    """Of another program, the revision is that of ours in the same run."""
+    mine = ours("a", 0.01, 60.0, version=version, machine=machine)
+    points = [s.as_point(100, OWN) for s in read(tmp_path, ENTRY | {"machine": machine}, mine)]
+    assert [p.elsewhere for p in points] == 2 * [elsewhere]
+    data = chart_data([], Palette(("a",)), points)
+    assert bool(data["fronts"]) == (not elsewhere)
+
+
+def test_without_ours_beside_it_a_star_leads_nothing(tmp_path):
+    assert read(tmp_path, ENTRY)[0].as_point(100, OWN).elsewhere == "CPU"
 
 
 def test_an_entry_that_breaks_the_schema_is_rejected(tmp_path):

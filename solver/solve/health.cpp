@@ -23,7 +23,8 @@ void require_healthy(std::span<const double> jacobians, long step) {
   }
   if (ill == 0) return;
   const std::string text = fmt::format(
-      "step {}: {} of {} elements {}; det F must be positive; the first {}:{}\n"
+      "step {}: {} of {} elements {}; det F must be positive\n"
+      "the first {}:{}\n"
       "remedy: {}",
       step, ill, jacobians.size(), finite ? "are inverted" : "are no longer finite", std::min(ill, 10),
       listed,

@@ -30,6 +30,8 @@ std::string_view name_of(Finding finding) {
   switch (finding) {
     case Finding::good:
       return "good";
+    case Finding::not_judged:
+      return "not judged";
     case Finding::inaccurate:
       return "inaccurate";
     case Finding::hourglassing:
@@ -88,7 +90,7 @@ Symptoms symptoms(const Scene& scene, const Displacements& u, double energy, con
 }
 
 double good_limit(const std::optional<double>& golden_to_truth) {
-  return std::max(0.01, golden_to_truth.value_or(0.0));
+  return std::clamp(golden_to_truth.value_or(0.0), 0.01, largest_good_limit);
 }
 
 Finding diagnose(const Symptoms& symptoms, double limit) {
@@ -96,6 +98,12 @@ Finding diagnose(const Symptoms& symptoms, double limit) {
   if (symptoms.bending_ratio >= 1.5 && symptoms.zigzag_share >= 0.1) return Finding::hourglassing;
   const bool stiff = symptoms.stiffness_ratio >= 1.03 && symptoms.bending_ratio <= 1.2;
   return stiff ? Finding::locking : Finding::inaccurate;
+}
+
+Finding judge(const Symptoms& symptoms, const std::optional<double>& golden_to_truth) {
+  const double limit = good_limit(golden_to_truth);
+  const bool within_doubt = symptoms.error > limit && symptoms.error <= golden_to_truth.value_or(0.0);
+  return within_doubt ? Finding::not_judged : diagnose(symptoms, limit);
 }
 
 }  // namespace sandglass

@@ -106,7 +106,8 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
-    verdict.finding = finding_of(error.breakdown());
+    // Without a breakdown the method does not take the case, which says nothing about its answers.
+    if (error.breakdown() != Breakdown::other) verdict.finding = finding_of(error.breakdown());
     return verdict;
   }
   verdict.golden = accuracy_of(scene, references.comparison, u, references.golden);
@@ -114,9 +115,8 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
   if (references.golden) {
     verdict.symptoms = symptoms(scene, u, energies.strain + energies.hourglass, *references.golden,
                                 displacement_unit(scene, *references.golden));
-    verdict.finding = verdict.ok()
-                          ? diagnose(*verdict.symptoms, good_limit(golden_to_truth(scene, references)))
-                          : Finding::not_at_rest;
+    verdict.finding =
+        verdict.ok() ? judge(*verdict.symptoms, golden_to_truth(scene, references)) : Finding::not_at_rest;
   }
   fill_computed(scene, u.back(), verdict.published);
   return verdict;

@@ -55,8 +55,9 @@ struct Verdict {
   std::string status;  ///< "ok" or "failed: why"
   std::optional<Accuracy> golden;
   std::optional<Accuracy> truth;
-  std::optional<Accuracy> twin;      ///< where there is no golden: against its explicit twin, computed for it
-  std::optional<Finding> finding;    ///< none where there is no golden to tell by; of the worst time
+  std::optional<Accuracy> twin;  ///< where there is no golden: against its explicit twin, computed for it
+  std::optional<Finding>
+      finding;  ///< of the worst time; none without a golden, or if the method does not take the case
   std::optional<Symptoms> symptoms;  ///< what it was found by; none for a computation that broke down
   double stable_step = 0.0;          ///< s, at rest; 0 where unknown
   long operations = 0;               ///< per element and step

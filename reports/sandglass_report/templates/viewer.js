@@ -129,8 +129,11 @@
     if (!limits) return;
     const shown = key === "error" ? limits.map((v) => 100 * v) : limits;
     bar.querySelector("i").style.background = `linear-gradient(90deg, ${scale.map.join(",")})`;
-    bar.querySelector(".low").textContent = `${key === "hourglass" ? "" : "≤ "}${number(shown[0])}`;
-    bar.querySelector(".high").textContent = `≥ ${number(shown[1])}`;
+    // Ratios near 1 need more digits than the others: 0.995 to 1.005 must not end at 1.
+    const ratio = (v) => v.toFixed(Math.max(2, 1 - Math.floor(Math.log10(limits[1] - 1))));
+    const write = key === "volume" ? ratio : number;
+    bar.querySelector(".low").textContent = `${key === "hourglass" ? "" : "≤ "}${write(shown[0])}`;
+    bar.querySelector(".high").textContent = `≥ ${write(shown[1])}`;
     bar.querySelector(".words").textContent =
       [scale.words, scale.unit].filter(Boolean).join(", ") + (scale.scale === "log" ? " (logarithmic)" : "");
   }

@@ -1,0 +1,57 @@
+"""Makes the README's figure anew from the records of `ci/verify`, with the text around it.
+
+Usage: /usr/bin/python3 reports/make_headline.py [RECORDS]
+RECORDS: build/report/figures/speed-accuracy.json, which `reports/make_report.py` writes. They are
+stored in reports/figures/ beside the figure; the texts of README.md and docs/results.md follow.
+Exit codes: 0 done, 2 an input is missing or broken.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+
+from common.command import exit_code
+from common.files import read_json, write_json, write_whole
+from common.program import ROOT
+from sandglass_report import headline
+
+RECORDS = "build/report/figures/speed-accuracy.json"
+FOLDER = "reports/figures/"
+FIGURE = f"{FOLDER}{headline.NAME}.svg"
+# Texts with the figure -> the paths of figure and glossary from their folder.
+TEXTS = {
+    "README.md": (FIGURE, "docs/glossary.md"),
+    "docs/results.md": (f"../{FIGURE}", "glossary.md"),
+}
+
+
+def make(records, root=ROOT):
+    """Stores the records in a tree, and makes its figure and texts. Raises InputError."""
+    document = read_json(records, "ci/verify")
+    headline.require_valid(records, document)
+    texts = {
+        root
+        / name: headline.replaced(
+            (root / name).read_text(encoding="utf-8"), headline.caption(document, *paths)
+        )
+        for name, paths in TEXTS.items()
+    }
+    write_json(root / FOLDER / f"{headline.NAME}.json", document)
+    texts[root / FIGURE] = headline.figure(document)
+    for path, text in texts.items():
+        write_whole(path, text)
+        print(path)
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("records", type=Path, nargs="?", default=RECORDS, help="of ci/verify")
+    return exit_code(make, parser.parse_args(arguments).records)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,157 @@
+"""The README's figure: one case, five methods, their error to truth and golden, and their cost.
+
+A small document holds the records that it shows. Figure and caption are made from it alone, so that
+a test can make them again, and compare the document with what the program computes now.
+"""
+
+import textwrap
+
+from common.errors import InputError
+from common.records import NUMBER, entries, entry
+from sandglass_report.headline_svg import drawing
+from sandglass_report.measured import OWN_MESH
+from sandglass_report.points import may_lead
+from sandglass_report.style import FLOOR, percent, plain
+
+CASE = "ellipsoid-indentation"
+NAME = "speed-accuracy"
+COMMAND = "/usr/bin/python3 reports/make_headline.py"
+# Method -> what it is in the figure: one of each kind that a reader may know.
+METHODS = {
+    "linear": "one point, small strains",
+    "tl-perturbation": "one point, hourglass control",
+    "ul-perturbation": "the same, rebuilt in each step",
+    "tl-full": "eight points",
+    "tl-mean-dilatation": "eight points, the golden’s own",
+}
+GOLDENS_OWN = "tl-mean-dilatation"
+PAPERS = "tl-perturbation"
+# The text between these lines of a Markdown file is the figure with its caption.
+START, END = "<!-- figure: reports/make_headline.py -->", "<!-- end of the figure -->"
+LINE = 138  # letters of a line of the caption
+FACTS = ("version", "revision", "processor", "compiler", "build_flags")
+NUMBERS = (
+    "golden",
+    "truth",
+    "operations",
+    "ns_per_element_step",
+    "check_ns_per_element_step",
+    "mean_step_seconds",
+    "seconds_per_simulated_second",
+)
+
+
+def headline(points, own):
+    """The document of the figure, or None unless every method has its errors and costs.
+
+    points: of the main chart. own: provenance of the verdicts.
+    """
+    found = {
+        p.method: p
+        for p in points
+        if p.case == CASE and p.mesh == OWN_MESH and p.precision == "double" and may_lead(p)
+    }
+    records = [_record(method, found[method]) for method in METHODS if method in found]
+    if len(records) < len(METHODS) or None in (r[name] for r in records for name in NUMBERS):
+        return None
+    return {
+        "case": CASE,
+        "elements": found[PAPERS].elements,
+        **{name: own[name] for name in FACTS if name in own},
+        "methods": records,
+    }
+
+
+def _record(method, point):
+    """What the figure shows of a method."""
+    return {
+        "method": method,
+        "golden": point.error("golden", "max"),
+        "truth": point.error("truth", "max"),
+        "operations": point.operations,
+        "ns_per_element_step": point.ns,
+        "check_ns_per_element_step": None if point.checks is None else _ns(point),
+        "mean_step_seconds": point.mean_step,
+        "seconds_per_simulated_second": point.simulated,
+    }
+
+
+def _ns(point):
+    """A point's checks per element and step."""
+    return 1e9 * point.checks / point.elements
+
+
+def require_valid(path, document):
+    """Raises InputError unless a document has what the figure needs. path: for messages."""
+    for key, kind in (("case", str), ("elements", int)):
+        entry(path, document, key, kind)
+    for where, record in entries(path, document, "methods"):
+        entry(where, record, "method", str)
+        for key in NUMBERS:
+            entry(where, record, key, NUMBER)
+
+
+def figure(document):
+    """The figure as the text of an SVG file."""
+    rows = [(METHODS[record["method"]], record) for record in document["methods"]]
+    return drawing(document, rows)
+
+
+def caption(document, drawn, glossary):
+    """The figure with its caption, in Markdown. drawn, glossary: paths from the text's folder."""
+    at = {record["method"]: record for record in document["methods"]}
+    ours, golden = at[PAPERS], at[GOLDENS_OWN]
+    seconds = "seconds_per_simulated_second"
+    words = (
+        f"One core, {document.get('processor', 'unknown processor')}, version "
+        f"{document.get('version', 'unknown')}. Errors are the largest of all nodes, in % of the "
+        "imposed displacement. The *truth* is an answer on much finer meshes; the *golden* is that "
+        "of the simplest element that does not lock, on the same mesh. `tl-mean-dilatation` is "
+        "that very element, so its 0 % to the golden says nothing: it is "
+        f"{shown(golden['truth'])} from the truth. `tl-perturbation` is {shown(ours['truth'])} "
+        f"from the truth, and a simulated second takes it {plain(ours[seconds], 2)} s instead of "
+        f"{plain(golden[seconds], 2)} s: one core moves about "
+        f"{in_real_time(document['elements'], ours[seconds])} elements of this size in real time "
+        f"with it. `tl-full` locks ({shown(at['tl-full']['truth'])}), and "
+        f"small strains do not suffice here ({shown(at['linear']['truth'])}). `bash ci/verify` "
+        f"makes the figure in `build/report/figures/`, `{COMMAND}` this text; the "
+        f"[glossary]({glossary}) explains its words."
+    )
+    wrapped = textwrap.fill(words, LINE, break_on_hyphens=False, break_long_words=False)
+    return f"![{in_words(document)}]({drawn})\n\n{wrapped}\n"
+
+
+def in_real_time(elements, seconds):
+    """Elements whose simulated second takes one second, as text with two digits.
+
+    elements: whose simulated second takes `seconds`, of wall time. Steps depend on the size of
+    elements, not on their number, so that the time grows with the number.
+    """
+    return f"{float(f'{elements / seconds:.2g}'):,.0f}"
+
+
+def in_words(document):
+    """The figure as one sentence, for readers who cannot see it."""
+    parts = (
+        f"{r['method']} {shown(r['truth'])}, {shown(r['golden'])}, "
+        f"{plain(r['seconds_per_simulated_second'], 2)} s"
+        for r in document["methods"]
+    )
+    return (
+        "Error to the truth, error to the golden and wall time per simulated second: "
+        + "; ".join(parts)
+    )
+
+
+def shown(error):
+    """An error in percent; 0 below what is counted as one."""
+    return "0 %" if error < FLOOR else percent(error, 2)
+
+
+def replaced(text, block):
+    """A Markdown text with another figure between its two marks. Raises InputError without them."""
+    before, start, rest = text.partition(START)
+    _, end, after = rest.partition(END)
+    if not start or not end:
+        raise InputError(f"the text has no lines {START!r} and {END!r} for the figure")
+    return f"{before}{START}\n{block}{END}{after}"

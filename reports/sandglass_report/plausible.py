@@ -1,0 +1,202 @@
+"""Whether the marks of the chart can be true: a page with a mark that cannot is not made.
+
+Each rule below is a function of Marks that yields a complaint for every mark that breaks it; its
+docstring is the rule. A cost of another loop, a step of another state or a value in another unit
+breaks at least one.
+"""
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+
+from common.errors import InputError
+from sandglass_report import paper
+from sandglass_report.measured import BENCH, OWN_MESH
+from sandglass_report.provenance import elsewhere
+from sandglass_report.style import FLOOR
+
+# Soft bodies of millimetres and more: a wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
+# hundredth of that is another quantity. A stiff body has short steps at rest already, and the mean
+# of its motion is not far below them.
+LEAST_STEP = 1e-6  # s
+LEAST_SHARE = 0.01  # of the step at rest
+# Eleven days for a second: nobody waited for it.
+MOST_WALL = 1e6  # s per simulated second
+# A step of the cheapest method takes a third of one of the costliest. Times that all agree are of
+# something that all methods have in common.
+LEAST_SPREAD = 0.05
+ENOUGH_METHODS = 5
+# Two measurements of one loop on one machine, of which one may have been busy.
+BENCH_AGREES = 1.3
+# The updated form computes the gradients of the shape functions anew in each step.
+UPDATED_AT_LEAST = 1.5
+OPERATIONS_AGREE = 2.0
+ADAPTIVE, EIGHT_POINTS = "tl-adaptive", "tl-mean-dilatation"
+AS_IT_COMES = OWN_MESH, "double", None, None  # mesh, numbers, kappa and accuracy of a rung
+COUNTED = "kernel", "element"  # form and part of the flop table
+# One division, or one relaxation to 1e-8 of the forces: what differs is rounded to be read.
+SAME = 0.01
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What the rules look at.
+
+    points: of the main chart. steps: of bench, and rungs: of choose, if of the same origin.
+    table: method -> operations of an element and step in the flop table.
+    """
+
+    points: tuple
+    steps: tuple = ()
+    table: dict = field(default_factory=dict)
+    rungs: tuple = ()
+
+    def own(self):
+        """The points of the methods as they come, on the cases' own meshes, in double."""
+        return [
+            p
+            for p in self.points
+            if p.as_it_comes and p.mesh == OWN_MESH and p.precision == "double" and p.counts
+        ]
+
+    def least_step(self, case):
+        """The shortest mean step, s, that the body of a case can have."""
+        at_rest = [p.stable_step for p in self.points if p.case == case and p.stable_step]
+        return min(LEAST_STEP, LEAST_SHARE * min(at_rest, default=1.0))
+
+    def work(self, point):
+        """(least, most) operations per element and step: of the flop table or, if more, the case's.
+
+        On a mesh of equal elements tl-perturbation counts half of the table's, but saves hardly any
+        time: loading and storing the nodes remains. The table's count is therefore the least. The
+        table counts the adaptive method with one point, and in motion elements have up to eight.
+        """
+        least = max(self.table[point.method], point.operations or 0)
+        eight = self.table.get(EIGHT_POINTS, least) if point.method == ADAPTIVE else least
+        return least, max(least, eight)
+
+    def by_case(self):
+        """case -> {method: Point} of own() with a time of a step."""
+        cases = defaultdict(dict)
+        for p in self.own():
+            if p.ns is not None and p.accuracy is None:
+                cases[p.case][p.method] = p
+        return cases
+
+
+def steps_are_of_soft_bodies(marks):
+    """A mean step is at least 1e-6 s, or a hundredth of that at rest"""
+    least = {case: marks.least_step(case) for case in {p.case for p in marks.points}}
+    for p in marks.points:
+        if p.mean_step is not None and not p.mean_step >= least[p.case]:
+            yield f"{p.name}: mean step {p.mean_step:g} s"
+
+
+def seconds_can_be_waited_for(marks):
+    """A simulated second takes less than 1e6 s of wall time; more only if steps at rest are short"""
+    for p in marks.points:
+        most = MOST_WALL * LEAST_STEP / marks.least_step(p.case)
+        if p.simulated is not None and not 0 < p.simulated < most:
+            yield f"{p.name}: {p.simulated:g} s per simulated second"
+
+
+def seconds_are_those_of_the_step(marks):
+    """The time of a simulated second is that of a step with its checks over the mean step"""
+    for p in marks.points:
+        if None in (p.step, p.mean_step, p.simulated):
+            continue
+        checks = p.checks or 0.0
+        expected = (p.step + checks) / p.mean_step
+        if not abs(p.simulated / expected - 1) <= SAME:
+            yield (
+                f"{p.name}: {p.simulated:g} s per simulated second, but {p.step:g} s for a step and "
+                f"{checks:g} s for its checks, at a mean step of {p.mean_step:g} s, give "
+                f"{expected:g} s"
+            )
+
+
+def methods_differ(marks):
+    """The time per element and step differs by more than 5 % over the methods of a case"""
+    for case, methods in marks.by_case().items():
+        times = [p.ns for p in methods.values()]
+        if len(times) >= ENOUGH_METHODS and max(times) < (1 + LEAST_SPREAD) * min(times):
+            yield f"{case}: all {len(times)} methods take {min(times):.4g} to {max(times):.4g} ns"
+
+
+def bench_agrees(marks):
+    """The time per element and step is within 30 % of that of bench on this machine and revision"""
+    timed = {(s.case, s.method): s.ns for s in marks.steps if s.precision == "double"}
+    for p in marks.own():
+        ns = timed.get((p.case, p.method))
+        if ns and p.ns and not 1 / BENCH_AGREES <= p.ns / ns <= BENCH_AGREES:
+            yield f"{p.name}: {p.ns:.4g} ns, but bench has {ns:.4g} ns"
+
+
+def updated_form_costs_more(marks):
+    """A step of ul-perturbation takes at least 1.5 times as long as one of tl-perturbation"""
+    for methods in marks.by_case().values():
+        total, updated = methods.get(paper.METHOD), methods.get(paper.UPDATED)
+        if total and updated and not updated.ns >= UPDATED_AT_LEAST * total.ns:
+            yield f"{updated.name}: {updated.ns:.4g} ns, {total.method} {total.ns:.4g} ns"
+
+
+def times_follow_operations(marks):
+    """Times per step over that of tl-perturbation are those of operations within a factor of two"""
+    for methods in marks.by_case().values():
+        counted = [p for p in methods.values() if p.method in marks.table]
+        unit = next((p for p in counted if p.method == paper.METHOD), None)
+        for p in counted if unit else ():
+            time = p.ns / unit.ns
+            least, most = (work / marks.work(unit)[0] for work in marks.work(p))
+            if not least / OPERATIONS_AGREE <= time <= most * OPERATIONS_AGREE:
+                yield (
+                    f"{p.name}: {time:.3g} times the time of {unit.method}, but {least:.3g} times "
+                    "its operations"
+                )
+
+
+def references_are_the_same(marks):
+    """The errors of verify and choose to one reference agree within 1 %"""
+    runs = {(p.case, p.method): p for p in marks.own() if p.ok and p.finding}
+    for rung in marks.rungs:
+        variant = rung.mesh, rung.precision, rung.kappa, rung.accuracy
+        p = runs.get((rung.case, rung.method)) if variant == AS_IT_COMES else None
+        error = p.error(rung.reference, "max") if p else None
+        if None in (error, rung.error):
+            continue
+        if abs(rung.error - error) > SAME * error + FLOOR:
+            yield (
+                f"{p.name}: error to the {rung.reference} {error:.4g}, but choose has "
+                f"{rung.error:.4g}"
+            )
+
+
+RULES = (
+    steps_are_of_soft_bodies,
+    seconds_can_be_waited_for,
+    seconds_are_those_of_the_step,
+    methods_differ,
+    updated_form_costs_more,
+    times_follow_operations,
+    bench_agrees,
+    references_are_the_same,
+)
+
+
+def complaints(marks):
+    """(rule in words, what breaks it) for all rules."""
+    return [(rule.__doc__, found) for rule in RULES for found in rule(marks)]
+
+
+def require_plausible(points, measured, own):
+    """Raises InputError naming the first marks that cannot be true, and the rules they break.
+
+    points: of the main chart. own: machine and revision of the verdicts.
+    """
+    same = not elsewhere(measured.facts_of(BENCH), own)
+    table = {c.method: c.total for c in measured.counts if (c.form, c.part) == COUNTED}
+    rungs = tuple(rung for rung in measured.rungs if not elsewhere(rung.facts, own))
+    found = complaints(Marks(tuple(points), measured.steps if same else (), table, rungs))
+    if found:
+        told = "; ".join(f"{mark} [{rule}]" for rule, mark in found[:3])
+        more = f"; and {len(found) - 3} more" if len(found) > 3 else ""
+        raise InputError(f"the chart has marks that cannot be true: {told}{more}")

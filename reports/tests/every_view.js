@@ -1,0 +1,33 @@
+// Every combination of the chart's options, chosen as a user does: what fails, and how many there are.
+(async () => {
+  const chart = document.querySelector("#chart"), plot = chart.querySelector(".plot");
+  const get = (name) => chart.querySelector(`[name=${name}]`);
+  const faults = [];
+  const note = (event) => faults.push(String(event.reason ?? event.message));
+  for (const event of ["error", "unhandledrejection"]) addEventListener(event, note);
+  const product = (lists) => lists.reduce((all, one) => all.flatMap((a) => one.map((b) => [...a, b])), [[]]);
+  const names = ["case", "reference", "figure", "cost", "own", "double", "curves"];
+  const values = names.map((name) => (get(name).options ? [...get(name).options].map((o) => o.value) : [false, true]));
+  const views = product(values);
+  for (const view of views) {
+    for (const [i, name] of names.entries()) {
+      const control = get(name), kind = control.options ? "value" : "checked";
+      if (control[kind] === view[i]) continue;
+      if (control.options && [...control.options].find((o) => o.value === view[i]).disabled) continue;
+      control[kind] = view[i];
+      control.dispatchEvent(new Event("input", { bubbles: true }));
+    }
+    for (let i = 0; i < 500 && !chart.dataset.drawn; i++) await new Promise((done) => setTimeout(done, 5));
+    const told = names.map((name) => get(name).value).join(" ");
+    const [axis, budget] = [plot.layout.xaxis, get("budget")];
+    if (!chart.dataset.drawn) faults.push(`${told}: was not drawn`);
+    if (axis.tickvals.length > 60 || !axis.range.every(Number.isFinite)) faults.push(`${told}: axis ${axis.range}`);
+    if (![budget.min, budget.max, budget.value].every((v) => Math.abs(v) < 9)) faults.push(`${told}: budget ${budget.max}`);
+    for (const name of ["reference", "figure", "cost"]) {
+      const options = [...get(name).options];
+      if (options.some((o) => o.disabled !== Boolean(o.title))) faults.push(`${told}: ${name} without a reason`);
+      if (options.some((o) => !o.disabled) && get(name).selectedOptions[0].disabled) faults.push(`${told}: ${name} disabled`);
+    }
+  }
+  return { views: views.length, faults: [...new Set(faults)].slice(0, 5) };
+})()
