@@ -348,7 +348,7 @@ def test_options_without_data_are_disabled_and_a_wish_returns_with_the_data(tmp_
         # The truth is 3000 % away: drawn at the edge, with an arrowhead.
         assert {y for trace in marks(other) for _, y in trace} == {10}
         arrows = "document.querySelector('#chart .plot').data.find((t) => t.name === 'beyond').text"
-        assert other.run(arrows) == ["▲<br> "]
+        assert other.run(arrows) == ["▲<br> <br> "]
 
 
 def test_stars_of_another_machine_lead_nothing_and_share_a_switch(tmp_path):
