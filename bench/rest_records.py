@@ -14,16 +14,17 @@ SOLVER_KEYS = {
     "case": str,
     "method": str,
     "precision": str,
-    "steps": int,
+    "evaluations": int,
     "seconds_to_1_percent": float,
     "seconds_to_0_1_percent": float,
     "seconds_to_rest": float,
     "residual": float,
 }
-# Keys added by this benchmark. steps: for an implicit program, its load steps.
+# Keys added by this benchmark. load_steps, iterations: of an implicit program.
 KEYS = {
     "program": str,
     **SOLVER_KEYS,
+    "load_steps": int,
     "iterations": int,
     "setup_seconds": float,
     "jit_seconds": float,
@@ -60,26 +61,29 @@ def _checked(where, found):
     return record(program="sandglass", **figures)
 
 
+# What `sandglass run` prints of a body at rest: evaluations, seconds, residual.
+EQUILIBRIUM = r"^equilibrium: (\d+) evaluations?, (\S+) s; residual ([\d.e+-]+)"
+
+
 def read_run(case, method, text):
     """The record (time to rest only) from the output of `sandglass run` on a quasi-static case.
 
     Raises ComputationError if the text does not state that the case came to rest, and its time.
     """
-    rest = re.search(r"at rest after (\d+) steps, residual (\S+)", text)
-    wall = re.search(r"^wall time (\S+) s", text, re.MULTILINE)
-    if not (rest and wall):
+    rest = re.search(EQUILIBRIUM, text, re.MULTILINE)
+    if not rest:
         raise ComputationError(
-            f"sandglass run {case} -m {method}: 'at rest after N steps, residual R' and 'wall time "
-            f"T s' are required, but it printed {text!r}"
+            f"sandglass run {case} -m {method}: 'equilibrium: N evaluations, T s; residual R' is "
+            f"required, but it printed {text!r}"
         )
     return record(
         program="sandglass",
         case=case,
         method=method,
         precision="double",
-        steps=int(rest[1]),
-        seconds_to_rest=float(wall[1]),
-        residual=float(rest[2]),
+        evaluations=int(rest[1]),
+        seconds_to_rest=float(rest[2]),
+        residual=float(rest[3]),
     )
 
 
@@ -95,7 +99,8 @@ COLUMNS = (
     ("set-up, s", "setup_seconds", "{:.3g}".format),
     ("compiling, s", "jit_seconds", "{:.3g}".format),
     ("process, s", "process_seconds", "{:.3g}".format),
-    ("steps", "steps", str),
+    ("evaluations", "evaluations", str),
+    ("load steps", "load_steps", str),
     ("iterations", "iterations", str),
     ("to golden, max", "error_to_golden_max", lambda fraction: f"{100 * fraction:.3g} %"),
     ("rms", "error_to_golden_rms", lambda fraction: f"{100 * fraction:.3g} %"),
