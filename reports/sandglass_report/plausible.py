@@ -92,7 +92,7 @@ def steps_are_of_soft_bodies(marks):
 
 
 def seconds_can_be_waited_for(marks):
-    """A simulated second takes less than 1e6 s of wall time; more only if steps at rest are short"""
+    """A simulated second takes less than 1e6 s of wall time, unless steps at rest are short"""
     for p in marks.points:
         most = MOST_WALL * LEAST_STEP / marks.least_step(p.case)
         if p.simulated is not None and not 0 < p.simulated < most:
@@ -100,7 +100,7 @@ def seconds_can_be_waited_for(marks):
 
 
 def seconds_are_those_of_the_step(marks):
-    """The time of a simulated second is that of a step with its checks over the mean step"""
+    """The time of a simulated second is that of step and checks over the mean step"""
     for p in marks.points:
         if None in (p.step, p.mean_step, p.simulated):
             continue
@@ -108,8 +108,8 @@ def seconds_are_those_of_the_step(marks):
         expected = (p.step + checks) / p.mean_step
         if not abs(p.simulated / expected - 1) <= SAME:
             yield (
-                f"{p.name}: {p.simulated:g} s per simulated second, but {p.step:g} s for a step and "
-                f"{checks:g} s for its checks, at a mean step of {p.mean_step:g} s, give "
+                f"{p.name}: {p.simulated:g} s per simulated second, but {p.step:g} s for a step, "
+                f"{checks:g} s for checks and a mean step of {p.mean_step:g} s give "
                 f"{expected:g} s"
             )
 
