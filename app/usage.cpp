@@ -78,6 +78,10 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
+bool takes_value(const CLI::Option& option) {
+  return !option.get_positional() && option.get_expected_max() > 0;
+}
+
 std::string summary_of(const CLI::App& command) {
   const std::string text = command.get_description();
   const std::string first = text.substr(0, text.find('\n'));
