@@ -98,6 +98,8 @@ def test_a_misspelt_file_is_answered_with_the_nearest_beside_it(tmp_path):
         (["qwertz"], "'qwertz' is not a command; known: cases"),
         (["cases", "column"], "cases: 'column' is one argument too many"),
         (["mesh", "column"], "mesh: --output is required"),
+        (["run", "column", "-o"], "run: --output needs a value\n"),
+        (["score", "x", "y", "--case", "column"], "score: 'y' is one argument too many"),
         (["run", "column", "--threads", "x"], "run: --threads = x must be an integer"),
         (["run", "column", "--threads", "0,5"], "run: --threads = 0,5 must be an integer\n"),
         (
