@@ -36,7 +36,7 @@ std::string branch(const CLI::App& command) {
     const std::string words = words_of(*option);
     anywhere.insert(anywhere.end(), names.begin(), names.end());
     if (names.empty()) anywhere.push_back(words);
-    if (names.empty() || option->get_type_size() == 0) continue;
+    if (!takes_value(*option)) continue;
     text += fmt::format("        {}) words=\"{}\" ;;\n", fmt::join(names, " | "), words);
     const bool takes_several = option->get_expected_max() == CLI::detail::expected_max_vector_size;
     if (takes_several && !words.empty()) several.push_back(words);

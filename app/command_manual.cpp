@@ -32,7 +32,7 @@ std::string paragraph(const CLI::Option& option) {
   if (names.empty()) names.push_back(option.get_name(true));
   for (auto& name : names) name = "\\fB" + escaped(name) + "\\fR";
   std::string value;
-  if (option.get_type_size() != 0 && !option.get_positional()) {
+  if (takes_value(option)) {
     value = fmt::format(" \\fI{}\\fR", escaped(option.get_type_name()));
     if (option.get_expected_max() == CLI::detail::expected_max_vector_size) value += " ...";
   }

@@ -32,7 +32,7 @@ int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ra
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("sandglass {} ({})", sandglass::build_info::version,
                                                 sandglass::build_info::revision));
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported like a full disk
   if (ranks->rank() > 0 && std::freopen("/dev/null", "w", stdout) == nullptr) return computation_failed;
   if (ranks->count() > 1 && (argc < 2 || std::string_view(argv[1]) != "run")) {
     throw sandglass::InputError(
@@ -72,8 +72,8 @@ int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ra
 
 int main(int argc, char** argv) {
   std::shared_ptr<const sandglass::Ranks> ranks = std::make_shared<const sandglass::Ranks>();
-  // An error of all ranks is told once and ends them in order; one of some ends the others, who wait for
-  // them.
+  // An error of all ranks is printed once and ends them in order; one of some ends the others, which wait
+  // for them.
   const auto fail = [&ranks](const std::string& message, int code) {
     const bool all = ranks->all_end();
     if (!all || ranks->rank() == 0) {

@@ -78,6 +78,10 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
+bool takes_value(const CLI::Option& option) {
+  return !option.get_positional() && option.get_expected_max() > 0;
+}
+
 std::string summary_of(const CLI::App& command) {
   const std::string text = command.get_description();
   const std::string first = text.substr(0, text.find('\n'));
@@ -99,6 +103,8 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error) {
     rule = fmt::format("a command is missing; known: {}", fmt::join(command_names(*app), ", "));
   } else if (error.get_name() == "ConversionError") {
     rule = not_converted(command, rule);
+  } else if (error.get_name() == "ArgumentMismatch" && rule.ends_with(" missing")) {
+    rule = rule.substr(0, rule.find(':')) + " needs a value";
   }
   const std::string name = parsed.empty() ? "" : command.get_name();
   return fmt::format("error: {}{}\nsandglass {}{}--help lists what is allowed\n",

@@ -13,6 +13,9 @@ std::vector<std::string> command_names(const CLI::App& app);
 /// All names of an option with their dashes: "-m", "--method". A positional one has none.
 std::vector<std::string> names_of(const CLI::Option& option);
 
+/// Whether an option has a value behind its name; a flag and a positional argument have none.
+bool takes_value(const CLI::Option& option);
+
 /// What a command does, in one line; what follows it in its description is for its own help.
 std::string summary_of(const CLI::App& command);
 

@@ -98,6 +98,8 @@ def test_a_misspelt_file_is_answered_with_the_nearest_beside_it(tmp_path):
         (["qwertz"], "'qwertz' is not a command; known: cases"),
         (["cases", "column"], "cases: 'column' is one argument too many"),
         (["mesh", "column"], "mesh: --output is required"),
+        (["run", "column", "-o"], "run: --output needs a value\n"),
+        (["score", "x", "y", "--case", "column"], "score: 'y' is one argument too many"),
         (["run", "column", "--threads", "x"], "run: --threads = x must be an integer"),
         (["run", "column", "--threads", "0,5"], "run: --threads = 0,5 must be an integer\n"),
         (
@@ -168,6 +170,8 @@ def test_manual_has_all_commands_and_options_and_no_fault_in_its_markup():
         tagged = re.findall(r"\\fB((?:\\-){2}.*?)\\fR", section)
         options = [name for name in OPTIONS[command] if name != "--help"]
         assert [tag.replace("\\", "") for tag in tagged] == options
+    assert "\\fB\\-\\-describe\\fR\n" in page.stdout  # a flag has no value
+    assert "\\fB\\-\\-method\\fR \\fIMETHOD\\fR\n" in page.stdout
     assert "3 the computation failed" in page.stdout.split(".SH EXIT STATUS")[1]
     if shutil.which("groff") is None:
         pytest.skip("needs groff")
@@ -220,4 +224,5 @@ def test_completion_knows_what_a_value_may_be(script):
     assert completed(script, "sandglass", "run", "column", "--method", "=") == methods()
     several = completed(script, "sandglass", "bench", "-m", "tl-full", "tl-mean")
     assert several == ["tl-mean-dilatation"]
+    assert "column" in completed(script, "sandglass", "run", "--describe", "")  # after a flag
     assert completed(script, "sandglass", "run", "column", "-o", "") == []  # bash offers files
