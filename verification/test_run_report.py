@@ -151,6 +151,19 @@ def test_a_method_without_control_is_warned_of(block):
     assert "warning: method tl-none does not resist hourglass modes" in outcome.stderr
 
 
+def test_energy_from_nowhere_is_warned_of(block):
+    # Moved within 0.1 s and free from then on. Hourglass forces that are summed up from rates while
+    # the elements turn are no derivative of an energy.
+    coarse = BARE.replace("[2, 2, 4]", "[1, 1, 4]")
+    block.write_text(dynamic(coarse, duration=10.0, ramp_time=0.1))
+    outcome = sandglass("run", block, "-m", "ul-assumed-strain")
+    found = re.search(r"energy drifts: (\S+) % of the largest is from nowhere", outcome.stderr)
+    assert float(found[1]) > 10.0
+    for damping in (0.0, 3.0):  # what damping takes is accounted for
+        block.write_text(dynamic(coarse, duration=10.0, ramp_time=0.1, damping=damping))
+        assert "drifts" not in sandglass("run", block).stderr
+
+
 # Places that are refused.
 
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "io/case_file.hpp"
 #include "sandglass/driven_problem.hpp"
@@ -26,7 +27,7 @@ class Simulation<Real>::Parts {
     choose_step();
     leapfrog_.body().evaluate_forces();
     leapfrog_.set_initial_velocities(scene().initial_velocities);
-    keep(CheckpointWriter(whole_));
+    keep(StateCopy(whole_));
   }
 
   const DrivenProblem& problem() const { return *problem_; }
@@ -80,7 +81,7 @@ class Simulation<Real>::Parts {
     factor_ = factor_to_;
     arrive();
     choose_step();
-    keep(CheckpointWriter(whole_));
+    keep(StateCopy(whole_));
     return answer.steps;
   }
 
@@ -147,7 +148,7 @@ class Simulation<Real>::Parts {
       adaption_schedule_.done(rose);
     }
     choose_step();
-    keep(CheckpointWriter(whole_));
+    keep(StateCopy(whole_));
   }
 
   /// Returns to the last state that was whole, and throws ComputationError, if an element is inverted or no
@@ -157,7 +158,7 @@ class Simulation<Real>::Parts {
       leapfrog_.body().require_healthy(leapfrog_.step());
     } catch (const ComputationError& error) {
       const double failed = time();
-      keep(CheckpointReader(whole_));
+      keep(StateCopy(std::as_const(whole_)));
       leapfrog_.body().set_step(step_size_);
       to_ = imposed_;
       factor_to_ = factor_;
@@ -193,7 +194,7 @@ class Simulation<Real>::Parts {
   std::vector<double> from_, to_,
       imposed_;  // m, in the order of the scene's constraints; the last at present
   double factor_from_ = 0.0, factor_to_ = 0.0, factor_ = 0.0;
-  Checkpoint whole_;  // the state at the last check
+  std::vector<std::byte> whole_;  // the state at the last check
 };
 
 template <class Real>

@@ -87,7 +87,7 @@ class Simulation {
   /// case) it looks for inverted elements and not-a-number, and adapts the step to how stiff the body has
   /// become. ComputationError names the time and the elements that failed, with their numbers in the mesh;
   /// the body is then as it was at the check before (at `time()`), its driven nodes and forces stay as they
-  /// were there until you say otherwise, and you may go on: with a smaller motion, or with shorter frames.
+  /// were there until you say otherwise, and you may continue with a smaller motion.
   void advance(double seconds);
 
   /// Moves the body to its static equilibrium with driven nodes and forces at their new values, and stops it

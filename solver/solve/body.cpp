@@ -91,6 +91,7 @@ Reactions Body<Real>::set_reactions() const {
 
 template <class Real>
 void Body<Real>::gather() {
+  if (ranks().count() == 1) return;
   elements_.gather(state_);
   layout().gather_rows(force_.data());
   reactions_ = of_all_constraints(reactions_);
