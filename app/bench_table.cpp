@@ -20,6 +20,10 @@ std::string ratio(const std::optional<double>& value) {
   return value ? fmt::format("{:.2f}", *value) : "-";
 }
 
+std::string or_dash(const std::optional<double>& value, double factor = 1.0) {
+  return value ? fmt::format("{:.3g}", factor * *value) : "-";
+}
+
 std::string percent(double share) {
   return fmt::format("{:.0f}", 100.0 * share);
 }
@@ -34,7 +38,8 @@ const std::vector<Column>& columns() {
       {"best", "ns", [](R, S s) { return fmt::format("{:.2f}", s.ns.best); }},
       {"time over", "tl-pert.", [](R, S s) { return ratio(s.to_tl_perturbation); }},
       {"speed-up", "on scalar", [](R, S s) { return ratio(s.speedup); }},
-      {"simulated", "s/s", [](R, S s) { return s.real_time ? fmt::format("{:.3g}", *s.real_time) : "-"; }},
+      {"mean step", "ms", [](R r, S) { return or_dash(r.mean_step, 1e3); }},
+      {"s per", "sim. s", [](R r, S) { return or_dash(r.per_simulated_second()); }},
       {"p50", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.p50_us); }},
       {"p99", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.p99_us); }},
       {"max", "us/step", [](R, S s) { return fmt::format("{:.1f}", s.max_us); }},
@@ -95,14 +100,14 @@ std::string rest_table(const Scene& scene, const std::vector<RestRecord>& record
   std::string table =
       fmt::format("{}: {} elements, {} nodes\n{:<{}}  {:<6}  {:>3}{:>11}{:>13}{:>12}{:>8}{:>10}\n",
                   scene.description.name, scene.mesh.cells.size(), scene.mesh.points.size(), "method",
-                  longest, "number", "thr", "to 1 %, s", "to 0.1 %, s", "to rest, s", "steps", "residual");
+                  longest, "number", "thr", "to 1 %, s", "to 0.1 %, s", "to rest, s", "evals", "residual");
   for (const auto& record : records) {
     const MethodChoice& choice = record.choice;
     table += fmt::format("{:<{}}  {:<6}  {:>3}", choice.method, longest, name_of(choice.precision),
                          choice.threads);
     table += record.times ? fmt::format("{:>11.3g}{:>13.3g}{:>12.3g}{:>8}{:>10.1e}\n",
                                         record.times->to_1_percent, record.times->to_0_1_percent,
-                                        record.times->to_rest, record.steps, record.residual)
+                                        record.times->to_rest, record.evaluations, record.residual)
                           : fmt::format("  {}\n", record.status);
   }
   return table;

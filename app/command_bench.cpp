@@ -99,11 +99,14 @@ int run_bench(const BenchOptions& options) {
     std::vector<BenchRecord> found;
     {
       Progress progress("bench");
-      found = bench(scene, plan, machine, [&](double share) {
+      const auto proceed = [&](double share) {
         progress.show((static_cast<double>(n) + share) / static_cast<double>(subjects.size()),
                       fmt::format("{}, {} elements", scene.description.name, scene.mesh.cells.size()));
         return !interrupted();
-      });
+      };
+      OwnMotions motions;  // boxes have none
+      if (subject.description) motions = follow_own_motions(scene, plan.methods, proceed);
+      found = bench(scene, motions, plan, machine, proceed);
     }
     fmt::print("{}\n", bench_table(found));
     records.insert(records.end(), found.begin(), found.end());

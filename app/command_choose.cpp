@@ -43,11 +43,11 @@ double parse_budget(const std::string& text) {
       text));
 }
 
-std::string cost_columns(const std::optional<Cost>& cost) {
+std::string cost_columns(const std::optional<StepCost>& cost) {
   if (!cost) return fmt::format("{:>10}{:>10}{:>11}", "-", "-", "-");
   return fmt::format("{:>10.3g}{:>10}{:>11.3g}", 1e6 * cost->seconds,
-                     cost->step_size ? fmt::format("{:.3g}", 1e3 * *cost->step_size) : "-",
-                     cost->per_simulated_second());
+                     cost->mean_step ? fmt::format("{:.3g}", 1e3 * *cost->mean_step) : "-",
+                     *cost->per_simulated_second());
 }
 
 std::string answer_columns(const Evaluation& evaluation) {
@@ -102,7 +102,8 @@ void print_choice(const Scene& scene, const Choice& choice, const std::string& o
              demand.budget ? fmt::format(", {:.3g} ms a step or answer", 1e3 * *demand.budget) : "");
   fmt::print(
       "us/step: median of a step, or of a condensed answer, on this machine with {} thread{}; s/sim. s: wall "
-      "time of a simulated\nsecond at the longest safe step, or of {:.0f} condensed answers: what a "
+      "time of a simulated\nsecond at the mean step of the case's own motion, or of {:.0f} condensed "
+      "answers: what a "
       "real-time "
       "loop pays, and the order of the rows; run: what the run of a motion took\n",
       demand.threads, demand.threads == 1 ? "" : "s", answers_per_second);
@@ -115,7 +116,8 @@ void print_choice(const Scene& scene, const Choice& choice, const std::string& o
   }
   const Attempt& chosen = choice.attempts[*choice.chosen];
   fmt::print("choose {}, {}: {:.4g} % at most, {:.3g} s for a simulated second\n", name_of(chosen.rung),
-             chosen.rung.mesh->name(), 100.0 * *chosen.evaluation.error, chosen.cost->per_simulated_second());
+             chosen.rung.mesh->name(), 100.0 * *chosen.evaluation.error,
+             *chosen.cost->per_simulated_second());
 }
 
 void write_chosen(const Scene& scene, const Choice& choice, const std::string& output) {

@@ -11,6 +11,7 @@
 #include "app/execution_options.hpp"
 #include "app/machine.hpp"
 #include "app/progress.hpp"
+#include "app/step_costs.hpp"
 #include "app/task_pool.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
@@ -33,6 +34,7 @@ struct VerifyOptions {
   std::string results;
   std::string precision = "double";
   int threads = 0;
+  bool no_costs = false;
 };
 
 /// A scene with the answers it is compared with.
@@ -108,6 +110,17 @@ Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
   return outcome;
 }
 
+/// Measures what steps cost on the cases that are not tables of published values.
+void add_step_costs(const std::vector<Task>& tasks, Outcome& outcome, int threads) {
+  std::vector<VerifiedRun> runs;
+  for (std::size_t n = 0; n < tasks.size(); ++n) {
+    const auto& [subject, choice] = tasks[n];
+    if (!outcome.verdicts[n].published.empty()) continue;
+    runs.push_back({&subject->scene, choice, &outcome.answers[n], &outcome.verdicts[n]});
+  }
+  add_step_costs(runs, threads);
+}
+
 /// Whether `a` is nearer to its reference than `b`: to the golden where there is one.
 bool nearer(const Verdict& a, const Verdict& b) {
   const auto error = [](const Verdict& v) {
@@ -134,14 +147,32 @@ std::vector<const Verdict*> rows_of(const std::vector<Verdict>& verdicts) {
   return rows;
 }
 
+/// Of a step, its mean length, and of a simulated second.
+std::string cost_columns(const Verdict& v) {
+  const auto text = [](const std::optional<double>& value, double factor) {
+    return value ? fmt::format("{:.3g}", factor * *value) : "-";
+  };
+  if (!v.step_cost) return fmt::format("{:>8}{:>9}{:>9}", "-", "-", "-");
+  const StepCost& cost = *v.step_cost;
+  return fmt::format(
+      "{:>8}{:>9}{:>9}",
+      cost.condensed ? "-" : fmt::format("{:.3g}", 1e9 * cost.seconds / static_cast<double>(v.elements)),
+      text(cost.mean_step, 1e3), text(cost.per_simulated_second(), 1.0));
+}
+
 void print_verdict(const Verdict& v) {
   const std::string kappa =
       v.kappa ? fmt::format("{} {:.3g}", v.kappa_is_auto ? "auto" : "best", *v.kappa) : "";
   const std::string_view finding = v.finding ? name_of(*v.finding) : "";
-  fmt::print("{:<24}{:>13} |{}|{}|{:>8}{:>10.3g}{:>7}{:>8.0f}{:>8}{:>9.2f}  {}{}\n", v.method, kappa,
-             percents(v.golden), percents(v.truth), percent(v.hourglass_energy_ratio), 1e3 * v.stable_step,
-             v.operations, v.ns_per_element_step, v.steps, v.wall_seconds, finding,
-             v.ok() ? "" : fmt::format("{}{}", finding.empty() ? "" : "; ", v.status));
+  fmt::print("{:<24}{:>13} |{}|{}|{:>8}{:>7}{}{:>8}{:>9.2f}  {}{}\n", v.method, kappa, percents(v.golden),
+             percents(v.truth), percent(v.hourglass_energy_ratio), v.operations, cost_columns(v),
+             v.search   ? v.search->evaluations
+             : v.motion ? v.motion->steps
+                        : 0L,
+             v.search   ? v.search->seconds
+             : v.motion ? v.motion->seconds
+                        : 0.0,
+             finding, v.ok() ? "" : fmt::format("{}{}", finding.empty() ? "" : "; ", v.status));
 }
 
 void print_verdicts(const std::vector<Verdict>& verdicts) {
@@ -149,18 +180,19 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
   if (std::all_of(verdicts.begin(), verdicts.end(), in_tables)) return;
   fmt::print(
       "errors in % of the imposed displacement, in motion the largest over time: max over all nodes, max "
-      "over "
-      "the profile, rms;\nstable step at rest; operations and time per element and evaluation, other runs "
-      "beside; finding: good means at most 1 %, or\nthe golden's own distance from the truth, up to 10 %; "
-      "beyond, up to that distance: not judged\n");
+      "over the profile, rms;\noperations and ns per element and step, by the loop of `bench`; mean step of "
+      "the case's own motion, and seconds per\nsimulated second with it; evaluations and seconds of the "
+      "search for equilibrium, or steps and seconds of a motion, other\nruns beside; finding: good means at "
+      "most 1 %, or the golden's own distance from the truth, up to 10 %; beyond, up to that\ndistance: not "
+      "judged\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
     if (in_tables(*v)) continue;
     if (case_name == nullptr || *case_name != v->case_name) {
       case_name = &v->case_name;
-      fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>10}{:>7}{:>8}{:>8}{:>9}  {}\n", *case_name, "kappa",
-                 "against the golden", "against the truth", "hg/int%", "step ms", "ops", "ns", "evals",
-                 "wall s", "finding");
+      fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>7}{:>8}{:>9}{:>9}{:>8}{:>9}  {}\n", *case_name,
+                 "kappa", "against the golden", "against the truth", "hg/int%", "ops", "ns/step", "step ms",
+                 "s/sim. s", v->motion ? "steps" : "evals", "found, s", "finding");
     }
     print_verdict(*v);
   }
@@ -187,7 +219,9 @@ int verify(const VerifyOptions& options) {
   if (!options.json.empty()) require_place(options.json);
   if (!options.results.empty()) make_folder(options.results);
   const auto tasks = make_tasks(subjects, precision);
-  const auto [verdicts, answers] = run_all(tasks, options);
+  Outcome outcome = run_all(tasks, options);
+  if (!options.no_costs) add_step_costs(tasks, outcome, options.threads);
+  const auto& [verdicts, answers] = outcome;
   std::vector<LimitCheck> limits;
   for (const auto& subject : subjects) {
     if (precision != Precision::double_precision) break;
@@ -221,6 +255,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->add_option("-p,--precision", options->precision,
                    "numbers to compute in, 'double' or 'float'; limits are checked in double only")
       ->capture_default_str();
+  command->add_flag("--no-costs", options->no_costs, "do not measure what steps cost");
   command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

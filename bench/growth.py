@@ -1,4 +1,4 @@
-"""How the cost of an answer grows: seconds and steps to rest over mesh size and Poisson's ratio.
+"""How the cost of an answer grows: seconds and evaluations to rest over mesh size and Poisson's ratio.
 
 Usage: /usr/bin/python3 bench/growth.py [--json FILE] [--most N] [--most-implicit N]
 A beam, clamped at one end and moved at the other, on ever finer meshes; Sandglass beside FEniCSx
@@ -62,7 +62,7 @@ value = [0.03, 0.0, 0.0]
 
 
 def time_sandglass(job):
-    """(method, seconds, steps) of every method, the median of ROUNDS in turn."""
+    """(method, seconds, evaluations, None) of every method, the median of ROUNDS in turn."""
     found = {method: [] for method in METHODS}
     for _ in range(ROUNDS):
         for method in METHODS:
@@ -70,18 +70,18 @@ def time_sandglass(job):
             found[method].append(rest_records.read_run("beam", method, output_of(*command)))
     for method, runs in found.items():
         seconds = statistics.median(run["seconds_to_rest"] for run in runs)
-        yield method, seconds, runs[0]["steps"]
+        yield method, seconds, runs[0]["evaluations"], None
 
 
 def time_implicit(job):
-    """The same of FEniCSx and CalculiX; steps are Newton iterations."""
+    """(program, seconds, None, Newton iterations) of FEniCSx and CalculiX."""
     for name in ("golden", "calculix"):
         try:
             time_to_rest.PROGRAMS[name](job)
         except time_to_rest.Unavailable as reason:
             time_to_rest.note(f"{name} is skipped: {reason}")
     for record in job.records:
-        yield record["program"], record["seconds_to_rest"], record["iterations"]
+        yield record["program"], record["seconds_to_rest"], None, record["iterations"]
 
 
 def time_beam(width, ratio, options, versions):
@@ -100,7 +100,7 @@ def time_beam(width, ratio, options, versions):
         except ComputationError as error:
             job.fail(error)
         versions |= job.versions
-    keys = "poisson_ratio", "elements", "name", "seconds", "steps"
+    keys = "poisson_ratio", "elements", "name", "seconds", "evaluations", "iterations"
     return [dict(zip(keys, (ratio, elements, *of), strict=True)) for of in found], job.exit_code
 
 
@@ -121,10 +121,9 @@ def measure(options):
             worst = max(worst, code)
             records += found
             for of in found:
-                words = (
-                    "{poisson_ratio:<7} {elements:>7} {name:<20} {seconds:9.3f} s {steps:5} steps"
-                )
-                print(words.format(**of), flush=True)
+                kind = "evaluations" if of["iterations"] is None else "iterations"
+                words = "{poisson_ratio:<7} {elements:>7} {name:<20} {seconds:9.3f} s"
+                print(words.format(**of), f"{of[kind]:5} {kind}", flush=True)
     place["load_average_after"] = os.getloadavg()[0]
     if options.json:
         write_json(options.json, {**place, "versions": versions, "records": records})
@@ -134,7 +133,7 @@ def measure(options):
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        description="Seconds and steps to rest over mesh size and Poisson's ratio.",
+        description="Seconds and evaluations to rest over mesh size and Poisson's ratio.",
         epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
     )
     add = parser.add_argument

@@ -39,6 +39,8 @@ IN_FLOAT = ("tl-perturbation", "tl-mean-dilatation")
 TWIN = "tl-mean-dilatation"
 NEWTON, RELAXATION, EXPLICIT = "Newton", "search for rest", "central differences"
 DAMPED = "damped motion"
+# What a way to solve counts: explicit steps, load steps of Newton's method, evaluations of forces.
+COUNTED = {NEWTON: "load_steps", RELAXATION: "evaluations", EXPLICIT: "steps", DAMPED: "steps"}
 
 NOTES_AT_REST = """
 The same answer by different methods. CalculiX and FEBio use Newton's method with a direct solver,
@@ -84,6 +86,8 @@ SHARED = (
 )
 COLUMNS_AT_REST = (
     *SHARED,
+    ("load steps", "load_steps", str),
+    ("evaluations", "evaluations", str),
     ("iterations", "iterations", str),
     ("step, ms", "time_step", lambda seconds: f"{1e3 * seconds:.3g}"),
     ("ms a step", "seconds_per_step", lambda seconds: f"{1e3 * seconds:.3g}"),
@@ -151,11 +155,12 @@ class Row:
             record["seconds"] = statistics.median(record["seconds_of_runs"])
             record["processor_seconds_of_runs"] = [run.processor_seconds for run in answers]
             record["processor_seconds"] = statistics.median(record["processor_seconds_of_runs"])
-            record["steps"] = answers[0].steps
+            record[COUNTED[self.solve]] = answers[0].steps
             if "duration" in self.more:  # the program may have taken shorter steps than asked for
                 record["time_step"] = self.more["duration"] / answers[0].steps
             record["iterations"] = answers[0].iterations or None
-            record["seconds_per_step"] = record["processor_seconds"] / answers[0].steps
+            if COUNTED[self.solve] == "steps":
+                record["seconds_per_step"] = record["processor_seconds"] / answers[0].steps
             record |= more
         return record
 

@@ -14,16 +14,17 @@ SOLVER_KEYS = {
     "case": str,
     "method": str,
     "precision": str,
-    "steps": int,
+    "evaluations": int,
     "seconds_to_1_percent": float,
     "seconds_to_0_1_percent": float,
     "seconds_to_rest": float,
     "residual": float,
 }
-# Keys added by this benchmark. steps: for an implicit program, its load steps.
+# Keys added by this benchmark. load_steps, iterations: of an implicit program.
 KEYS = {
     "program": str,
     **SOLVER_KEYS,
+    "load_steps": int,
     "iterations": int,
     "setup_seconds": float,
     "jit_seconds": float,
@@ -77,7 +78,7 @@ def read_run(case, method, text):
         case=case,
         method=method,
         precision="double",
-        steps=int(rest[1]),
+        evaluations=int(rest[1]),
         seconds_to_rest=float(wall[1]),
         residual=float(rest[2]),
     )
@@ -95,7 +96,8 @@ COLUMNS = (
     ("set-up, s", "setup_seconds", "{:.3g}".format),
     ("compiling, s", "jit_seconds", "{:.3g}".format),
     ("process, s", "process_seconds", "{:.3g}".format),
-    ("steps", "steps", str),
+    ("evaluations", "evaluations", str),
+    ("load steps", "load_steps", str),
     ("iterations", "iterations", str),
     ("to golden, max", "error_to_golden_max", lambda fraction: f"{100 * fraction:.3g} %"),
     ("rms", "error_to_golden_rms", lambda fraction: f"{100 * fraction:.3g} %"),

@@ -22,8 +22,11 @@ def test_every_method_is_timed_at_every_ratio(tmp_path, capsys):
     found = [(record["poisson_ratio"], record["name"]) for record in records]
     assert found == [(ratio, method) for ratio in growth.RATIOS for method in growth.METHODS]
     assert all(record["elements"] == 320 for record in records)
-    assert all(record["seconds"] > 0 and record["steps"] > 0 for record in records)
-    assert capsys.readouterr().out.count(" steps\n") == len(records)
+    assert all(
+        record["seconds"] > 0 and (record["evaluations"] or record["iterations"])
+        for record in records
+    )
+    assert capsys.readouterr().out.count("ations\n") == len(records)
 
 
 def test_other_programs_stand_beside_it(tmp_path, monkeypatch):
@@ -31,7 +34,7 @@ def test_other_programs_stand_beside_it(tmp_path, monkeypatch):
     monkeypatch.setattr(growth, "RATIOS", (0.3,))
     code, document = _measure(tmp_path, "--most", "400")
     assert code == 0
-    iterations = {record["name"]: record["steps"] for record in document["records"]}
+    iterations = {record["name"]: record["iterations"] for record in document["records"]}
     assert 2 < iterations["FEniCSx"] < 20  # Newton's method on a mild load
 
 

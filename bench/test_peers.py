@@ -132,7 +132,7 @@ def test_a_step_costs_what_the_longer_run_takes_more():
     longer = iter(
         [Run(1.0, 3.0, 30, 0, None), Run(1.0, 5.0, 30, 0, None), Run(1.0, 10, 30, 0, None)]
     )
-    row = peers.Row("P", "E", "S", {"answer": short.__next__, "longer": longer.__next__})
+    row = peers.Row("P", "E", peers.EXPLICIT, {"answer": short.__next__, "longer": longer.__next__})
     for _ in range(3):
         row.round()
     assert row.per_step() == [2 / 20, 3 / 20, 7 / 20]

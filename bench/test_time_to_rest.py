@@ -16,7 +16,7 @@ RECORD = {
     "case": "block",
     "method": "tl-perturbation",
     "precision": "double",
-    "steps": 100,
+    "evaluations": 100,
     "seconds_to_1_percent": 0.5,
     "seconds_to_0_1_percent": 0.75,
     "seconds_to_rest": 1.0,
@@ -51,7 +51,9 @@ def test_without_bench_only_the_seconds_to_rest(block, monkeypatch, capsys):
     for method, timed in zip(time_to_rest.METHODS, document["records"], strict=True):
         assert set(timed) == set(rest_records.KEYS)
         assert (timed["program"], timed["case"], timed["method"]) == ("sandglass", "block", method)
-        assert timed["seconds_to_rest"] > 0 and timed["steps"] > 0 and timed["residual"] < 1e-8
+        assert (
+            timed["seconds_to_rest"] > 0 and timed["evaluations"] > 0 and timed["residual"] < 1e-8
+        )
         assert timed["seconds_to_1_percent"] is None and timed["error_to_golden_max"] is None
     told = capsys.readouterr()
     assert "no `bench --rest`" in told.err and "no golden" in told.err
@@ -159,7 +161,7 @@ def test_golden_by_other_load_steps_is_the_golden(block):
     code, document = _measure(block, "--programs", "golden", "--load-steps", "3", "1")
     assert code == 0
     for steps, timed in zip((3, 1), document["records"], strict=True):
-        assert (timed["program"], timed["steps"]) == ("FEniCSx", steps)
+        assert (timed["program"], timed["load_steps"]) == ("FEniCSx", steps)
         assert timed["method"] == f"Q1-P0, load steps: {steps}"
         # Both are at round-off, some 1e-15 of the imposed displacement.
         assert timed["error_to_golden_max"] < 1e-13

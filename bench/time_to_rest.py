@@ -49,8 +49,8 @@ For Sandglass: the corresponding share of its force evaluations, times its secon
 to rest: until the method stops. FEniCSx: correction < 1e-10. CalculiX: residual and correction
 < 1e-8; wall time of the process, including reading and set-up. Sandglass: residual < 1e-8, in
 float also the rounding; median of three runs.
-steps, iterations: load steps and Newton iterations of implicit programs, force
-evaluations of Sandglass.
+evaluations: of the forces, by Sandglass. load steps, iterations: of Newton's method, by
+implicit programs.
 """.strip()
 
 
@@ -146,7 +146,7 @@ def _golden(job, load_steps):
         case=job.case.name,
         method=f"Q1-P0, load steps: {load_steps}" if load_steps else "golden Q1-P0",
         precision="double",
-        steps=figures.pop("load_steps"),
+        load_steps=figures.pop("load_steps"),
         process_seconds=seconds,
         **figures,
     )
@@ -181,7 +181,7 @@ def time_calculix(job):
             case=job.case.name,
             method=element,
             precision="double",
-            steps=run.steps,
+            load_steps=run.steps,
             iterations=run.iterations,
             seconds_to_rest=run.seconds,
             process_seconds=run.seconds,

@@ -77,8 +77,15 @@ def of_peers(path, answers):
             "ns_per_element_step": moved.get("ns_per_element_step"),
             "time_step": row["time_step"] or moved.get("time_step"),
             "seconds_to_rest": row["seconds"],
-            "how": f"{row['solve']}, {row['steps']} steps{_soundness(moved)}; by ci/peers",
+            "how": f"{row['solve']}, {_counted(row)}{_soundness(moved)}; by ci/peers",
         }
+
+
+def _counted(row):
+    """What the way to the answer counts, in words."""
+    kinds = ("steps", "load_steps", "evaluations")
+    kind = next(kind for kind in kinds if row.get(kind) is not None)
+    return f"{row[kind]} {kind.replace('_', ' ')}"
 
 
 def _soundness(moved):

@@ -87,6 +87,7 @@ class Fake final : public Candidate {
   NodalField forces() override { return {{force_, 0.0, 0.0}}; }
   void restart() override { ++restarts; }
   void step() override { ++steps; }
+  void check() override {}
   void require_healthy() override { ++checks; }
 
   int restarts = 0;

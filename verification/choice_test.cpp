@@ -102,11 +102,11 @@ TEST(Choose, takes_the_first_that_suffices) {
       continue;
     }
     const double rank =
-        (method_named(rung.choice.method).adapts() ? 1.1 : 1.0) * cost->per_simulated_second();
+        (method_named(rung.choice.method).adapts() ? 1.1 : 1.0) * *cost->per_simulated_second();
     EXPECT_GE(rank, before) << name_of(rung);
     before = rank;
     EXPECT_GT(cost->seconds, 0.0) << name_of(rung);
-    EXPECT_EQ(cost->step_size.has_value(), !method_named(rung.choice.method).is_condensed);
+    EXPECT_EQ(cost->mean_step.has_value(), !method_named(rung.choice.method).is_condensed);
     const auto expected = n < *choice.chosen   ? Outcome::refused
                           : n > *choice.chosen ? Outcome::not_tried
                                                : Outcome::chosen;
@@ -267,7 +267,7 @@ TEST(Choose, takes_longer_steps_where_they_suffice) {
     for (const auto& [rung, cost, evaluation, outcome] : choice.attempts) {
       if (!rung.mesh->own() || rung.choice.precision != Precision::double_precision) continue;
       EXPECT_LE(*evaluation.error, tolerance) << rung.mesh->name();
-      steps[rung.mesh->steps] = *cost->step_size;
+      steps[rung.mesh->steps] = *cost->mean_step;
     }
     return steps;
   };

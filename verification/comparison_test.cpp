@@ -125,9 +125,38 @@ TEST(Verdict, json_has_every_figure_and_null_for_what_is_not_there) {
   for (const char* part :
        {"\"revision\": \"abc\"", "\"case\": \"test\"", "\"method\": \"tl-none\"", "\"kappa\": null",
         "\"precision\": \"double\"", "\"status\": \"ok\"", "\"max_relative_error\": 0.5", "\"truth\": null",
-        "\"profile_relative_error\": 0.25", "\"rms_relative_error\": 0.125", "\"steps\"", "\"residual\"",
-        "\"hourglass_energy_ratio\"", "\"ns_per_element_step\"", "\"wall_seconds\""}) {
-    EXPECT_TRUE(contains(text, part));
+        "\"profile_relative_error\": 0.25", "\"rms_relative_error\": 0.125", "\"residual\"",
+        "\"hourglass_energy_ratio\"", "\"ns_per_element_step\": null", "\"mean_step_seconds\": null",
+        "\"seconds_per_simulated_second\": null", "\"equilibrium_seconds\": null", "\"evaluations\": null",
+        "\"motion_seconds\": null", "\"steps\": null"}) {
+    EXPECT_TRUE(contains(text, part)) << part;
+  }
+}
+
+/// The cost of a step, of a simulated second, of a search and of a motion stand apart: none takes the place
+/// of another.
+TEST(Verdict, json_names_each_kind_of_cost) {
+  Verdict v = verdict("tl-none", {}, false, 0.5);
+  v.elements = 1000;
+  v.search = SearchCost{.seconds = 3.0, .evaluations = 16};
+  v.step_cost = StepCost{
+      .seconds = 2e-5, .lower_quartile = 1e-5, .upper_quartile = 4e-5, .checks = 2e-6, .mean_step = 5e-4};
+  const std::string text = to_json({}, {v}, {});
+  for (const char* part :
+       {"\"ns_per_element_step\": 20.0", "\"ns_lower_quartile\": 10.0", "\"ns_upper_quartile\": 40.0",
+        "\"mean_step_seconds\": 0.0005", "\"check_ns_per_element_step\": 2.0",
+        "\"seconds_per_simulated_second\": 0.044", "\"equilibrium_seconds\": 3.0", "\"evaluations\": 16",
+        "\"steps\": null", "\"motion_seconds\": null"}) {
+    EXPECT_TRUE(contains(text, part)) << part << text;
+  }
+  v.search.reset();
+  v.motion = MotionCost{.seconds = 7.0, .steps = 21};
+  v.step_cost->condensed = true;  // an answer is no step
+  const std::string moving = to_json({}, {v}, {});
+  for (const char* part : {"\"ns_per_element_step\": null", "\"seconds_per_simulated_second\": 0.02",
+                           "\"equilibrium_seconds\": null", "\"evaluations\": null", "\"steps\": 21",
+                           "\"motion_seconds\": 7.0"}) {
+    EXPECT_TRUE(contains(moving, part)) << part << moving;
   }
 }
 

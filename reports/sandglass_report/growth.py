@@ -14,6 +14,9 @@ COLOURS = {
 LINES = {0.3: ":", 0.49: "-", 0.4999: "--"}
 
 
+COUNTS = ("evaluations", "iterations")  # of Sandglass; of Newton's method
+
+
 def read_growth(path):
     """The records of `bench/growth.py --json`. Raises InputError."""
     records = []
@@ -23,28 +26,35 @@ def read_growth(path):
             ("elements", int),
             ("name", str),
             ("seconds", NUMBER),
-            ("steps", int),
         ):
             entry(where, found, key, kind)
+        counts = [entry(where, found, key, int, none_allowed=True) for key in COUNTS]
+        if counts.count(None) != 1:
+            raise InputError(f"{where}: must have one of {' and '.join(COUNTS)}")
         if found["name"] not in COLOURS or found["poisson_ratio"] not in LINES:
             raise InputError(f"{where}: is not of bench/growth.py")
         records.append(found)
     return records
 
 
+def _count(found):
+    """The evaluations of a record, or the iterations if it has none."""
+    return next(found[key] for key in COUNTS if found[key] is not None)
+
+
 def growth_plate(records):
-    """A plate of seconds, and of steps, over the number of elements."""
+    """A plate of seconds, and of evaluations or iterations, over the number of elements."""
     lines = {}
     for found in records:
         lines.setdefault((found["name"], found["poisson_ratio"]), []).append(found)
 
-    def panel(key, title, words):
+    def panel(key, value, title, words):
         def draw(axes):
             for (name, ratio), points in lines.items():
                 points = sorted(points, key=lambda point: point["elements"])
                 axes.plot(
                     [point["elements"] for point in points],
-                    [point[key] for point in points],
+                    [value(point) for point in points],
                     LINES[ratio],
                     color=COLOURS[name],
                     marker="o",
@@ -57,14 +67,17 @@ def growth_plate(records):
             axes.set_ylabel(words)
 
         largest = max(records, key=lambda found: found["elements"])
-        alt = f"{title}: up to {largest['elements']} elements, {largest[key]:.3g} {words}"
+        alt = f"{title}: up to {largest['elements']} elements, {value(largest):.3g} {words}"
         return Panel(f"growth.{key}", title, alt, draw, 420, 320)
 
-    panels = (panel("seconds", "Seconds to rest", "s"), panel("steps", "Steps to rest", "steps"))
+    panels = (
+        panel("seconds", lambda point: point["seconds"], "Seconds to rest", "s"),
+        panel("work", _count, "Evaluations or iterations to rest", "evaluations or iterations"),
+    )
     note = (
         "A bent beam on ever finer meshes, one thread. Poisson's ratio: "
-        ".3 dotted, .49 solid, .4999 dashed. Steps are evaluations of the forces, each with a "
-        "multigrid cycle; of FEniCSx and CalculiX, Newton iterations, each with a factorisation."
+        ".3 dotted, .49 solid, .4999 dashed. Of Sandglass evaluations of the forces, each "
+        "with a multigrid cycle; of FEniCSx and CalculiX Newton iterations, each with a factorisation."
     )
     names = dict.fromkeys(name for name, _ in lines)
     legend = tuple((name, COLOURS[name], "o") for name in names)

@@ -16,7 +16,7 @@ SCRIPT = ROOT / "reports" / "make_timings.py"
 
 def record(elements, seconds, **changed):
     found = {"poisson_ratio": 0.49, "elements": elements, "name": "FEniCSx", "seconds": seconds}
-    return found | {"steps": 7} | changed
+    return found | {"evaluations": 7, "iterations": None} | changed
 
 
 def write(tmp_path, *records):
@@ -28,10 +28,10 @@ def write(tmp_path, *records):
 def test_a_line_per_program_and_ratio_in_the_order_of_the_meshes(tmp_path):
     records = record(2560, 4.0), record(320, 0.5), record(320, 0.25, poisson_ratio=0.3)
     plate = growth_plate(read_growth(write(tmp_path, *records)))
-    seconds, steps = plate.panels
+    seconds, work = plate.panels
     for panel, expected in (
         (seconds, [([320, 2560], [0.5, 4.0]), ([320], [0.25])]),
-        (steps, [([320, 2560], [7, 7]), ([320], [7])]),
+        (work, [([320, 2560], [7, 7]), ([320], [7])]),
     ):
         axes = Axes()
         panel.draw(axes)
@@ -41,7 +41,7 @@ def test_a_line_per_program_and_ratio_in_the_order_of_the_meshes(tmp_path):
 
 @pytest.mark.parametrize(
     "broken",
-    [{"name": "other"}, {"poisson_ratio": 0.2}, {"seconds": "1"}, {"steps": None}],
+    [{"name": "other"}, {"poisson_ratio": 0.2}, {"seconds": "1"}, {"evaluations": None}, {"iterations": 7}],
     ids=lambda changed: next(iter(changed)),
 )
 def test_a_broken_file_is_rejected(tmp_path, broken):

@@ -1,7 +1,6 @@
 #include "solve/condensed_answer.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <utility>
 
@@ -32,10 +31,9 @@ NodalField forces_of_rotations(const Model& model, const Handles& handles) {
   return forces;
 }
 
-/// Displacements (m) of all nodes at the full load, and the shortest of several times (s) for superposing
-/// them.
+/// Displacements (m) of all nodes at the full load.
 template <class Real>
-std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layout) {
+Rows<Real> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
   if (!(scene.pressures.empty() && scene.supports.empty())) {
     throw ComputationError(
@@ -61,19 +59,13 @@ std::pair<Rows<Real>, double> superposed(const Model& model, const Layout& layou
   for (const auto& displacement : scene.description.displacements) d.push_back(displacement.value);
   std::vector<typename CondensedResponse<Real>::Displacement> u(layout.nodes);
   const std::vector<double> full_loads(loads.size(), 1.0);
-  double seconds = std::numeric_limits<double>::infinity();
-  for (int repetition = 0; repetition < 5; ++repetition) {
-    const auto start = std::chrono::steady_clock::now();
-    response.displacements(d, u, model.choice().threads, full_loads);
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-    seconds = std::min(seconds, time.count());
-  }
+  response.displacements(d, u, model.choice().threads, full_loads);
   Rows<Real> rows(layout.rows());
   for (std::size_t r = 0; r < layout.nodes; ++r) {
     const auto& value = u[at(layout.node_of_row[r])];
     for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value[i];
   }
-  return {std::move(rows), seconds};
+  return rows;
 }
 
 /// Work (J) of the imposed displacements from the undeformed state; it does not depend on the path.
@@ -95,11 +87,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   observer.history({});
   constexpr auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   Relaxation result;
-  if (settings.max_steps > 0) {
-    const auto [u, seconds] = superposed<Real>(model, elements.layout());
-    body.move_to(u);
-    result.step_seconds = seconds;
-  }
+  if (settings.max_steps > 0) body.move_to(superposed<Real>(model, elements.layout()));
   body.impose(1.0);
   body.evaluate_forces();
   body.require_healthy(1);

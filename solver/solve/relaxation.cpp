@@ -333,9 +333,6 @@ Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from,
                                 },
                                 model.internal_force());
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!(result.step_seconds > 0.0)) {
-    result.step_seconds = result.seconds / static_cast<double>(std::max(result.steps, 1L));
-  }
   return result;
 }
 

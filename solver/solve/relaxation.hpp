@@ -16,9 +16,6 @@ struct Relaxation {
   bool interrupted = false;  ///< the observer ended the run
   StrainEnergies energies;   ///< at u
   double seconds = 0.0;      ///< wall time from the model to the answer
-  /// Wall time of a step; of a condensed answer that of its superposition, without the set-up for all
-  /// answers.
-  double step_seconds = 0.0;
   double adaption_seconds = 0.0;  ///< the share of `seconds` for the choice of levels, adaptive methods
 };
 

@@ -8,6 +8,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "benchmark/condensed_model.hpp"
+#include "benchmark/cost.hpp"
 #include "benchmark/force_check.hpp"
 #include "benchmark/stepped_model.hpp"
 
@@ -15,20 +16,19 @@ namespace sandglass {
 
 namespace {
 
-Speed speed_of(const Timing& timing, const BenchRecord& record, double memory_gbs) {
+Speed speed_of(const Timing& timing, const BenchRecord& record, const Scene& scene, double memory_gbs) {
   const auto elements = static_cast<double>(record.elements);
   Speed speed{};
   speed.ns = spread_of(timing.seconds_per_step);
-  const double median = speed.ns.median;
   for (double* figure : {&speed.ns.best, &speed.ns.lower_quartile, &speed.ns.median, &speed.ns.upper_quartile,
                          &speed.ns.worst}) {
     *figure *= 1e9 / elements;
   }
+  speed.check_ns = 1e9 * checks_per_step(timing, scene) / elements;
   speed.p50_us = 1e6 * quantile(timing.seconds_of_a_step, 0.5);
   speed.p99_us = 1e6 * quantile(timing.seconds_of_a_step, 0.99);
   speed.max_us = 1e6 * quantile(timing.seconds_of_a_step, 1.0);
   speed.steps = static_cast<long>(timing.seconds_of_a_step.size());
-  if (record.stable_step) speed.real_time = *record.stable_step / median;
   speed.gflops = record.work.operations / speed.ns.median;
   speed.peak_share = speed.gflops / record.ceiling.gflops;
   speed.gbs = record.work.bytes / speed.ns.median;
@@ -50,7 +50,8 @@ struct Group {
 };
 
 /// Makes models from `next` on, as many as fit into memory, at least one.
-Group make_group(const Scene& scene, const std::vector<MethodChoice>& variants, std::size_t& next) {
+Group make_group(const Scene& scene, const OwnMotions& motions, const std::vector<MethodChoice>& variants,
+                 std::size_t& next) {
   const std::size_t elements = scene.mesh.cells.size(), nodes = scene.mesh.points.size();
   const double room = 0.5 * static_cast<double>(available_memory());
   double taken = 0.0;
@@ -60,12 +61,14 @@ Group make_group(const Scene& scene, const std::vector<MethodChoice>& variants, 
     // Of the model before, since this one is not made yet: variants of a method stand together.
     const double model = group.records.empty() ? 0.0 : group.records.back().work.bytes;
     if (taken + 2.0 * model * static_cast<double>(elements) > room) break;
-    group.models.push_back(make_stepped_model(scene, choice));
+    const auto motion = motions.find(choice.method);
+    const bool arrived = motion != motions.end() && motion->second.mean_step;
+    group.models.push_back(make_stepped_model(scene, choice, arrived ? &motion->second.end : nullptr));
     BenchRecord record{scene.description.name, elements, nodes, choice, {}, 0.0, 0.0, {}, {}, {}, {}};
     const SteppedModel& made = *group.models.back();
     record.force_limit = force_limit(choice.precision, scene.description.materials.front().law);
     record.work = made.work();
-    record.stable_step = made.stable_step();
+    if (arrived) record.mean_step = motion->second.mean_step;
     taken += record.work.bytes * static_cast<double>(elements);
     group.records.push_back(std::move(record));
   }
@@ -120,8 +123,23 @@ std::vector<MethodChoice> variants_of(const BenchPlan& plan) {
   return variants;
 }
 
-std::vector<BenchRecord> bench(const Scene& scene, const BenchPlan& plan, MachineSpeed& machine,
-                               const Proceed& proceed) {
+std::optional<double> BenchRecord::per_simulated_second() const {
+  if (!speed || !mean_step) return std::nullopt;
+  return 1e-9 * (speed->ns.median + speed->check_ns) * static_cast<double>(elements) / *mean_step;
+}
+
+OwnMotions follow_own_motions(const Scene& scene, const std::vector<std::string>& methods,
+                              const Proceed& proceed) {
+  OwnMotions motions;
+  for (const auto& method : methods) {
+    if (method_named(method).is_condensed) continue;
+    motions[method] = follow_own_motion(scene, {.method = method}, proceed);
+  }
+  return motions;
+}
+
+std::vector<BenchRecord> bench(const Scene& scene, const OwnMotions& motions, const BenchPlan& plan,
+                               MachineSpeed& machine, const Proceed& proceed) {
   auto variants = variants_of(plan);
   std::vector<BenchRecord> records = leave_out(scene, variants);
   std::map<std::string, NodalField> references;
@@ -132,14 +150,15 @@ std::vector<BenchRecord> bench(const Scene& scene, const BenchPlan& plan, Machin
   }
   for (std::size_t next = 0; next < variants.size();) {
     const std::size_t first = next;
-    Group group = make_group(scene, variants, next);
+    Group group = make_group(scene, motions, variants, next);
     std::vector<Entry> entries;
     for (std::size_t n = 0; n < group.models.size(); ++n) {
       BenchRecord& record = group.records[n];
       const auto working_set =
           static_cast<std::size_t>(record.work.bytes * static_cast<double>(record.elements));
       record.ceiling = machine.ceiling(record.choice.precision, record.choice.threads, working_set);
-      entries.push_back({group.models[n].get(), &references[record.choice.method], record.force_limit});
+      entries.push_back({group.models[n].get(), &references[record.choice.method], record.force_limit,
+                         record.choice.threads});
     }
     const auto share = [&](double of_group) {
       return proceed((static_cast<double>(first) + of_group * static_cast<double>(next - first)) /
@@ -155,7 +174,8 @@ std::vector<BenchRecord> bench(const Scene& scene, const BenchPlan& plan, Machin
       record.ceiling = machine.ceiling(record.choice.precision, threads, working_set);
       record.status = timings[n].status;
       record.force_difference = timings[n].force_difference;
-      if (record.status == "ok") record.speed = speed_of(timings[n], record, machine.memory_gbs(threads));
+      if (record.status == "ok")
+        record.speed = speed_of(timings[n], record, scene, machine.memory_gbs(threads));
       records.push_back(std::move(record));
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 
 #include "benchmark/machine_speed.hpp"
 #include "benchmark/measure.hpp"
+#include "benchmark/own_motion.hpp"
 #include "benchmark/statistics.hpp"
 #include "problem/model.hpp"
 
@@ -25,16 +27,16 @@ struct BenchPlan {
 
 /// Times and what follows from them.
 struct Speed {
-  Spread ns;                        ///< per element and step, of batches
-  double p50_us;                    ///< of single steps
-  double p99_us;                    ///< of single steps
-  double max_us;                    ///< of single steps
-  long steps;                       ///< timed
-  std::optional<double> real_time;  ///< simulated seconds per wall second at the stable step
-  double gflops;                    ///< counted operations over the median
-  double peak_share;                ///< of the peak with this number of threads
-  double gbs;                       ///< estimated bytes over the median
-  double memory_share;              ///< of the triad in memory; above 1 when a mesh stays in a cache
+  Spread ns;            ///< per element and step, of batches
+  double check_ns;      ///< per element and step, of the checks of a run between steps
+  double p50_us;        ///< of single steps
+  double p99_us;        ///< of single steps
+  double max_us;        ///< of single steps
+  long steps;           ///< timed
+  double gflops;        ///< counted operations over the median
+  double peak_share;    ///< of the peak with this number of threads
+  double gbs;           ///< estimated bytes over the median
+  double memory_share;  ///< of the triad in memory; above 1 when a mesh stays in a cache
   double roofline_fraction;
   std::optional<double> to_tl_perturbation;  ///< time over that of tl-perturbation, same kernel and numbers
   std::optional<double> speedup;  ///< time of the scalar double kernel over this one, same method and threads
@@ -49,10 +51,13 @@ struct BenchRecord {
   std::string status;  ///< "ok", "wrong result: ...", or "left out: ..."
   double force_difference;
   double force_limit;
-  Work work;                          ///< per element and step
-  std::optional<double> stable_step;  ///< s; none where there are no dynamics
-  Ceiling ceiling;                    ///< of this precision, number of threads and working set
-  std::optional<Speed> speed;         ///< none when the result is wrong
+  Work work;                        ///< per element and step
+  std::optional<double> mean_step;  ///< s, of the scene's own motion; none where there is none, or it fails
+  Ceiling ceiling;                  ///< of this precision, number of threads and working set
+  std::optional<Speed> speed;       ///< none when the result is wrong
+
+  /// Wall time of a simulated second at the mean step of the motion, s.
+  std::optional<double> per_simulated_second() const;
 };
 
 /// Whether what was computed is wrong.
@@ -61,11 +66,18 @@ bool is_wrong(const BenchRecord& record);
 /// Every variant of the plan, and the scalar kernel in double precision where the program has it.
 std::vector<MethodChoice> variants_of(const BenchPlan& plan);
 
-/// Measures all variants on a scene in turn. When they do not all fit into memory, those that do are measured
-/// together and the others after them. Condensed methods are left out where their factorisation would take
-/// too long.
-std::vector<BenchRecord> bench(const Scene& scene, const BenchPlan& plan, MachineSpeed& machine,
-                               const Proceed& proceed);
+/// The own motions of a scene by method, of those methods that take steps.
+using OwnMotions = std::map<std::string, OwnMotion>;
+
+/// Follows them. Throws ComputationError when told to end.
+OwnMotions follow_own_motions(const Scene& scene, const std::vector<std::string>& methods,
+                              const Proceed& proceed);
+
+/// Measures all variants on a scene in turn, from where their motions end; without a motion from waves. When
+/// they do not all fit into memory, those that do are measured together and the others after them. Condensed
+/// methods are left out where their factorisation would take too long.
+std::vector<BenchRecord> bench(const Scene& scene, const OwnMotions& motions, const BenchPlan& plan,
+                               MachineSpeed& machine, const Proceed& proceed);
 
 /// The figures that follow from the records' times among each other.
 void compare_among_each_other(std::vector<BenchRecord>& records);

@@ -36,6 +36,8 @@ class CondensedModelOf final : public SteppedModel {
     response_.forces(d_, f_);
   }
 
+  void check() override {}
+
   void require_healthy() override {
     const auto finite = [](const auto& u) {
       return std::all_of(u.begin(), u.end(), [](auto component) { return std::isfinite(component); });
@@ -44,8 +46,6 @@ class CondensedModelOf final : public SteppedModel {
     throw ComputationError(fmt::format("bench of {} with {}: displacements are no numbers",
                                        model_.scene().description.name, model_.choice().method));
   }
-
-  std::optional<double> stable_step() const override { return std::nullopt; }
 
   Work work() const override {
     const auto elements = static_cast<double>(model_.scene().mesh.cells.size());

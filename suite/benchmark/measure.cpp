@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "benchmark/force_check.hpp"
+#include "benchmark/one_processor.hpp"
 
 namespace sandglass {
 
@@ -39,7 +40,10 @@ int steps_per_batch(Candidate& candidate, double batch_seconds) {
 
 /// One batch as a whole, for its mean; another one step by step, for the spread of single steps. Two, because
 /// reading the clock would be felt in the steps of small meshes.
-void time_batches(Candidate& candidate, int steps, Timing& timing) {
+void time_batches(const Entry& entry, int steps, Timing& timing) {
+  Candidate& candidate = *entry.candidate;
+  std::optional<OneProcessor> bound;
+  if (entry.threads == 1) bound.emplace();
   warm_up(candidate, (steps + 1) / 2);
   timing.seconds_per_step.push_back(time_steps(candidate, steps) / steps);
   auto before = Clock::now();
@@ -49,6 +53,8 @@ void time_batches(Candidate& candidate, int steps, Timing& timing) {
     timing.seconds_of_a_step.push_back(seconds_between(before, now));
     before = now;
   }
+  candidate.check();
+  timing.seconds_of_a_check.push_back(seconds_between(before, Clock::now()));
 }
 
 }  // namespace
@@ -68,16 +74,17 @@ std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSetting
     require_proceed(0.0);
     if (timings[n].status != "ok") continue;
     steps[n] = steps_per_batch(candidate, settings.batch_seconds);
-    time_batches(candidate, steps[n], timings[n]);  // a rehearsal: every batch goes through the same states
+    time_batches(entries[n], steps[n], timings[n]);  // a rehearsal: every batch goes through the same states
     candidate.require_healthy();
     timings[n].seconds_per_step.clear();
     timings[n].seconds_of_a_step.clear();
+    timings[n].seconds_of_a_check.clear();
     order.push_back(n);
   }
   for (int repetition = 0; repetition < settings.repetitions; ++repetition) {
     std::shuffle(order.begin(), order.end(), std::minstd_rand(static_cast<unsigned>(repetition) + 1U));
     for (const std::size_t n : order) {
-      time_batches(*entries[n].candidate, steps[n], timings[n]);
+      time_batches(entries[n], steps[n], timings[n]);
       require_proceed(static_cast<double>(repetition) / settings.repetitions);
     }
   }

@@ -26,6 +26,9 @@ class Candidate {
 
   virtual void step() = 0;
 
+  /// What a run does between some steps: looks whether the body is healthy, and chooses the next step.
+  virtual void check() = 0;
+
   /// Throws ComputationError when the state is not one to go on from.
   virtual void require_healthy() = 0;
 };
@@ -35,6 +38,7 @@ struct Entry {
   Candidate* candidate;
   const NodalField* reference;  ///< forces, N
   double limit;                 ///< of the relative difference
+  int threads = 1;              ///< of the candidate; with one it stays on one processor
 };
 
 /// What was measured of one entry.
@@ -43,6 +47,7 @@ struct Timing {
   double force_difference;                ///< relative to the reference
   std::vector<double> seconds_per_step;   ///< mean of each batch
   std::vector<double> seconds_of_a_step;  ///< single steps
+  std::vector<double> seconds_of_a_check;
 };
 
 struct MeasureSettings {

@@ -77,7 +77,7 @@ RestRecord time_to_rest(const Scene& scene, const MethodChoice& choice, const Pr
     }
     seconds.push_back(rest.seconds);
   }
-  record.steps = rest.steps;
+  record.evaluations = rest.steps;
   record.residual = rest.residual;
   if (!in_equilibrium(rest, choice.precision)) {
     record.status = fmt::format("failed: {}", outcome(rest, choice.precision));
@@ -109,7 +109,7 @@ std::string to_json(const Provenance& provenance, const std::vector<RestRecord>&
                                    {"precision", name_of(record.choice.precision)},
                                    {"threads", record.choice.threads},
                                    {"status", record.status},
-                                   {"steps", record.steps},
+                                   {"evaluations", record.evaluations},
                                    {"seconds_to_1_percent", figure(&RestTimes::to_1_percent)},
                                    {"seconds_to_0_1_percent", figure(&RestTimes::to_0_1_percent)},
                                    {"seconds_to_rest", figure(&RestTimes::to_rest)},

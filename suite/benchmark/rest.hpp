@@ -22,7 +22,7 @@ struct RestRecord {
   std::string case_name;
   MethodChoice choice;
   std::string status;              ///< "ok", or "failed: why"
-  long steps = 0;                  ///< evaluations of the internal forces
+  long evaluations = 0;            ///< evaluations of the internal forces
   double residual = 0.0;           ///< |force on free components| / |reactions and loads|
   std::optional<RestTimes> times;  ///< none when it did not come to rest
 };

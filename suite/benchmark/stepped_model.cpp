@@ -24,28 +24,26 @@ template <class Real>
 class SteppedModelOf final : public SteppedModel {
  public:
   SteppedModelOf(const Scene& scene, const MethodChoice& choice, const NodalField* start)
-      : field_(start != nullptr ? *start : wavy_field(scene)),
-        model_(scene, choice),
+      : model_(scene, choice),
         elements_(*std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force())),
         leapfrog_(model_, elements_, 0.0) {
     const double imposed = largest_imposed(scene);
     if (imposed > 0.0) loading_ = relative_height * element_size(scene) / imposed;
     if (start != nullptr) loading_ = 1.0;
     Body<Real>& body = leapfrog_.body();
-    body.state() = state_at(elements_, field_);
+    body.state() = state_at(elements_, start != nullptr ? *start : wavy_field(scene));
     body.impose(loading_);
     Adaption<Real>(model_, body).apply(body, Demotion::never);
     body.evaluate_forces();
     Rows<Real>& increment = body.state().increment;
     std::fill(increment.begin(), increment.end(), Row<Real>{});  // it stands still
     start_ = body.state();
-    stable_step_ = leapfrog_.stable_step(model_).step;
     constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
-    step_size_ = step_fraction * stable_step_;
+    step_size_ = step_fraction * leapfrog_.stable_step(model_).step;
     coefficients_ = {(1.0 - damping) / (1.0 + damping), step_size_ * step_size_ / (1.0 + damping)};
   }
 
-  NodalField forces() override { return forces_on_the_way(elements_, field_); }
+  NodalField forces() override { return forces_on_the_way(elements_, wavy_field(model_.scene())); }
 
   void restart() override {
     leapfrog_.body().state() = start_;
@@ -54,6 +52,11 @@ class SteppedModelOf final : public SteppedModel {
 
   void step() override {
     leapfrog_.take(step_size_, coefficients_, [this](Body<Real>& body) { body.impose(loading_); });
+  }
+
+  void check() override {
+    require_healthy();
+    stable_step_ = leapfrog_.stable_step(model_).step;
   }
 
   void require_healthy() override {
@@ -66,22 +69,18 @@ class SteppedModelOf final : public SteppedModel {
     }
   }
 
-  std::optional<double> stable_step() const override { return stable_step_; }
-
   Work work() const override {
     return work_of(model_.choice(), model_.scene().description.materials.front().law, elements_.layout(),
                    model_.scene().mesh);
   }
 
  private:
-  NodalField field_;
   Model model_;
   const InternalForce<Real>& elements_;
   Leapfrog<Real> leapfrog_;
   State<Real> start_;
   double loading_ = 0.0;
-  double stable_step_ = 0.0;
-  double step_size_ = 0.0;
+  double step_size_ = 0.0, stable_step_ = 0.0;
   LeapfrogClock::Coefficients coefficients_{};
 };
 

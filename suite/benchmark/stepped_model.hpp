@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "benchmark/measure.hpp"
 #include "benchmark/roofline.hpp"
@@ -27,9 +26,6 @@ NodalField wavy_field(const Scene& scene);
 /// displacements of all nodes and forces on the driven sets. The scene must outlive it.
 class SteppedModel : public Candidate {
  public:
-  /// s, at the stiffness of the wavy field; none where there are no dynamics.
-  virtual std::optional<double> stable_step() const = 0;
-
   /// Operations and bytes of a step, per element.
   virtual Work work() const = 0;
 };

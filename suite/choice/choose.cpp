@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/names.hpp"
 #include "choice/longer_steps.hpp"
+#include "choice/rung_cost.hpp"
 #include "choice/variations.hpp"
 #include "comparison/comparison.hpp"
 #include "comparison/truth_estimate.hpp"
@@ -136,18 +137,18 @@ class Meshes {
 double rank(const Attempt& attempt) {
   constexpr double price_of_change = 1.1;
   if (!attempt.cost) return std::numeric_limits<double>::infinity();
-  const double cost = attempt.cost->per_simulated_second();
+  const double cost = attempt.cost->per_simulated_second().value_or(std::numeric_limits<double>::infinity());
   return method_named(attempt.rung.choice.method).adapts() ? price_of_change * cost : cost;
 }
 
 /// Why a rung is too dear; empty when it is not.
-std::string cost_reason(const Cost& cost, const Demand& demand) {
+std::string cost_reason(const StepCost& cost, const Demand& demand) {
   if (demand.budget && cost.seconds > *demand.budget) {
-    return fmt::format("{} takes {:.3g} ms, and may take {:.3g} ms", cost.step_size ? "a step" : "an answer",
+    return fmt::format("{} takes {:.3g} ms, and may take {:.3g} ms", cost.condensed ? "an answer" : "a step",
                        1e3 * cost.seconds, 1e3 * *demand.budget);
   }
   if (demand.real_time && cost.per_simulated_second() > 1.0) {
-    return fmt::format("not in real time: a simulated second takes {:.3g} s", cost.per_simulated_second());
+    return fmt::format("not in real time: a simulated second takes {:.3g} s", *cost.per_simulated_second());
   }
   return "";
 }

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "choice/cost.hpp"
 #include "choice/evaluation.hpp"
+#include "choice/ladder.hpp"
+#include "comparison/step_cost.hpp"
 
 namespace sandglass {
 
@@ -28,7 +29,7 @@ std::string_view name_of(Outcome outcome);
 /// One row of the table of what was tried.
 struct Attempt {
   Rung rung;
-  std::optional<Cost> cost = {};
+  std::optional<StepCost> cost = {};
   Evaluation evaluation = {};
   Outcome outcome = Outcome::not_tried;
 };
@@ -58,9 +59,10 @@ using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 /// own element: an answer that is nearer than its mesh allows is so by luck, and not taken. For a static
 /// answer that is measured against the truth, meshes that are too coarse are refined where that element errs,
 /// until it is near enough. For a motion, meshes are tried with longer steps in the same way
-/// (longer_steps.hpp). Then the rungs are timed, put in the order of their cost per simulated second,
-/// and climbed. Throws InputError for an unknown method and a stored reference that is not there,
-/// ComputationError where the reference finds no answer or when told to end.
+/// (longer_steps.hpp). Then the rungs are timed, put in the order of their cost per simulated second at
+/// the mean step of the scene's own motion (own_motion.hpp), and climbed. Throws InputError for an unknown
+/// method and a stored reference that is not there, ComputationError where the reference finds no answer or
+/// when told to end.
 Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress);
 
 /// Why nothing suffices, in sentences; or what is to be known of the choice.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assembly/method_entry.hpp"
+#include "benchmark/own_motion.hpp"
 
 namespace sandglass {
 
@@ -26,8 +27,10 @@ Json to_record(const Attempt& attempt) {
       {"mesh", rung.mesh->name()},
       {"elements", rung.mesh->scene.mesh.cells.size()},
       {"seconds", cost ? Json(cost->seconds) : Json(nullptr)},
-      {"step_size", cost ? or_null(cost->step_size) : Json(nullptr)},
-      {"seconds_per_simulated_second", cost ? Json(cost->per_simulated_second()) : Json(nullptr)},
+      {"check_seconds_per_step", cost ? Json(cost->checks) : Json(nullptr)},
+      {"step_size", cost ? or_null(cost->mean_step) : Json(nullptr)},
+      {"step_remark", cost ? cost->remark : ""},
+      {"seconds_per_simulated_second", cost ? or_null(cost->per_simulated_second()) : Json(nullptr)},
       {"run_seconds_per_simulated_second", or_null(evaluation.per_simulated_second)},
       {"error", or_null(evaluation.error)},
       {"smallest_jacobian", or_null(evaluation.smallest_jacobian)},
@@ -50,6 +53,8 @@ std::string to_json(const Provenance& provenance, const Scene& scene, const Choi
                            {"own_error", or_null(choice.reference.own.largest)},
                            {"note", choice.reference.own.note}};
   document["answers_per_second"] = answers_per_second;
+  const DynamicsSettings motion = in_own_motion(scene).description.dynamics;
+  document["own_motion"] = {{"duration", motion.duration}, {"damping", motion.damping}};
   document["chosen"] = or_null(choice.chosen);
   document["remarks"] = remarks(choice);
   document["other_meshes"] = Json::array();

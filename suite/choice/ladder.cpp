@@ -52,9 +52,4 @@ std::string name_of(const Rung& rung) {
   return fmt::format("{}{}{} {}", choice.method, kappa, accuracy, name_of(choice.precision));
 }
 
-bool same_work(const Rung& a, const Rung& b) {
-  return a.mesh == b.mesh && a.choice.method == b.choice.method && a.choice.precision == b.choice.precision &&
-         a.choice.accuracy == b.choice.accuracy;
-}
-
 }  // namespace sandglass

@@ -51,7 +51,4 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
 /// The name of a rung: "tl-perturbation kappa 0.00325 float".
 std::string name_of(const Rung& rung);
 
-/// Whether two rungs do the same work in a step, so that one time stands for both.
-bool same_work(const Rung& a, const Rung& b);
-
 }  // namespace sandglass

@@ -43,8 +43,7 @@ Answer moving_answer(const Model& model, Observer& observer) {
   return {.u = std::move(sampler.u),
           .energies = sampler.energies,
           .steps = motion.steps,
-          .seconds = motion.seconds,
-          .step_seconds = motion.seconds / static_cast<double>(std::max(motion.steps, 1L))};
+          .seconds = motion.seconds};
 }
 
 Answer resting_answer(const Model& model, Observer& observer) {
@@ -53,8 +52,7 @@ Answer resting_answer(const Model& model, Observer& observer) {
                 .energies = relaxation.energies,
                 .steps = relaxation.steps,
                 .residual = relaxation.residual,
-                .seconds = relaxation.seconds,
-                .step_seconds = relaxation.step_seconds};
+                .seconds = relaxation.seconds};
   if (in_equilibrium(relaxation, model.choice().precision)) return answer;
   answer.failure = Finding::not_at_rest;
   answer.status = outcome(relaxation, model.choice().precision);

@@ -17,10 +17,9 @@ struct Answer {
   std::optional<Finding> failure = {};  ///< how it broke down, or that it is not in equilibrium
   bool refused = false;                 ///< the method does not take this case
   std::string status = "ok";            ///< or why not, in words
-  long steps = 0;
-  double residual = 0.0;      ///< of an answer at rest; see Relaxation
-  double seconds = 0.0;       ///< wall time from the model to the answer; of a motion, that of its steps
-  double step_seconds = 0.0;  ///< wall time of a step
+  long steps = 0;                       ///< of a motion; of an answer at rest the evaluations of its search
+  double residual = 0.0;                ///< of an answer at rest; see Relaxation
+  double seconds = 0.0;  ///< wall time from the model to the answer; of a motion, that of its steps
 };
 
 /// The answer of a model, in motion where its case is dynamic; else that it is not in equilibrium. The

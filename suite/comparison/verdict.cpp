@@ -51,11 +51,13 @@ Answer fill_answer(const Scene& scene, const MethodChoice& choice, Verdict& verd
   const StrainEnergies energies = answer.energies;
   verdict.status =
       answer.failure ? fmt::format("failed: {}, residual {:.1e}", answer.status, answer.residual) : "ok";
-  verdict.steps = answer.steps;
+  if (scene.description.quasi_static) {
+    verdict.search = SearchCost{answer.seconds, answer.steps};
+  } else {
+    verdict.motion = MotionCost{answer.seconds, answer.steps};
+  }
   verdict.residual = answer.residual;
   verdict.hourglass_energy_ratio = energies.strain > 0.0 ? energies.hourglass / energies.strain : 0.0;
-  verdict.wall_seconds = answer.seconds;
-  verdict.ns_per_element_step = 1e9 * answer.step_seconds / static_cast<double>(scene.mesh.cells.size());
   return answer;
 }
 
@@ -87,6 +89,7 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
   const KernelLaw law = kernel_law(scene.description.materials.front().law);
   Verdict verdict{
       .case_name = scene.description.name,
+      .elements = scene.mesh.cells.size(),
       .method = choice.method,
       .kappa = choice.kappa ? choice.kappa : method.auto_kappa(elastic_law(law), choice.kappa_modulus),
       .kappa_is_auto = method.takes_kappa && !choice.kappa,

@@ -8,6 +8,7 @@
 #include "comparison/comparison.hpp"
 #include "comparison/finding.hpp"
 #include "comparison/published.hpp"
+#include "comparison/step_cost.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
@@ -31,9 +32,22 @@ std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& compar
 /// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
 std::optional<double> golden_to_truth(const Scene& scene, const References& references);
 
+/// What it took to find a static equilibrium.
+struct SearchCost {
+  double seconds = 0.0;  ///< wall time, other runs beside
+  long evaluations = 0;  ///< of the internal forces
+};
+
+/// What it took to follow a motion.
+struct MotionCost {
+  double seconds = 0.0;  ///< wall time, other runs beside
+  long steps = 0;
+};
+
 /// What came of one method on one case.
 struct Verdict {
   std::string case_name;
+  std::size_t elements = 0;  ///< of the case's mesh
   std::string method;
   std::optional<double> kappa;  ///< the number used, none for methods without one
   bool kappa_is_auto = false;
@@ -47,11 +61,11 @@ struct Verdict {
   std::optional<Symptoms> symptoms;  ///< what it was found by; none for a computation that broke down
   double stable_step = 0.0;          ///< s, at rest; 0 where unknown
   long operations = 0;               ///< per element and step
-  long steps = 0;
   double residual = 0.0;
-  double hourglass_energy_ratio = 0.0;  ///< hourglass over strain energy
-  double ns_per_element_step = 0.0;
-  double wall_seconds = 0.0;
+  double hourglass_energy_ratio = 0.0;          ///< hourglass over strain energy
+  std::optional<SearchCost> search = {};        ///< of a quasi-static case
+  std::optional<MotionCost> motion = {};        ///< of a dynamic case
+  std::optional<StepCost> step_cost = {};       ///< measured apart, by benchmark/cost.hpp; else none
   std::string family = {};                      ///< what the case shares with its variants
   std::vector<std::string> variants = {};       ///< of the case
   std::vector<PublishedResult> published = {};  ///< one for each published value of the case

@@ -27,6 +27,28 @@ Json to_record(const std::optional<Symptoms>& symptoms) {
           {"stiffness_ratio", symptoms->stiffness_ratio}};
 }
 
+/// The three kinds of cost; what is not known or does not apply is null.
+void add_cost(Json& record, const Verdict& verdict) {
+  const auto& search = verdict.search;
+  const auto& motion = verdict.motion;
+  const auto& cost = verdict.step_cost;
+  const auto ns = [&](double StepCost::*seconds) {
+    return cost && !cost->condensed ? Json(1e9 * (*cost).*seconds / static_cast<double>(verdict.elements))
+                                    : Json(nullptr);
+  };
+  record["ns_per_element_step"] = ns(&StepCost::seconds);
+  record["ns_lower_quartile"] = ns(&StepCost::lower_quartile);
+  record["ns_upper_quartile"] = ns(&StepCost::upper_quartile);
+  record["check_ns_per_element_step"] = ns(&StepCost::checks);
+  record["mean_step_seconds"] = cost ? or_null(cost->mean_step) : Json(nullptr);
+  record["step_remark"] = cost ? cost->remark : "";
+  record["seconds_per_simulated_second"] = cost ? or_null(cost->per_simulated_second()) : Json(nullptr);
+  record["equilibrium_seconds"] = search ? Json(search->seconds) : Json(nullptr);
+  record["evaluations"] = search ? Json(search->evaluations) : Json(nullptr);
+  record["motion_seconds"] = motion ? Json(motion->seconds) : Json(nullptr);
+  record["steps"] = motion ? Json(motion->steps) : Json(nullptr);
+}
+
 Json to_record(const Verdict& verdict) {
   Json record{{"case", verdict.case_name},
               {"method", verdict.method},
@@ -40,11 +62,9 @@ Json to_record(const Verdict& verdict) {
               {"truth", to_record(verdict.truth)},
               {"operations", verdict.operations},
               {"stable_step", verdict.stable_step},
-              {"steps", verdict.steps},
               {"residual", verdict.residual},
-              {"hourglass_energy_ratio", verdict.hourglass_energy_ratio},
-              {"ns_per_element_step", verdict.ns_per_element_step},
-              {"wall_seconds", verdict.wall_seconds}};
+              {"hourglass_energy_ratio", verdict.hourglass_energy_ratio}};
+  add_cost(record, verdict);
   if (verdict.twin) record["twin"] = to_record(verdict.twin);
   return record;
 }

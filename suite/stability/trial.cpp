@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "assembly/method_entry.hpp"
+#include "benchmark/own_motion.hpp"
 #include "choice/variations.hpp"
 #include "comparison/answer.hpp"
 #include "comparison/comparison.hpp"
@@ -21,11 +22,6 @@ double shear_wave_speed(const Case& description) {
   const double mu =
       std::visit([](const auto& law) { return law.shear_modulus(); }, description.materials.front().law);
   return std::sqrt(mu / description.materials.front().density);
-}
-
-/// The time in which a shear wave crosses the body, s.
-double crossing_time(const Scene& scene) {
-  return diagonal(scene.mesh.points) / shear_wave_speed(scene.description);
 }
 
 double noise_velocity(const Trial& trial) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "comparison/verdict.hpp"
+
+namespace sandglass {
+
+/// A run of `verify`, and what came of it.
+struct VerifiedRun {
+  const Scene* scene;
+  MethodChoice choice;
+  const Displacements* answer;  ///< empty if there is none
+  Verdict* verdict;
+};
+
+/// Adds to the verdicts what the steps of their methods cost: follows the own motion of each scene and method
+/// on `threads` threads (0: all processors), then, with nothing else running, times the steps of all methods
+/// of a scene in turn. Points of a kappa curve have the time of their method, as kappa does not change the
+/// work, and its mean step times the ratio of the stable steps at rest. Throws ComputationError when
+/// interrupted.
+void add_step_costs(const std::vector<VerifiedRun>& runs, int threads);
+
+}  // namespace sandglass

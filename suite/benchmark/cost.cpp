@@ -1,0 +1,117 @@
+#include "benchmark/cost.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+#include "benchmark/condensed_model.hpp"
+#include "benchmark/machine_speed.hpp"
+#include "benchmark/statistics.hpp"
+
+namespace sandglass {
+
+namespace {
+
+constexpr int repetitions = 20;
+
+/// A model with the forces it is compared with: its own, which shows that they are numbers.
+struct Timed {
+  std::size_t task;
+  std::unique_ptr<SteppedModel> model;
+  NodalField forces;
+
+  Entry entry() const { return {model.get(), &forces, 1.0}; }
+};
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+/// The model of a task, which has taken a batch of steps without failing. Throws InputError or
+/// ComputationError.
+Timed make_timed(const CostTask& task, std::size_t number, const Proceed& proceed) {
+  const std::size_t nodes = task.scene->mesh.points.size();
+  if (method_named(task.choice.method).is_condensed && nodes > most_condensed_nodes) {
+    throw InputError(fmt::format("to factorise for {} nodes takes too long; at most {} here", nodes,
+                                 most_condensed_nodes));
+  }
+  const bool arrived = task.motion != nullptr && !task.motion->end.empty();
+  Timed timed{
+      number, make_stepped_model(*task.scene, task.choice, arrived ? &task.motion->end : nullptr), {}};
+  timed.forces = timed.model->forces();
+  const Entry entry = timed.entry();
+  const auto timings = measure(std::span(&entry, 1), {.repetitions = 0}, proceed);
+  if (timings[0].status != "ok") throw ComputationError(timings[0].status);
+  return timed;
+}
+
+/// Times models that are in memory together.
+void time_together(std::span<const CostTask> tasks, std::vector<Timed>& group, std::vector<Costing>& costings,
+                   const Proceed& proceed) {
+  std::vector<Entry> entries;
+  for (const auto& timed : group) entries.push_back(timed.entry());
+  const auto timings = measure(entries, {.repetitions = repetitions}, proceed);
+  for (std::size_t n = 0; n < group.size(); ++n) {
+    StepCost& cost = *costings[group[n].task].cost;
+    const Spread seconds = spread_of(timings[n].seconds_per_step);
+    cost.seconds = seconds.median;
+    cost.lower_quartile = seconds.lower_quartile;
+    cost.upper_quartile = seconds.upper_quartile;
+    cost.checks = checks_per_step(timings[n], *tasks[group[n].task].scene);
+  }
+  group.clear();
+}
+
+}  // namespace
+
+double checks_per_step(const Timing& timing, const Scene& scene) {
+  return spread_of(timing.seconds_of_a_check).median / scene.description.dynamics.check_interval;
+}
+
+bool same_work(const MethodChoice& a, const MethodChoice& b) {
+  return a.method == b.method && a.precision == b.precision && a.accuracy == b.accuracy &&
+         a.threads == b.threads;
+}
+
+std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Proceed& proceed) {
+  std::vector<Costing> costings(tasks.size());
+  std::vector<std::size_t> twin(tasks.size());
+  std::vector<Timed> group;
+  const double room = 0.5 * static_cast<double>(available_memory());
+  double taken = 0.0;
+  for (std::size_t n = 0; n < tasks.size(); ++n) {
+    const auto same = [&](const CostTask& other) {
+      return other.scene == tasks[n].scene && same_work(other.choice, tasks[n].choice);
+    };
+    twin[n] = static_cast<std::size_t>(std::find_if(tasks.begin(), tasks.end(), same) - tasks.begin());
+    if (twin[n] != n) continue;
+    try {
+      group.push_back(make_timed(tasks[n], n, proceed));
+    } catch (const InputError& error) {
+      costings[n].status = first_line(error.what());
+      continue;
+    } catch (const ComputationError& error) {
+      if (!proceed(0.0)) throw;
+      costings[n].status = first_line(error.what());
+      continue;
+    }
+    costings[n].cost = StepCost{.condensed = method_named(tasks[n].choice.method).is_condensed};
+    const auto elements = static_cast<double>(tasks[n].scene->mesh.cells.size());
+    taken += 2.0 * group.back().model->work().bytes * elements;
+    if (taken < room) continue;
+    time_together(tasks, group, costings, proceed);
+    taken = 0.0;
+  }
+  time_together(tasks, group, costings, proceed);
+  for (std::size_t n = 0; n < tasks.size(); ++n) {
+    costings[n] = costings[twin[n]];
+    if (!costings[n].cost || tasks[n].motion == nullptr) continue;
+    costings[n].cost->mean_step = tasks[n].motion->mean_step;
+    costings[n].cost->remark = tasks[n].motion->remark;
+  }
+  return costings;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,122 @@
+#include "benchmark/own_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/error.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/stable_step.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// A step is far shorter than the mean below this share of it.
+constexpr double far_shorter = 0.5;
+
+/// Steps over those that the motion would take at the step of the undeformed body, at which it is given up.
+constexpr double most_steps = 100.0;
+
+/// The curve of a load over the share of a motion, in its time.
+LoadCurve stretched(LoadCurve curve, double duration) {
+  for (double& time : curve.times) time *= duration;
+  if (curve.evaluate) {
+    curve.evaluate = [evaluate = std::move(curve.evaluate), duration](double time) {
+      return evaluate(time / duration);
+    };
+  }
+  return curve;
+}
+
+/// Keeps the step at every check, and ends a motion whose steps shrink too much.
+class StepKeeper final : public Observer {
+ public:
+  StepKeeper(long most, const Proceed& proceed) : most_(most), proceed_(proceed) {}
+
+  void history(const HistoryRow& row) override {
+    if (row.step_size > 0.0) steps_.push_back(row.step_size);
+  }
+
+  bool proceed(long step, double share, double /*residual*/) override {
+    told_to_end_ = !proceed_(share);
+    too_many_ = step > most_;
+    return !told_to_end_ && !too_many_;
+  }
+
+  bool told_to_end() const { return told_to_end_; }
+  bool too_many() const { return too_many_; }
+
+  /// Of states whose steps are far shorter than the mean; empty if there are none.
+  std::string remark(double mean) const {
+    const auto last = steps_.end() - (steps_.empty() ? 0 : 1);  // it ends at the duration
+    const auto count =
+        std::count_if(steps_.begin(), last, [&](double step) { return step < far_shorter * mean; });
+    if (count == 0) return "";
+    return fmt::format("{} of {} states need steps of down to {:.2g} ms", count, last - steps_.begin(),
+                       1e3 * *std::min_element(steps_.begin(), last));
+  }
+
+ private:
+  long most_;
+  const Proceed& proceed_;
+  bool told_to_end_ = false, too_many_ = false;
+  std::vector<double> steps_;  // s, at the checks of the run
+};
+
+}  // namespace
+
+double crossing_time(const Scene& scene) {
+  double slowest = std::numeric_limits<double>::infinity();  // m/s
+  for (const auto& material : scene.description.materials) {
+    const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, material.law);
+    slowest = std::min(slowest, std::sqrt(mu / material.density));
+  }
+  return diagonal(scene.mesh.points) / slowest;
+}
+
+Scene in_own_motion(const Scene& scene) {
+  Scene moving = scene;
+  if (!scene.description.quasi_static) return moving;
+  const double crossing = crossing_time(scene), duration = own_motion_crossings * crossing;
+  moving.description.quasi_static = false;
+  moving.description.dynamics = {.duration = duration, .damping = own_motion_damping / crossing, .frames = 1};
+  for (auto& curve : moving.curves) curve = stretched(std::move(curve), duration);
+  return moving;
+}
+
+OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proceed& proceed) {
+  choice.precision = Precision::double_precision;
+  choice.kernel = KernelWidth::pack;
+  choice.threads = 1;
+  const Scene moving = in_own_motion(scene);
+  const DynamicsSettings& dynamics = moving.description.dynamics;
+  const Model model(moving, choice);
+  const double at_rest =
+      dynamics.step_fraction * stable_step(model, NodalField(moving.mesh.points.size())).step;
+  StepKeeper keeper(std::lround(most_steps * dynamics.duration / at_rest), proceed);
+  OwnMotion found;
+  try {
+    Motion motion = integrate(model, keeper);
+    if (keeper.told_to_end()) throw ComputationError("interrupted; nothing was written");
+    const double mean = motion.time / static_cast<double>(std::max(motion.steps, 1L));
+    found.remark = keeper.remark(mean);
+    if (keeper.too_many()) {
+      found.remark = fmt::format("its steps shrink to {:.2g} ms: given up at {:.2g} of {:.2g} s",
+                                 1e3 * motion.smallest_step, motion.time, dynamics.duration);
+      return found;
+    }
+    found.mean_step = mean;
+    found.end = std::move(motion.u);
+  } catch (const ComputationError& error) {
+    if (keeper.told_to_end()) throw;
+    const std::string text = error.what();
+    found.remark = "its motion fails: " + text.substr(0, text.find('\n'));
+  }
+  return found;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "benchmark/measure.hpp"
+#include "problem/model.hpp"
+
+namespace sandglass {
+
+/// The time in which a shear wave crosses a scene's body, s; the slowest wave where materials differ.
+double crossing_time(const Scene& scene);
+
+/// The scene in motion: of a dynamic case the scene itself; of a quasi-static one the damped motion to its
+/// whole load, over `own_motion_crossings` crossing times. A program that follows the same scene step by step
+/// takes such a motion.
+Scene in_own_motion(const Scene& scene);
+
+/// Crossing times of the damped motion of a quasi-static case, over all of which its load grows: slow enough
+/// that the body stays near its equilibria.
+inline constexpr double own_motion_crossings = 5.0;
+
+/// The damping of this motion times the crossing time. Other programs are measured with the same
+/// (exchange/decks/problem.py).
+inline constexpr double own_motion_damping = 2.0;
+
+/// What a method's steps were in a motion.
+struct OwnMotion {
+  std::optional<double> mean_step = {};  ///< s: simulated time over the number of steps; none: it fails
+  std::string remark = {};  ///< why it fails, or of states that need far shorter steps; mostly empty
+  NodalField end = {};      ///< displacements (m) at its end, empty if it fails
+};
+
+/// Follows a scene's own motion with a method, in double precision on one thread. A motion that fails, or
+/// whose steps shrink until it would take a hundred times as many as at rest, has no mean step, but a remark.
+/// Throws ComputationError when told to end, InputError for a method that takes no steps.
+OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proceed& proceed);
+
+}  // namespace sandglass

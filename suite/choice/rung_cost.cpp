@@ -1,0 +1,60 @@
+#include "choice/rung_cost.hpp"
+
+#include <map>
+#include <tuple>
+
+#include "assembly/method_entry.hpp"
+#include "base/error.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// What a motion depends on, among rungs: neither precision nor kappa changes its steps noticeably.
+using MotionKey = std::tuple<const LadderMesh*, std::string, double>;
+
+MotionKey motion_key(const Rung& rung) {
+  return {rung.mesh, rung.choice.method, rung.choice.accuracy};
+}
+
+/// Follows the motion of a rung. One that cannot be set up fails like one that breaks down.
+OwnMotion follow(const Rung& rung, const Proceed& proceed) {
+  try {
+    MethodChoice choice = rung.choice;
+    choice.kappa.reset();
+    return follow_own_motion(rung.mesh->scene, choice, proceed);
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    return {.remark = text.substr(0, text.find('\n'))};
+  }
+}
+
+}  // namespace
+
+std::vector<Costing> measure_costs(std::span<const Rung> rungs, const Proceed& proceed) {
+  std::vector<Costing> costings(rungs.size());
+  std::map<MotionKey, OwnMotion> motions;
+  std::vector<CostTask> tasks;
+  std::vector<std::size_t> of_task;
+  for (std::size_t n = 0; n < rungs.size(); ++n) {
+    const Rung& rung = rungs[n];
+    if (!rung.unfit.empty()) continue;
+    CostTask task{&rung.mesh->scene, rung.choice};
+    if (!method_named(rung.choice.method).is_condensed) {
+      const auto [found, is_new] = motions.try_emplace(motion_key(rung));
+      if (is_new) found->second = follow(rung, proceed);
+      task.motion = &found->second;
+      if (!found->second.mean_step) {
+        costings[n].status = found->second.remark;
+        continue;
+      }
+    }
+    tasks.push_back(task);
+    of_task.push_back(n);
+  }
+  const auto timed = sandglass::measure_costs(std::span<const CostTask>(tasks), proceed);
+  for (std::size_t k = 0; k < timed.size(); ++k) costings[of_task[k]] = timed[k];
+  return costings;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,174 @@
+/// What a step, a simulated second and an equilibrium cost: each figure is what its name says.
+
+#include "benchmark/cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "benchmark/own_motion.hpp"
+#include "comparison/answer.hpp"
+#include "io/case_file.hpp"
+#include "mesh/box.hpp"
+#include "sandglass/driven_problem.hpp"
+#include "sandglass/simulation.hpp"
+#include "solve/stable_step.hpp"
+#include "support/case_text.hpp"
+#include "support/scenes.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+bool proceed(double /*share*/) {
+  return true;
+}
+
+MeshArrays block(const std::array<int, 3>& elements = {2, 2, 4}) {
+  const Mesh mesh = box({0.1, 0.1, 0.2}, elements);
+  return {mesh.points,
+          mesh.cells,
+          {{"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}}};
+}
+
+/// A block whose head is loaded, without its mesh.
+std::string text_of(const std::string& load) {
+  const std::string whole = box_case("block", "[1.0, 1.0, 1.0]", "[1, 1, 1]");
+  const std::size_t mesh = whole.find("[mesh]"), material = whole.find("[material]");
+  return whole.substr(0, mesh) + whole.substr(material) +
+         "[sets]\nfoot = { z = [0.0, 0.0] }\n[[displacement]]\nset = \"foot\"\nvalue = [0.0, 0.0, 0.0]\n" +
+         load;
+}
+
+std::string pressed(double depth) {
+  return fmt::format("[[displacement]]\nset = \"head\"\nvalue = [0.0, 0.0, {}]\n", -depth);
+}
+
+Scene scene_of(const std::string& load) {
+  return read_scene(text_of(load), checked(block()));
+}
+
+double smooth(double t) {
+  return t * t * t * (10.0 + t * (6.0 * t - 15.0));
+}
+
+/// The motion of a simulation that a program drives along the loading curve: time over number of steps.
+double mean_step_of_simulation(const std::string& method, const std::string& load, double duration,
+                               double damping) {
+  Simulation<double> simulation(block(), text_of(load), {.method = method, .damping = damping});
+  long steps = 0;
+  while (simulation.time() < duration) {
+    const double step = simulation.step_size();
+    simulation.impose(smooth((simulation.time() + step) / duration));
+    simulation.advance(step);
+    ++steps;
+  }
+  return simulation.time() / static_cast<double>(steps);
+}
+
+class OwnMotionTest : public ::testing::TestWithParam<const char*> {};
+
+/// The step that counts is the motion's. Of a block pressed by 40 % it is between those at both ends, and
+/// what a simulation of the same motion takes: both choose their steps in the same way, so they differ by the
+/// one step that ends at the duration.
+TEST_P(OwnMotionTest, has_the_steps_of_a_simulation) {
+  const Scene scene = scene_of(pressed(0.08));
+  const MethodChoice choice{.method = GetParam()};
+  const OwnMotion motion = follow_own_motion(scene, choice, proceed);
+  ASSERT_TRUE(motion.mean_step) << motion.remark;
+  const double crossing = crossing_time(scene);
+  EXPECT_NEAR(crossing, std::sqrt(0.1 * 0.1 + 0.1 * 0.1 + 0.2 * 0.2) / std::sqrt(3000.0 / 2.98 / 1000.0),
+              1e-12);
+  const double simulated = mean_step_of_simulation(GetParam(), pressed(0.08), own_motion_crossings * crossing,
+                                                   own_motion_damping / crossing);
+  EXPECT_NEAR(*motion.mean_step, simulated, 0.005 * simulated);
+  const Model model(scene, choice);
+  const double at_rest = 0.9 * stable_step(model, NodalField(scene.mesh.points.size())).step;
+  const double at_end = 0.9 * stable_step(model, motion.end).step;
+  EXPECT_LT(at_end, 0.8 * at_rest);  // or the test would not tell them apart
+  EXPECT_LT(*motion.mean_step, 0.95 * at_rest);
+  EXPECT_GT(*motion.mean_step, 1.05 * at_end);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, OwnMotionTest,
+                         ::testing::Values("tl-perturbation", "ul-perturbation", "tl-mean-dilatation"),
+                         [](const auto& named) {
+                           std::string name = named.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+/// It ends near the equilibrium: its speed is a fifth of a crossing a time, its damping twice the lowest
+/// frequency's. A curve over the share of the load is followed too: one that returns ends at rest.
+TEST(OwnMotion, ends_near_the_equilibrium) {
+  Observer silent;
+  const std::string force = "[[force]]\nset = \"head\"\ntotal = [0.0, 0.0, 2.0]\n";
+  const Scene scene = scene_of(force);
+  const NodalField rest = compute_answer(scene, {"tl-perturbation"}, silent).u.back();
+  const NodalField unloaded(rest.size());
+  const double largest = largest_distance(rest, unloaded);
+  const OwnMotion motion = follow_own_motion(scene, {"tl-perturbation"}, proceed);
+  EXPECT_LT(largest_distance(motion.end, rest), 0.05 * largest);
+  const Scene returns = scene_of(force + "times = [0.0, 0.5, 1.0]\nfactors = [0.0, 1.0, 0.0]\n");
+  const OwnMotion back = follow_own_motion(returns, {"tl-perturbation"}, proceed);
+  EXPECT_LT(largest_distance(back.end, unloaded), 0.2 * largest);
+  const Scene formula = scene_of(force + "formula = \"t * (2 - t)\"\n");
+  EXPECT_LT(largest_distance(follow_own_motion(formula, {"tl-perturbation"}, proceed).end, rest),
+            0.05 * largest);
+}
+
+/// An element all of whose nodes are driven, the head through the foot, has no motion and no cost of a
+/// simulated second; why is said.
+TEST(OwnMotion, says_why_it_fails) {
+  const Scene scene = read_scene(text_of(pressed(0.25)), checked(block({1, 1, 1})));
+  const OwnMotion motion = follow_own_motion(scene, {"tl-perturbation"}, proceed);
+  EXPECT_FALSE(motion.mean_step);
+  EXPECT_TRUE(motion.end.empty());
+  EXPECT_FALSE(motion.remark.empty());
+  const std::vector<CostTask> tasks{{&scene, {"tl-perturbation"}, &motion}};
+  const auto costings = measure_costs(tasks, proceed);
+  ASSERT_TRUE(costings[0].cost) << costings[0].status;
+  EXPECT_GT(costings[0].cost->seconds, 0.0);
+  EXPECT_FALSE(costings[0].cost->per_simulated_second());
+  EXPECT_EQ(costings[0].cost->remark, motion.remark);
+}
+
+TEST(OwnMotion, ends_when_told) {
+  const Scene scene = scene_of(pressed(0.02));
+  EXPECT_THROW(follow_own_motion(scene, {"tl-perturbation"}, [](double) { return false; }), ComputationError);
+}
+
+/// A dynamic case is its own motion.
+TEST(OwnMotion, of_a_dynamic_case_is_the_case) {
+  Scene scene = scene_of(pressed(0.02));
+  scene.description.quasi_static = false;
+  scene.description.dynamics = {.duration = 0.05, .time_step = 1e-3};
+  EXPECT_NEAR(*follow_own_motion(scene, {"tl-perturbation"}, proceed).mean_step, 1e-3, 1e-12);
+}
+
+/// A simulated second is what its steps take, a thousand answers of a condensed method; a kappa costs what
+/// its method does.
+TEST(StepCost, follows_from_step_and_mean_step) {
+  const Scene scene = scene_of(pressed(0.02));
+  const OwnMotion motion = follow_own_motion(scene, {"tl-perturbation"}, proceed);
+  const std::vector<CostTask> tasks{{&scene, {"tl-perturbation"}, &motion},
+                                    {&scene, {.method = "tl-perturbation", .kappa = 0.1}, &motion},
+                                    {&scene, {"linear-condensed"}}};
+  const auto costings = measure_costs(tasks, proceed);
+  for (const auto& costing : costings) {
+    ASSERT_TRUE(costing.cost) << costing.status;
+    EXPECT_GT(costing.cost->lower_quartile, 0.0);
+    EXPECT_LE(costing.cost->lower_quartile, costing.cost->seconds);
+    EXPECT_LE(costing.cost->seconds, costing.cost->upper_quartile);
+  }
+  const StepCost& step = *costings[0].cost;
+  EXPECT_DOUBLE_EQ(*step.per_simulated_second(), (step.seconds + step.checks) / *motion.mean_step);
+  EXPECT_GT(step.checks, 0.0);
+  EXPECT_EQ(costings[1].cost->seconds, step.seconds);
+  EXPECT_FALSE(costings[2].cost->mean_step);
+  EXPECT_DOUBLE_EQ(*costings[2].cost->per_simulated_second(), 1000.0 * costings[2].cost->seconds);
+}
+
+}  // namespace
+}  // namespace sandglass::verification
