@@ -30,7 +30,15 @@ PAPERS = "tl-perturbation"
 START, END = "<!-- figure: reports/make_headline.py -->", "<!-- end of the figure -->"
 LINE = 138  # letters of a line of the caption
 FACTS = ("version", "revision", "processor", "compiler", "build_flags")
-NUMBERS = ("golden", "truth", "operations", "ns_per_element_step", "seconds_per_simulated_second")
+NUMBERS = (
+    "golden",
+    "truth",
+    "operations",
+    "ns_per_element_step",
+    "check_ns_per_element_step",
+    "mean_step_seconds",
+    "seconds_per_simulated_second",
+)
 
 
 def headline(points, own):
@@ -62,8 +70,15 @@ def _record(method, point):
         "truth": point.error("truth", "max"),
         "operations": point.operations,
         "ns_per_element_step": point.ns,
+        "check_ns_per_element_step": None if point.checks is None else _ns(point),
+        "mean_step_seconds": point.mean_step,
         "seconds_per_simulated_second": point.simulated,
     }
+
+
+def _ns(point):
+    """A point's checks per element and step."""
+    return 1e9 * point.checks / point.elements
 
 
 def require_valid(path, document):

@@ -39,6 +39,7 @@ class Rung:
     facts: dict  # of its file: machine and revision
     name: str = key("rung")  # of method, kappa or accuracy, precision and mesh
     step: float | None = key("seconds")  # s of wall time
+    checks: float | None = key("check_seconds_per_step")  # s of wall time
     simulated: float | None = key("seconds_per_simulated_second")  # s of wall time
 
 

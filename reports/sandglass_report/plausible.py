@@ -91,15 +91,15 @@ def seconds_can_be_waited_for(marks):
 
 
 def seconds_are_those_of_the_step(marks):
-    """The time of a simulated second is that of a step over the mean step"""
+    """The time of a simulated second is that of a step with its checks over the mean step"""
     for p in marks.points:
         if None in (p.step, p.mean_step, p.simulated):
             continue
-        expected = p.step / p.mean_step
+        expected = (p.step + (p.checks or 0.0)) / p.mean_step
         if not abs(p.simulated / expected - 1) <= SAME:
             yield (
-                f"{p.name}: {p.simulated:g} s per simulated second, but a step of {p.step:g} s and "
-                f"{p.mean_step:g} s of motion gives {expected:g} s"
+                f"{p.name}: {p.simulated:g} s per simulated second, but a step of {p.step:g} s, "
+                f"checks of {p.checks or 0.0:g} s and {p.mean_step:g} s of motion give {expected:g} s"
             )
 
 

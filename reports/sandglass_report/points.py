@@ -25,7 +25,8 @@ CHOOSE = "sandglass choose"
 class Point:
     """One choice on one case: errors (fractions, by figure) and costs; None if unknown.
 
-    step, simulated, equilibrium, mean_step: s, as defined in quantities.py.
+    step, checks, simulated, equilibrium, mean_step: s, as defined in quantities.py; of the whole
+    mesh.
     """
 
     case: str
@@ -43,6 +44,7 @@ class Point:
     truth: dict = field(default_factory=dict)
     ns: float | None = None  # per element and step
     step: float | None = None
+    checks: float | None = None
     mean_step: float | None = None
     step_remark: str = ""
     simulated: float | None = None
@@ -131,7 +133,8 @@ def _of_run(run, elements):
         golden=_errors(run.golden),
         truth=_errors(run.truth),
         ns=run.ns,
-        step=None if run.ns is None or elements is None else 1e-9 * run.ns * elements,
+        step=_of_mesh(run.ns, elements),
+        checks=_of_mesh(run.check_ns, elements),
         mean_step=run.mean_step,
         step_remark=run.step_remark,
         simulated=run.simulated,
@@ -139,6 +142,11 @@ def _of_run(run, elements):
         evaluations=run.evaluations if run.ok else None,
         operations=run.operations,
     )
+
+
+def _of_mesh(ns, elements):
+    """A time per element in seconds for the whole mesh; None if one is unknown."""
+    return None if ns is None or elements is None else 1e-9 * ns * elements
 
 
 def _of_rung(rung):
@@ -167,6 +175,7 @@ def _add_rung(point, rung, own):
         point.simulated = rung.simulated
         if rung.step_size is not None:  # a condensed answer is no step
             point.step, point.ns = rung.step, 1e9 * rung.step / rung.elements
+            point.checks = rung.checks
             point.mean_step, point.step_remark = rung.step_size, rung.step_remark
         point.measured_by, point.elsewhere = CHOOSE, elsewhere(rung.facts, own)
 

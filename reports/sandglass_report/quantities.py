@@ -54,9 +54,9 @@ QUANTITIES = {
         "per simulated second",
         "s",
         "Seconds of wall time that one thread takes for a second of simulated time: the time of "
-        "a step of the whole mesh over the mean step of the case’s own damped motion with this "
-        "method. Below 1 s it keeps up with real time. A condensed method has no step: a "
-        "thousand answers are taken.",
+        "a step of the whole mesh with its checks, over the mean step of the case’s own damped "
+        "motion with this method. Below 1 s it keeps up with real time. A condensed method has "
+        "no step: a thousand answers are taken.",
         "seconds_per_simulated_second",
     ),
     "step": Quantity(
@@ -82,6 +82,14 @@ QUANTITIES = {
         "Median over batches of explicit steps on the case’s own mesh, all methods in turn, one "
         "thread; bars span the middle half of the batches.",
         "ns_per_element_step, ns_lower_quartile, ns_upper_quartile",
+    ),
+    "check_ns": Quantity(
+        "wall time of checks per element and step",
+        "checks",
+        "ns",
+        "A run looks every few steps whether the body is sound and how long the next steps may "
+        "be; this time, shared out over the steps between, per element.",
+        "check_ns_per_element_step",
     ),
     "mean_step": Quantity(
         "mean step of the motion",
@@ -238,12 +246,12 @@ QUANTITIES = {
         scale=100.0,
     ),
     "growth": Quantity(
-        "seconds and steps to rest",
+        "seconds and evaluations to rest",
         "seconds",
         "s",
-        "Wall time from the model to rest, and evaluations, over the number of elements; one "
-        "thread.",
-        "seconds, steps",
+        "Wall time from the model to rest, and evaluations of Sandglass or iterations of "
+        "Newton’s method, over the number of elements; one thread.",
+        "seconds, evaluations, iterations",
         "bench/growth.py --json reports/figures/growth.json",
     ),
     "refinement": Quantity(
@@ -268,6 +276,7 @@ RUN_NUMBERS = (
     "mean_step",
     "operations",
     "ns",
+    "check_ns",
     "simulated",
     "evaluations",
     "equilibrium",

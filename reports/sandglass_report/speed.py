@@ -66,7 +66,7 @@ def _panel(subject, palette, reference, figure, limits, costs):
     missing = style.why_empty(subject, reference) if not found else "" if timed else UNTIMED
     return Panel(
         f"speed-accuracy.{subject.name}.{reference}.{figure}",
-        f"to the {reference}, {words}",
+        f"to the {reference}, {QUANTITIES[figure].head}",
         f"{subject.name}: {words}, to the {reference}, against {COST.title}. "
         + _in_words(timed, reference, figure),
         draw,
@@ -114,7 +114,10 @@ def middle_half(run):
     """The quartiles of a run's cost: those of its step, at its mean step; the cost if unknown."""
     if not run.ns or run.ns_low is None or run.ns_high is None:
         return run.simulated, run.simulated
-    return run.simulated * run.ns_low / run.ns, run.simulated * run.ns_high / run.ns
+    checks = run.check_ns or 0.0
+    return tuple(
+        run.simulated * (ns + checks) / (run.ns + checks) for ns in (run.ns_low, run.ns_high)
+    )
 
 
 def _name_missing(axes, subject, reference, untimed):

@@ -31,6 +31,7 @@ class Run:
     ns: float | None = key("ns_per_element_step")  # None: not measured, or there is no step
     ns_low: float | None = key("ns_lower_quartile")
     ns_high: float | None = key("ns_upper_quartile")
+    check_ns: float | None = key("check_ns_per_element_step")  # of checks, shared out over steps
     mean_step: float | None = key("mean_step_seconds")  # s, of the case's own motion
     simulated: float | None = key("seconds_per_simulated_second")
     equilibrium: float | None = key("equilibrium_seconds")  # None for a case in motion

@@ -132,9 +132,10 @@ class DataSet:
             "ns_per_element_step": 120.0,
             "ns_lower_quartile": 110.0,
             "ns_upper_quartile": 150.0,
+            "check_ns_per_element_step": 40.0,
             "mean_step_seconds": 8e-5,
             "step_remark": "",
-            "seconds_per_simulated_second": 120e-9 * len(self.cells) / 8e-5,
+            "seconds_per_simulated_second": 160e-9 * len(self.cells) / 8e-5,
             "equilibrium_seconds": 0.5,
             "evaluations": 100,
             "motion_seconds": None,
@@ -179,6 +180,7 @@ class DataSet:
             "error": error,
             "reason": "",
             "step_remark": "",
+            "check_seconds_per_step": 0.0,
         } | changed
 
     @staticmethod

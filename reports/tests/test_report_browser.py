@@ -166,7 +166,11 @@ def test_a_mark_tells_everything_beside_the_chart(browser):
         assert words in text
     for words in ("max 0.2 %", "max 8 %", "per step 1.44 µs", "to equilibrium 500 ms", "finding"):
         assert words in text
-    for words in ("120 ns per element and step", "mean step 80 µs", "100 evaluations"):
+    for words in (
+        "120 ns per element and step, checks 40 ns",
+        "mean step 80 µs",
+        "100 evaluations",
+    ):
         assert words in text
     assert label == "tl-perturbation"  # more would cover other marks
     choose(browser, "own", False)
@@ -190,7 +194,7 @@ def test_the_front_is_the_one_that_python_found(browser):
     line = browser.run(
         "(() => { const t = document.querySelector('#chart .plot').data[0]; return [t.x, t.y] })()"
     )
-    assert line == [[0.001, 0.002, 0.018], [0.03, 0.004, 0.002]]
+    assert line == [[0.001, 0.002, 0.024], [0.03, 0.004, 0.002]]
 
 
 def test_the_viewer_turns_with_the_keys_and_changes_colours(browser):

@@ -25,6 +25,7 @@ from sandglass_report.points import Point
 
 ELEMENTS = 1000
 STEP = 4e-4  # s, mean of the motion
+CHECKS = 6.0  # ns per element and step
 # method -> (ns per element and step, operations), about as measured on an ellipsoid
 METHODS = {
     "tl-none": (21.0, 430),
@@ -47,8 +48,9 @@ def point(method, ns, operations, **changed):
 
 def timed(ns, mean_step):
     """The costs that belong to a time per element and step."""
-    step = 1e-9 * ns * ELEMENTS
-    return {"ns": ns, "step": step, "mean_step": mean_step, "simulated": step / mean_step}
+    step, checks = 1e-9 * ns * ELEMENTS, 1e-9 * CHECKS * ELEMENTS
+    known = {"ns": ns, "step": step, "checks": checks, "mean_step": mean_step}
+    return known | {"simulated": (step + checks) / mean_step}
 
 
 def sound(**changed):
@@ -102,8 +104,13 @@ def test_the_step_of_another_state_is_noticed():
     assert all(words.startswith("ball, tl-perturbation, double, own mesh: ") for _, words in found)
 
 
+def test_a_second_without_its_checks_is_noticed():
+    short = sound(tl_perturbation={"simulated": 1e-9 * 23.0 * ELEMENTS / STEP})
+    assert broken(short)[0] == {seconds_are_those_of_the_step}
+
+
 def test_an_endless_second_is_noticed_without_a_step():
-    known = {"step": None, "mean_step": None, "ns": None}
+    known = dict.fromkeys(("step", "checks", "mean_step", "ns"))
     condensed = sound(tl_none=known | {"simulated": 1e30})
     assert broken(condensed)[0] == {seconds_can_be_waited_for}
     assert broken(sound(tl_none=known | {"simulated": 0.0}))[0] == {seconds_can_be_waited_for}
@@ -182,10 +189,11 @@ def measured_in(data, **changed):
     (data.folder / "results/column.tl-perturbation.0.02.h5").unlink()
     data.records = []
     for method, (ns, operations) in METHODS.items():
-        step = 1e-9 * ns * len(data.cells)
+        step = 1e-9 * (ns + CHECKS) * len(data.cells)
         auto = {"kappa": 0.0065, "auto": True} if method == "tl-perturbation" else {}
         record = data.run(method, 0.002, **auto) | {
             "operations": operations,
+            "check_ns_per_element_step": CHECKS,
             "mean_step_seconds": STEP,
         }
         record |= {"ns_per_element_step": ns, "seconds_per_simulated_second": step / STEP}

@@ -28,7 +28,9 @@ def test_a_run_is_a_point_with_its_costs_in_seconds(data):
     assert len(points) == 4
     point = found["tl-none"]
     assert point.step == pytest.approx(120e-9 * 12)
-    assert point.simulated == pytest.approx(point.step / 8e-5)  # at the mean step, not that at rest
+    assert point.checks == pytest.approx(40e-9 * 12)
+    # At the mean step, not that at rest.
+    assert point.simulated == pytest.approx((point.step + point.checks) / 8e-5)
     assert (point.equilibrium, point.evaluations) == (0.5, 100)
     assert point.golden["max"] == 0.2 and point.truth == {}
 
@@ -40,7 +42,7 @@ def test_a_run_that_failed_says_so_and_has_no_time_to_equilibrium(data):
 
 def test_a_method_without_a_step_has_a_simulated_second_alone(data):
     step = ("ns_per_element_step", "ns_lower_quartile", "ns_upper_quartile", "mean_step_seconds")
-    data.records[0] |= dict.fromkeys(step)
+    data.records[0] |= dict.fromkeys([*step, "check_ns_per_element_step"])
     data.write_verdicts()
     answer = data.rung("tl-none", 1e-6, 0.2, step_size=None)
     point = points_of(data, data.ladder([answer]))[0]["tl-none"]

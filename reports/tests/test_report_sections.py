@@ -79,6 +79,7 @@ def test_tables_of_the_paper_stand_beside_ours(data):
     (data.folder / "cases/ellipsoid.toml").write_text(text)
     for method, ns in times.items():
         record = data.run(method, 0.002) | {"case": TIMED_CASE, "ns_per_element_step": ns}
+        record["check_ns_per_element_step"] = 0.0
         record["seconds_per_simulated_second"] = 1e-9 * ns * 12 / record["mean_step_seconds"]
         data.records.append(record | {"golden": None, "finding": None})
         name = f"results/{{}}.{method}.h5"

@@ -1,5 +1,6 @@
 // The main chart: error against cost, with a tolerance and a budget; marks beyond either are grey.
 const [LEAST, MOST] = [1e-5, 10]; // errors beyond these are drawn here, with an arrowhead
+const HINT = "Point at a mark, or tap it, for its details.";
 // Why an option has no data for a case.
 const WHY = {
   golden: "none for this case", truth: "none for this case", max: "not known", rms: "not known", profile: "no profile line",
@@ -78,7 +79,7 @@ function startChart(Plotly) {
       `to ${named("golden", p.case)}: ${errors("golden")}`,
       `to ${named("truth", p.case)}: ${errors("truth")}`,
       `time: ${costs.join(", ") || "unknown"}`,
-      p.ns && `${digits(p.ns)} ns per element and step${p.mean_step ? `, mean step ${seconds(p.mean_step)}` : ""}${p.step_remark ? `; ${escaped(p.step_remark)}` : ""}`,
+      p.ns && `${digits(p.ns)} ns per element and step${p.checks ? `, checks ${digits((p.checks / p.step) * p.ns)} ns` : ""}${p.mean_step ? `, mean step ${seconds(p.mean_step)}` : ""}${p.step_remark ? `; ${escaped(p.step_remark)}` : ""}`,
       p.evaluations && `${p.evaluations} evaluations to equilibrium`,
       `finding: ${escaped(p.finding)}`,
       p.measured_by && `measured by ${escaped(p.measured_by)}`,
@@ -237,6 +238,7 @@ function startChart(Plotly) {
     const { name, value } = event.target;
     if (name in wish) wish[name] = value;
     if (name in wish || name === "case") settle();
+    if (name === "case") tools.querySelector(".told").textContent = HINT;
     if (scales() !== budgetOf) newBudget();
     draw();
   });
