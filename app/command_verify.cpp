@@ -183,10 +183,9 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
       "errors in % of the imposed displacement, in motion the largest over time: max over all nodes, max "
       "over the profile, rms;\noperations and ns per element and step, by the loop of `bench`; mean step of "
       "the case's own motion, and seconds per\nsimulated second with it; evaluations and seconds of the "
-      "search "
-      "for equilibrium, or steps and seconds of a motion, other\nruns beside; finding: good means at most 1 "
-      "%, "
-      "or the golden's own distance from the truth, up to 10 %; beyond, up to\nthat distance: not judged\n");
+      "search for equilibrium, or steps and seconds of a motion, other\nruns beside; finding: good means at "
+      "most 1 %, or the golden's own distance from the truth, up to 10 %; beyond, up to that\ndistance: not "
+      "judged\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
     if (in_tables(*v)) continue;

@@ -61,6 +61,7 @@ def _of_method(subject, method):
         return f"No golden to judge {method} by."
     words = f"{method} {verb(run.finding)}{_why_good(subject, run)}: "
     words += f"{style.percent(run.golden.max)} from the golden at the worst node"
+    words += " and time" if subject.motion is not None else ""
     if run.golden.profile is not None:
         words += f", {style.percent(run.golden.profile)} on the profile line"
     return words + "."

@@ -373,3 +373,35 @@ def test_stars_of_another_machine_lead_nothing_and_share_a_switch(tmp_path):
         assert "timed elsewhere: CPU" in point_at(other, 0.031)[1]
         other.run("document.querySelector('[data-method=Other]').click()")
         assert other.run(shown) == 2
+
+
+def test_a_link_opens_what_is_folded_below_its_heading(page):
+    limits = "document.querySelector('#limits ~ details.fold')"
+    with Browser() as fresh:
+        fresh.open(page)
+        fresh.until(DRAWN)
+        assert fresh.run(f"{limits}.open") is False
+        fresh.run("document.querySelector('.verdict a').click()")
+        fresh.until(f"{limits}.open")
+
+
+def test_on_paper_there_is_no_menu_and_nothing_is_cut(page):
+    """A4 less its margins is 703 px wide; what the reader opened stays open, and closes after."""
+    with Browser(width=703) as paper:
+        paper.open(page)
+        paper.until(DRAWN)
+        paper.run("document.querySelector('#runs ~ details.fold').open = true")
+        paper._call("Emulation.setEmulatedMedia", media="print")
+        paper.run("dispatchEvent(new Event('beforeprint'))")
+        opened = "[...document.querySelectorAll('details[open]')].map((d) => d.className)"
+        assert sorted(paper.run(opened)) == ["fold", "static print"]
+        for selector in ("nav.sections", "#chart", "#viewer", "#shapes"):
+            shown = f"getComputedStyle(document.querySelector('{selector}')).display"
+            assert paper.run(shown) == "none", selector
+        wide = "[...document.querySelectorAll('table, figure, p')].filter((e) => e.offsetParent &&"
+        wide += " e.getBoundingClientRect().right > 704).map((e) => e.outerHTML.slice(0, 90))"
+        assert paper.run(wide) == []
+        colours = "getComputedStyle(document.querySelector('table')).printColorAdjust"
+        assert paper.run(colours) == "exact"
+        paper.run("dispatchEvent(new Event('afterprint'))")
+        assert paper.run(opened) == ["fold"]

@@ -117,6 +117,7 @@ def test_a_motion_is_shown_where_its_golden_has_moved_farthest(data):
     import hashlib
 
     moving(data)
+    assert "0.200 % from the golden at the worst node and time" in found(data)
     assert picture(data) == "deformed: the golden at 0.20 s, where it has moved farthest"
     provenance = section(data.make(), "provenance")
     shown = hashlib.sha256((0.9 * data.answer).astype("<f8").tobytes()).hexdigest()[:16]

@@ -41,7 +41,13 @@ def test_a_line_per_program_and_ratio_in_the_order_of_the_meshes(tmp_path):
 
 @pytest.mark.parametrize(
     "broken",
-    [{"name": "other"}, {"poisson_ratio": 0.2}, {"seconds": "1"}, {"evaluations": None}, {"iterations": 7}],
+    [
+        {"name": "other"},
+        {"poisson_ratio": 0.2},
+        {"seconds": "1"},
+        {"evaluations": None},
+        {"iterations": 7},
+    ],
     ids=lambda changed: next(iter(changed)),
 )
 def test_a_broken_file_is_rejected(tmp_path, broken):
