@@ -79,7 +79,7 @@ char letter(const Cell& cell) {
     case Finding::good:
       return '.';
     case Finding::not_judged:
-      return '?';
+      return '~';
     case Finding::inaccurate:
       return 'o';
     case Finding::hourglassing:
@@ -160,7 +160,8 @@ int map_stability(const StabilityOptions& options) {
   fmt::print(
       "{}: . good, up to {:.3g} % from the golden's element on the same mesh; o inaccurate, H hourglassing, "
       "L "
-      "locking,\nI inverted, U unstable, R not at rest, ? the golden itself fails, - the method does not "
+      "locking,\nI inverted, U unstable, R not at rest, ? the golden itself fails, ~ it is too far from the "
+      "truth to judge, - the method does not "
       "take it\n",
       description.name, 100.0 * limit);
   for (std::size_t m = 0; m < maps.size(); ++m) print_map(maps[m], cells[m]);

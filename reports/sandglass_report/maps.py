@@ -24,6 +24,7 @@ OUTCOMES = {
     "inverted": ("#ef9a8c", "I"),
     "unstable": ("#c8553d", "U"),
     "not at rest": ("#b9a58f", "R"),
+    "not judged": ("#c3ccd6", "~"),
     GOLDEN_FAILS: ("#d9dde2", "?"),
     REFUSED: ("#f4f5f7", "-"),
 }
