@@ -241,9 +241,11 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->excludes(bodies);
   command->add_option("-t,--threads", options->threads,
                       "numbers of threads; 1 and 2 where there are two, with --rest or --bodies 1");
-  command->add_option("-m,--methods", options->methods,
-                      "methods, see `sandglass methods`; all when left out, with --rest tl-perturbation and "
-                      "tl-mean-dilatation, with --bodies those that run side by side");
+  command
+      ->add_option("-m,--methods", options->methods,
+                   "methods, see `sandglass methods`; all when left out, with --rest tl-perturbation and "
+                   "tl-mean-dilatation, with --bodies those that run side by side")
+      ->type_name("METHOD");
   command->add_option("-p,--precision", options->precisions, "double, float or both")->capture_default_str();
   command
       ->add_option("-r,--repetitions", options->repetitions,
@@ -252,7 +254,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--json", options->json, "write every figure to this file");
   command->callback([options, bodies, &exit_code] {
-    if (!options->json.empty()) require_place(options->json);
+    if (!options->json.empty()) require_place(options->json, {options->names.begin(), options->names.end()});
     exit_code = options->rest         ? run_rest(*options)
                 : bodies->count() > 0 ? run_bodies(*options)
                                       : run_bench(*options);

@@ -10,6 +10,7 @@
 #include "comparison/mesh_quality.hpp"
 #include "io/case_file.hpp"
 #include "io/mesh_file.hpp"
+#include "io/new_file.hpp"
 
 namespace sandglass {
 
@@ -62,26 +63,27 @@ void write(const Scene& scene, const MeshOptions& options) {
 
 void add_mesh_command(CLI::App& app) {
   auto options = std::make_shared<MeshOptions>();
-  CLI::App* command =
-      app.add_subcommand("mesh", "write the mesh and node sets of a case, and how good it is");
+  CLI::App* command = app.add_subcommand(
+      "mesh", "write the mesh and node sets of a case, and print the quality of its elements");
   command->add_option("CASE", options->name, "name or file of the case")->required();
   command->add_option("-o,--output", options->output, "file to write: .h5, .vtu, .xdmf, .inp, or a deck")
       ->required();
-  auto* format = command->add_option("--format", options->format,
-                                     "h5, vtu, xdmf or inp, where the ending does not say it");
+  auto* format =
+      command->add_option("--format", options->format, "h5, vtu, xdmf or inp, if the ending does not say it");
   auto* deck = command
                    ->add_option("--deck", options->deck.program,
-                                "write the whole input of this program: calculix, febio, niftysim, "
+                                "write a complete input of this program: calculix, febio, niftysim, "
                                 "openradioss or sofa (exchange/README.md)")
                    ->excludes(format);
-  command->add_option("--element", options->deck.element, "of a deck: the program's name of its element")
+  command->add_option("--element", options->deck.element, "for a deck: element, by the program's own name")
       ->needs(deck);
   command
       ->add_option("--hourglass", options->deck.hourglass,
-                   "of a deck: the program's hourglass coefficient; its usual one when left out")
+                   "for a deck: the program's hourglass coefficient; by default its usual one")
       ->needs(deck);
   command->callback([options] {
     const Scene scene = read_scene(find_case(options->name));
+    require_place(options->output, files_of(scene.description));
     write(scene, *options);
     const QualityTable quality = quality_table(scene.mesh);
     fmt::print("{}: {} nodes, {} elements, smallest scaled Jacobian {:.3f}\n", options->output,

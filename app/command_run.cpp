@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstdio>
 #include <memory>
 
 #include "app/case_keys.hpp"
@@ -10,7 +10,7 @@
 #include "app/kappa_option.hpp"
 #include "app/machine.hpp"
 #include "app/mpi_ranks.hpp"
-#include "app/progress.hpp"
+#include "app/run_observer.hpp"
 #include "app/run_report.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
@@ -19,6 +19,7 @@
 #include "comparison/truth_estimate.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
+#include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/error_estimate.hpp"
@@ -46,61 +47,6 @@ struct RunOptions {
   std::string against;
   bool describe = false;
 };
-
-/// Writes frames and history to the result file, keeps the run, shows progress, and ends on Ctrl-C.
-class RunObserver final : public Observer {
- public:
-  /// `writer` and `keeper` may be null. What a run that goes on told before goes into its result first.
-  RunObserver(const Model& model, ResultWriter* writer, CheckpointKeeper* keeper)
-      : first_rank_(model.choice().ranks->rank() == 0),
-        progress_(model.scene().description.name),
-        writer_(writer) {
-    if (keeper != nullptr) {
-      for (const auto& told : keeper->run().frames) frame(told);
-      for (const auto& row : keeper->run().history) history(row);
-    }
-    keeper_ = keeper;
-  }
-
-  void frame(const Frame& frame) override {
-    if (writer_ != nullptr) writer_->frame(frame);
-    if (keeper_ != nullptr) keeper_->frame(frame);
-    levels_ = frame.levels;
-  }
-  void history(const HistoryRow& row) override {
-    if (writer_ != nullptr) writer_->history(row);
-    if (keeper_ != nullptr) keeper_->history(row);
-    last_ = row;
-  }
-  void resumable(const std::function<Checkpoint()>& checkpoint) override {
-    if (keeper_ != nullptr) keeper_->resumable(checkpoint);
-  }
-  bool proceed(long step, double share, double residual) override {
-    if (first_rank_) progress_.show(share, fmt::format("step {}, residual {:.1e}", step, residual));
-    return !interrupted();
-  }
-  const HistoryRow& last() const { return last_; }
-  const std::vector<double>& levels() const { return levels_; }
-
- private:
-  bool first_rank_;
-  Progress progress_;
-  ResultWriter* writer_;
-  CheckpointKeeper* keeper_ = nullptr;
-  HistoryRow last_{};
-  std::vector<double> levels_;
-};
-
-std::string kappa_text(const Model& model) {
-  const auto& choice = model.choice();
-  const MethodEntry& method = method_named(choice.method);
-  if (!method.takes_kappa) return "";
-  const auto automatic = method.auto_kappa(
-      elastic_law(kernel_law(model.scene().description.materials.front().law)), choice.kappa_modulus);
-  const double value = choice.kappa.value_or(automatic.value_or(0.0));
-  return fmt::format("{:.6g}{}{}", value, choice.kappa ? "" : " (auto)",
-                     choice.kappa_modulus == KappaModulus::shear ? " of the shear modulus" : "");
-}
 
 Provenance provenance(const Model& model) {
   Provenance attributes = build_provenance();
@@ -207,7 +153,6 @@ void require_quasi_static(const RunOptions& options, const Case& description) {
 struct Answer {
   NodalField u;
   std::string status;  ///< "complete", or why not
-  long steps = 0;
   double seconds = 0.0;
   double adaption_seconds = 0.0;
   bool near_enough = true;  ///< to the exact answer, if that is asked for
@@ -242,11 +187,6 @@ bool print_refined(const Refined& refined, const std::string& method, NodalField
   return false;
 }
 
-void print_outcome(const Model& model, const std::string& what) {
-  fmt::print("{} {} {}: {}\n", model.scene().description.name, model.choice().method, kappa_text(model),
-             what);
-}
-
 /// A static answer, of the whole or of what moves.
 Relaxation relax_as_requested(const Model& model, const std::optional<double>& sleep, Observer& observer,
                               const Checkpoint* from, const NodalField* near) {
@@ -256,28 +196,24 @@ Relaxation relax_as_requested(const Model& model, const std::optional<double>& s
   return std::move(local.relaxation);
 }
 
-Answer static_answer(const Model& model, const std::optional<double>& sleep, Observer& observer,
+Answer static_answer(const Model& model, const std::optional<double>& sleep, RunObserver& observer,
                      const Checkpoint* from, const NodalField* near) {
   Relaxation found = relax_as_requested(model, sleep, observer, from, near);
+  observer.end();
   const Precision precision = model.choice().precision;
-  const std::string ending = outcome(found, precision);
-  print_outcome(model,
-                fmt::format("{} after {} steps, residual {:.2e}", ending, found.steps, found.residual));
-  return {std::move(found.u), in_equilibrium(found, precision) ? "complete" : ending, found.steps,
+  print_static_ending(found, precision, model.scene().description.relaxation.tolerance, from != nullptr);
+  return {std::move(found.u), in_equilibrium(found, precision) ? "complete" : outcome(found, precision),
           found.seconds, found.adaption_seconds};
 }
 
-Answer dynamic_answer(const Model& model, Observer& observer, const Checkpoint* from) {
+Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoint* from) {
   Motion found = integrate(model, observer, from);
-  const std::string status =
-      found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete";
-  const std::string subcycles =
-      model.scene().description.dynamics.subcycles > 1
-          ? fmt::format("{} subcycle{}, ", found.most_substeps, found.most_substeps > 1 ? "s" : "")
-          : "";
-  print_outcome(model, fmt::format("{} s in {} steps of at least {:.4g} s, {}{}", found.time, found.steps,
-                                   found.smallest_step, subcycles, status));
-  return {std::move(found.u), status, found.steps, found.seconds, found.adaption_seconds};
+  observer.end();
+  const Scene& scene = model.scene();
+  print_dynamic_ending(found, scene.description.dynamics.subcycles, scene.mesh.cells.size(), from != nullptr);
+  return {std::move(found.u),
+          found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete", found.seconds,
+          found.adaption_seconds};
 }
 
 /// Computes and prints an answer; `refined`, `writer` and `keeper` may be null.
@@ -292,7 +228,7 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
   Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
                                : dynamic_answer(model, observer, from);
-  print_energies(scene, observer.last());
+  print_answer(scene, answer.u, observer.volume_ratios(), observer.found());
   print_levels(model.choice().method, observer.levels(), answer.adaption_seconds / answer.seconds);
   if (quasi_static && answer.status == "complete") {
     if (refined != nullptr) {
@@ -302,9 +238,23 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
     }
     print_estimate_of(options.estimate, model, answer.u);
   }
-  print_time(answer.seconds, answer.steps, scene.mesh.cells.size(), from != nullptr, given.sleep.has_value());
   if (options.ranks->count() > 1) print_traffic(*options.ranks);
+  if (options.ranks->rank() == 0) warn_of_suspect(model, observer.found());
   return answer;
+}
+
+/// Throws InputError unless the results may be written where the options say: a case is no place for them.
+void require_places(const RunOptions& options, const Case& description) {
+  const auto inputs = files_of(description);
+  if (!options.checkpoint.empty()) require_place(options.checkpoint, inputs);
+  if (options.output.empty()) return;
+  const std::filesystem::path output(options.output);
+  if (output.extension() != ".h5") {
+    throw InputError(fmt::format("--output = '{}' must end in .h5; an .xdmf of the same name goes beside it",
+                                 options.output));
+  }
+  require_place(output, inputs);
+  require_place(guide_of(output), inputs);
 }
 
 int run_case(const RunOptions& options) {
@@ -313,12 +263,16 @@ int run_case(const RunOptions& options) {
   warn_if_bound(*options.ranks, options.threads);
   const Scene scene = read_scene(find_case(options.name));
   require_quasi_static(options, scene.description);
+  require_places(options, scene.description);
+  print_problem(scene);
   const auto refined = refine_as_requested(options, given, scene);
   const Model model(refined ? refined->mesh.scene : scene, choose_method(options, given, scene.description));
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
+  print_method(model);
+  std::fflush(stdout);  // to be seen while it computes
   Answer answer;
   try {
     answer = compute(options, given, model, refined ? &*refined : nullptr, writer ? &*writer : nullptr,
@@ -331,7 +285,9 @@ int run_case(const RunOptions& options) {
   }
   if (writer) {
     writer->commit(answer.status);
-    fmt::print("wrote {}\n", options.output);
+    fmt::print("wrote {}; open {} in ParaView\n", options.output, guide_of(options.output).string());
+  } else if (answer.status == "complete") {
+    fmt::print("nothing stored; -o FILE.h5 keeps displacements, stresses, reactions and energies\n");
   }
   if (answer.status != "complete") {
     throw ComputationError(fmt::format("{}: {}; what was complete is {}", scene.description.name,
@@ -349,9 +305,11 @@ void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks>
   options->ranks = std::move(ranks);
   CLI::App* command = app.add_subcommand("run", "compute a case with a method");
   command->add_option("CASE", options->name, "name or file of the case");
-  command->add_option("-m,--method", options->method,
-                      "method, see `sandglass methods`; without it that of the case's [method], else "
-                      "tl-perturbation in double with kappa auto");
+  command
+      ->add_option("-m,--method", options->method,
+                   "method, see `sandglass methods`; without it that of the case's [method], else "
+                   "tl-perturbation in double with kappa auto")
+      ->type_name("METHOD");
   command->add_option("-k,--kappa", options->kappa, "strength of the hourglass control, a number or 'auto'");
   command->add_option(
       "--kappa-modulus", options->kappa_modulus,

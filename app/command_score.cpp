@@ -1,15 +1,19 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 
 #include "app/accuracy_text.hpp"
 #include "app/commands.hpp"
+#include "app/execution_options.hpp"
 #include "app/foreign_files.hpp"
 #include "app/machine.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "base/names.hpp"
 #include "comparison/answer.hpp"
 #include "comparison/comparison.hpp"
 #include "comparison/verdict.hpp"
@@ -28,8 +32,33 @@ struct ScoreOptions {
   std::string case_name;
   std::string name;
   std::string json;
+  std::vector<std::string> limits;
+  std::string against = "golden";
   NodeMatching matching;
 };
+
+/// The largest value that a figure may have.
+struct Limit {
+  std::string figure;
+  double most;
+};
+
+constexpr std::array figures{"max", "profile", "rms"};
+
+/// The value of --limit, such as "max=2%". Throws InputError for anything else.
+Limit parse_limit(const std::string& text) {
+  const std::size_t end = text.find('=');
+  const std::string figure = text.substr(0, end);
+  if (std::find(figures.begin(), figures.end(), figure) == figures.end()) {
+    throw InputError(fmt::format("--limit '{}': '{}' is not a figure; {}", text, figure,
+                                 suggestion(figure, {figures.begin(), figures.end()})));
+  }
+  if (end == std::string::npos) {
+    throw InputError(
+        fmt::format("--limit '{}' needs a value, such as {}=2% or {}=0.02", text, figure, figure));
+  }
+  return {figure, parse_share(fmt::format("--limit {}", figure).c_str(), text.substr(end + 1))};
+}
 
 /// The answer of the golden's explicit twin, for cases that have no stored one. Throws ComputationError when
 /// it finds none.
@@ -43,7 +72,7 @@ Displacements twin_of(const Scene& scene) {
   return std::move(answer.u);
 }
 
-/// What displacements alone tell: how much work they took is not known, so that locking is not told.
+/// What displacements alone show. How much work they took is not known, so locking is never found.
 Finding finding_of(const Scene& scene, const References& references, const Displacements& u) {
   const double unit = displacement_unit(scene, *references.golden);
   Symptoms found = symptoms(scene, u, 0.0, *references.golden, unit);
@@ -83,7 +112,34 @@ void print(const Verdict& verdict) {
   if (verdict.finding) fmt::print("finding: {}\n", name_of(*verdict.finding));
 }
 
-void run(const ScoreOptions& options) {
+/// Prints whether each limit holds, against the golden or, in a case without one, its twin, or against the
+/// truth; returns whether all do. Throws InputError for a figure that the case has not.
+bool check(const std::vector<Limit>& limits, const Verdict& verdict, const std::string& against) {
+  const std::optional<Accuracy>& found = against == "truth" ? verdict.truth
+                                         : verdict.golden   ? verdict.golden
+                                                            : verdict.twin;
+  if (!found) throw InputError(fmt::format("--against truth: {} has no stored truth", verdict.case_name));
+  const Accuracy& accuracy = *found;
+  const std::string reference = &found == &verdict.twin ? "golden's twin" : against;
+  bool all_hold = true;
+  for (const auto& [figure, most] : limits) {
+    if (figure == "profile" && !accuracy.profile_relative_error) {
+      throw InputError(fmt::format("--limit profile: {} has no [profile]", verdict.case_name));
+    }
+    const double error = figure == "max"   ? accuracy.max_relative_error
+                         : figure == "rms" ? accuracy.rms_relative_error
+                                           : *accuracy.profile_relative_error;
+    const bool holds = error <= most;  // a figure that is no number breaks its limit
+    fmt::print("limit {}: {} error against the {} is {} %, at most {} % allowed\n", holds ? "kept" : "BROKEN",
+               figure, reference, percent(error), percent(most));
+    all_hold = all_hold && holds;
+  }
+  return all_hold;
+}
+
+int run(const ScoreOptions& options) {
+  std::vector<Limit> limits;
+  for (const auto& text : options.limits) limits.push_back(parse_limit(text));
   if (!(options.matching.tolerance > 0.0 && options.matching.tolerance < 1.0)) {
     throw InputError(fmt::format("--tolerance = {} must be in (0, 1), a fraction of the diagonal",
                                  options.matching.tolerance));
@@ -94,31 +150,52 @@ void run(const ScoreOptions& options) {
     throw InputError(
         fmt::format("{}: a dynamic case has no answer to score", scene.description.file.string()));
   }
-  if (!options.json.empty()) require_place(options.json);
+  if (!options.json.empty()) {
+    auto inputs = files_of(scene.description);
+    inputs.emplace_back(options.file);
+    require_place(options.json, inputs);
+  }
   const Verdict verdict = score(scene, options);
   print(verdict);
+  const bool holds = check(limits, verdict, options.against);
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), {verdict}, {}));
+  return holds ? 0 : 1;
 }
 
 }  // namespace
 
-void add_score_command(CLI::App& app) {
+void add_score_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App* command =
-      app.add_subcommand("score", "how near displacements of any program are to the references");
+      app.add_subcommand("score", "compare displacements computed by any program with the references");
   command
       ->add_option("FILE", options->file,
                    "displacements, of Sandglass or of another program; exchange/README.md lists the formats")
       ->required();
-  command->add_option("--case", options->case_name, "name or file of the case that they answer")->required();
-  command->add_option("--name", options->name, "what the method is called; the file's name when left out");
+  command->add_option("--case", options->case_name, "name or file of the case that they answer")
+      ->type_name("CASE")
+      ->required();
+  command->add_option("--name", options->name, "name of the method; by default that of the file");
   command->add_option("--field", options->matching.field, "name of the displacements in the file");
   command
       ->add_option("--tolerance", options->matching.tolerance,
-                   "distance at which two nodes are one, as a fraction of the diagonal of the nodes")
+                   "nodes nearer than this are the same, as a fraction of the diagonal of the mesh")
       ->capture_default_str();
   command->add_option("--json", options->json, "write the figures to this file, as `verify --json` does");
-  command->callback([options] { run(*options); });
+  command
+      ->add_option("--limit", options->limits,
+                   "FIGURE=SHARE, such as max=2%: exit code 1 where an error is larger; the figures are max, "
+                   "profile and rms, and --limit may be given for each")
+      ->type_name("FIGURE=SHARE")
+      ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--against", options->against,
+          "what limits hold against: the case's 'golden' or, where it has none, the golden's twin; or "
+          "its 'truth'")
+      ->check(CLI::IsMember({"golden", "truth"}))
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace sandglass

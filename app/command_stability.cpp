@@ -14,6 +14,7 @@
 #include "base/names.hpp"
 #include "comparison/verdict.hpp"
 #include "io/case_file.hpp"
+#include "io/new_file.hpp"
 #include "io/text_file.hpp"
 #include "stability/cell_files.hpp"
 
@@ -126,9 +127,10 @@ void describe_axes() {
 
 int map_stability(const StabilityOptions& options) {
   const Case description = find_case(options.name);
+  if (!options.json.empty()) require_place(options.json, files_of(description));
   if (!description.quasi_static) {
     throw InputError(
-        fmt::format("{}: a dynamic case has no maps; dynamic maps, too, start from a quasi-static case",
+        fmt::format("{}: is a dynamic case; all maps, dynamic ones too, start from a quasi-static case",
                     description.file.string()));
   }
   const auto maps = make_maps(options, description);
@@ -149,8 +151,8 @@ int map_stability(const StabilityOptions& options) {
   });
   if (!complete) {
     throw ComputationError(
-        fmt::format("stability: interrupted; the cells in {} are complete, and the same command goes "
-                    "on from them",
+        fmt::format("stability: interrupted; finished cells are in {}, and the same command continues "
+                    "from there",
                     options.folder));
   }
   std::vector<std::vector<Cell>> cells(maps.size());
@@ -181,14 +183,13 @@ void add_stability_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--values", options->values, "other values of an axis, AXIS=V1,V2,...")
       ->allow_extra_args(false);
-  command->add_option("--methods", options->methods, "only these methods, with spaces between");
-  command
-      ->add_option("--folder", options->folder,
-                   "keeps every finished cell; what is there is not computed again")
+  command->add_option("--methods", options->methods, "only these methods, with spaces between")
+      ->type_name("METHOD");
+  command->add_option("--folder", options->folder, "folder of finished cells, which are not computed again")
       ->capture_default_str();
   command->add_option("--json", options->json, "write all maps to this file");
-  command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
-      ->check(CLI::NonNegativeNumber)
+  command->add_option("-j,--threads", options->threads, "runs at the same time; 0 for one per processor")
+      ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_flag("--describe", options->describe, "print the axes with their ranges and usual values");
   command->callback([options, &exit_code] {

@@ -19,6 +19,7 @@
 #include "comparison/published_table.hpp"
 #include "comparison/verdict.hpp"
 #include "comparison/verdict_json.hpp"
+#include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
@@ -216,7 +217,9 @@ int verify(const VerifyOptions& options) {
   const Precision precision = parse_precision(options.precision);
   watch_for_interrupt();
   const auto subjects = read_subjects(options.names);
-  if (!options.json.empty()) require_place(options.json);
+  for (const auto& subject : subjects) {
+    if (!options.json.empty()) require_place(options.json, files_of(subject.scene.description));
+  }
   if (!options.results.empty()) make_folder(options.results);
   const auto tasks = make_tasks(subjects, precision);
   Outcome outcome = run_all(tasks, options);
@@ -257,7 +260,7 @@ void add_verify_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--no-costs", options->no_costs, "do not measure what steps cost");
   command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = verify(*options); });
 }

@@ -16,7 +16,9 @@ void add_flops_command(CLI::App& app);
 void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks> ranks);
 void add_verify_command(CLI::App& app, int& exit_code);
 void add_stability_command(CLI::App& app, int& exit_code);
-void add_score_command(CLI::App& app);
+void add_score_command(CLI::App& app, int& exit_code);
+void add_completion_command(CLI::App& app);
+void add_manual_command(CLI::App& app);
 void add_bench_command(CLI::App& app, int& exit_code);
 
 }  // namespace sandglass

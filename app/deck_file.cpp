@@ -24,14 +24,14 @@ void require_expressible(const Scene& scene) {
     throw InputError(fmt::format("{}: {}", description.file.string(), what));
   };
   if (!(scene.pressures.empty() && scene.supports.empty())) {
-    refuse("pressures and supports have no deck; allowed are forces and gravity");
+    refuse("a deck cannot hold pressures and supports; allowed are forces and gravity");
   }
-  if (!scene.ties.empty()) refuse("a mesh with nodes that hang has no deck");
+  if (!scene.ties.empty()) refuse("a deck cannot hold hanging nodes, which refinement and ties make");
   if (description.quasi_static) return;
-  if (!scene.initial_velocities.empty()) refuse("a motion with initial velocities has no deck");
-  if (!description.rotations.empty()) refuse("a motion with rotations has no deck");
+  if (!scene.initial_velocities.empty()) refuse("a deck cannot hold initial velocities");
+  if (!description.rotations.empty()) refuse("a deck cannot hold rotations of a dynamic case");
   for (const auto& load : scene.loads) {
-    if (load.curve != 0) refuse("a motion with load curves of its own has no deck");
+    if (load.curve != 0) refuse("a deck cannot hold load curves of a dynamic case");
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "assembly/internal_force.hpp"
 #include "base/error.hpp"
+#include "base/names.hpp"
 
 namespace sandglass {
 
@@ -39,8 +40,9 @@ inline double parse_share(const char* option, const std::string& text) {
     const double share = quantity->unit.empty() ? quantity->value : quantity->value / 100.0;
     if (share <= 1.0) return share;
   }
-  throw InputError(fmt::format("{} = '{}' must be a share in (0, 1], such as 0.01, or in percent, such as 1%",
-                               option, text));
+  throw InputError(
+      fmt::format("{} = '{}' must be a share in (0, 1], such as 0.01, or in percent, such as 1%{}", option,
+                  text, decimal_comma_hint(text)));
 }
 
 /// Throws InputError unless `value`, given by `option`, lies in [1, most].

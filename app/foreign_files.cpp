@@ -12,7 +12,7 @@ namespace sandglass {
 
 void write_foreign_mesh(const Scene& scene, const std::filesystem::path& path, const std::string& format) {
   if (!scene.ties.empty()) {
-    throw InputError(fmt::format("{}: a refined mesh has nodes that hang, which no other format here knows",
+    throw InputError(fmt::format("{}: a refined mesh has hanging nodes, which only .h5 can hold",
                                  scene.description.file.string()));
   }
   NewFile output(path);

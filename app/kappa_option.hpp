@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/names.hpp"
 #include "element/hourglass_settings.hpp"
 
 namespace sandglass {
@@ -17,7 +18,8 @@ inline std::optional<double> parse_kappa(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !(value >= 0.0)) {
-    throw InputError(fmt::format("--kappa = '{}' must be a number in [0, inf), or 'auto'", text));
+    throw InputError(fmt::format("--kappa = '{}' must be a number in [0, inf), or 'auto'{}", text,
+                                 decimal_comma_hint(text)));
   }
   return value;
 }

@@ -3,15 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "app/si_units.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "comparison/comparison.hpp"
 #include "comparison/verdict.hpp"
+#include "mesh/hexahedron.hpp"
+#include "solve/stable_step.hpp"
 
 namespace sandglass {
 
 namespace {
+
+/// Above this share of the strain energy the answer is one of the hourglass control; a rule of thumb of all
+/// who use one-point elements.
+constexpr double much_hourglass = 0.1;
+
+/// The unexplained share of the energy from which on a motion is suspect: central differences at the stable
+/// step, and the damping summed from rows, leave a percent or two.
+constexpr double much_unexplained = 0.1;
 
 /// The references of a scene; one that belongs to another case is told, not fatal: a case may be edited and
 /// run.
@@ -24,16 +36,172 @@ References references_to_show(const Scene& scene) {
   }
 }
 
+std::string plural(long count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string force_text(const Vector& force) {
+  const double unit = 1e-4 * std::max(1e-300, length(force));  // roundoff is shown as 0
+  const auto component = [&](double f) { return std::abs(f) < unit ? 0.0 : f; };
+  return fmt::format("({:.3g}, {:.3g}, {:.3g}) N", component(force[0]), component(force[1]),
+                     component(force[2]));
+}
+
+/// Whether a body loses energy in ways that the history does not show.
+bool dissipates(const Model& model) {
+  const Scene& scene = model.scene();
+  const auto remembers = [](const Material& material) { return is_viscoelastic(material.law); };
+  const auto damps = [](const FaceSupport& support) { return support.damping > 0.0; };
+  return std::any_of(scene.materials.list.begin(), scene.materials.list.end(), remembers) ||
+         std::any_of(scene.supports.begin(), scene.supports.end(), damps) ||
+         method_named(model.choice().method).damps_only;
+}
+
 }  // namespace
 
-void print_energies(const Scene& scene, const HistoryRow& row) {
-  fmt::print("energies (J): strain {:.6g}, hourglass {:.6g}", row.strain, row.hourglass);
+void print_problem(const Scene& scene) {
+  const Mesh& mesh = scene.mesh;
+  double volume = 0.0, mass = 0.0;
+  for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
+    const double V = mean_gradient(gather(mesh.points, mesh.cells[e])).volume;
+    volume += V;
+    mass += scene.materials.list[scene.materials.of(e)].density * V;
+  }
+  const auto [low, high] = bounding_box(mesh.points);
+  fmt::print("{}: {} x {} x {}, {}, {}; {}, {}\n", scene.description.name, length_text(high[0] - low[0]),
+             length_text(high[1] - low[1]), length_text(high[2] - low[2]),
+             volume < 1e-3 ? fmt::format("{:.3g} cm^3", 1e6 * volume) : fmt::format("{:.3g} m^3", volume),
+             mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass),
+             plural(static_cast<long>(mesh.cells.size()), "element"),
+             plural(static_cast<long>(mesh.points.size()), "node"));
+  for (const Material& material : scene.materials.list) {
+    const CalledLaw law = elastic_law(kernel_law(material));
+    const double K = law.bulk_modulus(), mu = law.shear_modulus();
+    fmt::print("{}: Young's modulus {}, shear {}, bulk {}; density {:.4g} kg/m^3, waves of {}\n",
+               name_of(material.law), with_prefix(young_modulus(law), "Pa"), with_prefix(mu, "Pa"),
+               with_prefix(K, "Pa"), material.density,
+               with_prefix(std::sqrt((K + 4.0 / 3.0 * mu) / material.density), "m/s"));
+  }
+}
+
+std::string kappa_text(const Model& model) {
+  const auto& choice = model.choice();
+  const MethodEntry& method = method_named(choice.method);
+  if (!method.takes_kappa) return "";
+  const auto automatic = method.auto_kappa(
+      elastic_law(kernel_law(model.scene().description.materials.front().law)), choice.kappa_modulus);
+  const double value = choice.kappa.value_or(automatic.value_or(0.0));
+  return fmt::format("{:.6g}{}{}", value, choice.kappa ? "" : " (auto)",
+                     choice.kappa_modulus == KappaModulus::shear ? " of the shear modulus" : "");
+}
+
+void print_method(const Model& model) {
+  const MethodChoice& choice = model.choice();
+  const std::string kappa = kappa_text(model);
+  fmt::print("{}{}{}, {}", choice.method, kappa.empty() ? "" : ", kappa ", kappa, name_of(choice.precision));
+  if (choice.ranks->count() == 1 && !method_named(choice.method).is_condensed) {
+    const NodalField at_rest(model.scene().mesh.points.size());
+    fmt::print(", stable step {}", with_prefix(stable_step(model, at_rest).step, "s"));
+  }
+  fmt::print("\n");
+}
+
+void HistoryReport::take(const HistoryRow& row) {
+  if (!started_) first_ = last_ = row;
+  started_ = true;
+  kinetic_time_ += 0.5 * (last_.kinetic + row.kinetic) * (row.time - last_.time);
+  last_ = row;
+  largest_hourglass_ = std::max(largest_hourglass_, row.hourglass);
+  largest_strain_ = std::max(largest_strain_, row.strain);
+  largest_ = std::max({largest_, row.kinetic + row.strain + row.hourglass, std::abs(row.external_work)});
+}
+
+double HistoryReport::hourglass_share(bool quasi_static) const {
+  const double hourglass = quasi_static ? last_.hourglass : largest_hourglass_;
+  const double strain = quasi_static ? last_.strain : largest_strain_;
+  return strain > 0.0 ? hourglass / strain : 0.0;
+}
+
+double HistoryReport::unexplained_share(double damping) const {
+  const auto explained = [](const HistoryRow& row) {
+    return row.kinetic + row.strain + row.hourglass - row.external_work - row.adaption;
+  };
+  const double damped = 2.0 * damping * kinetic_time_;  // the power of c m v is 2 c times the kinetic energy
+  return largest_ > 0.0 ? (explained(last_) - explained(first_) + damped) / largest_ : 0.0;
+}
+
+void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on) {
+  const bool rests = in_equilibrium(found, precision);
+  fmt::print("{}: {}, {:.3g} s{}; residual {:.2e}, tolerance {:.2g}{}\n",
+             rests ? "equilibrium" : "no equilibrium", plural(found.steps, "evaluation"), found.seconds,
+             went_on ? " since the checkpoint" : "", found.residual, tolerance,
+             !rests             ? "; " + outcome(found, precision)
+             : !found.converged ? ": single precision resolves no more"
+                                : "");
+}
+
+void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elements, bool went_on) {
+  const std::string small = subcycles > 1 ? plural(found.most_substeps, "subcycle") + ", " : std::string();
+  const std::string ending =
+      found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete";
+  const double of_step = found.seconds / static_cast<double>(std::max(found.steps, 1L));
+  fmt::print("motion: {:.6g} s in {} of at least {}, {}{}; {:.3g} s{}\n", found.time,
+             plural(found.steps, "step"), with_prefix(found.smallest_step, "s"), small, ending, found.seconds,
+             went_on ? " since the checkpoint"
+                     : fmt::format(", {:.4g} ns per element and step",
+                                   1e9 * of_step / static_cast<double>(elements)));
+}
+
+void print_answer(const Scene& scene, const NodalField& u, const std::vector<double>& volume_ratios,
+                  const HistoryReport& history) {
+  double largest = 0.0;
+  for (const Vector& d : u) largest = std::max(largest, length(d));
+  fmt::print("largest displacement {}", length_text(largest));
+  if (!volume_ratios.empty()) {
+    fmt::print("; smallest det F of an element {:.3g}",
+               *std::min_element(volume_ratios.begin(), volume_ratios.end()));
+  }
+  const bool quasi_static = scene.description.quasi_static;
+  const double share = history.hourglass_share(quasi_static);
+  if (share > 0.0) fmt::print("; hourglass energy {:.3g} % of strain energy", 100.0 * share);
+  const HistoryRow& row = history.last();
+  fmt::print("\nenergies (J): strain {:.6g}, hourglass {:.6g}", row.strain, row.hourglass);
   // In a relaxation part of the external work is damped away, so that there its sum tells nothing.
-  if (!scene.description.quasi_static) {
-    fmt::print(", kinetic {:.6g}, work of the imposed displacements {:.6g}", row.kinetic, row.external_work);
+  if (!quasi_static) {
+    fmt::print(", kinetic {:.6g}, work of what is imposed {:.6g}", row.kinetic, row.external_work);
     if (row.adaption != 0.0) fmt::print(", brought by changes of levels {:.3g}", row.adaption);
   }
   fmt::print("\n");
+  for (const auto& [set, force] : row.reactions) fmt::print("reaction at {} {}\n", set, force_text(force));
+}
+
+void warn_of_suspect(const Model& model, const HistoryReport& history) {
+  const Case& description = model.scene().description;
+  const std::string& method = model.choice().method;
+  const double share = history.hourglass_share(description.quasi_static);
+  if (share > much_hourglass) {
+    fmt::print(
+        stderr,
+        "warning: hourglass energy is {:.3g} % of strain energy, above {:g} %: the answer is in part that of "
+        "the hourglass control; compare with --method {}, which has no hourglass modes, or refine the mesh\n",
+        100.0 * share, 100.0 * much_hourglass, golden_method);
+  }
+  if (!method_named(method).controls_hourglass) {
+    fmt::print(
+        stderr,
+        "warning: method {} does not resist hourglass modes: look for zigzags, and compare with --method "
+        "{}\n",
+        method, golden_method);
+  }
+  if (description.quasi_static) return;
+  const double unexplained = history.unexplained_share(description.dynamics.damping);
+  if (unexplained > much_unexplained || (unexplained < -much_unexplained && !dissipates(model))) {
+    fmt::print(
+        stderr,
+        "warning: energy drifts: {:.2g} % of the largest is {}; take a smaller step (step_fraction) or "
+        "another method\n",
+        100.0 * std::abs(unexplained), unexplained > 0.0 ? "from nowhere" : "lost");
+  }
 }
 
 void print_accuracy(const Scene& scene, const NodalField& u, bool on_own_mesh) {
@@ -58,15 +226,6 @@ void print_levels(const std::string& name, const std::vector<double>& levels, do
                         100.0 * count / static_cast<double>(levels.size()), method);
   }
   fmt::print("elements: {}; chosen in {:.2g} % of the time\n", text, 100.0 * share_of_time);
-}
-
-void print_time(double seconds, long steps, std::size_t elements, bool went_on, bool asleep) {
-  if (went_on || asleep) {
-    fmt::print("wall time {:.3g} s{}\n", seconds, went_on ? " since the checkpoint" : "");
-    return;
-  }
-  fmt::print("wall time {:.3g} s, {:.4g} ns per element and step\n", seconds,
-             1e9 * seconds / static_cast<double>(std::max(steps, 1L)) / static_cast<double>(elements));
 }
 
 void print_estimate(std::string_view against, const Scene& scene, double unit, double largest, double rms,

@@ -54,6 +54,26 @@ std::vector<fs::path> canonical_files() {
   return case_files_in(case_folder());
 }
 
+namespace {
+
+/// The nearest of the known cases to a name that is none of them, and of the files beside it.
+std::string nearest_case(const fs::path& path, std::vector<std::string> known) {
+  std::error_code ignored;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::vector<std::string> beside;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".toml") beside.push_back(entry.path().stem().string());
+  }
+  const std::string name = (path.extension() == ".toml" ? path.stem() : path.filename()).string();
+  const std::string file = nearest_name(name, beside);
+  known.push_back(file);
+  const std::string near = nearest_name(name, known);
+  if (near.empty() || near != file) return near;
+  return (path.parent_path() / (file + ".toml")).string();
+}
+
+}  // namespace
+
 std::vector<Case> find_cases(const std::string& name_or_path) {
   std::error_code ignored;
   if (fs::is_regular_file(name_or_path, ignored)) return read_checked(name_or_path);
@@ -70,8 +90,10 @@ std::vector<Case> find_cases(const std::string& name_or_path) {
       known.push_back(scene.name);
     }
   }
-  throw InputError(fmt::format("case: '{}' is neither a file nor a known case; {}", name_or_path,
-                               suggestion(name, known)));
+  const std::string near = nearest_case(path, std::move(known));
+  throw InputError(
+      fmt::format("case: '{}' is neither a file nor a known case; {}`sandglass cases` lists the known ones",
+                  name_or_path, near.empty() ? "" : fmt::format("did you mean '{}'? ", near)));
 }
 
 Case find_case(const std::string& name_or_path) {

@@ -85,7 +85,7 @@ def run(case, method, folder, share=None):
     result = Path(folder) / "result.h5"
     sleep = ["--sleep", share] if share else []
     text = output_of(binary(), "run", case, "--method", method, "--output", result, *sleep)
-    seconds = float(re.search(r"wall time (\S+) s", text)[1])
+    seconds = float(re.search(r"evaluations?, (\S+) s;", text)[1])
     awake = re.search(r"awake: (\d+) of (\d+)", text)
     share_awake = int(awake[1]) / int(awake[2]) if awake else 1.0
     return seconds, share_awake, last_displacement(result)

@@ -65,11 +65,16 @@ def write_beam(folder, kind, width, length):
 
 
 def run(case, ranks, threads):
-    """(ns per element and step, steps, bytes and messages of an exchange) of a run."""
+    """(ns per element and step, steps, bytes and messages of an exchange) of a run.
+
+    At rest, steps are evaluations of the search, with all that belongs to it.
+    """
     words, environment = under_mpirun(ranks, program(), "run", case, "--threads", threads)
     text = output_of(*words, env=environment)
-    time = float(re.search(r"([\d.e+]+) ns per element and step", text)[1])
-    steps = int(re.search(r" (\d+) steps", text)[1])
+    elements = int(re.search(r"(\d+) elements", text)[1])
+    steps = int(re.search(r" (\d+) (?:steps|evaluations)", text)[1])
+    seconds = float(re.search(r"(?:complete; |evaluations, )([\d.e+-]+) s", text)[1])
+    time = 1e9 * seconds / elements / steps
     traffic = re.search(r"each of at most ([\d.]+) messages and (\d+) bytes", text)
     messages, sent = (float(traffic[1]), int(traffic[2])) if traffic else (0.0, 0)
     return time, steps, messages, sent

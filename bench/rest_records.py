@@ -61,17 +61,20 @@ def _checked(where, found):
     return record(program="sandglass", **figures)
 
 
+# What `sandglass run` prints of a body at rest: evaluations, seconds, residual.
+EQUILIBRIUM = r"^equilibrium: (\d+) evaluations?, (\S+) s; residual ([\d.e+-]+)"
+
+
 def read_run(case, method, text):
     """The record (time to rest only) from the output of `sandglass run` on a quasi-static case.
 
     Raises ComputationError if the text does not state that the case came to rest, and its time.
     """
-    rest = re.search(r"at rest after (\d+) steps, residual (\S+)", text)
-    wall = re.search(r"^wall time (\S+) s", text, re.MULTILINE)
-    if not (rest and wall):
+    rest = re.search(EQUILIBRIUM, text, re.MULTILINE)
+    if not rest:
         raise ComputationError(
-            f"sandglass run {case} -m {method}: 'at rest after N steps, residual R' and 'wall time "
-            f"T s' are required, but it printed {text!r}"
+            f"sandglass run {case} -m {method}: 'equilibrium: N evaluations, T s; residual R' is "
+            f"required, but it printed {text!r}"
         )
     return record(
         program="sandglass",
@@ -79,8 +82,8 @@ def read_run(case, method, text):
         method=method,
         precision="double",
         evaluations=int(rest[1]),
-        seconds_to_rest=float(wall[1]),
-        residual=float(rest[2]),
+        seconds_to_rest=float(rest[2]),
+        residual=float(rest[3]),
     )
 
 

@@ -63,7 +63,7 @@ def read_mesh(source, output, spacing):
     elif spacing is None:
         found = MESHES[ending](source)
     else:
-        raise InputError(f"{source}: mesh.spacing was given; it is for images alone")
+        raise InputError(f"{source}: mesh.spacing was given; it applies only to images")
     mesh = to_hexahedra(found, source, lambda text: _warn(source, text))
     hdf5_file.write_mesh(output, mesh)
 

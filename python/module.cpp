@@ -220,7 +220,9 @@ PYBIND11_MODULE(sandglass, m) {
           [](AnySimulation& self, double seconds) { self.with([&](auto& s) { s.advance(seconds); }); },
           "seconds"_a, py::call_guard<py::gil_scoped_release>(),
           "Advances in time, in equal steps of at most `step_size`; driven nodes and forces change "
-          "linearly to their new values. Raises ComputationError if the computation diverges.")
+          "linearly to their new values. Raises ComputationError, which names the time and the elements, if "
+          "elements are inverted or no longer finite; the body is then back in its last state that was "
+          "found whole, at `time`, and may move elsewhere.")
       .def(
           "settle", [](AnySimulation& self) { return self.with([](auto& s) { return s.settle(); }); },
           py::call_guard<py::gil_scoped_release>(),

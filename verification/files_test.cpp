@@ -85,6 +85,10 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
     EXPECT_EQ(file.read<double>(group + "/jacobian").shape, (std::vector<std::size_t>{4}));
     EXPECT_EQ(file.read<double>(group + "/hourglass_energy_density").shape, (std::vector<std::size_t>{4}));
     EXPECT_EQ(file.read_text_attribute(group + "/hourglass_energy_density", "unit"), "J/m^3");
+    EXPECT_EQ(file.read<double>(group + "/stress").shape, (std::vector<std::size_t>{4, 3, 3}));
+    EXPECT_EQ(file.read_text_attribute(group + "/stress", "unit"), "Pa");
+    EXPECT_EQ(file.names_in(group + "/reaction"), (std::vector<std::string>{"foot", "head"}));
+    EXPECT_EQ(file.read<double>(group + "/reaction/head").shape, (std::vector<std::size_t>{3}));
   }
   // The first frame is the initial state.
   EXPECT_EQ(file.read_number_attribute("/frames/0000", "time"), 0.0);
@@ -104,7 +108,10 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
   const std::vector<std::pair<std::string, std::string>> columns{
       {"time", "ramp"},       {"kinetic_energy", "J"}, {"strain_energy", "J"}, {"hourglass_energy", "J"},
       {"external_work", "J"}, {"residual", "-"},       {"step_size", "ramp"},  {"adaption_energy", "J"}};
-  EXPECT_EQ(file.names_in("/history").size(), columns.size());
+  EXPECT_EQ(file.names_in("/history").size(), columns.size() + 1);
+  EXPECT_EQ(file.names_in("/history/reaction"), (std::vector<std::string>{"foot", "head"}));
+  EXPECT_EQ(file.read<double>("/history/reaction/head").shape, (std::vector<std::size_t>{rows, 3}));
+  EXPECT_EQ(file.read_text_attribute("/history/reaction/head", "unit"), "N");
   for (const auto& [name, unit] : columns) {
     EXPECT_EQ(file.read<double>("/history/" + name).shape, std::vector<std::size_t>{rows}) << name;
     EXPECT_EQ(file.read_text_attribute("/history/" + name, "unit"), unit) << name;
@@ -137,11 +144,13 @@ TEST(ResultFile, every_number_has_its_name) {
                     .v = field(),
                     .jacobians = numbers(4),
                     .hourglass_energy_densities = numbers(4),
-                    .levels = numbers(4)};
+                    .levels = numbers(4),
+                    .stresses = numbers(36),
+                    .reactions = {{"foot", {0.1, 0.2, 0.3}}, {"head", {0.4, 0.5, 0.6}}}};
   {
     ResultWriter writer(model, folder / "result.h5", {});
     writer.frame(frame);
-    writer.history({1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0});
+    writer.history({1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, {{"foot", {9.0, 10.0, 11.0}}, {"head", {12.0}}}});
     writer.commit("complete");
   }
   const auto file = Hdf5File::open(folder / "result.h5");
@@ -154,6 +163,11 @@ TEST(ResultFile, every_number_has_its_name) {
   EXPECT_EQ(read("jacobian"), frame.jacobians);
   EXPECT_EQ(read("hourglass_energy_density"), frame.hourglass_energy_densities);
   EXPECT_EQ(read("level"), frame.levels);
+  EXPECT_EQ(read("stress"), frame.stresses);
+  EXPECT_EQ(read("reaction/foot"), (std::vector<double>{0.1, 0.2, 0.3}));
+  EXPECT_EQ(read("reaction/head"), (std::vector<double>{0.4, 0.5, 0.6}));
+  EXPECT_EQ(file.read<double>("/history/reaction/foot").entries, (std::vector<double>{9.0, 10.0, 11.0}));
+  EXPECT_EQ(file.read<double>("/history/reaction/head").entries, (std::vector<double>{12.0, 0.0, 0.0}));
   double expected = 0.0;
   for (const auto* name : {"time", "kinetic_energy", "strain_energy", "hourglass_energy", "external_work",
                            "residual", "step_size", "adaption_energy"}) {
@@ -292,7 +306,7 @@ TEST(MeshFile, wrong_contents_are_refused) {
       contains(error_with({0, 1, 2, 3, 4, 5, 6, 8}, 8), "/mesh/cells names node 8; allowed are 0 to 7"));
   EXPECT_TRUE(contains(error_with({0, 1, 2, 3, 4, 5, 6, -1}, 8), "names node -1"));
   EXPECT_TRUE(contains(error_with({0, 1, 2, 3, 4, 5, 4, 4}, 8),
-                       "node 6 of /mesh/points belongs to no element, as do 2 in all"));
+                       "node 6 of /mesh/points belongs to no element (2 such nodes in all)"));
 }
 
 }  // namespace

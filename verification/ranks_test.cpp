@@ -29,13 +29,16 @@ struct Told final : Observer {
     for (const auto& field : {frame.u, frame.v}) {
       for (const Vector& value : field) numbers.insert(numbers.end(), value.begin(), value.end());
     }
-    for (const auto& values : {frame.jacobians, frame.hourglass_energy_densities, frame.levels}) {
+    for (const auto& values :
+         {frame.jacobians, frame.hourglass_energy_densities, frame.levels, frame.stresses}) {
       numbers.insert(numbers.end(), values.begin(), values.end());
     }
+    add(frame.reactions);
   }
   void history(const HistoryRow& row) override {
     numbers.insert(numbers.end(), {row.time, row.kinetic, row.strain, row.hourglass, row.external_work,
                                    row.residual, row.step_size, row.adaption});
+    add(row.reactions);
   }
   void resumable(const std::function<Checkpoint()>& checkpoint) override {
     for (const auto& [name, values] : checkpoint().arrays) {
@@ -44,6 +47,11 @@ struct Told final : Observer {
   }
 
   std::vector<double> numbers;
+
+ private:
+  void add(const Reactions& reactions) {
+    for (const auto& [set, force] : reactions) numbers.insert(numbers.end(), force.begin(), force.end());
+  }
 };
 
 std::vector<double> told_by(const Scene& scene, const MethodChoice& choice) {

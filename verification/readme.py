@@ -25,7 +25,7 @@ NAMED = re.compile(r"(?:(?P<new>New file|[Ss]ave this as)|, in)\s+`(?P<path>[^`]
 PART = re.compile(
     r"^## (?P<heading>.*)$"
     rf"|{NAMED.pattern}"
-    r"|^```(?P<language>\w*)\n(?P<block>(?:.*\n)*?)```$"
+    r"|^```(?P<language>.*)\n(?P<block>(?:.*\n)*?)```$"
     r"|^ {4,}(?P<command>\S(?:.*\\\n)*.*)$",
     re.MULTILINE,
 )

@@ -180,6 +180,7 @@ TEST(Sleep, listeners_hear_of_the_whole_mesh) {
     EXPECT_EQ(frame.jacobians.size(), elements);
     EXPECT_EQ(frame.hourglass_energy_densities.size(), elements);
     EXPECT_EQ(frame.levels.size(), elements);
+    EXPECT_EQ(frame.stresses.size(), 9 * elements);
   }
   EXPECT_EQ(told.frames.front().time, 0.0);
   EXPECT_EQ(told.frames.back().u, local.relaxation.u);

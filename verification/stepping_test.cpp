@@ -185,10 +185,10 @@ TYPED_TEST(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
 TEST(Outcome, says_that_elements_are_inverted) {
   Relaxation answer;
   answer.steps = 7;
-  EXPECT_EQ(outcome(answer, Precision::double_precision), "not at rest after 7 steps");
+  EXPECT_EQ(outcome(answer, Precision::double_precision), "not at rest after 7 evaluations");
   answer.inverted = true;
   EXPECT_EQ(outcome(answer, Precision::double_precision),
-            "not at rest after 7 steps, and elements are inverted");
+            "not at rest after 7 evaluations, and elements are inverted");
 }
 
 /// The residual must fall below the tolerance; to reach it is not enough. With the residual of an answer for

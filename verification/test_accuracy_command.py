@@ -12,7 +12,7 @@ def test_the_mesh_is_refined_until_the_answer_is_near_enough(tmp_path):
     arguments = ("run", "column", "--accuracy", "0.6%", "--against", "truth", "-o", result)
     outcome = sandglass(*arguments)
     assert outcome.returncode == 0, outcome.stderr
-    assert "column tl-mean-dilatation" in outcome.stdout  # the element that meshes are refined for
+    assert "tl-mean-dilatation, double" in outcome.stdout  # the element that meshes are refined for
     found = re.search(
         r"error against the truth: max (\S+) %.*, on (\d+) elements instead of 270", outcome.stdout
     )

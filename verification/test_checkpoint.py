@@ -159,7 +159,7 @@ def test_other_options_are_refused(stopped, options, name):
     outcome = sandglass("run", case, *options, "--checkpoint", file)
     assert outcome.returncode == 2
     assert f"{file}: is the checkpoint of another run" in outcome.stderr
-    assert name in outcome.stderr and "delete it to start anew" in outcome.stderr
+    assert name in outcome.stderr and "delete it to start again" in outcome.stderr
     assert file.read_bytes() == before
 
 

@@ -95,6 +95,18 @@ def test_the_installed_program_has_its_cases(prefix, tmp_path):
     assert (moved / "share/sandglass/reference/golden/column.h5").exists()
 
 
+@pytest.mark.parametrize(
+    "file, arguments",
+    [
+        ("share/man/man1/sandglass.1", ["manual"]),
+        ("share/bash-completion/completions/sandglass", ["completion", "bash"]),
+    ],
+)
+def test_manual_and_completion_are_those_of_the_program(file, arguments, prefix):
+    printed = run(prefix / "bin" / "sandglass", *arguments, cwd=ROOT)
+    assert (prefix / file).read_text() == printed and "--limit" in printed.replace("\\", "")
+
+
 def test_what_is_installed_reads_and_writes_for_other_programs(prefix, tmp_path):
     """Program and module use their own copies of exchange/ and common/, not those of the source."""
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")

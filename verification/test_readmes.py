@@ -16,6 +16,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 from command_line import BINARY, PATIENCE, ROOT, sandglass
 from readme import changed, commands, copy, inline, not_taken, parts, take, take_steps
 
@@ -141,6 +142,17 @@ def followed(tmp_path_factory):
         return trees[document]
 
     return follow
+
+
+def test_commands_between_blocks_of_any_kind_are_found():
+    """The end of a block with a directive does not begin another, which would hide the rest."""
+    block = "```{literalinclude} file\n:language: toml\n```\n"
+    output = "```\n    output\n```\n"
+    found = parts(f"{block}\ntext\n\n    first\n\n{block}\n    second\n\n{output}")
+    assert [(part.kind, part.text) for part in found] == [
+        ("command", "first"),
+        ("command", "second"),
+    ]
 
 
 @pytest.mark.parametrize("document", FOLLOWED)
@@ -329,6 +341,31 @@ def test_citation_and_licence_are_those_of_the_project():
     licence = re.search(r"^license: (.*)$", citation, re.MULTILINE)[1]
     assert (ROOT / "LICENSE").read_text().startswith(licence.replace("-", " ", 1).split("-")[0])
     assert f"Licence: {licence}" in DOCUMENTS["README.md"]
+
+
+def test_bibtex_entries_are_those_of_the_citation_file():
+    """Each field of docs/questions.md against CITATION.cff, and none of its fields left out."""
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    (article,) = citation["references"]
+    entries = {
+        kind: dict(re.findall(r"^  (\w+) = \{(.*)\},?$", fields, re.MULTILINE))
+        for kind, fields in re.findall(
+            r"^@(\w+)\{\w+,\n(.*?)^\}", DOCUMENTS["docs/questions.md"], re.MULTILINE | re.DOTALL
+        )
+    }
+    assert entries["software"] == {
+        "title": citation["title"],
+        "author": "{" + " and ".join(author["name"] for author in citation["authors"]) + "}",
+        "version": citation["version"],
+        "year": str(citation["date-released"].year),
+    }
+    names = [f"{author['family-names']}, {author['given-names']}" for author in article["authors"]]
+    assert entries["article"] == {
+        "title": article["title"],
+        "author": " and ".join(names),
+        "journal": article["journal"],
+        "year": str(article["year"]),
+    }
 
 
 def test_every_test_is_in_the_table_of_the_suite():

@@ -97,8 +97,7 @@ TEST(Variants, bad_ones_are_refused_with_file_line_and_rule) {
   };
   EXPECT_TRUE(contains(said(with("name = \"2\"", "name = \"a/b\"")),
                        "bad.toml:32: variants.size.name = 'a/b' must consist of letters"));
-  EXPECT_TRUE(
-      contains(said(with("name = \"2\"", "name = \"1\"")), "variants.size.name = '1' is there twice"));
+  EXPECT_TRUE(contains(said(with("name = \"2\"", "name = \"1\"")), "variants.size.name = '1' appears twice"));
   EXPECT_TRUE(contains(said(with("name = \"2\"\n", "")), "variants.size.name is missing"));
   // A variant's values are checked like all others, and errors name their place in the file.
   EXPECT_TRUE(contains(said(with("poisson_ratio = 0.3\n", "poisson_ratio = 0.6\n")),

@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from common.errors import InputError
-from exchange.decks.problem import refuse
+from exchange.decks.problem import refuse, agreed
 
 NAME, ENDING = "FEBio", ".feb"
 # The three-field element is the golden's, mean dilatation; the next has one point and hourglass
@@ -101,7 +101,7 @@ def _newton():
 
 def _explicit(motion):
     """The control of a motion. dyn_damping multiplies velocities once a step."""
-    damping = math.exp(-motion.damping * motion.time_step)
+    damping = agreed(math.exp(-motion.damping * motion.time_step))
     return [
         "<Control>",
         "<analysis>DYNAMIC</analysis>",

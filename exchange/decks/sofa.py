@@ -8,7 +8,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from common.hexahedron import gauss_jacobians
-from exchange.decks.problem import refuse
+from exchange.decks.problem import refuse, agreed
 
 NAME, ENDING = "SOFA", ".scn"
 ELEMENTS = ("CudaHexahedronTLEDForceField",)
@@ -43,7 +43,7 @@ def deck(problem, element, hourglass):
         _tag("MechanicalObject", name="nodes", template="CudaVec3f", position=mesh.points),
         _tag("HexahedronSetTopologyContainer", position="@nodes.position", hexahedra=mesh.cells),
         _tag("HexahedronSetGeometryAlgorithms", template="CudaVec3f"),
-        _tag("DiagonalMass", totalMass=material.density * volume),
+        _tag("DiagonalMass", totalMass=agreed(material.density * volume)),
         _tag(
             element,
             youngModulus=material.parameters["young_modulus"],

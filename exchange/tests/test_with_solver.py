@@ -240,7 +240,7 @@ def test_a_motion_with_a_rotation_has_no_deck(block):
     text = BLOCK[: BLOCK.rindex("[[displacement]]")] + turned
     block.write_text(dynamic(text, duration=0.05))
     words = "-o", block.parent / "a.xml", "--deck", "niftysim"
-    refused("mesh", block, *words, told="a motion with rotations has no deck")
+    refused("mesh", block, *words, told="a deck cannot hold rotations of a dynamic case")
 
 
 def test_a_deck_of_a_motion_says_how_it_moves(block):

@@ -4,6 +4,7 @@ A small document holds the records that it shows. Figure and caption are made fr
 a test can make them again, and compare the document with what the program computes now.
 """
 
+import re
 import textwrap
 
 from common.errors import InputError
@@ -117,7 +118,11 @@ def caption(document, drawn, glossary):
         f"makes the figure in `build/report/figures/`, `{COMMAND}` this text; the "
         f"[glossary]({glossary}) explains its words."
     )
-    wrapped = textwrap.fill(words, LINE, break_on_hyphens=False, break_long_words=False)
+    whole = re.sub(
+        "`[^`]+`", lambda code: code[0].replace(" ", "\0"), words
+    )  # commands do not break
+    wrapped = textwrap.fill(whole, LINE, break_on_hyphens=False, break_long_words=False)
+    wrapped = wrapped.replace("\0", " ")
     return f"![{in_words(document)}]({drawn})\n\n{wrapped}\n"
 
 

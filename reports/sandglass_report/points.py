@@ -51,6 +51,7 @@ class Point:
     equilibrium: float | None = None
     evaluations: int | None = None
     operations: int | None = None
+    stable_step: float | None = None  # s, at rest
     measured_by: str = VERIFY
     elsewhere: str = ""  # machine and revision of its times if they are not those of the page
     group: str | None = None  # what its switch is called, if not by its method
@@ -141,6 +142,7 @@ def _of_run(run, elements):
         equilibrium=run.equilibrium if run.ok else None,
         evaluations=run.evaluations if run.ok else None,
         operations=run.operations,
+        stable_step=run.stable_step or None,
     )
 
 

@@ -1,12 +1,11 @@
-// Every combination of the chart's options, chosen as a user does: what fails, and how many there are.
-(async () => {
+// Every combination of the controls with these names, chosen as a user does: how many there are, and what fails.
+(async (names) => {
   const chart = document.querySelector("#chart"), plot = chart.querySelector(".plot");
   const get = (name) => chart.querySelector(`[name=${name}]`);
   const faults = [];
   const note = (event) => faults.push(String(event.reason ?? event.message));
   for (const event of ["error", "unhandledrejection"]) addEventListener(event, note);
   const product = (lists) => lists.reduce((all, one) => all.flatMap((a) => one.map((b) => [...a, b])), [[]]);
-  const names = ["case", "reference", "figure", "cost", "own", "double", "curves"];
   const values = names.map((name) => (get(name).options ? [...get(name).options].map((o) => o.value) : [false, true]));
   const views = product(values);
   for (const view of views) {
@@ -30,4 +29,4 @@
     }
   }
   return { views: views.length, faults: [...new Set(faults)].slice(0, 5) };
-})()
+})

@@ -104,6 +104,19 @@ def test_the_step_of_another_state_is_noticed():
     assert all(words.startswith("ball, tl-perturbation, double, own mesh: ") for _, words in found)
 
 
+def test_a_stiff_body_may_have_short_steps():
+    """Steel in elements of a millimetre; its steps at rest say so."""
+    stiff = {"stable_step": 2e-7} | timed(23.0, 1.5e-7)
+    slow = stiff | {"simulated": 3e6, "step": 3e6 * 1.5e-7, "checks": 0.0}
+    for changed in (stiff, slow):
+        points = [dataclasses.replace(point("tl-perturbation", 23.0, 598), **changed)]
+        assert broken(points)[0] == set()
+        points[0] = dataclasses.replace(points[0], stable_step=2e-3)
+        assert steps_are_of_soft_bodies in broken(points)[0]
+    lost = [dataclasses.replace(points[0], stable_step=2e-7, mean_step=1e-10)]
+    assert steps_are_of_soft_bodies in broken(lost)[0]
+
+
 def test_a_second_without_its_checks_is_noticed():
     short = sound(tl_perturbation={"simulated": 1e-9 * 23.0 * ELEMENTS / STEP})
     assert broken(short)[0] == {seconds_are_those_of_the_step}

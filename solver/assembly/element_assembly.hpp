@@ -88,6 +88,23 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
         });
   }
 
+  void stresses(const State<Real>& state, const Rows<Real>& coordinates,
+                std::span<double> stresses) const override {
+    const auto laws = laws_at(0.0);
+    this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at,
+                                                  const auto& for_each_lane) {
+      const Modes<Number> X = modes_between(gather_face_modes<Number>(coordinates, *at.groups, at.face),
+                                            gather_face_modes<Number>(coordinates, *at.groups, at.face + 1));
+      const Tensor<Number> sigma = KernelOf<Method>::mean_stress(
+          motion, X, element, history<Method>(state, at.block), with_axes(laws[at.material], at.axes));
+      for_each_lane([&](std::size_t e, int lane) {
+        for (std::size_t n = 0; n < 9; ++n) {
+          stresses[9 * e + n] = static_cast<double>(Lanes<Number>::get(sigma.entries[n], lane));
+        }
+      });
+    });
+  }
+
   void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const override {
     const auto laws = laws_at(state.step);
     this->per_element(

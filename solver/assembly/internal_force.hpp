@@ -114,6 +114,11 @@ class InternalForce {
   /// Smallest det F at the integration points; not positive means inverted.
   virtual void smallest_jacobians(const State<Real>& state, std::span<double> jacobians) const = 0;
 
+  /// Cauchy stresses (Pa) of the material, averaged over the current volume of the element: nine numbers
+  /// each, the rows of the tensor. `coordinates` are those of the nodes (m), see centred_coordinates.
+  virtual void stresses(const State<Real>& state, const Rows<Real>& coordinates,
+                        std::span<double> stresses) const = 0;
+
   /// Upper bounds of the largest eigenvalue (N/m) of the tangent stiffness.
   virtual void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const = 0;
 };

@@ -232,13 +232,15 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     });
   }
 
-  /// A block of elements: its chunk, its index among those of its groups, its material, and the axes of its
-  /// elements.
+  /// A block of elements: its chunk, its index among those of its groups, its material, the axes of its
+  /// elements, and its lower face, behind which its upper one stands.
   struct BlockPlace {
     std::size_t chunk;
     std::size_t block;
     std::size_t material;
     const MaterialAxes<Number>* axes;
+    const ElementGroups* groups;
+    std::size_t face;
   };
 
   /// Calls visit.operator()<Method>(motion, element, place, for_each_lane) for every block of own elements,
@@ -261,7 +263,9 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
               gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
           visit.template operator()<Method>(
               between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block],
-              BlockPlace{c, block, group.material, part.axes_at(block)}, [&](const auto& use) {
+              BlockPlace{c, block, group.material, part.axes_at(block), part.groups.get(),
+                         group.first_face + k},
+              [&](const auto& use) {
                 for (int lane = 0; lane < width; ++lane) {
                   const int e = part.groups->elements[block * width + static_cast<std::size_t>(lane)];
                   if (e >= 0) use(static_cast<std::size_t>(e), lane);

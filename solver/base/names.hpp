@@ -6,10 +6,18 @@
 
 namespace sandglass {
 
-/// The known name nearest to `name` in edit distance, or "" when none is near enough for `name` to be a typo.
+/// The known name nearest to `name`, or "" when none is near enough for `name` to be a typo. Letters that are
+/// missing, added, wrong or swapped with the next count; dashes before a name do not make it longer.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
+
+/// "; did you mean 'x'?", or "" when no known name is near enough.
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& known);
 
 /// The sentence "did you mean 'x'? known: a, b, c" that ends an error about an unknown name.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
+
+/// "; did you mean 0.49, with a decimal point?" for a number with a decimal comma, with or without a unit; ""
+/// for any other text.
+std::string decimal_comma_hint(std::string_view text);
 
 }  // namespace sandglass

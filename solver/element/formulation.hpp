@@ -3,8 +3,10 @@
 #include <string_view>
 #include <type_traits>
 
+#include "element/hourglass_none.hpp"
 #include "element/hourglass_settings.hpp"
 #include "element/one_point.hpp"
+#include "material/given_pressure.hpp"
 #include "material/memory.hpp"
 
 namespace sandglass {
@@ -138,6 +140,32 @@ struct Formulation {
   template <class T>
   static T mean_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
     return T(1) + Kinematics::dilatation(motion, element.body);
+  }
+
+  /// The Cauchy stress (Pa) of the material, averaged over the current volume, with the history after the
+  /// step and the law at a step of no length, in which memories stay as they are. The forces f_I of a stress
+  /// on nodes at x_I give it for all kinematics alike, sum_I f_I (x) x_I = sum_q w_q P_q F_q^T, and those of
+  /// a pressure of one give the volume. Hourglass controls are no part of it. X: reference coordinates (m).
+  template <class T, class LawAtStep>
+  static Tensor<T> mean_stress(const ElementMotion<T>& motion, const Modes<T>& X, const Element<T>& element,
+                               History<T> history, const LawAtStep& law) {
+    constexpr bool small_strain = requires {
+      Kinematics::small_strain;
+    };
+    const auto now = Kinematics::template deformation<NoHourglassControl>(motion, element.body);
+    const auto moment = [&](const auto& point_law) {
+      const NoHourglassControl::Element<T> control{};
+      NoHistory<T> none;
+      const Modes<T> f =
+          Kinematics::template force<NoHourglassControl>(now, element.body, control, none, point_law);
+      return small_strain ? transpose(f) * X : transpose(f) * (X + motion.u);
+    };
+    const Tensor<T> weighted = moment(recalling(law, history.law));
+    if constexpr (small_strain) {
+      return (T(1) / volume(motion, element)) * weighted;
+    } else {
+      return (T(3) / trace(moment(GivenPressure<T>{T(1)}))) * weighted;
+    }
   }
 
   /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, hourglass part included, for a

@@ -112,7 +112,7 @@ LoadCurve read_curve(TableReader& table) {
   const auto factors = table.optional<std::vector<double>>("factors", Range::any());
   if (formula) {
     if (times || factors)
-      table.fail("formula", "was given with times or factors; a load follows one of them");
+      table.fail("formula", "was given with times or factors; a load has a formula or a table, not both");
     try {
       return {.formula = *formula, .evaluate = parse_formula(*formula)};
     } catch (const InputError& error) {
@@ -121,7 +121,7 @@ LoadCurve read_curve(TableReader& table) {
   }
   if (!times && !factors) return {};
   if (!times || !factors || times->empty() || times->size() != factors->size()) {
-    table.fail(times ? "times" : "factors", "needs times and factors, equally many");
+    table.fail(times ? "times" : "factors", "needs both times and factors, equally many");
   }
   for (std::size_t k = 1; k < times->size(); ++k) {
     if (!((*times)[k] > (*times)[k - 1])) {
@@ -147,8 +147,8 @@ Refinement read_refinement(TableReader table) {
   const auto numbers = table.optional<std::vector<int>>("numbers", Range::at_least(0.0));
   if (around.has_value() + elements.has_value() + numbers.has_value() != 1) {
     table.fail("around",
-               "elements or numbers: one of the three must be given, the name of a node set, that of an "
-               "element set, or numbers of elements");
+               "elements or numbers: exactly one of the three must be given: the name of a node set, the "
+               "name of an element set, or element numbers");
   }
   refinement.around = around.value_or("");
   refinement.elements = elements.value_or("");
@@ -247,7 +247,7 @@ MethodChoice read_method(TableReader table) {
   if (is("precision", {"double", "float"}, "float")) choice.precision = Precision::single_precision;
   if (const auto accuracy = table.optional<double>("accuracy", Range::positive())) {
     if (!method_named(choice.method).adapts())
-      table.fail("accuracy", "is for an adaptive method alone; leave it out");
+      table.fail("accuracy", "applies only to adaptive methods; leave it out");
     choice.accuracy = *accuracy;
   }
   table.finish();
@@ -266,14 +266,14 @@ void read_header(TableReader table, Case& description) {
 MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
   try {
     if (is_foreign_mesh(file.path)) return read_foreign_mesh(file);
-    if (file.spacing) throw InputError("mesh.spacing was given; it is for images alone");
+    if (file.spacing) throw InputError("mesh.spacing was given; it applies only to images");
     return read_mesh_file(file.path);
   } catch (const InputError& error) {
     const std::string ending = file.path.extension().string();
     const bool ours = is_foreign_mesh(file.path) || ending == ".h5" || ending == ".hdf5";
     throw InputError(fmt::format(
         "{}: mesh.file: {}{}", description.file.string(), error.what(),
-        ours ? "" : "; what is no HDF5 file must end in .msh (Gmsh), .inp (Abaqus), .vtu, .npy or .nii"));
+        ours ? "" : "; a file that is not HDF5 must end in .msh (Gmsh), .inp (Abaqus), .vtu, .npy or .nii"));
   }
 }
 
@@ -346,6 +346,15 @@ Case read_case_file(const std::filesystem::path& path) {
                                  path.string(), cases.size(), cases.front().name));
   }
   return std::move(cases.front());
+}
+
+std::vector<std::filesystem::path> files_of(const Case& description) {
+  std::vector<std::filesystem::path> files{description.file};
+  if (const auto* mesh = std::get_if<MeshFile>(&description.mesh)) files.push_back(mesh->path);
+  for (const CaseMaterial& material : description.materials) {
+    if (const auto* listed = std::get_if<ListedFibres>(&material.fibres)) files.push_back(listed->file);
+  }
+  return files;
 }
 
 Scene read_scene(Case description) {

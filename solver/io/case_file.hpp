@@ -21,6 +21,9 @@ std::vector<Case> read_cases(const std::filesystem::path& path);
 /// The same of a file that must not have variants.
 Case read_case_file(const std::filesystem::path& path);
 
+/// The files that a case was read from: its own, and those of mesh and fibres.
+std::vector<std::filesystem::path> files_of(const Case& description);
+
 /// The scene of a case: its mesh generated or read, its sets, constraints and loads made.
 Scene read_scene(Case description);
 

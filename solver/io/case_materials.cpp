@@ -16,7 +16,7 @@ namespace {
 ListedFibres read_fibre_file(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: cannot be read", path.string()));
-  ListedFibres listed;
+  ListedFibres listed{.fibres = {}, .sheets = {}, .file = path};
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') continue;
@@ -97,8 +97,8 @@ VolumetricPart read_volume(TableReader& table, const AnyLaw& law) {
   const VolumetricPart volume = table.required_listed<VolumetricParts>("volumetric");
   if (!splits_volume(law) && !std::holds_alternative<QuadraticPart>(volume)) {
     table.fail("volumetric",
-               fmt::format("must be left out: the energy of law '{}' has no volumetric part that "
-                           "could be another",
+               fmt::format("must be left out: the energy of law '{}' has no separate volumetric "
+                           "part",
                            name_of(law)));
   }
   return volume;
@@ -127,10 +127,11 @@ std::vector<CaseMaterial> read_materials(TableReader& reader) {
   const auto others = std::count_if(materials.begin(), materials.end(),
                                     [](const CaseMaterial& material) { return material.elements.empty(); });
   if (others > 1) {
-    reader.fail("materials",
-                fmt::format("leave out their elements {} times; one material at most is that of all elements "
-                            "that no other names",
-                            others));
+    reader.fail(
+        "materials",
+        fmt::format("leave out their elements {} times; at most one material may, which is then that of all "
+                    "other elements",
+                    others));
   }
   return materials;
 }

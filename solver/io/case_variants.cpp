@@ -1,8 +1,11 @@
 #include "io/case_variants.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 
 #include "base/error.hpp"
+#include "base/names.hpp"
 #include "io/table_reader.hpp"
 
 namespace sandglass {
@@ -15,14 +18,51 @@ struct Axis {
   toml::source_position position;
 };
 
-/// What `parse()` reads of a file, or of a text of that name.
-template <class Parse>
-toml::table parsed(const std::string& name, const Parse& parse) {
+/// A line of a text, from 1.
+std::string line_of(const std::string& text, std::size_t number) {
+  std::istringstream stream(text);
+  std::string line;
+  for (std::size_t n = 0; n < number && std::getline(stream, line); ++n) {
+  }
+  return line;
+}
+
+/// Whether the parser met the end of a line, or of the file, in the middle of a text.
+bool in_open_quote(std::string_view description) {
+  return description.find(" string: ") != std::string_view::npos &&
+         (description.find("control characters") != std::string_view::npos ||
+          description.ends_with("end-of-file"));
+}
+
+/// What a decimal comma in a line should be; empty where there is none.
+std::string comma_hint(const std::string& line) {
+  std::istringstream words(line);
+  for (std::string word; words >> word;) {
+    word.erase(0, word.find_last_of("[={") + 1);
+    word.erase(word.find_last_not_of(",]}") + 1);
+    if (auto hint = decimal_comma_hint(word); !hint.empty()) return hint;
+  }
+  return "";
+}
+
+/// The document of a text; messages call it `name`.
+toml::table parse(const std::string& text, const std::string& name) {
   try {
-    return parse();
+    return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    throw InputError(
-        fmt::format("{}:{}: is not TOML: {}", name, error.source().begin.line, error.description()));
+    std::size_t line = error.source().begin.line;
+    std::string rule(error.description());
+    if (in_open_quote(rule)) {
+      if (rule.ends_with("end-of-file")) {  // the quote that is open is the last of three in a row
+        const std::string before =
+            text.substr(0, std::min(text.size(), std::max(text.rfind("\"\"\"") + 1, text.rfind("'''") + 1)));
+        line = 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
+      }
+      rule = "a quote is open: the text has no end";
+    } else {
+      rule += comma_hint(line_of(text, line));
+    }
+    throw InputError(fmt::format("{}:{}: is not TOML: {}", name, line, rule));
   }
 }
 
@@ -31,7 +71,11 @@ toml::table parse(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(fmt::format("{}: no such case file", path.string()));
   }
-  return parsed(path.string(), [&] { return toml::parse_file(path.string()); });
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  return parse(text.str(), path.string());
 }
 
 bool fits_a_file_name(const std::string& name) {
@@ -47,7 +91,7 @@ std::vector<std::string> read_names(TableReader& variants, const std::string& ke
       table.fail("name", fmt::format("= '{}' must consist of letters, digits, '.', '_' and '-'", name));
     }
     if (std::find(names.begin(), names.end(), name) != names.end()) {
-      table.fail("name", fmt::format("= '{}' is there twice; every variant needs its own", name));
+      table.fail("name", fmt::format("= '{}' appears twice; every variant needs its own name", name));
     }
     names.push_back(std::move(name));
   }
@@ -119,15 +163,15 @@ CaseTables read_case_tables(const std::filesystem::path& path, const std::vector
   for (auto& tables : read_case_tables(path)) {
     if (tables.variants == variants) return std::move(tables);
   }
-  throw InputError(fmt::format("{}: has no variant '{}' any more", path.string(), fmt::join(variants, "-")));
+  throw InputError(fmt::format("{}: no longer has a variant '{}'", path.string(), fmt::join(variants, "-")));
 }
 
 CaseTables parse_case_text(const std::string& text, const std::string& name) {
-  CaseTables tables{parsed(name, [&] { return toml::parse(text, name); }), {}};
+  CaseTables tables{parse(text, name), {}};
   for (const char* key : {"mesh", "variants"}) {
     if (tables.root.contains(key)) {
       TableReader(tables.root, name, "")
-          .fail(key, "must not be here: the mesh comes beside the text, one case");
+          .fail(key, "must not be here: the text is one case, and its mesh comes separately");
     }
   }
   return tables;

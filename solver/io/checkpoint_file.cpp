@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "io/hdf5_file.hpp"
+#include "io/mesh_file.hpp"
 #include "io/result_file.hpp"
 
 namespace sandglass {
@@ -15,7 +16,8 @@ namespace {
 constexpr std::array history_columns{
     &HistoryRow::time,          &HistoryRow::kinetic,  &HistoryRow::strain,    &HistoryRow::hourglass,
     &HistoryRow::external_work, &HistoryRow::residual, &HistoryRow::step_size, &HistoryRow::adaption};
-static_assert(sizeof(HistoryRow) == history_columns.size() * sizeof(double), "a column is missing");
+static_assert(sizeof(HistoryRow) == history_columns.size() * sizeof(double) + sizeof(Reactions),
+              "a column is missing");
 
 void write_history(Hdf5File& file, const std::vector<HistoryRow>& history) {
   std::vector<double> values;
@@ -23,6 +25,7 @@ void write_history(Hdf5File& file, const std::vector<HistoryRow>& history) {
     for (const auto column : history_columns) values.push_back(row.*column);
   }
   file.write("/history", {history.size(), history_columns.size()}, std::span<const double>(values));
+  write_reactions(file, "", history);
 }
 
 std::vector<HistoryRow> read_history(const Hdf5File& file) {
@@ -36,6 +39,10 @@ std::vector<HistoryRow> read_history(const Hdf5File& file) {
   for (auto& row : history) {
     for (const auto column : history_columns) row.*column = *value++;
   }
+  for (const auto& set : file.names_in("/reaction")) {
+    const NodalField forces = read_nodal_field(file, "/reaction/" + set, history.size());
+    for (std::size_t n = 0; n < history.size(); ++n) history[n].reactions[set] = forces[n];
+  }
   return history;
 }
 
@@ -47,11 +54,11 @@ void require_identity(const Hdf5File& file, const Identity& identity) {
     differences += fmt::format("\n  {}: '{}' in the checkpoint, '{}' in this run", name, found, value);
   }
   if (differences.empty()) return;
-  throw InputError(
-      fmt::format("{}: is the checkpoint of another run, and only the same program goes on with the same "
-                  "input and options; what differs:{}\n"
-                  "allowed: run it with what made it, delete it to start anew, or name another file",
-                  file.path().string(), differences));
+  throw InputError(fmt::format(
+      "{}: is the checkpoint of another run; only the same program can continue it, with the same "
+      "input and options; differences:{}\n"
+      "allowed: continue it with what made it, delete it to start again, or name another file",
+      file.path().string(), differences));
 }
 
 }  // namespace

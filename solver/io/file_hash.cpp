@@ -53,8 +53,8 @@ void require_seal(const std::filesystem::path& path) {
   stream.read(seal.data(), static_cast<std::streamsize>(seal.size()));
   if (!stream || seal != seal_of(path)) {
     throw InputError(
-        fmt::format("{}: is damaged, or no file of this kind: its checksum is not that of its content; "
-                    "delete it to start anew",
+        fmt::format("{}: is damaged or not a checkpoint: its checksum does not match its content; "
+                    "delete it to start again",
                     path.string()));
   }
 }

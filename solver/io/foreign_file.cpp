@@ -46,7 +46,7 @@ std::string read_all(int pipe) {
 /// InputError when there is no such program.
 int run_program(std::vector<std::string> words, std::string& said) {
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw ComputationError("no pipe to another program");
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw ComputationError("cannot open a pipe to convert.py");
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
@@ -61,8 +61,8 @@ int run_program(std::vector<std::string> words, std::string& said) {
   close(ends[0]);
   if (error != 0) {
     throw InputError(
-        fmt::format("{}: cannot be run: {}; files of other programs need package python3, or its "
-                    "name in SANDGLASS_PYTHON",
+        fmt::format("{}: cannot be run: {}; files of other programs need Python: install python3, or "
+                    "set SANDGLASS_PYTHON to its path",
                     words[0], std::generic_category().message(error)));
   }
   int status = 0;
@@ -78,8 +78,8 @@ void run_converter(std::vector<std::string> arguments, const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(program, ignored)) {
     throw InputError(
-        fmt::format("{}: is missing; it reads and writes the files of other programs; SANDGLASS_EXCHANGE "
-                    "names its folder",
+        fmt::format("{}: is missing; it reads and writes files of other programs; set SANDGLASS_EXCHANGE "
+                    "to its folder",
                     program.string()));
   }
   arguments.insert(arguments.begin(),

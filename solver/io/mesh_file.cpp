@@ -145,7 +145,7 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   for (const auto node : cells.entries) used[static_cast<std::size_t>(node)] = true;
   if (const auto unused = std::find(used.begin(), used.end(), false); unused != used.end()) {
     throw InputError(
-        fmt::format("{}: node {} of /mesh/points belongs to no element, as do {} in all; they have "
+        fmt::format("{}: node {} of /mesh/points belongs to no element ({} such nodes in all); they have "
                     "no mass and must be left out",
                     path.string(), unused - used.begin(), std::count(used.begin(), used.end(), false)));
   }

@@ -66,7 +66,8 @@ fs::path temporary_path(const fs::path& path, int process) {
 NewFile::NewFile(const fs::path& path) : path_(path), temporary_(temporary_path(path, getpid())) {
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    throw InputError(fmt::format("{}: cannot be put in place: what stands there is no file", path.string()));
+    throw InputError(
+        fmt::format("{}: cannot be put in place: something that is not a file has this name", path.string()));
   }
   remove_abandoned(path);
   const int file = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -94,7 +95,13 @@ void NewFile::commit() {
   synchronize(folder_of(path_));  // as far as the system does that to folders
 }
 
-void require_place(const fs::path& path) {
+void require_place(const fs::path& path, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code ignored;
+    if (!fs::equivalent(path, input, ignored)) continue;
+    throw InputError(fmt::format(
+        "{}: is what this command reads, and would be lost; name another file to write", path.string()));
+  }
   const NewFile tried(path);
 }
 
@@ -102,8 +109,8 @@ void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (!error && fs::is_directory(path, error)) return;
-  throw InputError(fmt::format("{}: cannot be made a folder: {}", path.string(),
-                               error ? error.message() : "something else stands there"));
+  throw InputError(fmt::format("{}: this folder cannot be created: {}", path.string(),
+                               error ? error.message() : "a file has this name"));
 }
 
 }  // namespace sandglass

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace sandglass {
 
@@ -31,8 +32,9 @@ class NewFile {
   std::filesystem::path temporary_;
 };
 
-/// Throws InputError unless a file can be made at `path`: for programs that write at the end of long work.
-void require_place(const std::filesystem::path& path);
+/// Throws InputError unless a file can be made at `path`, and if it is one of the files that the program
+/// reads: for programs that write at the end of long work.
+void require_place(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
 /// Makes a folder, and those above it, unless it is there. Throws InputError when that cannot be done.
 void make_folder(const std::filesystem::path& path);

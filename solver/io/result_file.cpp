@@ -17,13 +17,23 @@ std::string data_item(const std::string& file, const std::string& dataset, const
                      dataset);
 }
 
+/// The dataset of the forces that hold or drive a set.
+std::string reaction_of(const std::string& group, const std::string& set) {
+  return group + "/reaction/" + set;
+}
+
 }  // namespace
 
 std::string frame_group(std::size_t number) {
   return fmt::format("/frames/{:04}", number);
 }
 
+std::filesystem::path guide_of(const std::filesystem::path& result) {
+  return std::filesystem::path(result).replace_extension(".xdmf");
+}
+
 void write_frame(Hdf5File& file, const std::string& group, const Frame& frame) {
+  const std::size_t n_elements = frame.jacobians.size();
   const auto write_nodal = [&](const std::string& name, const NodalField& field) {
     file.write(group + name, {field.size(), 3},
                std::span<const double>(field.front().data(), 3 * field.size()));
@@ -37,25 +47,56 @@ void write_frame(Hdf5File& file, const std::string& group, const Frame& frame) {
   write_elements("/hourglass_energy_density", frame.hourglass_energy_densities);
   file.write_attribute(group + "/hourglass_energy_density", "unit", "J/m^3");
   if (!frame.levels.empty()) write_elements("/level", frame.levels);
+  if (!frame.stresses.empty()) {
+    file.write(group + "/stress", {n_elements, 3, 3}, std::span<const double>(frame.stresses));
+    file.write_attribute(group + "/stress", "unit", "Pa");
+  }
+  for (const auto& [set, force] : frame.reactions) {
+    file.write(reaction_of(group, set), {3}, std::span<const double>(force));
+    file.write_attribute(reaction_of(group, set), "unit", "N");
+  }
   file.write_attribute(group, "time", frame.time);
 }
 
 Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_nodes,
                  std::size_t n_elements) {
-  const auto read_elements = [&](const std::string& name) {
+  const auto read_numbers = [&](const std::string& name, const std::vector<std::size_t>& shape) {
     auto values = file.read<double>(group + name);
-    if (values.shape != std::vector<std::size_t>{n_elements}) {
-      throw InputError(fmt::format("{}: dataset '{}' must hold one value for each of {} elements",
-                                   file.path().string(), group + name, n_elements));
+    if (values.shape != shape) {
+      throw InputError(fmt::format("{}: dataset '{}' must have the shape ({})", file.path().string(),
+                                   group + name, fmt::join(shape, ", ")));
     }
     return std::move(values.entries);
   };
+  const auto read_elements = [&](const std::string& name) { return read_numbers(name, {n_elements}); };
+  Reactions reactions;
+  for (const auto& set : file.names_in(group + "/reaction")) {
+    const auto force = read_numbers("/reaction/" + set, {3});
+    reactions[set] = {force[0], force[1], force[2]};
+  }
   return {.time = file.read_number_attribute(group, "time"),
           .u = read_nodal_field(file, group + "/displacement", n_nodes),
           .v = read_nodal_field(file, group + "/velocity", n_nodes),
           .jacobians = read_elements("/jacobian"),
           .hourglass_energy_densities = read_elements("/hourglass_energy_density"),
-          .levels = file.contains(group + "/level") ? read_elements("/level") : std::vector<double>{}};
+          .levels = file.contains(group + "/level") ? read_elements("/level") : std::vector<double>{},
+          .stresses = file.contains(group + "/stress") ? read_numbers("/stress", {n_elements, 3, 3})
+                                                       : std::vector<double>{},
+          .reactions = std::move(reactions)};
+}
+
+void write_reactions(Hdf5File& file, const std::string& group, const std::vector<HistoryRow>& history) {
+  if (history.empty()) return;
+  for (const auto& first : history.front().reactions) {
+    std::vector<double> forces;
+    for (const auto& row : history) {
+      const Vector& force = row.reactions.at(first.first);
+      forces.insert(forces.end(), force.begin(), force.end());
+    }
+    const std::string name = reaction_of(group, first.first);
+    file.write(name, {history.size(), 3}, std::span<const double>(forces));
+    file.write_attribute(name, "unit", "N");
+  }
 }
 
 ResultWriter::ResultWriter(const Model& model, const std::filesystem::path& path,
@@ -69,6 +110,7 @@ void ResultWriter::frame(const Frame& frame) {
   write_frame(file_, frame_group(times_.size()), frame);
   times_.push_back(frame.time);
   has_levels_ = !frame.levels.empty();
+  has_stresses_ = !frame.stresses.empty();
 }
 
 void ResultWriter::write_history() {
@@ -86,6 +128,7 @@ void ResultWriter::write_history() {
   column("residual", "-", &HistoryRow::residual);
   column("step_size", model_.scene().description.quasi_static ? "ramp" : "s", &HistoryRow::step_size);
   column("adaption_energy", "J", &HistoryRow::adaption);
+  write_reactions(file_, "/history", history_);
 }
 
 std::string ResultWriter::xdmf() const {
@@ -93,12 +136,16 @@ std::string ResultWriter::xdmf() const {
   const std::size_t n_nodes = model_.scene().mesh.points.size();
   const std::size_t n_cells = model_.scene().mesh.cells.size();
   const std::string real = "NumberType=\"Float\" Precision=\"8\"";
-  const auto field = [&](const std::string& group, const std::string& name, const std::string& label,
-                         bool nodal) {
+  const auto attribute = [&](const std::string& dataset, const std::string& label, const std::string& type,
+                             const std::string& center, const std::string& dimensions) {
     return fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
-                       label, nodal ? "Vector" : "Scalar", nodal ? "Node" : "Cell",
-                       data_item(file, group + "/" + name,
-                                 nodal ? fmt::format("{} 3", n_nodes) : fmt::to_string(n_cells), real));
+                       label, type, center, data_item(file, dataset, dimensions, real));
+  };
+  const auto at_nodes = [&](const std::string& group, const std::string& name) {
+    return attribute(group + "/" + name, name, "Vector", "Node", fmt::format("{} 3", n_nodes));
+  };
+  const auto in_cells = [&](const std::string& group, const std::string& name, const std::string& label) {
+    return attribute(group + "/" + name, label, "Scalar", "Cell", fmt::to_string(n_cells));
   };
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
@@ -111,11 +158,17 @@ std::string ResultWriter::xdmf() const {
         data_item(file, "/mesh/cells", fmt::format("{} 8", n_cells), "NumberType=\"Int\" Precision=\"8\""));
     text += fmt::format("        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
                         data_item(file, "/mesh/points", fmt::format("{} 3", n_nodes), real));
-    text += field(group, "displacement", "displacement", true);
-    text += field(group, "velocity", "velocity", true);
-    text += field(group, "jacobian", "jacobian", false);
-    text += field(group, "hourglass_energy_density", "hourglass energy density [J/m^3]", false);
-    if (has_levels_) text += field(group, "level", "level", false);
+    text += at_nodes(group, "displacement") + at_nodes(group, "velocity");
+    text += in_cells(group, "jacobian", "jacobian");
+    text += in_cells(group, "hourglass_energy_density", "hourglass energy density [J/m^3]");
+    if (has_levels_) text += in_cells(group, "level", "level");
+    if (has_stresses_) {
+      text += attribute(group + "/stress", "stress [Pa]", "Tensor", "Cell", fmt::format("{} 3 3", n_cells));
+    }
+    for (const auto& driven : model_.scene().driven) {
+      text += attribute(reaction_of(group, driven.first), fmt::format("reaction at {} [N]", driven.first),
+                        "Vector", "Grid", "3");
+    }
     text += "      </Grid>\n";
   }
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
@@ -125,7 +178,7 @@ void ResultWriter::commit(const std::string& status) {
   write_history();
   file_.write_attribute("/", "status", status);
   if (model_.choice().ranks->rank() > 0) return file_.commit();
-  NewTextFile guide(std::filesystem::path(path_).replace_extension(".xdmf"), xdmf());  // both or none
+  NewTextFile guide(guide_of(path_), xdmf());  // both or none
   file_.commit();
   guide.commit();
 }

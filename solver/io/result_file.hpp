@@ -17,12 +17,19 @@ using Provenance = std::vector<std::pair<std::string, std::string>>;
 void write_frame(Hdf5File& file, const std::string& group, const Frame& frame);
 Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_nodes, std::size_t n_elements);
 
+/// The XDMF file beside a result file.
+std::filesystem::path guide_of(const std::filesystem::path& result);
+
+/// Writes the reactions of a history, each set's as GROUP/reaction/SET (rows, 3) in N.
+void write_reactions(Hdf5File& file, const std::string& group, const std::vector<HistoryRow>& history);
+
 /// The name of the group of a frame.
 std::string frame_group(std::size_t number);
 
 /// Writes a run: mesh and sets, /frames/NNNN/{displacement (m), velocity (m/s), jacobian (-),
-/// hourglass_energy_density (J/m^3), of an adaptive method level} with attribute `time`, and /history/*.
-/// Beside it, an XDMF file of the same stem opens in ParaView. Nothing is in place before `commit`.
+/// hourglass_energy_density (J/m^3), stress (Pa), reaction/SET (N), of an adaptive method level} with
+/// attribute `time`, and /history/*. Beside it, an XDMF file of the same stem opens in ParaView. Nothing is
+/// in place before `commit`.
 class ResultWriter {
  public:
   ResultWriter(const Model& model, const std::filesystem::path& path, const Provenance& provenance);
@@ -45,6 +52,7 @@ class ResultWriter {
   Hdf5File file_;
   std::vector<double> times_;
   bool has_levels_ = false;
+  bool has_stresses_ = false;
   std::vector<HistoryRow> history_;
 };
 

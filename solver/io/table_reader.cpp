@@ -77,7 +77,9 @@ void TableReader::fail_missing(const std::string& key) const {
 }
 
 void TableReader::fail_type(const std::string& key, const toml::node& node, std::string_view expected) const {
-  fail(key, fmt::format("= {} must be {}", written(node), expected));
+  const auto* text = node.as_string();
+  fail(key, fmt::format("= {} must be {}{}", written(node), expected,
+                        text != nullptr ? decimal_comma_hint(text->get()) : ""));
 }
 
 void TableReader::require_in_range(const std::string& key, double value, const Range& range) const {
@@ -97,6 +99,7 @@ T TableReader::convert(const toml::node& node, const std::string& key) const {
     if constexpr (fixed) expected = fmt::format("a list of {}, each {}", values.size(), type_name<Entry>());
     if (array == nullptr) fail_type(key, node, expected);
     if constexpr (fixed) {
+      if (array->size() == 2 * values.size()) expected += "; decimals have a point, as 0.1";
       if (array->size() != values.size()) fail_type(key, node, expected);
     } else {
       values.resize(array->size());

@@ -13,8 +13,8 @@ namespace sandglass {
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "sandglass-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) {
-    throw ComputationError(
-        fmt::format("{}: cannot be made a folder: {}", pattern, std::generic_category().message(errno)));
+    throw ComputationError(fmt::format("{}: this folder cannot be created: {}", pattern,
+                                       std::generic_category().message(errno)));
   }
   path_ = pattern;
 }

@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstddef>
+#include <cstring>
 #include <map>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -92,6 +95,44 @@ class CheckpointReader {
   }
 
   const std::map<std::string, std::vector<double>>& arrays_;
+};
+
+/// Copies the state of a stepper to bytes, or back from const bytes, within a process: as the two above, in a
+/// small part of the time, and without allocating once the bytes are there.
+template <class Bytes>
+requires std::is_same_v<std::remove_const_t<Bytes>, std::vector<std::byte>>
+class StateCopy {
+ public:
+  explicit StateCopy(Bytes& bytes) : bytes_(bytes) {}
+
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void operator()(std::string_view /*name*/, Number& value) { copy(&value, sizeof value); }
+
+  template <std::floating_point Real>
+  void operator()(std::string_view /*name*/, std::vector<Real>& values) {
+    copy(values.data(), values.size() * sizeof(Real));
+  }
+
+  template <class Real>
+  void operator()(std::string_view /*name*/, Rows<Real>& rows) {
+    copy(numbers_of(rows), 4 * rows.size() * sizeof(Real));
+  }
+
+ private:
+  void copy(void* values, std::size_t size) {
+    if (size == 0) return;
+    if constexpr (std::is_const_v<Bytes>) {
+      std::memcpy(values, bytes_.data() + at_, size);
+    } else {
+      if (bytes_.size() < at_ + size) bytes_.resize(at_ + size);
+      std::memcpy(bytes_.data() + at_, values, size);
+    }
+    at_ += size;
+  }
+
+  Bytes& bytes_;
+  std::size_t at_ = 0;
 };
 
 }  // namespace sandglass

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -31,7 +32,8 @@ struct HelicalFibres {
 /// Directions of each element of the mesh.
 struct ListedFibres {
   std::vector<Vector> fibres;
-  std::vector<Vector> sheets;  ///< empty, or as many
+  std::vector<Vector> sheets;       ///< empty, or as many
+  std::filesystem::path file = {};  ///< that they were read from
 };
 
 /// How a material has its fibres; none for an isotropic one.

@@ -2,22 +2,28 @@
 
 #include <functional>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "mesh/mesh.hpp"
 #include "problem/checkpoint.hpp"
 
 namespace sandglass {
 
+/// The forces (N) that hold or drive sets of nodes, by name; see Body::set_reactions.
+using Reactions = std::map<std::string, Vector>;
+
 /// One row of the dense history.
 struct HistoryRow {
-  double time;            ///< s; relative load in quasi-static runs, growing beyond 1 while relaxing
-  double kinetic;         ///< J; zero in quasi-static runs
-  double strain;          ///< J
-  double hourglass;       ///< J
-  double external_work;   ///< J, done by imposed displacements and forces
-  double residual;        ///< |force on free components| / |reactions and loads|, -
-  double step_size;       ///< s; in quasi-static runs the increment of the load
-  double adaption = 0.0;  ///< J, energy due to changes of levels in dynamic runs; see Adaption
+  double time;               ///< s; relative load in quasi-static runs, growing beyond 1 while relaxing
+  double kinetic;            ///< J; zero in quasi-static runs
+  double strain;             ///< J
+  double hourglass;          ///< J
+  double external_work;      ///< J, done by imposed displacements and forces
+  double residual;           ///< |force on free components| / |reactions and loads|, -
+  double step_size;          ///< s; in quasi-static runs the increment of the load
+  double adaption = 0.0;     ///< J, energy due to changes of levels in dynamic runs; see Adaption
+  Reactions reactions = {};  ///< N
 };
 
 /// A frame of the results, in the numbering of the mesh.
@@ -28,6 +34,8 @@ struct Frame {
   std::vector<double> jacobians;                   ///< volume ratio of each element
   std::vector<double> hourglass_energy_densities;  ///< J/m^3, per reference volume of each element
   std::vector<double> levels;                      ///< of each element; empty if the method has only one
+  std::vector<double> stresses = {};  ///< Pa, Cauchy, the mean of each element: nine numbers, row by row
+  Reactions reactions = {};           ///< N
 };
 
 /// The receiver of a stepper's reports. The base class ignores them.
@@ -52,7 +60,11 @@ class Observer {
   /// copies the state; it may be called only during this call.
   virtual void resumable(const std::function<Checkpoint()>& /*checkpoint*/) {}
 
-  /// Called at every check with the completed share of the work; if it returns false, the run ends regularly.
+  /// Called in quasi-static runs with the load factor at which an equilibrium is being searched.
+  virtual void at_load(double /*factor*/) {}
+
+  /// Called with the completed share of the work, in quasi-static runs after every evaluation, else at every
+  /// check; if it returns false at a check, the run ends regularly.
   virtual bool proceed(long /*step*/, double /*share*/, double /*residual*/) { return true; }
 };
 

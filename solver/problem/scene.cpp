@@ -104,6 +104,14 @@ void make_constraints(Scene& scene) {
   }
   scene.constraints = imposed.constraints();
   std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
+  const auto drive = [&](const std::string& set) {
+    auto& driven = scene.driven[set];
+    driven.clear();  // a set may be named twice
+    for_each_constraint(scene.constraints, scene.sets.at(set),
+                        [&](std::size_t k, std::size_t /*n*/) { driven.push_back(k); });
+  };
+  for (const auto& displacement : scene.description.displacements) drive(displacement.set);
+  for (const auto& turned : scene.description.rotations) drive(turned.set);
 }
 
 /// The largest length (m) of the imposed displacements, and of a function of each node that turns: of its

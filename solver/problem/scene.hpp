@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -42,10 +44,11 @@ struct Scene {
   NodeSets sets = {};
   ElementSets element_sets = {};
   Materials materials = {};
-  std::vector<Constraint> constraints = {};  ///< sorted by node, then component
-  std::vector<double> angles = {};           ///< rad, of paths; the first is zero, for those that do not turn
-  std::vector<LoadCurve> curves = {};        ///< of loads; the first is that of the case
-  std::vector<NodalLoad> loads = {};         ///< dead forces at the factor one, sorted by curve and node
+  std::vector<Constraint> constraints = {};                     ///< sorted by node, then component
+  std::map<std::string, std::vector<std::size_t>> driven = {};  ///< sets that the case drives -> constraints
+  std::vector<double> angles = {};     ///< rad, of paths; the first is zero, for those that do not turn
+  std::vector<LoadCurve> curves = {};  ///< of loads; the first is that of the case
+  std::vector<NodalLoad> loads = {};   ///< dead forces at the factor one, sorted by curve and node
   std::vector<FacePressure> pressures = {};
   std::vector<FaceSupport> supports = {};
   NodalField initial_velocities = {};  ///< m/s; empty: at rest. Imposed components do not obey them
@@ -59,6 +62,18 @@ struct Scene {
 /// set without boundary faces, and a wave along an axis on which its set has no extent.
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {},
                  ElementSets element_sets_of_file = {});
+
+/// Calls use(k, n) for every constraint k of the n-th of some nodes.
+template <class Use>
+void for_each_constraint(const std::vector<Constraint>& constraints, const std::vector<int>& nodes,
+                         const Use& use) {
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    auto c = std::ranges::lower_bound(constraints, nodes[n], {}, &Constraint::node);
+    for (; c != constraints.end() && c->node == nodes[n]; ++c) {
+      use(static_cast<std::size_t>(c - constraints.begin()), n);
+    }
+  }
+}
 
 /// The mesh of a case whose mesh comes from a generator.
 Mesh generate_mesh(const AnyGenerator& generator);

@@ -16,14 +16,10 @@ namespace {
 
 std::map<std::string, std::vector<Driven>> driven_sets(const Scene& scene) {
   std::map<std::string, std::vector<Driven>> driven;
-  const auto& constraints = scene.constraints;
-  for (const auto& [name, nodes] : scene.sets) {
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      auto c = std::ranges::lower_bound(constraints, nodes[n], {}, &Constraint::node);
-      for (; c != constraints.end() && c->node == nodes[n]; ++c) {
-        driven[name].push_back({static_cast<std::size_t>(c - constraints.begin()), n, at(c->component)});
-      }
-    }
+  for (const auto& set : scene.sets) {
+    for_each_constraint(scene.constraints, set.second, [&](std::size_t k, std::size_t n) {
+      driven[set.first].push_back({k, n, at(scene.constraints[k].component)});
+    });
   }
   return driven;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "io/case_file.hpp"
 #include "sandglass/driven_problem.hpp"
@@ -26,6 +27,7 @@ class Simulation<Real>::Parts {
     choose_step();
     leapfrog_.body().evaluate_forces();
     leapfrog_.set_initial_velocities(scene().initial_velocities);
+    keep(StateCopy(whole_));
   }
 
   const DrivenProblem& problem() const { return *problem_; }
@@ -75,8 +77,11 @@ class Simulation<Real>::Parts {
     body.impose(to_, factor_to_, leapfrog_.time());
     body.evaluate_forces();
     std::fill(body.state().increment.begin(), body.state().increment.end(), Row<Real>{});
+    imposed_ = to_;
+    factor_ = factor_to_;
     arrive();
     choose_step();
+    keep(StateCopy(whole_));
     return answer.steps;
   }
 
@@ -129,23 +134,51 @@ class Simulation<Real>::Parts {
   /// A step that ends where a share of the way from `from_` to `to_` is gone.
   void take(double step, double share) {
     const double rest = 1.0 - share;
-    if (rest > 0.0) {
-      for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
-    }
-    const std::span<const double> imposed = rest > 0.0 ? imposed_ : to_;
-    const double factor = share * factor_to_ + rest * factor_from_;
-    leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed, factor, leapfrog_.time()); });
+    for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
+    factor_ = share * factor_to_ + rest * factor_from_;
+    leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor_, leapfrog_.time()); });
     if (leapfrog_.step() % scene().description.dynamics.check_interval == 0) check();
   }
 
   void check() {
-    leapfrog_.body().require_healthy(leapfrog_.step());
+    require_whole();
     if (adaption_.active() && adaption_schedule_.due()) {
       const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
       if (rose) leapfrog_.body().evaluate_forces();
       adaption_schedule_.done(rose);
     }
     choose_step();
+    keep(StateCopy(whole_));
+  }
+
+  /// Returns to the last state that was whole, and throws ComputationError, if an element is inverted or no
+  /// longer finite.
+  void require_whole() {
+    try {
+      leapfrog_.body().require_healthy(leapfrog_.step());
+    } catch (const ComputationError& error) {
+      const double failed = time();
+      keep(StateCopy(std::as_const(whole_)));
+      leapfrog_.body().set_step(step_size_);
+      to_ = imposed_;
+      factor_to_ = factor_;
+      arrive();
+      throw ComputationError(
+          fmt::format("at {:.6g} s, {}\nthe simulation is back at {:.6g} s, where all elements "
+                      "were whole, with driven nodes and forces as they were then",
+                      failed, error.what(), time()),
+          error.breakdown());
+    }
+  }
+
+  /// The data that the next step depends on; see checkpoint.hpp.
+  template <class Archive>
+  void keep(Archive archive) {
+    leapfrog_.keep(archive);
+    adaption_schedule_.keep(archive);
+    archive("longest step", step_size_);
+    archive("imposed", imposed_);
+    archive("factor", factor_);
   }
 
   void choose_step() {
@@ -158,8 +191,10 @@ class Simulation<Real>::Parts {
   Adaption<Real> adaption_;
   double step_size_ = 0.0;
   AdaptionSchedule adaption_schedule_;
-  std::vector<double> from_, to_, imposed_;  // m, in the order of the scene's constraints
-  double factor_from_ = 0.0, factor_to_ = 0.0;
+  std::vector<double> from_, to_,
+      imposed_;  // m, in the order of the scene's constraints; the last at present
+  double factor_from_ = 0.0, factor_to_ = 0.0, factor_ = 0.0;
+  std::vector<std::byte> whole_;  // the state at the last check
 };
 
 template <class Real>

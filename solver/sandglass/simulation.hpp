@@ -52,7 +52,7 @@ struct NodalView {
 ///
 /// It is a value: a copy is a snapshot that goes its own way and shares what does not change. Several may run
 /// at once, each in one thread at a time. Errors are InputError for what you say and ComputationError when
-/// the body fails; after that one only assigning to it, or its end, makes sense.
+/// the body fails: it then returns to its last state that was found whole, from which it may move elsewhere.
 template <class Real>
 class Simulation {
  public:
@@ -84,8 +84,10 @@ class Simulation {
 
   /// Goes on for `seconds`, in equal steps of at most `step_size()`; driven nodes and forces go straight to
   /// where they shall be. n steps are `advance(n * step_size())`. Every check_interval steps (of the
-  /// case) it looks for inverted elements and not-a-number (ComputationError), and adapts the step to how
-  /// stiff the body has become.
+  /// case) it looks for inverted elements and not-a-number, and adapts the step to how stiff the body has
+  /// become. ComputationError names the time and the elements that failed, with their numbers in the mesh;
+  /// the body is then as it was at the check before (at `time()`), its driven nodes and forces stay as they
+  /// were there until you say otherwise, and you may continue with a smaller motion.
   void advance(double seconds);
 
   /// Moves the body to its static equilibrium with driven nodes and forces at their new values, and stops it

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assembly/face_gather.hpp"
 #include "base/error.hpp"
 #include "math/row_loops.hpp"
 #include "solve/health.hpp"
@@ -78,7 +79,19 @@ std::vector<double> Body<Real>::of_all_constraints(const std::vector<double>& nu
 }
 
 template <class Real>
+Reactions Body<Real>::set_reactions() const {
+  Reactions sums;
+  const std::vector<double> all = of_all_constraints(reactions_);
+  for (const auto& [set, constraints] : scene_.driven) {
+    Vector& sum = sums[set];
+    for (const std::size_t k : constraints) sum[at(scene_.constraints[k].component)] += all[k];
+  }
+  return sums;
+}
+
+template <class Real>
 void Body<Real>::gather() {
+  if (ranks().count() == 1) return;
   elements_.gather(state_);
   layout().gather_rows(force_.data());
   reactions_ = of_all_constraints(reactions_);
@@ -177,10 +190,13 @@ Frame Body<Real>::frame(double time, NodalField v) const {
               std::move(v),
               std::vector<double>(per_element_.size()),
               std::vector<double>(per_element_.size()),
-              elements_.levels(state_)};
+              elements_.levels(state_),
+              std::vector<double>(9 * per_element_.size()),
+              set_reactions()};
   elements_.jacobians(state_, frame.jacobians);
   elements_.hourglass_energy_densities(state_, frame.hourglass_energy_densities);
-  for (auto* values : {&frame.jacobians, &frame.hourglass_energy_densities, &frame.levels}) {
+  elements_.stresses(state_, centred_coordinates<Real>(scene_.mesh.points, layout()), frame.stresses);
+  for (auto* values : {&frame.jacobians, &frame.hourglass_energy_densities, &frame.levels, &frame.stresses}) {
     if (!values->empty()) gather_elements(*values);
   }
   return frame;

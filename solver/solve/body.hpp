@@ -38,14 +38,20 @@ class Body {
   /// Numbers in the order of the scene's constraints, of which each rank knows its own, of all ranks.
   std::vector<double> of_all_constraints(const std::vector<double>& numbers) const;
 
-  /// Sets the values of elements that other ranks own, in the numbering of the mesh.
+  /// The sum of the reactions (N) of each set that the case drives: the force that holds or moves it, without
+  /// what accelerates the masses of its own nodes.
+  Reactions set_reactions() const;
+
+  /// Sets the values of elements that other ranks own, in the numbering of the mesh: as many for each.
   template <class T>
   void gather_elements(std::vector<T>& values) const {
     std::vector<double> all(values.size());
+    const std::size_t count = values.size() / per_element_.size();
     const auto rank = static_cast<std::size_t>(ranks().rank());
     for (std::size_t c = layout().rank_cells[rank]; c < layout().rank_cells[rank + 1]; ++c) {
-      const int e = layout().elements[c];
-      if (e >= 0) all[static_cast<std::size_t>(e)] = static_cast<double>(values[static_cast<std::size_t>(e)]);
+      if (layout().elements[c] < 0) continue;
+      const std::size_t first = count * static_cast<std::size_t>(layout().elements[c]);
+      for (std::size_t k = first; k < first + count; ++k) all[k] = static_cast<double>(values[k]);
     }
     ranks().sum(all);
     std::transform(all.begin(), all.end(), values.begin(),

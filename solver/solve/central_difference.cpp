@@ -253,7 +253,8 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     NodalField v = scheme.velocities();
     energies = body.energies();
     observer.history({scheme.time(), kinetic_energy(model.masses(), v), energies.strain, energies.hourglass,
-                      scheme.external_work(), body.residual(), scheme.step_size(), scheme.adaption_energy()});
+                      scheme.external_work(), body.residual(), scheme.step_size(), scheme.adaption_energy(),
+                      body.set_reactions()});
     if (frame_due()) {
       observer.frame(body.frame(scheme.time(), std::move(v)));
       ++frames;

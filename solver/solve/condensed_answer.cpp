@@ -84,7 +84,9 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   const NodalField no_velocity(scene.mesh.points.size());
   Body<Real> body(model, elements);
   observer.frame(body.frame(0.0, no_velocity));
-  observer.history({});
+  HistoryRow at_rest{};
+  at_rest.reactions = body.set_reactions();
+  observer.history(at_rest);
   constexpr auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   Relaxation result;
   if (settings.max_steps > 0) body.move_to(superposed<Real>(model, elements.layout()));
@@ -102,7 +104,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,
                     work_of(scene, body.of_all_constraints(body.reactions())) - 0.5 * body.load_potential(),
-                    result.residual, 1.0});
+                    result.residual, 1.0, 0.0, body.set_reactions()});
   observer.frame(body.frame(1.0, no_velocity));
   return result;
 }

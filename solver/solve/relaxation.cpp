@@ -243,16 +243,17 @@ class Search {
   void check() {
     const long evaluations = equilibrium_.evaluations();
     ended_ = evaluations >= most_evaluations_;
-    if (evaluations < next_check_) return;
-    next_check_ = evaluations + settings_.check_interval;
-    if (load_levels_.full()) report();
     const double residual = equilibrium_.residual();
     const double digits =
         std::log(std::clamp(residual, settings_.tolerance, 1.0)) / std::log(settings_.tolerance);
+    observer_.at_load(load_levels_.load());
     const bool proceeds = observer_.proceed(
         evaluations,
         load_levels_.full() ? 0.3 + 0.7 * digits : 0.3 * load_levels_.travelled() / load_levels_.way(),
         residual);
+    if (evaluations < next_check_) return;
+    next_check_ = evaluations + settings_.check_interval;
+    if (load_levels_.full()) report();
     result_.interrupted = model_.choice().ranks->any(!proceeds);
     ended_ = ended_ || result_.interrupted;
   }
@@ -278,7 +279,7 @@ class Search {
     const StrainEnergies energies = body().energies();
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
                        energies.hourglass, work_ + body().work_of_loads(), equilibrium_.residual(),
-                       load_levels_.increment()});
+                       load_levels_.increment(), 0.0, body().set_reactions()});
   }
 
   const Model& model_;
@@ -310,9 +311,11 @@ bool in_equilibrium(const Relaxation& relaxation, Precision precision) {
 
 std::string outcome(const Relaxation& relaxation, Precision precision) {
   if (relaxation.converged) return "at rest";
-  if (relaxation.interrupted) return fmt::format("interrupted at step {}", relaxation.steps);
+  const std::string evaluations =
+      fmt::format("{} evaluation{}", relaxation.steps, relaxation.steps == 1 ? "" : "s");
+  if (relaxation.interrupted) return fmt::format("interrupted after {}", evaluations);
   if (!relaxation.stagnated) {
-    return fmt::format("not at rest after {} steps{}", relaxation.steps,
+    return fmt::format("not at rest after {}{}", evaluations,
                        relaxation.inverted ? ", and elements are inverted" : "");
   }
   if (in_equilibrium(relaxation, precision)) return "at rest within the rounding of single precision";

@@ -63,6 +63,15 @@ Scene scene_of(const Scene& whole, const MeshPart& part) {
   std::sort(scene.constraints.begin(), scene.constraints.end(), [](const auto& a, const auto& b) {
     return std::pair(a.node, a.component) < std::pair(b.node, b.component);
   });
+  for (const auto& set : whole.driven) {
+    std::vector<int> nodes;
+    for (const std::size_t k : set.second) {
+      const int node = part.part_of[at(whole.constraints[k].node)];
+      if (node >= 0 && (nodes.empty() || nodes.back() != node)) nodes.push_back(node);
+    }
+    for_each_constraint(scene.constraints, nodes,
+                        [&](std::size_t k, std::size_t /*n*/) { scene.driven[set.first].push_back(k); });
+  }
   for (const auto& load : whole.loads) {
     const int node = part.part_of[at(load.node)];
     if (node >= 0) scene.loads.push_back({node, load.force, load.curve});
@@ -97,17 +106,22 @@ class PartObserver final : public Observer {
   void frame(const Frame& frame) override {
     listener_.frame({frame.time, on_the_whole(frame.u, part_), on_the_whole(frame.v, part_),
                      per_element(frame.jacobians, 1.0), per_element(frame.hourglass_energy_densities, 0.0),
-                     frame.levels.empty() ? frame.levels : per_element(frame.levels, 0.0)});
+                     frame.levels.empty() ? frame.levels : per_element(frame.levels, 0.0),
+                     per_element(frame.stresses, 0.0), frame.reactions});
   }
   void history(const HistoryRow& row) override { listener_.history(row); }
+  void at_load(double factor) override { listener_.at_load(factor); }
   bool proceed(long step, double share, double residual) override {
     return listener_.proceed(step, share, residual);
   }
 
  private:
   std::vector<double> per_element(const std::vector<double>& values, double asleep) const {
-    std::vector<double> whole(elements_, asleep);
-    for (std::size_t e = 0; e < values.size(); ++e) whole[at(part_.element_of[e])] = values[e];
+    const std::size_t count = values.size() / part_.element_of.size();  // of an element
+    std::vector<double> whole(count * elements_, asleep);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      whole[count * at(part_.element_of[k / count]) + k % count] = values[k];
+    }
     return whole;
   }
 

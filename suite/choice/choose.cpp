@@ -144,8 +144,8 @@ double rank(const Attempt& attempt) {
 /// Why a rung is too dear; empty when it is not.
 std::string cost_reason(const StepCost& cost, const Demand& demand) {
   if (demand.budget && cost.seconds > *demand.budget) {
-    return fmt::format("{} takes {:.3g} ms, and may take {:.3g} ms", cost.condensed ? "an answer" : "a step",
-                       1e3 * cost.seconds, 1e3 * *demand.budget);
+    return fmt::format("too dear: {} takes {:.3g} ms, and may take {:.3g} ms",
+                       cost.condensed ? "an answer" : "a step", 1e3 * cost.seconds, 1e3 * *demand.budget);
   }
   if (demand.real_time && cost.per_simulated_second() > 1.0) {
     return fmt::format("not in real time: a simulated second takes {:.3g} s", *cost.per_simulated_second());
@@ -204,10 +204,10 @@ std::string reference_remark(const Choice& choice) {
   const auto& [name, u, unit, own] = choice.reference;
   const double tolerance = choice.demand.tolerance;
   if (name == "truth") {
-    if (!own.largest) return fmt::format("how far the truth itself is off is not known: {}", own.note);
+    if (!own.largest) return fmt::format("the error of the truth itself is not known: {}", own.note);
     return fmt::format(
         "the truth itself is known to {} ({}){}", percent(*own.largest), own.note,
-        !can_show(choice.reference, tolerance) ? ": that something is nearer than this cannot be shown" : "");
+        !can_show(choice.reference, tolerance) ? ": nothing can be shown to be nearer than that" : "");
   }
   if (!own.largest) return "";
   return fmt::format(
@@ -268,7 +268,7 @@ std::vector<std::string> remarks(const Choice& choice) {
   if (choice.chosen) return said;
   const Attempt* best = nearest(choice);
   if (best != nullptr) {
-    said.push_back(fmt::format("the nearest of those that were computed is {}, {}: {}", name_of(best->rung),
+    said.push_back(fmt::format("the nearest that was computed is {}, {}: {}", name_of(best->rung),
                                best->rung.mesh->name(), percent(*best->evaluation.error)));
   }
   for (const auto& attempt : choice.attempts) {
@@ -277,9 +277,9 @@ std::vector<std::string> remarks(const Choice& choice) {
                            rung.choice.precision == Precision::double_precision;
     if (!is_golden || !evaluation.error || !(*evaluation.error > tolerance)) continue;
     said.push_back(
-        fmt::format("the golden's own element is {} off on this mesh: so much is the mesh's, and no "
-                    "method mends it. Errors that fall with the square of the element size would ask "
-                    "for about {:.2g} times as many elements in each direction",
+        fmt::format("the golden's own element is {} off on this mesh: that much is the mesh's, and no "
+                    "method can be nearer. If errors fall with the square of the element size, about {:.2g} "
+                    "times as many elements in each direction are needed",
                     percent(*evaluation.error), std::sqrt(*evaluation.error / tolerance)));
   }
   const auto dear =
@@ -287,8 +287,7 @@ std::vector<std::string> remarks(const Choice& choice) {
         return attempt.cost && !cost_reason(*attempt.cost, choice.demand).empty() &&
                !attempt.evaluation.error;
       });
-  if (dear > 0)
-    said.push_back(fmt::format("{} rungs are too dear and were not computed; --all computes them", dear));
+  if (dear > 0) said.push_back(fmt::format("{} were too dear and not computed; --all computes them", dear));
   return said;
 }
 

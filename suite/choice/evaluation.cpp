@@ -104,12 +104,20 @@ std::string failure_reason(const Answer& answer) {
   return answer.status;
 }
 
-OwnError own_error_of(const std::filesystem::path& path, const Scene& scene) {
+/// How far a reference that is not the truth is from it: as measured where the truth of the case is stored,
+/// else as estimated when its golden was made.
+OwnError own_error_of(const Reference& reference, const Comparison& comparison, const Scene& scene) {
   try {
-    read_reference(path, scene);  // it may belong to another case
-    return read_own_error(path);
+    const Displacements truth = read_reference(comparison.truth, scene);
+    return {accuracy(reference.u, truth, nullptr, reference.unit).max_relative_error,
+            "measured against the stored truth"};
+  } catch (const InputError&) {  // there is none, or it belongs to another case
+  }
+  try {
+    read_reference(comparison.golden, scene);
+    return read_own_error(comparison.golden);
   } catch (const InputError&) {
-    return {{}, "no stored golden tells it"};
+    return {{}, "neither a stored truth nor a golden says it"};
   }
 }
 
@@ -121,7 +129,6 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
   if (!against.empty()) {
     const auto& path = against == "truth" ? comparison.truth : comparison.golden;
     reference.u = read_reference(path, scene);
-    reference.own = read_own_error(path);
   } else {
     reference.name = golden_method;
     Answer answer = find_answer(scene, golden_element(1), proceed);
@@ -132,9 +139,10 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
                       scene.description.name, reference.name, answer.status));
     }
     reference.u = std::move(answer.u);
-    reference.own = own_error_of(comparison.golden, scene);
   }
   reference.unit = displacement_unit(scene, reference.u);
+  reference.own =
+      against == "truth" ? read_own_error(comparison.truth) : own_error_of(reference, comparison, scene);
   return reference;
 }
 

@@ -25,6 +25,7 @@ class Sampler final : public Observer {
   }
   void sample(const NodalField& now) override { u.push_back(now); }
   void history(const HistoryRow& row) override { energies = {row.strain, row.hourglass}; }
+  void at_load(double factor) override { other_.at_load(factor); }
   bool proceed(long step, double share, double residual) override {
     return other_.proceed(step, share, residual);
   }

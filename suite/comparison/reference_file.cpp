@@ -40,7 +40,7 @@ void require_times(const Hdf5File& file, const std::vector<double>& expected, co
 
 OwnError read_own_error(const std::filesystem::path& path) {
   const auto file = Hdf5File::open(path);
-  if (!file.has_attribute("/", "own_error_max")) return {{}, "the file does not tell it"};
+  if (!file.has_attribute("/", "own_error_max")) return {{}, "its file does not say it"};
   const double largest = file.read_number_attribute("/", "own_error_max");
   return {std::isfinite(largest) ? std::optional(largest) : std::nullopt,
           file.read_text_attribute("/", "own_error_note")};

@@ -111,7 +111,7 @@ function startChart(Plotly) {
     return {
       type: "scatter", mode: "text", name: "beyond", hoverinfo: "skip", showlegend: false, cliponaxis: false,
       x: points.map((p) => p[view.cost]), y: points.map((p) => drawnAt(p, view)),
-      text: points.map((p) => (above(p) ? "▲<br> " : " <br>▼")), textfont: { size: 9, color: colour("--ink") },
+      text: points.map((p) => (above(p) ? "▲<br> <br> " : " <br> <br>▼")), textfont: { size: 9, color: colour("--ink") },
     };
   }
   function lineTrace(positions, view, line) {

@@ -1,0 +1,241 @@
+"""What `sandglass run` says: what it understood and found, what is suspect, what it refuses."""
+
+import os
+import pty
+import re
+import shutil
+import subprocess
+
+import h5py
+import numpy
+import pytest
+from command_line import BARE, BINARY, BLOCK, ROOT, dynamic, sandglass
+
+FORCE = r"\((\S+), (\S+), (\S+)\) N"
+
+
+def lines_of(outcome):
+    """The lines that a run printed; it must have come to its end."""
+    assert outcome.returncode == 0, outcome.stderr
+    return outcome.stdout.splitlines()
+
+
+def test_the_first_lines_are_what_was_understood(block):
+    size, material, method = lines_of(sandglass("run", block))[:3]
+    assert size == "block: 100 mm x 100 mm x 200 mm, 0.002 m^3, 2 kg; 16 elements, 45 nodes"
+    # mu = E / (2 (1 + nu)), K = E / (3 (1 - 2 nu)), c^2 = (K + 4 mu / 3) / rho.
+    assert material == (
+        "neo-hookean: Young's modulus 3 kPa, shear 1.01 kPa, bulk 50 kPa; density 1000 kg/m^3, "
+        "waves of 7.17 m/s"
+    )
+    assert re.fullmatch(
+        r"tl-perturbation, kappa 0.00\d+ \(auto\), double, stable step \d\S* ms", method
+    )
+
+
+def test_units_that_are_wrong_by_a_thousand_are_seen(block):
+    block.write_text(
+        BLOCK.replace("[0.1, 0.1, 0.2]", "[100, 100, 200]")
+        .replace("[0.2, 0.2]", "[200, 200]")
+        .replace("young_modulus = 3000.0", "young_modulus = 3e9")
+        .replace("[0.02, 0.0, 0.01]", "[20, 0.0, 10]")
+    )
+    size, material, _ = lines_of(sandglass("run", block))[:3]
+    assert "100 m x 100 m x 200 m, 2e+06 m^3, 2e+09 kg" in size
+    assert "Young's modulus 3 GPa" in material and "waves of 7.17 km/s" in material
+
+
+def test_the_last_lines_are_those_of_the_result(block):
+    result = block.parent / "result.h5"
+    lines = lines_of(sandglass("run", block, "-o", result))
+    text = "\n".join(lines)
+    ending = re.search(
+        r"^equilibrium: (\d+) evaluations, \S+ s; residual (\S+), tolerance 1e-08$",
+        text,
+        re.MULTILINE,
+    )
+    with h5py.File(result) as file:
+        last = file["frames"][sorted(file["frames"])[-1]]
+        history = file["history"]
+        largest = numpy.linalg.norm(last["displacement"], axis=1).max()
+        ratio = history["hourglass_energy"][-1] / history["strain_energy"][-1]
+        smallest = last["jacobian"][:].min()
+        assert float(ending[2]) == pytest.approx(history["residual"][-1], rel=0.01)
+        assert (
+            f"largest displacement {1e3 * largest:.3g} mm; smallest det F of an element "
+            f"{smallest:.3g}; hourglass energy {100 * ratio:.3g} % of strain energy"
+        ) in lines
+        for name in ("foot", "head"):
+            told = re.search(f"^reaction at {name} {FORCE}$", text, re.MULTILINE)
+            stored = history[f"reaction/{name}"][-1]
+            assert [float(f) for f in told.groups()] == pytest.approx(
+                stored, rel=6e-3, abs=2e-4 * abs(stored).max()
+            )
+            assert (stored == last[f"reaction/{name}"][:]).all()
+        # Nothing else holds the block.
+        total = history["reaction/foot"][-1] + history["reaction/head"][-1]
+        assert abs(total).max() < 1e-7 * abs(history["reaction/head"][-1]).max()
+    assert "nothing stored" not in text
+
+
+def test_without_output_nothing_is_stored_and_it_says_so(block):
+    assert "nothing stored; -o FILE.h5" in lines_of(sandglass("run", block))[-1]
+    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
+
+
+def test_a_motion_ends_with_its_steps_and_energies(block):
+    block.write_text(dynamic(BARE, duration=0.05, frames=5))
+    outcome = sandglass("run", block)
+    text = "\n".join(lines_of(outcome))
+    assert re.search(
+        r"^motion: 0.05 s in \d+ steps of at least \S+ ms, complete; \S+ s, ", text, re.M
+    )
+    assert "kinetic" in text and "reaction at head (" in text
+    assert "warning" not in outcome.stderr
+
+
+def test_a_residual_above_the_tolerance_is_explained(block):
+    outcome = sandglass("run", block, "-p", "float")
+    ending = next(line for line in lines_of(outcome) if line.startswith("equilibrium: "))
+    residual, explained = re.search(r"residual (\S+), tolerance 1e-08(.*)$", ending).groups()
+    assert float(residual) > 1e-8 and explained == ": single precision resolves no more"
+
+
+def test_no_words_twice_and_no_stray_space(block):
+    for text in (BARE, dynamic(BARE, duration=0.02)):
+        block.write_text(text)
+        for method in ("tl-perturbation", "tl-full"):
+            for line in lines_of(sandglass("run", block, "-m", method)):
+                assert line == line.strip() and "  " not in line and " :" not in line
+                assert not re.search(r"\b1 (evaluations|steps|elements|nodes)\b", line)
+                assert not re.search(r"(\b\w+ \d+ \w+\b).*\1", line)
+
+
+NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?"
+
+
+def test_the_readme_shows_what_its_first_case_prints(tmp_path):
+    text = (ROOT / "README.md").read_text()
+    shown = re.search(r"```text\n(my-beam: .*?)```", text, re.DOTALL)[1].splitlines()
+    case = tmp_path / "my-beam.toml"
+    case.write_text(re.search(r"```toml\n(.*?)```", text, re.DOTALL)[1])
+    printed = lines_of(sandglass("run", case.name, "-o", "my-beam.h5", cwd=tmp_path))
+    assert len(shown) == len(printed)
+    for ours, theirs in zip(shown, printed):
+        assert re.sub(NUMBER, "#", ours) == re.sub(NUMBER, "#", theirs)
+        if ours.startswith("equilibrium: "):  # seconds, and the last rounding of the residual
+            continue
+        numbers = [[float(n) for n in re.findall(NUMBER, line)] for line in (ours, theirs)]
+        assert numbers[0] == pytest.approx(numbers[1], rel=0.01)  # one in the last of three digits
+
+
+# Warnings.
+
+
+def test_much_hourglass_energy_is_warned_of_and_the_remedy_has_none(block):
+    # One element across a bent block: the bending is all hourglass.
+    block.write_text(
+        BARE.replace("[2, 2, 4]", "[1, 1, 4]").replace("[0.02, 0.0, 0.01]", "[0.05, 0.0, 0.0]")
+    )
+    outcome = sandglass("run", block)
+    found = re.search(r"hourglass energy is (\S+) % of strain energy, above 10 %", outcome.stderr)
+    assert float(found[1]) > 10.0
+    method = re.search(r"compare with --method (\S+),", outcome.stderr)[1]
+    other = sandglass("run", block, "-m", method)
+    assert other.returncode == 0 and not other.stderr
+    assert "hourglass energy is" not in sandglass("run", ROOT / "cases" / "column.toml").stderr
+
+
+def test_a_method_without_control_is_warned_of(block):
+    outcome = sandglass("run", block, "-m", "tl-none")
+    assert "warning: method tl-none does not resist hourglass modes" in outcome.stderr
+
+
+def test_energy_from_nowhere_is_warned_of(block):
+    # Moved within 0.1 s and free from then on. Hourglass forces that are summed up from rates while
+    # the elements turn are no derivative of an energy.
+    coarse = BARE.replace("[2, 2, 4]", "[1, 1, 4]")
+    block.write_text(dynamic(coarse, duration=10.0, ramp_time=0.1))
+    outcome = sandglass("run", block, "-m", "ul-assumed-strain")
+    found = re.search(r"energy drifts: (\S+) % of the largest is from nowhere", outcome.stderr)
+    assert float(found[1]) > 10.0
+    for damping in (0.0, 3.0):  # what damping takes is accounted for
+        block.write_text(dynamic(coarse, duration=10.0, ramp_time=0.1, damping=damping))
+        assert "drifts" not in sandglass("run", block).stderr
+
+
+# Places that are refused.
+
+
+@pytest.mark.parametrize("option", ["-o", "--checkpoint"])
+def test_the_case_is_no_place_for_results(block, option):
+    before = block.read_bytes()
+    case = block.parent / "case.h5"  # a case may have any name
+    shutil.copy(block, case)
+    outcome = sandglass("run", case, option, case)
+    assert outcome.returncode == 2
+    assert f"{case}: is what this command reads" in outcome.stderr
+    assert case.read_bytes() == before
+
+
+def test_results_end_in_h5(block):
+    for name in ("block.toml", "result", "result.xdmf", "result.vtu"):
+        outcome = sandglass("run", block, "-o", name, cwd=block.parent)
+        assert outcome.returncode == 2
+        assert f"--output = '{name}' must end in .h5" in outcome.stderr
+    assert block.read_text() == BLOCK
+    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
+
+
+def test_no_command_overwrites_what_it_reads(block):
+    folder = block.parent
+    assert sandglass("mesh", block, "-o", folder / "mesh.h5").returncode == 0
+    assert sandglass("run", block, "-o", folder / "answer.h5").returncode == 0
+    generated = 'generator = "box"\nsize = [0.1, 0.1, 0.2]\nelements = [2, 2, 4]'
+    own = folder / "own.toml"
+    own.write_text(BARE.replace(generated, 'file = "mesh.h5"'))
+    os.link(own, folder / "alias.h5")
+    before = {file.name: file.read_bytes() for file in folder.iterdir()}
+    for words in (
+        ("run", own, "-o", "mesh.h5"),
+        ("run", own, "-o", "alias.h5"),
+        ("run", own, "--checkpoint", "mesh.h5"),
+        ("mesh", own, "-o", "mesh.h5"),
+        ("mesh", own, "--format", "h5", "-o", "own.toml"),
+        ("score", "answer.h5", "--case", own, "--json", "answer.h5"),
+        ("score", "answer.h5", "--case", own, "--json", "own.toml"),
+        ("choose", own, "-o", "own.toml"),
+        ("choose", own, "--json", "mesh.h5"),
+        ("verify", own, "--json", "own.toml"),
+        ("stability", own, "--json", "own.toml"),
+        ("bench", own, "--json", "own.toml"),
+    ):
+        outcome = sandglass(*words, cwd=folder)
+        assert outcome.returncode == 2, words
+        assert "is what this command reads" in outcome.stderr, words
+        assert {file.name: file.read_bytes() for file in folder.iterdir()} == before, words
+
+
+# Progress.
+
+
+def test_a_terminal_shows_load_and_residual_from_the_start(block):
+    block.write_text(BARE.replace("[2, 2, 4]", "[6, 6, 12]"))
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(
+        [BINARY, "run", block], stdout=subprocess.PIPE, stderr=theirs, text=True
+    ) as process:
+        os.close(theirs)
+        shown = b""
+        try:
+            while part := os.read(ours, 4096):
+                shown += part
+        except OSError:  # Linux: the other end is closed
+            pass
+        text = process.communicate()[0]
+    os.close(ours)
+    assert process.returncode == 0
+    first = shown.decode().split("\r\x1b[K")[1]
+    assert re.search(r"^block \[.*\] +\d+ % load \S+, evaluation 1, residual \S+$", first)
+    assert shown.endswith(b"\r\x1b[K")  # nothing is left of it
+    assert "equilibrium: " in text

@@ -1,0 +1,87 @@
+"""`sandglass score --limit`: the error that a limit holds for, exit codes, what is printed."""
+
+import json
+
+import pytest
+from command_line import BARE, require_refusal, sandglass, write_golden
+
+
+@pytest.fixture
+def answer(block):
+    """A case with a golden, and what the paper's element finds on it."""
+    write_golden(block)
+    result = block.parent / "answer.h5"
+    assert sandglass("run", block, "-o", result).returncode == 0
+    return result
+
+
+def scored(answer, *arguments):
+    """The outcome, and the errors as fractions."""
+    file = answer.parent / "score.json"
+    case = answer.parent / "block.toml"
+    outcome = sandglass("score", answer, "--case", case, *arguments, "--json", file)
+    (record,) = json.loads(file.read_text())["records"]
+    return outcome, record
+
+
+def test_limits_just_above_and_below_the_errors(answer):
+    """Each figure has its own limit: max and rms differ, so that neither stands for the other."""
+    outcome, record = scored(answer)
+    assert outcome.returncode == 0 and "limit" not in outcome.stdout
+    largest, mean = (record["golden"][f"{name}_relative_error"] for name in ("max", "rms"))
+    assert 1e-4 < mean < 0.9 * largest < 0.5
+    above, below = 1.01, 0.99
+    for limits, broken in [
+        ((f"max={above * largest}", f"rms={above * mean}"), []),
+        ((f"max={100 * above * largest}%", f"rms={100 * above * mean}%"), []),
+        ((f"max={below * largest}", f"rms={above * mean}"), ["max"]),
+        ((f"max={above * largest}", f"rms={100 * below * mean}%"), ["rms"]),
+        ((f"rms={below * mean}", f"max={below * largest}"), ["rms", "max"]),
+    ]:
+        words = [word for limit in limits for word in ("--limit", limit)]
+        outcome, record = scored(answer, *words)
+        assert outcome.returncode == (1 if broken else 0), outcome.stderr
+        told = [line.split()[1:3] for line in outcome.stdout.splitlines() if line[:5] == "limit"]
+        assert [figure for verdict, figure in told if verdict == "BROKEN:"] == broken
+        assert len(told) == len(limits) and record["golden"]["max_relative_error"] == largest
+
+
+def test_a_limit_holds_against_the_truth_where_asked():
+    """The golden of the column is no distance from itself, and about a percent from the truth."""
+    score = ("score", "reference/golden/column.h5", "--case", "column", "--limit", "max=0.1%")
+    assert sandglass(*score).returncode == 0
+    outcome = sandglass(*score, "--against", "truth")
+    assert outcome.returncode == 1
+    assert "BROKEN: max error against the truth" in outcome.stdout
+    profile = (*score[:4], "--limit", "profile=0.5%", "--against", "truth")
+    assert sandglass(*profile).returncode == 1
+
+
+def test_without_a_golden_its_twin_is_the_judge(block):
+    block.write_text(BARE)
+    twin, other = block.parent / "twin.h5", block.parent / "other.h5"
+    for result, method in [(twin, "tl-mean-dilatation"), (other, "tl-none")]:
+        assert sandglass("run", block, "-m", method, "-o", result).returncode == 0
+    for result, code in [(twin, 0), (other, 1)]:
+        outcome = sandglass("score", result, "--case", block, "--limit", "max=0.001%")
+        assert outcome.returncode == code
+        assert "max error against the golden's twin" in outcome.stdout
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("--limit", "max"), "--limit 'max' needs a value, such as max=2% or max=0.02"),
+        (("--limit", "mx=2%"), "'mx' is not a figure; did you mean 'max'? known: max, profile"),
+        (("--limit", "max=2pc"), "--limit max = '2pc' must be a share in (0, 1]"),
+        (("--limit", "max=2,5%"), "did you mean 2.5%, with a decimal point?"),
+        (("--limit", "max=0"), "--limit max = '0' must be a share in (0, 1]"),
+        (("--limit", "profile=2%"), "--limit profile: block has no [profile]"),
+        (("--limit", "max=2%", "--against", "truth"), "block has no stored truth"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_wrong_limits_are_told(answer, tmp_path_factory, arguments, words):
+    empty = tmp_path_factory.mktemp("empty")
+    case = answer.parent / "block.toml"
+    require_refusal(words, empty, "score", answer, "--case", case, *arguments, "--json", "s.json")

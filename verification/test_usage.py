@@ -1,0 +1,228 @@
+"""What the program says of itself and of slips: help, manual page, completion, the nearest name."""
+
+import re
+import resource
+import shutil
+import subprocess
+
+import pytest
+from command_line import BLOCK, ROOT, methods, sandglass
+
+COMMANDS = re.findall(r"^  (\w+)  ", sandglass("--help").stdout, re.MULTILINE)
+HELP = {name: sandglass(name, "--help").stdout for name in COMMANDS}
+# Command -> its long options.
+OPTIONS = {
+    name: re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.MULTILINE) for name, text in HELP.items()
+}
+CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
+
+
+def misspelt(names):
+    """Each name with another one, one edit away: a letter is added, left out, wrong or swapped.
+
+    The edit is in the middle, as beginnings tell many names from each other.
+    """
+    kinds = [
+        lambda name, k: name[:k] + "x" + name[k:],
+        lambda name, k: name[:k] + name[k + 1 :],
+        lambda name, k: name[:k] + "x" + name[k + 1 :],
+        lambda name, k: name[: k - 1] + name[k] + name[k - 1] + name[k + 1 :],
+    ]
+    for number, name in enumerate(names):
+        # Half of a name of two letters is no longer a slip: only a letter more is.
+        kind = 0 if len(name.strip("-")) < 3 else number % len(kinds)
+        wrong = kinds[kind](name, (len(name) + 1) // 2)
+        if wrong in names:
+            wrong = kinds[0](name, (len(name) + 1) // 2)
+        yield name, wrong
+
+
+def refused(*arguments, **options):
+    """What is said of wrong use."""
+    outcome = sandglass(*arguments, **options)
+    assert outcome.returncode == 2 and outcome.stderr.startswith("error: "), outcome
+    return outcome.stderr
+
+
+# Slips.
+
+
+def test_lists_of_names_are_not_empty():
+    assert {"run", "choose", "score", "completion", "manual"} <= set(COMMANDS)
+    assert sum(map(len, OPTIONS.values())) > 50 and len(methods()) > 15 and len(CASES) > 20
+
+
+@pytest.mark.parametrize("name, wrong", misspelt(COMMANDS))
+def test_a_misspelt_command_is_answered_with_the_nearest(name, wrong):
+    told = refused(wrong, "column", "--all")
+    assert f"'{wrong}' is not a command; did you mean '{name}'?" in told
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_misspelt_option_is_answered_with_the_nearest(command):
+    for name, wrong in misspelt(OPTIONS[command]):
+        told = refused(command, f"{wrong}=1")
+        expected = f"error: {command}: '{wrong}' is not an option; did you mean '{name}'?"
+        assert expected in told and f"sandglass {command} --help" in told
+
+
+def test_a_misspelt_method_is_answered_with_the_nearest(block):
+    for name, wrong in misspelt(methods()):
+        told = refused("run", block, "--method", wrong)
+        assert f"'{wrong}' is not known; did you mean '{name}'?" in told
+
+
+def test_a_misspelt_case_is_answered_with_the_nearest(tmp_path):
+    for name, wrong in misspelt(CASES):
+        told = refused("mesh", wrong, "-o", tmp_path / "mesh.h5")
+        assert f"did you mean '{name}'?" in told and len(told.splitlines()) == 1
+
+
+def test_a_misspelt_file_is_answered_with_the_nearest_beside_it(tmp_path):
+    (tmp_path / "my-beam.toml").write_text(BLOCK)
+    for given, meant in [
+        ("my-baem.toml", "my-beam.toml"),
+        (tmp_path / "my-baem.toml", tmp_path / "my-beam.toml"),
+    ]:
+        told = refused("run", given, cwd=tmp_path)
+        assert f"did you mean '{meant}'? `sandglass cases` lists the known ones\n" in told
+        assert "ellipsoid-touch" not in told
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        ([], "a command is missing; known: cases, methods, run"),
+        (["--verison"], "'--verison' is not an option; did you mean '--version'?"),
+        (["run", "column", "-x"], "run: '-x' is not an option\n"),  # one letter is like any other
+        (["qwertz"], "'qwertz' is not a command; known: cases"),
+        (["cases", "column"], "cases: 'column' is one argument too many"),
+        (["mesh", "column"], "mesh: --output is required"),
+        (["run", "column", "-o"], "run: --output needs a value\n"),
+        (["score", "x", "y", "--case", "column"], "score: 'y' is one argument too many"),
+        (["run", "column", "--threads", "x"], "run: --threads = x must be an integer"),
+        (["run", "column", "--threads", "0,5"], "run: --threads = 0,5 must be an integer\n"),
+        (
+            ["score", "x", "--case", "column", "--tolerance", "0,1"],
+            "--tolerance = 0,1 must be a number; did you mean 0.1, with a decimal point?",
+        ),
+        (["verify", "--threads", "-1"], "-1 not in range 0 to 1024"),
+        (["run", "column", "-k", "0,1"], "did you mean 0.1, with a decimal point?"),
+        (["choose", "column", "--tolerance", "0,5%"], "did you mean 0.5%, with a decimal point?"),
+        (["choose", "column", "--budget", "1,5ms"], "did you mean 1.5ms, with a decimal point?"),
+        (["choose", "column", "--budget", "1,5,2"], "without a unit it is in s\n"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_wrong_arguments_are_told(arguments, words):
+    assert words in refused(*arguments)
+
+
+@pytest.mark.parametrize(
+    "old, new, line, words",
+    [
+        ('name = "block"', 'name = "block', 3, "is not TOML: a quote is open"),
+        ('name = "block"', 'name = """block', 3, "is not TOML: a quote is open"),
+        ("= 0.49", "= 0,49", 15, "did you mean 0.49, with a decimal point?"),
+        ("= 0.49", '= "0,49"', 15, "= '0,49' must be a number; did you mean 0.49, with"),
+        ("[0.02, 0.0, 0.01]", "[0,02, 0,0, 0,01]", 28, "did you mean 0.02, with a decimal point?"),
+        ("[0.02, 0.0, 0.01]", "[0,2, 0,0, 0,1]", 28, "a list of 3, each a number; decimals have a"),
+        ("= 0.49", "= 0.49 m", 15, "expected a comment or whitespace, saw 'm'\n"),
+    ],
+)
+def test_slips_in_a_case_file_are_told_with_their_line(block, old, new, line, words):
+    assert old in BLOCK
+    block.write_text(BLOCK.replace(old, new))
+    told = refused("run", block)
+    assert told.startswith(f"error: {block}:{line}: ") and words in told
+
+
+def test_memory_that_does_not_suffice_is_told_in_gigabytes(block, tmp_path):
+    block.write_text(BLOCK.replace("[2, 2, 4]", "[3000, 3000, 3000]"))
+    limit = (4 << 30, 4 << 30)
+    outcome = sandglass(
+        "mesh",
+        block,
+        "-o",
+        tmp_path / "mesh.h5",
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit),
+    )
+    assert outcome.returncode == 3
+    assert re.search(r"^error: not enough memory: \d+\.\d GB are free", outcome.stderr)
+    assert not (tmp_path / "mesh.h5").exists()
+
+
+# Help, manual page, completion: all of what the parser itself knows.
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_fits_a_terminal(command):
+    assert [line for line in HELP[command].splitlines() if len(line) > 100] == []
+    summary = HELP[command].splitlines()[0].rstrip(".")
+    assert summary in " ".join(sandglass("--help").stdout.split())
+
+
+def test_manual_has_all_commands_and_options_and_no_fault_in_its_markup():
+    page = sandglass("manual")
+    assert page.returncode == 0
+    for command in COMMANDS:
+        section = page.stdout.split(f".SS sandglass {command} ")[1].split(".SS ")[0]
+        tagged = re.findall(r"\\fB((?:\\-){2}.*?)\\fR", section)
+        options = [name for name in OPTIONS[command] if name != "--help"]
+        assert [tag.replace("\\", "") for tag in tagged] == options
+    assert "\\fB\\-\\-describe\\fR\n" in page.stdout  # a flag has no value
+    assert "\\fB\\-\\-method\\fR \\fIMETHOD\\fR\n" in page.stdout
+    assert "3 the computation failed" in page.stdout.split(".SH EXIT STATUS")[1]
+    if shutil.which("groff") is None:
+        pytest.skip("needs groff")
+    made = subprocess.run(
+        ["groff", "-man", "-ww", "-Tutf8"], input=page.stdout, capture_output=True, text=True
+    )
+    assert made.returncode == 0 and not made.stderr
+    assert "`sandglass methods`" in made.stdout  # quotes come out as they went in
+
+
+@pytest.fixture(scope="module")
+def script():
+    outcome = sandglass("completion", "bash")
+    assert outcome.returncode == 0 and not outcome.stderr
+    return outcome.stdout
+
+
+def completed(script, *words):
+    """What bash offers for the last of these words."""
+    lines = [
+        script,
+        f"COMP_WORDS=({' '.join(repr(word) for word in words)})",
+        f"COMP_CWORD={len(words) - 1}",
+        '_sandglass; printf "%s\\n" "${COMPREPLY[@]}"',
+    ]
+    done = subprocess.run(["bash"], input="\n".join(lines), capture_output=True, text=True)
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    return [line for line in done.stdout.splitlines() if line]
+
+
+def test_completion_has_all_commands_options_methods_and_cases(script):
+    offered = completed(script, "sandglass", "")
+    assert [word for word in offered if word[0] != "-"] == COMMANDS
+    for command in COMMANDS:
+        assert set(OPTIONS[command]) == set(completed(script, "sandglass", command, "--"))
+    for words in [
+        ("run", "-m", ""),
+        ("run", "column", "--method", "=", ""),
+        ("choose", "column", "--methods", ""),
+    ]:
+        assert completed(script, "sandglass", *words) == methods()
+    assert sorted(completed(script, "sandglass", "score", "--case", "")) == CASES
+    assert set(CASES) <= set(completed(script, "sandglass", "verify", "column", ""))
+
+
+def test_completion_knows_what_a_value_may_be(script):
+    assert completed(script, "sandglass", "ru") == ["run"]
+    assert completed(script, "sandglass", "run", "ellipsoid-t") == ["ellipsoid-touch"]
+    assert completed(script, "sandglass", "run", "column", "--estimate", "t") == ["truth"]
+    assert completed(script, "sandglass", "run", "column", "--method", "=") == methods()
+    several = completed(script, "sandglass", "bench", "-m", "tl-full", "tl-mean")
+    assert several == ["tl-mean-dilatation"]
+    assert "column" in completed(script, "sandglass", "run", "--describe", "")  # after a flag
+    assert completed(script, "sandglass", "run", "column", "-o", "") == []  # bash offers files
