@@ -100,7 +100,7 @@ def test_no_other_method_stands_in_for_the_one_whose_errors_are_shown(data):
 
 
 def moving(data, hashes=HASHES):
-    """Makes the case one in motion, whose golden has moved farthest in the second of three frames."""
+    """Makes the case a motion, whose golden has moved farthest in its second frame."""
     case = data.folder / "cases/column.toml"
     case.write_text(case.read_text().replace('"quasi-static"', '"dynamic"'))
     without_golden(data)
