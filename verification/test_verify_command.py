@@ -10,7 +10,7 @@ ELEMENTS = 16  # of the block
 
 
 def check_step_cost(record):
-    """A simulated second takes its steps; a condensed method, which has none, a thousand answers."""
+    """A simulated second takes steps and checks; of a condensed method, a thousand answers."""
     second, step = record["seconds_per_simulated_second"], record["mean_step_seconds"]
     ns, checks = record["ns_per_element_step"], record["check_ns_per_element_step"]
     if record["method"] == "linear-condensed":

@@ -77,7 +77,8 @@ def growth_plate(records):
     note = (
         "A bent beam on ever finer meshes, one thread. Poisson's ratio: "
         ".3 dotted, .49 solid, .4999 dashed. Of Sandglass evaluations of the forces, each "
-        "with a multigrid cycle; of FEniCSx and CalculiX Newton iterations, each with a factorisation."
+        "with a multigrid cycle; of FEniCSx and CalculiX Newton iterations, each with a "
+        "factorisation."
     )
     names = dict.fromkeys(name for name, _ in lines)
     legend = tuple((name, COLOURS[name], "o") for name in names)

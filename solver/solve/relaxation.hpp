@@ -7,15 +7,15 @@ namespace sandglass {
 
 /// A static answer and the course of the search for it.
 struct Relaxation {
-  NodalField u;              ///< m
-  long steps = 0;            ///< evaluations of the internal forces
-  double residual = 0.0;     ///< |force on free components| / |reactions and loads|
-  bool converged = false;    ///< residual below the tolerance
-  bool stagnated = false;    ///< the residual stopped falling above the tolerance
-  bool inverted = false;     ///< an element is inverted at u, or no longer finite
-  bool interrupted = false;  ///< the observer ended the run
-  StrainEnergies energies;   ///< at u
-  double seconds = 0.0;      ///< wall time from the model to the answer
+  NodalField u;                   ///< m
+  long steps = 0;                 ///< evaluations of the internal forces
+  double residual = 0.0;          ///< |force on free components| / |reactions and loads|
+  bool converged = false;         ///< residual below the tolerance
+  bool stagnated = false;         ///< the residual stopped falling above the tolerance
+  bool inverted = false;          ///< an element is inverted at u, or no longer finite
+  bool interrupted = false;       ///< the observer ended the run
+  StrainEnergies energies;        ///< at u
+  double seconds = 0.0;           ///< wall time from the model to the answer
   double adaption_seconds = 0.0;  ///< the share of `seconds` for the choice of levels, adaptive methods
 };
 
