@@ -10,6 +10,9 @@ namespace sandglass {
 
 namespace {
 
+/// The share of the work that the motions are, to show progress.
+constexpr double of_motions = 0.8;
+
 /// What a motion depends on, among rungs: neither precision nor kappa changes its steps noticeably.
 using MotionKey = std::tuple<const LadderMesh*, std::string, double>;
 
@@ -42,7 +45,11 @@ std::vector<Costing> measure_costs(std::span<const Rung> rungs, const Proceed& p
     CostTask task{&rung.mesh->scene, rung.choice};
     if (!method_named(rung.choice.method).is_condensed) {
       const auto [found, is_new] = motions.try_emplace(motion_key(rung));
-      if (is_new) found->second = follow(rung, proceed);
+      if (is_new) {
+        found->second = follow(rung, [&](double share) {
+          return proceed(of_motions * (static_cast<double>(n) + share) / static_cast<double>(rungs.size()));
+        });
+      }
       task.motion = &found->second;
       if (!found->second.mean_step) {
         costings[n].status = found->second.remark;
@@ -52,7 +59,9 @@ std::vector<Costing> measure_costs(std::span<const Rung> rungs, const Proceed& p
     tasks.push_back(task);
     of_task.push_back(n);
   }
-  const auto timed = sandglass::measure_costs(std::span<const CostTask>(tasks), proceed);
+  const auto timed = sandglass::measure_costs(std::span<const CostTask>(tasks), [&](double share) {
+    return proceed(of_motions + (1.0 - of_motions) * share);
+  });
   for (std::size_t k = 0; k < timed.size(); ++k) costings[of_task[k]] = timed[k];
   return costings;
 }
