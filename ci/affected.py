@@ -3,12 +3,12 @@
 
     ci/affected.py SOURCE...    prints which of them, and on stderr why
 
-A change is what differs from the revision in ci/linted, of which `ci/lint all` found nothing. Every
-changed source is looked at. A finding in a header shows in any source that includes it: for the
-changed headers that no changed source includes, as few others are added as include them all. What a
-change of a header means for the other sources that include it is left to `ci/lint all`. All sources
-are looked at where that revision is not in this clone (a shallow one), or the checks themselves
-changed.
+A change is what differs from the revision in .ci/linted, of which `ci/lint all` found nothing.
+Every changed source is looked at. A finding in a header shows in any source that includes it: for
+the changed headers that no changed source includes, as few others are added as include them all.
+What a change of a header means for the other sources that include it is left to `ci/lint all`. All
+sources are looked at where that revision is not in this clone (a shallow one), or the checks
+themselves changed.
 """
 
 import re
@@ -24,14 +24,14 @@ CHECKS = {".clang-tidy", "ci/tidy.py"}
 def changed_files(root):
     """(revision, paths that differ from it, those that git does not know yet included).
 
-    Paths are None where the revision in ci/linted is not in the clone.
+    Paths are None where the revision in .ci/linted is not in the clone.
     """
 
     def git(*words):
         done = subprocess.run(["git", *words], cwd=root, capture_output=True, text=True)
         return done.stdout.splitlines() if done.returncode == 0 else None
 
-    revision = (root / "ci/linted").read_text().strip()
+    revision = (root / ".ci/linted").read_text().strip()
     known = git("diff", "--name-only", "--no-renames", revision, "--")
     new = git("ls-files", "--others", "--exclude-standard")
     return revision, None if known is None else {*known, *new}
@@ -66,7 +66,7 @@ def chosen(root, sources):
     """(the sources to look at, why)."""
     revision, changed = changed_files(root)
     if changed is None:
-        return sources, f"{revision[:12]}, the revision in ci/linted, is not in this clone"
+        return sources, f"{revision[:12]}, the revision in .ci/linted, is not in this clone"
     if checks := sorted(CHECKS & changed):
         return sources, f"{', '.join(checks)} changed since {revision[:12]}"
     return affected(root, sources, changed), f"what changed since {revision[:12]}"

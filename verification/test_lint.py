@@ -34,7 +34,7 @@ class Clone:
         for name in FILES:
             self.write(name, FILES[name])
         self.commit()
-        self.write("ci/linted", self.git("rev-parse", "HEAD"))
+        self.write(".ci/linted", self.git("rev-parse", "HEAD"))
         self.commit()
 
     def git(self, *words):
@@ -119,7 +119,7 @@ def test_the_revision_in_ci_linted_is_of_this_history():
 
     if git("rev-parse", "--is-shallow-repository").stdout != "false\n":
         pytest.skip("a shallow clone")
-    revision = (ROOT / "ci/linted").read_text().strip()
+    revision = (ROOT / ".ci/linted").read_text().strip()
     assert git("merge-base", "--is-ancestor", revision, "HEAD").returncode == 0
 
 
