@@ -144,7 +144,7 @@ std::string rungs_text(const Choice& choice) {
   const auto not_tried = std::count_if(choice.attempts.begin(), choice.attempts.end(),
                                        [](const Attempt& a) { return a.outcome == Outcome::not_tried; });
   if (not_tried > 0) {
-    text += fmt::format("{} dearer ones were not tried; --all tries them, and shows the rejected ones\n",
+    text += fmt::format("{} costlier ones were not tried; --all tries them, and shows the rejected ones\n",
                         not_tried);
   } else if (!choice.demand.all) {
     text += "--all shows each of the rejected ones\n";

@@ -109,7 +109,7 @@ void add_choose_command(CLI::App& app, int& exit_code) {
   command->add_option("-m,--methods", options->methods, "only these methods, with spaces between")
       ->type_name("METHOD");
   command->add_option("-t,--threads", options->threads, "threads of a step")->capture_default_str();
-  command->add_flag("--all", options->all, "try the dearer ones too, and show each that was rejected");
+  command->add_flag("--all", options->all, "try the costlier ones too, and show each that was rejected");
   command->add_option("-o,--output", options->output,
                       "write the chosen settings as a case file that `run` takes");
   command->add_option("--json", options->json, "write every figure to this file");

@@ -90,7 +90,7 @@ TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
 }
 
 /// What the table promises: cheapest first, adaptive rungs a tenth behind; up to the choice all are refused
-/// and told why; the choice is near enough; what is dearer was not tried.
+/// and told why; the choice is near enough; what costs more was not tried.
 TEST(Choose, takes_the_first_that_suffices) {
   const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 0.02});
   ASSERT_TRUE(choice.chosen);
@@ -188,7 +188,7 @@ TEST(Choose, always_has_the_reference_itself) {
   EXPECT_EQ(*chosen.evaluation.error, 0.0);
 }
 
-/// Nothing is as fast as a picosecond; what is too dear is not computed unless all is asked for.
+/// Nothing is as fast as a picosecond; what is too expensive is not computed unless all is asked for.
 TEST(Choose, keeps_within_the_budget) {
   Demand demand{.tolerance = 0.05, .budget = 1e-12, .methods = {"tl-perturbation"}};
   Choice choice = choose_quietly(cantilever(0.1), demand);
@@ -197,7 +197,7 @@ TEST(Choose, keeps_within_the_budget) {
     EXPECT_TRUE(contains(attempt.evaluation.reason, "a step takes"));
     EXPECT_FALSE(attempt.evaluation.error);
   }
-  EXPECT_TRUE(contains(remarks(choice).back(), "too dear"));
+  EXPECT_TRUE(contains(remarks(choice).back(), "too expensive"));
   demand.all = true;
   choice = choose_quietly(cantilever(0.1), demand);
   EXPECT_FALSE(choice.chosen);

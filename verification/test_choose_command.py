@@ -280,7 +280,7 @@ def test_what_is_printed_fits_a_terminal_and_says_what_the_file_says(tmp_path, a
     shown = [r for r in document["rungs"] if arguments or r["outcome"] == "chosen"]
     assert len(rows) == len(shown)
     not_tried = sum(r["outcome"] == "not tried" for r in document["rungs"])
-    assert (f"{not_tried} dearer ones were not tried" in outcome.stdout) == (not arguments)
+    assert (f"{not_tried} costlier ones were not tried" in outcome.stdout) == (not arguments)
 
 
 def test_the_note_on_the_reference_is_its_distance_from_the_stored_truth(tmp_path):

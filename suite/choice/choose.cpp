@@ -141,10 +141,10 @@ double rank(const Attempt& attempt) {
   return method_named(attempt.rung.choice.method).adapts() ? price_of_change * cost : cost;
 }
 
-/// Why a rung is too dear; empty when it is not.
+/// Why a rung is too expensive; empty when it is not.
 std::string cost_reason(const StepCost& cost, const Demand& demand) {
   if (demand.budget && cost.seconds > *demand.budget) {
-    return fmt::format("too dear: {} takes {:.3g} ms, and may take {:.3g} ms",
+    return fmt::format("too expensive: {} takes {:.3g} ms, and may take {:.3g} ms",
                        cost.condensed ? "an answer" : "a step", 1e3 * cost.seconds, 1e3 * *demand.budget);
   }
   if (demand.real_time && cost.per_simulated_second() > 1.0) {
@@ -282,12 +282,13 @@ std::vector<std::string> remarks(const Choice& choice) {
                     "times as many elements in each direction are needed",
                     percent(*evaluation.error), std::sqrt(*evaluation.error / tolerance)));
   }
-  const auto dear =
+  const auto expensive =
       std::count_if(choice.attempts.begin(), choice.attempts.end(), [&](const Attempt& attempt) {
         return attempt.cost && !cost_reason(*attempt.cost, choice.demand).empty() &&
                !attempt.evaluation.error;
       });
-  if (dear > 0) said.push_back(fmt::format("{} were too dear and not computed; --all computes them", dear));
+  if (expensive > 0)
+    said.push_back(fmt::format("{} were too expensive and not computed; --all computes them", expensive));
   return said;
 }
 

@@ -47,7 +47,7 @@ struct Choice {
   Reference reference;
   std::deque<LadderMesh> meshes;           ///< those that rungs stand on
   std::vector<MeshAttempt> others = {};    ///< all other meshes that were looked at
-  std::vector<Attempt> attempts = {};      ///< from the cheapest to the dearest; those without a cost last
+  std::vector<Attempt> attempts = {};      ///< from the cheapest to the costliest; those without a cost last
   std::optional<std::size_t> chosen = {};  ///< into the attempts; none: nothing suffices
 };
 
