@@ -49,10 +49,10 @@ class Grading:
     edges: node set -> how often those at its edge are, a number for each mesh. layers: of elements
     there. whole: how often all elements are, on every mesh. parts: element set -> how often its
     elements are, a number for each mesh. steps: load steps from rest. inside: the mesh, counted
-    from 0, that is solved with a finer inside as well, None if that costs too much; its edges must be
-    split more often than the rest. starts: mesh -> those whose answers it starts from, if not the
-    one before. sequences: the meshes that show how fast the answer converges, all in one sequence
-    if empty; what is left at the end of each is added up.
+    from 0, that is solved with a finer inside as well, None if that costs too much; its edges
+    must be split more often than the rest. starts: mesh -> those whose answers it starts from,
+    if not the one before. sequences: the meshes that show how fast the answer converges, all in one
+    sequence if empty; what is left at the end of each is added up.
     """
 
     edges: dict
