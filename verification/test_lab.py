@@ -108,7 +108,7 @@ def verdicts(folder):
 def without_times(file):
     """A file of `sandglass verify --json` without what differs from run to run."""
     document = json.loads(file.read_text())
-    seconds = ("ns_per", "ns_lower", "ns_upper", "seconds_per", "equilibrium_sec", "motion_sec")
+    seconds = ("ns_", "check_ns", "seconds_per", "equilibrium_sec", "motion_sec")
     keep = {
         "records": [{k: r[k] for k in r if not k.startswith(seconds)} for r in document["records"]]
     }
