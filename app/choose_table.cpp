@@ -160,9 +160,11 @@ std::string choose_table(const Scene& scene, const Choice& choice) {
   if (!choice.chosen) return text;
   const Attempt& chosen = choice.attempts[*choice.chosen];
   if (!chosen.cost->remark.empty()) text += line("note: " + chosen.cost->remark);
+  const bool itself = *chosen.evaluation.error == 0.0;
   return text +
-         line(fmt::format("choose {}, {}: {} at most, {} s for a simulated second", name_of(chosen.rung),
+         line(fmt::format("choose {}, {}: {} at most{}, {} s for a simulated second", name_of(chosen.rung),
                           chosen.rung.mesh->name(), percent(*chosen.evaluation.error),
+                          itself ? ", as it is the reference itself" : "",
                           number_or_dash(chosen.cost->per_simulated_second())));
 }
 

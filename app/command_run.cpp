@@ -103,6 +103,12 @@ MethodChoice choose_method(const RunOptions& options, const Given& given, const 
   choice.kappa_modulus = given.kappa_modulus.value_or(choice.kappa_modulus);
   choice.precision = given.precision.value_or(choice.precision);
   choice.accuracy = given.accuracy.value_or(choice.accuracy);
+  if (given.accuracy && options.against.empty() && !method_named(choice.method).adapts()) {
+    throw InputError(
+        fmt::format("--accuracy: '{}' does not adapt; allowed: an adaptive method, such as tl-adaptive, "
+                    "or --against truth, which refines the mesh",
+                    choice.method));
+  }
   choice.threads = options.threads;
   choice.ranks = options.ranks;
   return choice;
@@ -320,14 +326,14 @@ void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks>
   command->add_option(
       "--accuracy", options->accuracy,
       fmt::format("what an adaptive method aims at, as 0.5% or 0.005: displacement error against its highest "
-                  "level over the largest imposed displacement; {:g}% unless told",
+                  "level over the largest imposed displacement; {:g}% by default",
                   100.0 * default_accuracy));
   command
       ->add_option("--against", options->against,
                    "with 'truth', --accuracy is the largest distance from the exact answer, over the largest "
                    "imposed displacement, at any node of the case's mesh: the mesh is refined where the "
                    "mean-dilatation element errs, until the estimate is within it. Exit code 1 where that "
-                   "element is near enough but METHOD is not")
+                   "element is accurate enough but METHOD is not")
       ->check(CLI::IsMember({"truth"}));
   command->add_option(
       "--sleep", options->sleep,

@@ -13,9 +13,9 @@ namespace {
 
 volatile std::sig_atomic_t interrupt_seen = 0;
 
-void note_interrupt(int /*signal*/) {
+void note_interrupt(int signal) {
   interrupt_seen = 1;
-  std::signal(SIGINT, SIG_DFL);
+  std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ void Progress::show(double share, const std::string& remark) {
 }
 
 void watch_for_interrupt() {
-  std::signal(SIGINT, note_interrupt);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, note_interrupt);
 }
 
 bool interrupted() {

@@ -24,10 +24,11 @@ class Progress {
   std::chrono::steady_clock::time_point last_{};
 };
 
-/// From now on Ctrl-C asks the running computation to end instead of killing the program; a second one kills.
+/// From now on Ctrl-C, and a request to terminate, ask the running computation to end, so that no file is
+/// left half-written; a second one kills the program.
 void watch_for_interrupt();
 
-/// Whether Ctrl-C was pressed.
+/// Whether the computation was asked to end.
 bool interrupted();
 
 }  // namespace sandglass

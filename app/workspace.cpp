@@ -67,7 +67,7 @@ std::string nearest_case(const fs::path& path, std::vector<std::string> known) {
   const std::string name = (path.extension() == ".toml" ? path.stem() : path.filename()).string();
   const std::string file = nearest_name(name, beside);
   known.push_back(file);
-  const std::string near = nearest_name(name, known);
+  std::string near = nearest_name(name, known);
   if (near.empty() || near != file) return near;
   return (path.parent_path() / (file + ".toml")).string();
 }

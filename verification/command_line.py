@@ -81,7 +81,7 @@ def catches_interrupts(process):
     """Whether a process handles Ctrl-C, according to the kernel."""
     for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
         if line.startswith("SigCgt:"):
-            return bool(int(line.split()[1], 16) >> (signal.SIGINT - 1) & 1)
+            return bool(int(line.split()[1], 16) >> (signal.SIGTERM - 1) & 1)  # watched last
     return False
 
 

@@ -351,7 +351,8 @@ def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
 
 
 @pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="needs Linux's /proc")
-def test_interrupt_keeps_what_was_computed(block):
+@pytest.mark.parametrize("request_to_end", [signal.SIGINT, signal.SIGTERM])
+def test_interrupt_keeps_what_was_computed(block, request_to_end):
     block.write_text(dynamic(BLOCK, duration=1e6))
     result = block.parent / "result.h5"
     with subprocess.Popen(
@@ -362,7 +363,7 @@ def test_interrupt_keeps_what_was_computed(block):
     ) as process:
         while process.poll() is None and not catches_interrupts(process):
             time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(request_to_end)
         _, errors = process.communicate(timeout=60)
     assert process.returncode == 3
     assert "interrupted" in errors and str(result) in errors

@@ -33,8 +33,9 @@ def caption(subject, method, limits):
     own = subject.golden_to_truth()
     if own is not None and own.max > LARGEST_GOOD:
         found.append(
-            f"The golden is {style.percent(own.max, 2)} from the truth: it does not judge what is "
-            f"farther from it than {style.exact_percent(LARGEST_GOOD)} but nearer than the truth."
+            f"The golden is {style.percent(own.max, 2)} from the truth: no verdict on runs that "
+            f"are more than {style.exact_percent(LARGEST_GOOD)} from the golden but closer to it "
+            "than the truth is."
         )
     found += [_of_all(subject), _of_limits([one for one in limits if one.case == subject.name])]
     return tuple(filter(None, found))

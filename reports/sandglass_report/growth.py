@@ -76,8 +76,8 @@ def growth_plate(records):
     )
     note = (
         "A bent beam on ever finer meshes, one thread. Poisson's ratio: "
-        ".3 dotted, .49 solid, .4999 dashed. Of Sandglass evaluations of the forces, each "
-        "with a multigrid cycle; of FEniCSx and CalculiX Newton iterations, each with a "
+        ".3 dotted, .49 solid, .4999 dashed. Sandglass: evaluations of the forces, each "
+        "with a multigrid cycle; FEniCSx and CalculiX: Newton iterations, each with a "
         "factorisation."
     )
     names = dict.fromkeys(name for name, _ in lines)

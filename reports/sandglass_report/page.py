@@ -73,7 +73,8 @@ class Inputs:
         """The points of the main chart. Raises InputError if one cannot be true."""
         own = self.verdicts.provenance
         points = make_points(self.verdicts.runs, self.elements, self.measured, own)
-        require_plausible(points, self.measured, own)
+        loaded = frozenset(s.name for s in self.subjects if s.surface_loads)
+        require_plausible(points, self.measured, own, loaded)
         return tuple(points)
 
 

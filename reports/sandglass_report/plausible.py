@@ -42,13 +42,15 @@ class Marks:
     """What the rules look at.
 
     points: of the main chart. steps: of bench, and rungs: of choose, if of the same origin.
-    table: method -> operations of an element and step in the flop table.
+    table: method -> operations of an element and step in the flop table. loaded: cases with
+    pressures or supports, whose time is part of a step and in no count of a method.
     """
 
     points: tuple
     steps: tuple = ()
     table: dict = field(default_factory=dict)
     rungs: tuple = ()
+    loaded: frozenset = frozenset()
 
     def own(self):
         """The points of the methods as they come, on the cases' own meshes, in double."""
@@ -73,6 +75,10 @@ class Marks:
         least = max(self.table[point.method], point.operations or 0)
         eight = self.table.get(EIGHT_POINTS, least) if point.method == ADAPTIVE else least
         return least, max(least, eight)
+
+    def without_surface_loads(self):
+        """by_case() of the cases whose steps are the work of the methods alone."""
+        return {case: of for case, of in self.by_case().items() if case not in self.loaded}
 
     def by_case(self):
         """case -> {method: Point} of own() with a time of a step."""
@@ -133,7 +139,7 @@ def bench_agrees(marks):
 
 def updated_form_costs_more(marks):
     """A step of ul-perturbation takes at least 1.5 times as long as one of tl-perturbation"""
-    for methods in marks.by_case().values():
+    for methods in marks.without_surface_loads().values():
         total, updated = methods.get(paper.METHOD), methods.get(paper.UPDATED)
         if total and updated and not updated.ns >= UPDATED_AT_LEAST * total.ns:
             yield f"{updated.name}: {updated.ns:.4g} ns, {total.method} {total.ns:.4g} ns"
@@ -141,7 +147,7 @@ def updated_form_costs_more(marks):
 
 def times_follow_operations(marks):
     """Times per step over that of tl-perturbation are those of operations within a factor of two"""
-    for methods in marks.by_case().values():
+    for methods in marks.without_surface_loads().values():
         counted = [p for p in methods.values() if p.method in marks.table]
         unit = next((p for p in counted if p.method == paper.METHOD), None)
         for p in counted if unit else ():
@@ -187,15 +193,15 @@ def complaints(marks):
     return [(rule.__doc__, found) for rule in RULES for found in rule(marks)]
 
 
-def require_plausible(points, measured, own):
+def require_plausible(points, measured, own, loaded):
     """Raises InputError naming the first marks that cannot be true, and the rules they break.
 
-    points: of the main chart. own: machine and revision of the verdicts.
+    points: of the main chart. own: machine and revision of the verdicts. loaded: see Marks.
     """
     same = not elsewhere(measured.facts_of(BENCH), own)
     table = {c.method: c.total for c in measured.counts if (c.form, c.part) == COUNTED}
     rungs = tuple(rung for rung in measured.rungs if not elsewhere(rung.facts, own))
-    found = complaints(Marks(tuple(points), measured.steps if same else (), table, rungs))
+    found = complaints(Marks(tuple(points), measured.steps if same else (), table, rungs, loaded))
     if found:
         told = "; ".join(f"{mark} [{rule}]" for rule, mark in found[:3])
         more = f"; and {len(found) - 3} more" if len(found) > 3 else ""

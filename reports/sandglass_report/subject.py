@@ -50,6 +50,7 @@ class Subject:
     sets: dict = field(default_factory=dict)
     golden: Reference | None = None
     truth: Reference | None = None
+    surface_loads: bool = False  # pressures and supports, whose work is that of no method
     motion: MotionGolden | None = None  # of a case in motion, which has no single golden field
     displacements: dict = field(default_factory=dict)  # (method, kappa or None) -> (n, 3), m
     hourglass: dict = field(default_factory=dict)  # the same -> energy density (m,), J/m^3
@@ -145,6 +146,7 @@ def _read_subject(verdicts, name, case_files, references, results):
         displacements=displacements,
         hourglass=hourglass,
         hashes=hashes,
+        surface_loads=any(tables.get(key) for key in ("pressure", "support")),
         motion=motion,
         **mesh,
         **stored_answers,

@@ -155,6 +155,14 @@ def test_operations_saved_on_equal_elements_are_not_held_against_the_others():
     assert broken(sound(tl_perturbation={"operations": 343}))[0] == set()
 
 
+def test_surface_loads_are_the_work_of_no_method():
+    """On a beam under pressure every step takes 48 ns more; the same on a ball is a fault."""
+    slow = {m.replace("-", "_"): timed(ns + 48.0, STEP) for m, (ns, _) in METHODS.items()}
+    points = sound(**slow)
+    assert broken(points)[0] >= {times_follow_operations}
+    assert complaints(Marks(points, (), TABLE, loaded=frozenset({"ball"}))) == []
+
+
 @pytest.mark.parametrize(
     ("ns", "true"), [(24.0, True), (78.0, True), (10.0, False), (180.0, False)]
 )
