@@ -108,12 +108,14 @@ std::vector<Rejected> rejected(const Choice& choice) {
   return kinds;
 }
 
-/// "12 rejected: inaccurate: tl-perturbation, tl-modal-sampling; error 2.39 to 7.47 %".
+/// "12 rejected: inaccurate: tl-perturbation, tl-perturbation kappa 0.013; error 2.39 to 7.47 %".
 std::string summary(const Rejected& group) {
   std::vector<std::string> methods;
   std::vector<double> errors;
   for (const Attempt* attempt : group.attempts) {
-    const std::string& method = attempt->rung.choice.method;
+    const auto& choice = attempt->rung.choice;
+    const std::string method =
+        choice.kappa ? fmt::format("{} kappa {:.2g}", choice.method, *choice.kappa) : choice.method;
     if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
     if (attempt->evaluation.error) errors.push_back(*attempt->evaluation.error);
   }

@@ -38,6 +38,10 @@ inline double parse_share(const char* option, const std::string& text) {
   const auto quantity = parse_quantity(text);
   if (quantity && (quantity->unit.empty() || quantity->unit == "%")) {
     const double share = quantity->unit.empty() ? quantity->value : quantity->value / 100.0;
+    if (share == 1.0 && quantity->unit.empty()) {
+      throw InputError(
+          fmt::format("{} = '{}' would be everything; for one percent write 1%, for all 100%", option, text));
+    }
     if (share <= 1.0) return share;
   }
   throw InputError(

@@ -21,6 +21,9 @@ namespace {
 /// who use one-point elements.
 constexpr double much_hourglass = 0.1;
 
+/// Above this multiple of the automatic kappa its control stiffens more than hourglass modes.
+constexpr double much_kappa = 20.0;
+
 /// The unexplained share of the energy from which on a motion is suspect: central differences at the stable
 /// step, and the damping summed from rows, leave a percent or two.
 constexpr double much_unexplained = 0.1;
@@ -45,6 +48,13 @@ std::string force_text(const Vector& force) {
   const auto component = [&](double f) { return std::abs(f) < unit ? 0.0 : f; };
   return fmt::format("({:.3g}, {:.3g}, {:.3g}) N", component(force[0]), component(force[1]),
                      component(force[2]));
+}
+
+/// The kappa that a model's method takes by itself; none for a method without one.
+std::optional<double> automatic_kappa(const Model& model) {
+  const MethodChoice& choice = model.choice();
+  const CalledLaw law = elastic_law(kernel_law(model.scene().description.materials.front().law));
+  return method_named(choice.method).auto_kappa(law, choice.kappa_modulus);
 }
 
 /// Whether a body loses energy in ways that the history does not show.
@@ -86,17 +96,19 @@ void print_problem(const Scene& scene) {
 
 std::string kappa_text(const Model& model) {
   const auto& choice = model.choice();
-  const MethodEntry& method = method_named(choice.method);
-  if (!method.takes_kappa) return "";
-  const auto automatic = method.auto_kappa(
-      elastic_law(kernel_law(model.scene().description.materials.front().law)), choice.kappa_modulus);
-  const double value = choice.kappa.value_or(automatic.value_or(0.0));
+  if (!method_named(choice.method).takes_kappa) return "";
+  const double value = choice.kappa.value_or(automatic_kappa(model).value_or(0.0));
   return fmt::format("{:.6g}{}{}", value, choice.kappa ? "" : " (auto)",
                      choice.kappa_modulus == KappaModulus::shear ? " of the shear modulus" : "");
 }
 
 void print_method(const Model& model) {
   const MethodChoice& choice = model.choice();
+  const double excess = choice.kappa.value_or(0.0) / automatic_kappa(model).value_or(1.0);
+  if (excess > much_kappa) {
+    fmt::print(stderr, "warning: kappa {:g} is {:.2g} times the automatic one: the body is too stiff\n",
+               *choice.kappa, excess);
+  }
   const std::string kappa = kappa_text(model);
   fmt::print("{}{}{}, {}", choice.method, kappa.empty() ? "" : ", kappa ", kappa, name_of(choice.precision));
   if (choice.ranks->count() == 1 && !method_named(choice.method).is_condensed) {

@@ -109,7 +109,7 @@ def _read(path):
     except (InputError, MemoryError):
         raise
     except BaseException as error:  # a library may fail in any way on a damaged file
-        raise _refusal(path, str(error) or type(error).__name__) from error
+        raise _refusal(path, str(error) or "it is damaged, or cut off") from error
     if said.getvalue():  # meshio warns and continues if it skips something
         raise _refusal(path, said.getvalue())
     if grid.points.ndim != 2 or grid.points.shape[1] != 3:

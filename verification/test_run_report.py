@@ -146,6 +146,14 @@ def test_much_hourglass_energy_is_warned_of_and_the_remedy_has_none(block):
     assert "hourglass energy is" not in sandglass("run", ROOT / "cases" / "column.toml").stderr
 
 
+@pytest.mark.parametrize(("kappa", "warned"), [("0.12", False), ("0.14", True)])
+def test_a_kappa_far_above_the_automatic_one_is_warned_of(block, kappa, warned):
+    """That is 0.00649 at Poisson's ratio .49, and 20 times it 0.1298."""
+    outcome = sandglass("run", block, "--method", "tl-perturbation", "--kappa", kappa)
+    assert outcome.returncode == 0
+    assert (f"kappa {kappa} is 22 times the automatic one" in outcome.stderr) == warned
+
+
 def test_a_method_without_control_is_warned_of(block):
     outcome = sandglass("run", block, "-m", "tl-none")
     assert "warning: method tl-none does not resist hourglass modes" in outcome.stderr
