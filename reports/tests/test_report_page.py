@@ -76,7 +76,7 @@ def test_page_is_the_same_when_made_again(plain, page):
 
 def test_a_failed_run_is_shown_with_its_reason(page):
     assert "failed: &lt;inverted&gt;" in page
-    assert "runs on 1 case, 1 fails" in page
+    assert "runs with default settings on 1 case, 1 fails" in page
 
 
 def test_a_missing_truth_is_said(page):
