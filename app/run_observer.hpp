@@ -18,7 +18,7 @@ namespace sandglass {
 /// Writes frames and history to the result file, keeps the run, shows progress, and ends on Ctrl-C.
 class RunObserver final : public Observer {
  public:
-  /// `writer` and `keeper` may be null. What a run that goes on told before goes into its result first.
+  /// `writer` and `keeper` may be null. The result begins with what a resumed run has written already.
   RunObserver(const Model& model, ResultWriter* writer, CheckpointKeeper* keeper)
       : quasi_static_(model.scene().description.quasi_static),
         duration_(model.scene().description.dynamics.duration),

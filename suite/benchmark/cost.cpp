@@ -29,6 +29,12 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
+/// Whether two tasks do the same work in a step: kappa does not change it.
+bool same_work(const MethodChoice& a, const MethodChoice& b) {
+  return a.method == b.method && a.precision == b.precision && a.accuracy == b.accuracy &&
+         a.threads == b.threads;
+}
+
 /// The model of a task, which has taken a batch of steps without failing. Throws InputError or
 /// ComputationError.
 Timed make_timed(const CostTask& task, std::size_t number, const Proceed& proceed) {
@@ -68,11 +74,6 @@ void time_together(std::span<const CostTask> tasks, std::vector<Timed>& group, s
 
 double checks_per_step(const Timing& timing, const Scene& scene) {
   return spread_of(timing.seconds_of_a_check).median / scene.description.dynamics.check_interval;
-}
-
-bool same_work(const MethodChoice& a, const MethodChoice& b) {
-  return a.method == b.method && a.precision == b.precision && a.accuracy == b.accuracy &&
-         a.threads == b.threads;
 }
 
 std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Proceed& proceed) {

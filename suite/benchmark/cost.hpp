@@ -26,9 +26,6 @@ struct Costing {
 /// The checks of a run, shared out over its steps, s.
 double checks_per_step(const Timing& timing, const Scene& scene);
 
-/// Whether two tasks do the same work in a step: kappa does not change it.
-bool same_work(const MethodChoice& a, const MethodChoice& b);
-
 /// Times the steps of all tasks on this machine with the loop of `bench`: batches of all in turn, in another
 /// order each time, on one processor if all run on one thread. Bodies stand where their own motion ends, or,
 /// where it fails, are stirred by waves. One that cannot be set up gets a status. Throws ComputationError

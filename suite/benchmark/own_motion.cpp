@@ -42,12 +42,12 @@ class StepKeeper final : public Observer {
   }
 
   bool proceed(long step, double share, double /*residual*/) override {
-    told_to_end_ = !proceed_(share);
+    interrupted_ = !proceed_(share);
     too_many_ = step > most_;
-    return !told_to_end_ && !too_many_;
+    return !interrupted_ && !too_many_;
   }
 
-  bool told_to_end() const { return told_to_end_; }
+  bool interrupted() const { return interrupted_; }
   bool too_many() const { return too_many_; }
 
   /// Of states whose steps are far shorter than the mean; empty if there are none.
@@ -63,7 +63,7 @@ class StepKeeper final : public Observer {
  private:
   long most_;
   const Proceed& proceed_;
-  bool told_to_end_ = false, too_many_ = false;
+  bool interrupted_ = false, too_many_ = false;
   std::vector<double> steps_;  // s, at the checks of the run
 };
 
@@ -101,7 +101,7 @@ OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proce
   OwnMotion found;
   try {
     Motion motion = integrate(model, keeper);
-    if (keeper.told_to_end()) throw ComputationError("interrupted; nothing was written");
+    if (keeper.interrupted()) throw ComputationError("interrupted; nothing was written");
     const double mean = motion.time / static_cast<double>(std::max(motion.steps, 1L));
     found.remark = keeper.remark(mean);
     if (keeper.too_many()) {
@@ -112,7 +112,7 @@ OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proce
     found.mean_step = mean;
     found.end = std::move(motion.u);
   } catch (const ComputationError& error) {
-    if (keeper.told_to_end()) throw;
+    if (keeper.interrupted()) throw;
     const std::string text = error.what();
     found.remark = "its motion fails: " + text.substr(0, text.find('\n'));
   }
