@@ -27,7 +27,7 @@ OwnMotion motion_of(const VerifiedRun& run) {
 
 OwnMotion own_motion_of(const VerifiedRun& run) {
   if (method_named(run.choice.method).is_condensed) return {};
-  if (run.scene->description.quasi_static) {
+  if (run.scene->description.quasi_static || method_named(run.choice.method).adapts()) {
     return follow_own_motion(*run.scene, run.choice, [](double) { return !interrupted(); });
   }
   return run.verdict->motion ? motion_of(run) : OwnMotion{.remark = run.verdict->status};

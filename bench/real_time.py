@@ -109,8 +109,9 @@ def work(options):
                     }
                 )
                 off = "" if 1 / (1 + WITHIN) <= ratio <= 1 + WITHIN else "  off"
+                accuracy = f" {rung['accuracy']:g}" if rung["accuracy"] else ""
                 print(
-                    f"{case:24}{rung['method']:26}{rung['precision']:9}"
+                    f"{case:24}{rung['method'] + accuracy:26}{rung['precision']:9}"
                     f"{predicted:10.4f}{seconds:10.4f}{ratio:7.2f}{off}",
                     flush=True,
                 )

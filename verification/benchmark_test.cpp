@@ -83,19 +83,24 @@ TEST(ForceCheck, status_names_difference_and_limit) {
 /// Counts its calls.
 class Fake final : public Candidate {
  public:
-  explicit Fake(double force) : force_(force) {}
+  explicit Fake(double force, std::size_t states = 1) : steps_in_state(states), force_(force) {}
   NodalField forces() override { return {{force_, 0.0, 0.0}}; }
-  void restart() override { ++restarts; }
-  void step() override { ++steps; }
+  std::size_t states() const override { return steps_in_state.size(); }
+  void restart(std::size_t state) override { state_ = state; }
+  void step() override {
+    ++steps;
+    ++steps_in_state[state_];
+  }
   void check() override {}
   void require_healthy() override { ++checks; }
 
-  int restarts = 0;
   int steps = 0;
   int checks = 0;
+  std::vector<int> steps_in_state;
 
  private:
   double force_;
+  std::size_t state_ = 0;
 };
 
 TEST(Measure, wrong_forces_get_no_time) {
@@ -114,6 +119,20 @@ TEST(Measure, wrong_forces_get_no_time) {
   EXPECT_EQ(timings[1].seconds_of_a_step.size() % 3, 0U);
   EXPECT_GT(right.steps, 0);
   EXPECT_EQ(right.checks, 1);
+}
+
+/// A mean over states is one of as many steps in each; only the length of batches is measured in the first.
+TEST(Measure, takes_as_many_steps_in_every_state) {
+  const NodalField reference{{1.0, 0.0, 0.0}};
+  Fake candidate(1.0, 3);
+  const std::vector<Entry> entries{{&candidate, &reference, 1e-12}};
+  const auto timings =
+      measure(entries, {.repetitions = 4, .batch_seconds = 1e-6}, [](double) { return true; });
+  EXPECT_EQ(timings[0].seconds_per_step.size(), 4U);
+  EXPECT_EQ(timings[0].seconds_of_a_check.size(), 4U * 3U);
+  EXPECT_EQ(timings[0].seconds_of_a_step.size() % (4U * 3U), 0U);
+  EXPECT_GT(candidate.steps_in_state[1], 0);
+  EXPECT_EQ(candidate.steps_in_state[1], candidate.steps_in_state[2]);
 }
 
 /// Tests that nothing is allocated would tell nothing were calls not counted.
@@ -147,7 +166,7 @@ TEST(BoxScene, has_about_the_elements_asked_for) {
 TEST(WavyField, strains_elements_without_inverting_them) {
   const Scene scene = box_scene(64);
   const auto model = make_stepped_model(scene, {.method = "tl-perturbation"});
-  model->restart();
+  model->restart(0);
   model->require_healthy();
   double largest = 0.0;
   for (const auto& u : wavy_field(scene)) {
@@ -168,7 +187,7 @@ TYPED_TEST(SteppedModelTest, stays_healthy_for_good) {
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
     const auto model =
         make_stepped_model(scene, {.method = std::string(TypeParam::name), .precision = precision});
-    model->restart();
+    model->restart(0);
     for (int step = 0; step < 10000; ++step) model->step();
     EXPECT_NO_THROW(model->require_healthy());
   }

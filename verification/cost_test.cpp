@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "benchmark/own_motion.hpp"
+#include "benchmark/stepped_model.hpp"
 #include "comparison/answer.hpp"
 #include "io/case_file.hpp"
 #include "mesh/box.hpp"
@@ -100,6 +102,33 @@ INSTANTIATE_TEST_SUITE_P(Methods, OwnMotionTest,
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+/// The elements of a method that adapts wake on the way: steps are timed with the levels on the way, not of
+/// the end alone, and their choice is one of the checks. Of another method there is one state.
+TEST(OwnMotion, keeps_levels_on_the_way) {
+  const Scene scene = scene_of(pressed(0.08));
+  const MethodChoice adaptive{.method = "tl-adaptive", .accuracy = 0.01};
+  const OwnMotion motion = follow_own_motion(scene, adaptive, proceed);
+  ASSERT_EQ(motion.levels.size(), levels_on_the_way);
+  const auto sum = [](const std::vector<double>& levels) {
+    return std::accumulate(levels.begin(), levels.end(), 0.0);
+  };
+  EXPECT_LT(sum(motion.levels.front()), 0.5 * sum(motion.levels.back()));
+  EXPECT_GT(sum(motion.levels.back()), 0.0);
+  EXPECT_TRUE(std::is_sorted(motion.levels.begin(), motion.levels.end(),
+                             [&](const auto& a, const auto& b) { return sum(a) < sum(b); }));
+  EXPECT_EQ(make_stepped_model(scene, adaptive, &motion)->states(), levels_on_the_way);
+  EXPECT_GT(motion.adaption, 0.0);
+  const Timing timing{.status = "ok",
+                      .force_difference = 0.0,
+                      .seconds_per_step = {},
+                      .seconds_of_a_step = {},
+                      .seconds_of_a_check = {2.0}};
+  EXPECT_DOUBLE_EQ(checks_per_step(timing, scene, &motion),
+                   2.0 / scene.description.dynamics.check_interval + motion.adaption);
+  const OwnMotion plain = follow_own_motion(scene, {"tl-perturbation"}, proceed);
+  EXPECT_EQ(make_stepped_model(scene, {"tl-perturbation"}, &plain)->states(), 1U);
+}
 
 /// It ends near the equilibrium: its speed is a fifth of a crossing a time, its damping twice the lowest
 /// frequency's. A curve over the share of the load is followed too: one that returns ends at rest.

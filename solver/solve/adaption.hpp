@@ -63,7 +63,7 @@ class Adaption {
   /// the more it exceeds the accuracy. Whether it does.
   bool tighten(const Body<Real>& body, double error);
 
-  /// The time spent on it so far, s.
+  /// The processor time that the calling thread spent on it so far, s.
   double seconds() const { return seconds_; }
 
  private:

@@ -16,7 +16,14 @@ namespace sandglass {
 
 namespace {
 
-Speed speed_of(const Timing& timing, const BenchRecord& record, const Scene& scene, double memory_gbs) {
+/// The motion of a method; null where there is none, or it fails.
+const OwnMotion* motion_of(const OwnMotions& motions, const std::string& method) {
+  const auto found = motions.find(method);
+  return found != motions.end() && found->second.mean_step ? &found->second : nullptr;
+}
+
+Speed speed_of(const Timing& timing, const BenchRecord& record, const Scene& scene, const OwnMotion* motion,
+               double memory_gbs) {
   const auto elements = static_cast<double>(record.elements);
   Speed speed{};
   speed.ns = spread_of(timing.seconds_per_step);
@@ -24,7 +31,7 @@ Speed speed_of(const Timing& timing, const BenchRecord& record, const Scene& sce
                          &speed.ns.worst}) {
     *figure *= 1e9 / elements;
   }
-  speed.check_ns = 1e9 * checks_per_step(timing, scene) / elements;
+  speed.check_ns = 1e9 * checks_per_step(timing, scene, motion) / elements;
   speed.p50_us = 1e6 * quantile(timing.seconds_of_a_step, 0.5);
   speed.p99_us = 1e6 * quantile(timing.seconds_of_a_step, 0.99);
   speed.max_us = 1e6 * quantile(timing.seconds_of_a_step, 1.0);
@@ -61,14 +68,13 @@ Group make_group(const Scene& scene, const OwnMotions& motions, const std::vecto
     // Of the model before, since this one is not made yet: variants of a method stand together.
     const double model = group.records.empty() ? 0.0 : group.records.back().work.bytes;
     if (taken + 2.0 * model * static_cast<double>(elements) > room) break;
-    const auto motion = motions.find(choice.method);
-    const bool arrived = motion != motions.end() && motion->second.mean_step;
-    group.models.push_back(make_stepped_model(scene, choice, arrived ? &motion->second.end : nullptr));
+    const OwnMotion* motion = motion_of(motions, choice.method);
+    group.models.push_back(make_stepped_model(scene, choice, motion));
     BenchRecord record{scene.description.name, elements, nodes, choice, {}, 0.0, 0.0, {}, {}, {}, {}};
     const SteppedModel& made = *group.models.back();
     record.force_limit = force_limit(choice.precision, scene.description.materials.front().law);
     record.work = made.work();
-    if (arrived) record.mean_step = motion->second.mean_step;
+    if (motion != nullptr) record.mean_step = motion->mean_step;
     taken += record.work.bytes * static_cast<double>(elements);
     group.records.push_back(std::move(record));
   }
@@ -174,8 +180,10 @@ std::vector<BenchRecord> bench(const Scene& scene, const OwnMotions& motions, co
       record.ceiling = machine.ceiling(record.choice.precision, threads, working_set);
       record.status = timings[n].status;
       record.force_difference = timings[n].force_difference;
-      if (record.status == "ok")
-        record.speed = speed_of(timings[n], record, scene, machine.memory_gbs(threads));
+      if (record.status == "ok") {
+        record.speed = speed_of(timings[n], record, scene, motion_of(motions, record.choice.method),
+                                machine.memory_gbs(threads));
+      }
       records.push_back(std::move(record));
     }
   }

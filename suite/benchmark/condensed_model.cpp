@@ -29,7 +29,7 @@ class CondensedModelOf final : public SteppedModel {
     return forces_on_the_way(elements, wavy_field(model_.scene()));
   }
 
-  void restart() override {}
+  void restart(std::size_t /*state*/) override {}
 
   void step() override {
     response_.displacements(d_, u_, model_.choice().threads);

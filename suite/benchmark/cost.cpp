@@ -43,9 +43,7 @@ Timed make_timed(const CostTask& task, std::size_t number, const Proceed& procee
     throw InputError(fmt::format("to factorise for {} nodes takes too long; at most {} here", nodes,
                                  most_condensed_nodes));
   }
-  const bool arrived = task.motion != nullptr && !task.motion->end.empty();
-  Timed timed{
-      number, make_stepped_model(*task.scene, task.choice, arrived ? &task.motion->end : nullptr), {}};
+  Timed timed{number, make_stepped_model(*task.scene, task.choice, task.motion), {}};
   timed.forces = timed.model->forces();
   const Entry entry = timed.entry();
   const auto timings = measure(std::span(&entry, 1), {.repetitions = 0}, proceed);
@@ -65,15 +63,17 @@ void time_together(std::span<const CostTask> tasks, std::vector<Timed>& group, s
     cost.seconds = seconds.median;
     cost.lower_quartile = seconds.lower_quartile;
     cost.upper_quartile = seconds.upper_quartile;
-    cost.checks = checks_per_step(timings[n], *tasks[group[n].task].scene);
+    const CostTask& task = tasks[group[n].task];
+    cost.checks = checks_per_step(timings[n], *task.scene, task.motion);
   }
   group.clear();
 }
 
 }  // namespace
 
-double checks_per_step(const Timing& timing, const Scene& scene) {
-  return spread_of(timing.seconds_of_a_check).median / scene.description.dynamics.check_interval;
+double checks_per_step(const Timing& timing, const Scene& scene, const OwnMotion* motion) {
+  const double check = spread_of(timing.seconds_of_a_check).median;
+  return check / scene.description.dynamics.check_interval + (motion != nullptr ? motion->adaption : 0.0);
 }
 
 std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Proceed& proceed) {

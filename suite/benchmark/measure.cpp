@@ -24,37 +24,42 @@ double time_steps(Candidate& candidate, int steps) {
   return seconds_between(start, Clock::now());
 }
 
-/// Back to the start, and steps that nobody times: sleeping threads wake, and what each needs comes back into
+/// To a state, and steps that nobody times: sleeping threads wake, and what each needs comes back into
 /// its caches.
-void warm_up(Candidate& candidate, int steps) {
-  candidate.restart();
+void warm_up(Candidate& candidate, std::size_t state, int steps) {
+  candidate.restart(state);
   for (int s = 0; s < steps; ++s) candidate.step();
 }
 
 int steps_per_batch(Candidate& candidate, double batch_seconds) {
   constexpr int most = 2000;
-  warm_up(candidate, 1);
+  warm_up(candidate, 0, 1);
   const double step = std::min(time_steps(candidate, 1), time_steps(candidate, 1));
-  return std::clamp(static_cast<int>(batch_seconds / std::max(step, 1e-9)), 1, most);
+  const double all_states = std::max(step, 1e-9) * static_cast<double>(candidate.states());
+  return std::clamp(static_cast<int>(batch_seconds / all_states), 1, most);
 }
 
-/// One batch as a whole, for its mean; another one step by step, for the spread of single steps. Two, because
-/// reading the clock would be felt in the steps of small meshes.
+/// In every state one batch as a whole, for its mean; another one step by step, for the spread of single
+/// steps. Two, because reading the clock would be felt in the steps of small meshes.
 void time_batches(const Entry& entry, int steps, Timing& timing) {
   Candidate& candidate = *entry.candidate;
   std::optional<OneProcessor> bound;
   if (entry.threads == 1) bound.emplace();
-  warm_up(candidate, (steps + 1) / 2);
-  timing.seconds_per_step.push_back(time_steps(candidate, steps) / steps);
-  auto before = Clock::now();
-  for (int s = 0; s < steps; ++s) {
-    candidate.step();
-    const auto now = Clock::now();
-    timing.seconds_of_a_step.push_back(seconds_between(before, now));
-    before = now;
+  double sum = 0.0;
+  for (std::size_t state = 0; state < candidate.states(); ++state) {
+    warm_up(candidate, state, (steps + 1) / 2);
+    sum += time_steps(candidate, steps);
+    auto before = Clock::now();
+    for (int s = 0; s < steps; ++s) {
+      candidate.step();
+      const auto now = Clock::now();
+      timing.seconds_of_a_step.push_back(seconds_between(before, now));
+      before = now;
+    }
+    candidate.check();
+    timing.seconds_of_a_check.push_back(seconds_between(before, Clock::now()));
   }
-  candidate.check();
-  timing.seconds_of_a_check.push_back(seconds_between(before, Clock::now()));
+  timing.seconds_per_step.push_back(sum / (steps * static_cast<double>(candidate.states())));
 }
 
 }  // namespace

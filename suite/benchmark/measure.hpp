@@ -21,8 +21,11 @@ class Candidate {
   /// Forces (N) in the numbering of the mesh, after a few increments that are the same for all candidates.
   virtual NodalField forces() = 0;
 
-  /// Goes back to the state where every batch of steps begins.
-  virtual void restart() = 0;
+  /// States in which it is timed, where steps do not cost the same in all.
+  virtual std::size_t states() const { return 1; }
+
+  /// Goes to one of these states, where a batch of steps begins.
+  virtual void restart(std::size_t state) = 0;
 
   virtual void step() = 0;
 
@@ -45,15 +48,15 @@ struct Entry {
 struct Timing {
   std::string status;                     ///< "ok", or why there are no times
   double force_difference;                ///< relative to the reference
-  std::vector<double> seconds_per_step;   ///< mean of each batch
+  std::vector<double> seconds_per_step;   ///< mean of each batch, and over the states of the candidate
   std::vector<double> seconds_of_a_step;  ///< single steps
   std::vector<double> seconds_of_a_check;
 };
 
 struct MeasureSettings {
   int repetitions = 100;
-  /// A batch is as many steps as fit, at least one: shorter than the time for which a system gives a
-  /// processor to somebody else, so that most batches run undisturbed on a busy machine too.
+  /// A batch is as many steps as fit, at least one in every state: shorter than the time for which a system
+  /// gives a processor to somebody else, so that most batches run undisturbed on a busy machine too.
   double batch_seconds = 5e-4;
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/stable_step.hpp"
@@ -32,13 +33,19 @@ LoadCurve stretched(LoadCurve curve, double duration) {
   return curve;
 }
 
-/// Keeps the step at every check, and ends a motion whose steps shrink too much.
+/// Keeps the step and the levels at every check, and ends a motion whose steps shrink too much.
 class StepKeeper final : public Observer {
  public:
-  StepKeeper(long most, const Proceed& proceed) : most_(most), proceed_(proceed) {}
+  StepKeeper(bool adapts, long most, const Proceed& proceed)
+      : adapts_(adapts), most_(most), proceed_(proceed) {}
 
   void history(const HistoryRow& row) override {
     if (row.step_size > 0.0) steps_.push_back(row.step_size);
+  }
+
+  /// Frames would bring checks of their own, and with them other levels.
+  void resumable(const std::function<Checkpoint()>& checkpoint) override {
+    if (adapts_) levels_.push_back(std::move(checkpoint().arrays.at("element level")));
   }
 
   bool proceed(long step, double share, double /*residual*/) override {
@@ -49,6 +56,15 @@ class StepKeeper final : public Observer {
 
   bool interrupted() const { return interrupted_; }
   bool too_many() const { return too_many_; }
+
+  /// Amid `levels_on_the_way` equal numbers of checks, and so of steps.
+  std::vector<std::vector<double>> levels() const {
+    std::vector<std::vector<double>> some;
+    for (std::size_t k = 0; !levels_.empty() && k < levels_on_the_way; ++k) {
+      some.push_back(levels_[(2 * k + 1) * levels_.size() / (2 * levels_on_the_way)]);
+    }
+    return some;
+  }
 
   /// Of states whose steps are far shorter than the mean; empty if there are none.
   std::string remark(double mean) const {
@@ -61,9 +77,11 @@ class StepKeeper final : public Observer {
   }
 
  private:
+  bool adapts_;
   long most_;
   const Proceed& proceed_;
   bool interrupted_ = false, too_many_ = false;
+  std::vector<std::vector<double>> levels_;
   std::vector<double> steps_;  // s, at the checks of the run
 };
 
@@ -97,7 +115,8 @@ OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proce
   const Model model(moving, choice);
   const double at_rest =
       dynamics.step_fraction * stable_step(model, NodalField(moving.mesh.points.size())).step;
-  StepKeeper keeper(std::lround(most_steps * dynamics.duration / at_rest), proceed);
+  StepKeeper keeper(method_named(choice.method).adapts(),
+                    std::lround(most_steps * dynamics.duration / at_rest), proceed);
   OwnMotion found;
   try {
     Motion motion = integrate(model, keeper);
@@ -111,6 +130,8 @@ OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proce
     }
     found.mean_step = mean;
     found.end = std::move(motion.u);
+    found.levels = keeper.levels();
+    found.adaption = motion.adaption_seconds / static_cast<double>(motion.steps);
   } catch (const ComputationError& error) {
     if (keeper.interrupted()) throw;
     const std::string text = error.what();

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "benchmark/measure.hpp"
 #include "problem/model.hpp"
@@ -24,11 +25,17 @@ inline constexpr double own_motion_crossings = 5.0;
 /// (exchange/decks/problem.py).
 inline constexpr double own_motion_damping = 2.0;
 
+/// States of a motion in which steps are timed where they do not all cost the same.
+inline constexpr std::size_t levels_on_the_way = 8;
+
 /// What a method's steps were in a motion.
 struct OwnMotion {
   std::optional<double> mean_step = {};  ///< s: simulated time over the number of steps; none: it fails
   std::string remark = {};  ///< why it fails, or of states that need far shorter steps; mostly empty
   NodalField end = {};      ///< displacements (m) at its end, empty if it fails
+  /// Of a method that adapts, the levels of its elements amid `levels_on_the_way` equal numbers of steps.
+  std::vector<std::vector<double>> levels = {};
+  double adaption = 0.0;  ///< s, of the choice of levels, shared out over the steps
 };
 
 /// Follows a scene's own motion with a method, in double precision on one thread. A motion that fails, or

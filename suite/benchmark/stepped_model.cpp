@@ -23,21 +23,23 @@ constexpr double relative_height = 0.03;  ///< of the waves, in element sizes
 template <class Real>
 class SteppedModelOf final : public SteppedModel {
  public:
-  SteppedModelOf(const Scene& scene, const MethodChoice& choice, const NodalField* start)
+  SteppedModelOf(const Scene& scene, const MethodChoice& choice, const OwnMotion* motion)
       : model_(scene, choice),
         elements_(*std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force())),
         leapfrog_(model_, elements_, 0.0) {
     const double imposed = largest_imposed(scene);
     if (imposed > 0.0) loading_ = relative_height * element_size(scene) / imposed;
-    if (start != nullptr) loading_ = 1.0;
+    const bool arrived = motion != nullptr && !motion->end.empty();
+    if (arrived) loading_ = 1.0;
     Body<Real>& body = leapfrog_.body();
-    body.state() = state_at(elements_, start != nullptr ? *start : wavy_field(scene));
+    body.state() = state_at(elements_, arrived ? motion->end : wavy_field(scene));
     body.impose(loading_);
     Adaption<Real>(model_, body).apply(body, Demotion::never);
     body.evaluate_forces();
     Rows<Real>& increment = body.state().increment;
     std::fill(increment.begin(), increment.end(), Row<Real>{});  // it stands still
-    start_ = body.state();
+    starts_.assign(1, body.state());
+    if (arrived && !motion->levels.empty()) set_levels(motion->levels);
     constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
     step_size_ = step_fraction * leapfrog_.stable_step(model_).step;
     coefficients_ = {(1.0 - damping) / (1.0 + damping), step_size_ * step_size_ / (1.0 + damping)};
@@ -45,8 +47,10 @@ class SteppedModelOf final : public SteppedModel {
 
   NodalField forces() override { return forces_on_the_way(elements_, wavy_field(model_.scene())); }
 
-  void restart() override {
-    leapfrog_.body().state() = start_;
+  std::size_t states() const override { return starts_.size(); }
+
+  void restart(std::size_t state) override {
+    leapfrog_.body().state() = starts_[state];
     leapfrog_.body().evaluate_forces();
   }
 
@@ -75,10 +79,16 @@ class SteppedModelOf final : public SteppedModel {
   }
 
  private:
+  /// Starts with other levels of the elements instead of the present ones.
+  void set_levels(const std::vector<std::vector<double>>& levels) {
+    starts_.assign(levels.size(), starts_.front());
+    for (std::size_t n = 0; n < levels.size(); ++n) elements_.set_levels(starts_[n], levels[n]);
+  }
+
   Model model_;
   const InternalForce<Real>& elements_;
   Leapfrog<Real> leapfrog_;
-  State<Real> start_;
+  std::vector<State<Real>> starts_;
   double loading_ = 0.0;
   double step_size_ = 0.0, stable_step_ = 0.0;
   LeapfrogClock::Coefficients coefficients_{};
@@ -172,12 +182,12 @@ NodalField wavy_field(const Scene& scene) {
 }
 
 std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
-                                                 const NodalField* start) {
+                                                 const OwnMotion* motion) {
   if (method_named(choice.method).is_condensed) return make_condensed_model(scene, choice);
   if (choice.precision == Precision::double_precision) {
-    return std::make_unique<SteppedModelOf<double>>(scene, choice, start);
+    return std::make_unique<SteppedModelOf<double>>(scene, choice, motion);
   }
-  return std::make_unique<SteppedModelOf<float>>(scene, choice, start);
+  return std::make_unique<SteppedModelOf<float>>(scene, choice, motion);
 }
 
 }  // namespace sandglass

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "benchmark/measure.hpp"
+#include "benchmark/own_motion.hpp"
 #include "benchmark/roofline.hpp"
 #include "mesh/quality.hpp"
 #include "problem/model.hpp"
@@ -34,9 +34,9 @@ class SteppedModel : public Candidate {
 template <class Real>
 NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field);
 
-/// With `start`, steps go on from those displacements (m) under the full load instead of from the waves; a
-/// condensed method has no steps and needs neither.
+/// With a motion that did not fail, steps start from its end, under the full load, instead of from the waves:
+/// once at each of its levels. A condensed method has no steps and needs neither.
 std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
-                                                 const NodalField* start = nullptr);
+                                                 const OwnMotion* motion = nullptr);
 
 }  // namespace sandglass

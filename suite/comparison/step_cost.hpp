@@ -12,7 +12,7 @@ inline constexpr double answers_per_second = 1000.0;
 /// What the explicit steps of a method cost on a scene and machine. The cost of a static equilibrium is
 /// another quantity; see Verdict.
 struct StepCost {
-  double seconds = 0.0;         ///< of a step, or of a condensed answer; median
+  double seconds = 0.0;         ///< of a step, the mean over the motion, or of a condensed answer; median
   double lower_quartile = 0.0;  ///< s
   double upper_quartile = 0.0;  ///< s
   double checks = 0.0;          ///< s, of the checks of a run, shared out over the steps between them
