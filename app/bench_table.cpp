@@ -59,20 +59,58 @@ std::string label(std::string_view method, std::string_view kernel, std::string_
   return fmt::format("{:<{}}  {:<6}  {:<6}  {:>3}", method, width, kernel, number, threads);
 }
 
+/// Characters of a line of a table, so that it fits beside a margin of a terminal.
+constexpr std::size_t most_width = 110;
+
+/// Heads, units and a line for each record: what names them, and columns of figures as far as they fit.
+class Block {
+ public:
+  Block(const std::vector<BenchRecord>& records, std::size_t longest)
+      : heads_(label("", "", "", "", longest)), units_(label("method", "kernel", "number", "thr", longest)) {
+    for (const auto& record : records) {
+      const MethodChoice& choice = record.choice;
+      lines_.push_back(label(choice.method, name_of(choice.kernel), name_of(choice.precision),
+                             fmt::to_string(choice.threads), longest));
+    }
+    bare_ = heads_.size();
+  }
+
+  bool has_room(std::size_t width) const {
+    return heads_.size() == bare_ || heads_.size() + 2 + width <= most_width;
+  }
+
+  void add(const Column& column, const std::vector<std::string>& cells, std::size_t width) {
+    heads_ += fmt::format("  {:>{}}", column.head, width);
+    units_ += fmt::format("  {:>{}}", column.unit, width);
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+      if (!cells[n].empty()) lines_[n] += fmt::format("  {:>{}}", cells[n], width);
+    }
+  }
+
+  /// With why there are no figures of a record.
+  std::string text(const std::vector<BenchRecord>& records) const {
+    std::string text = heads_ + "\n" + units_ + "\n";
+    for (std::size_t n = 0; n < records.size(); ++n) {
+      text += lines_[n] + (records[n].speed ? "" : "  " + records[n].status) + "\n";
+    }
+    return text;
+  }
+
+ private:
+  std::string heads_, units_;
+  std::vector<std::string> lines_;
+  std::size_t bare_;
+};
+
 }  // namespace
 
 std::string bench_table(const std::vector<BenchRecord>& records) {
   const BenchRecord& first = records.front();
   std::size_t longest = 0;
   for (const auto& record : records) longest = std::max(longest, record.choice.method.size());
-  std::string heads = label("", "", "", "", longest);
-  std::string units = label("method", "kernel", "number", "thr", longest);
-  std::vector<std::string> lines;
-  for (const auto& record : records) {
-    const MethodChoice& choice = record.choice;
-    lines.push_back(label(choice.method, name_of(choice.kernel), name_of(choice.precision),
-                          fmt::to_string(choice.threads), longest));
-  }
+  std::string table =
+      fmt::format("{}: {} elements, {} nodes\n", first.case_name, first.elements, first.nodes);
+  Block block(records, longest);
   for (const auto& column : columns()) {
     std::size_t width = std::max(column.head.size(), column.unit.size());
     std::vector<std::string> cells;
@@ -80,18 +118,21 @@ std::string bench_table(const std::vector<BenchRecord>& records) {
       cells.push_back(record.speed ? column.text(record, *record.speed) : "");
       width = std::max(width, cells.back().size());
     }
-    heads += fmt::format("  {:>{}}", column.head, width);
-    units += fmt::format("  {:>{}}", column.unit, width);
-    for (std::size_t n = 0; n < records.size(); ++n) {
-      if (records[n].speed) lines[n] += fmt::format("  {:>{}}", cells[n], width);
+    if (!block.has_room(width)) {
+      table += block.text(records);
+      block = Block(records, longest);
     }
+    block.add(column, cells, width);
   }
-  std::string table = fmt::format("{}: {} elements, {} nodes\n{}\n{}\n", first.case_name, first.elements,
-                                  first.nodes, heads, units);
-  for (std::size_t n = 0; n < records.size(); ++n) {
-    table += lines[n] + (records[n].speed ? "" : "  " + records[n].status) + "\n";
-  }
-  return table;
+  return table + block.text(records);
+}
+
+std::string spread_warning(const std::vector<BenchRecord>& records) {
+  const auto count = std::count_if(records.begin(), records.end(), is_disturbed);
+  if (count == 0) return "";
+  return fmt::format(
+      "warning: q3 is more than {:g} times q1 in {} of {} rows: measure again when the machine is quiet\n",
+      most_spread, count, records.size());
 }
 
 std::string rest_table(const Scene& scene, const std::vector<RestRecord>& records) {

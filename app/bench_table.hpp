@@ -9,8 +9,12 @@
 
 namespace sandglass {
 
-/// The records of one scene as a table with two lines of head, what each column is and its unit.
+/// The records of one scene as a table of at most 110 characters a line: as many blocks as that takes, with
+/// two lines of head, what each column is and its unit.
 std::string bench_table(const std::vector<BenchRecord>& records);
+
+/// A line that warns of times that were disturbed; empty if none were.
+std::string spread_warning(const std::vector<BenchRecord>& records);
 
 /// The times to rest of one scene as a table.
 std::string rest_table(const Scene& scene, const std::vector<RestRecord>& records);

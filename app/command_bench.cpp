@@ -112,6 +112,7 @@ int run_bench(const BenchOptions& options) {
     records.insert(records.end(), found.begin(), found.end());
   }
   fmt::print("{}", machine_lines(plan, machine));
+  fmt::print(stderr, "{}", spread_warning(records));
   if (!options.json.empty()) {
     write_text_file(options.json, to_json(build_provenance(), plan, machine, records));
   }

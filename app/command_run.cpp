@@ -15,6 +15,7 @@
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "comparison/comparison.hpp"
 #include "comparison/truth_estimate.hpp"
 #include "comparison/verdict.hpp"
@@ -23,6 +24,7 @@
 #include "io/result_file.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/error_estimate.hpp"
+#include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/sleep.hpp"
 
@@ -270,9 +272,18 @@ int run_case(const RunOptions& options) {
   const Scene scene = read_scene(find_case(options.name));
   require_quasi_static(options, scene.description);
   require_places(options, scene.description);
-  print_problem(scene);
+  if (!options.sleep) {  // which computes a part
+    require_memory(static_cast<double>(scene.mesh.cells.size()),
+                   scene.description.quasi_static ? MeshUse::equilibrium : MeshUse::motion);
+  }
+  const MethodChoice choice = choose_method(options, given, scene.description);
+  const Model own(scene, choice);
+  if (!scene.description.quasi_static) require_steps(own);
+  print_problem(scene);  // what is wrong with the input has been said by now
   const auto refined = refine_as_requested(options, given, scene);
-  const Model model(refined ? refined->mesh.scene : scene, choose_method(options, given, scene.description));
+  std::optional<Model> on_refined;
+  if (refined) on_refined.emplace(refined->mesh.scene, choice);
+  const Model& model = on_refined ? *on_refined : own;
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
   std::optional<ResultWriter> writer;

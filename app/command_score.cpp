@@ -101,10 +101,11 @@ Verdict score(const Scene& scene, const ScoreOptions& options) {
 }
 
 void print(const Verdict& verdict) {
-  fmt::print("{}: {}, errors in % of the imposed displacement\n{:<28}{:>9}{:>9}{:>9}\n", verdict.case_name,
-             verdict.method, "", "max", "profile", "rms");
+  const std::string of = verdict.method == verdict.case_name ? "" : verdict.method + ", ";
+  fmt::print("{}: {}errors in % of the imposed displacement\n{:<36}{:>9}{:>9}{:>9}\n", verdict.case_name, of,
+             "", "max", "profile", "rms");
   const auto row = [](std::string_view reference, const std::optional<Accuracy>& accuracy) {
-    if (accuracy) fmt::print("{:<28}{}\n", fmt::format("against the {}", reference), percents(accuracy));
+    if (accuracy) fmt::print("{:<36}{}\n", fmt::format("against the {}", reference), percents(accuracy));
   };
   row("golden", verdict.golden);
   row("golden's twin (computed)", verdict.twin);

@@ -15,7 +15,7 @@
 #include "app/mpi_ranks.hpp"
 #include "app/usage.hpp"
 #include "base/error.hpp"
-#include "benchmark/machine_speed.hpp"
+#include "base/memory.hpp"
 
 namespace {
 

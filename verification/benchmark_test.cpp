@@ -248,6 +248,17 @@ TEST(Bench, ratios_compare_like_with_like) {
   EXPECT_EQ(records[4].speed->speedup, 8.0);
 }
 
+TEST(Records, are_disturbed_where_quartiles_are_far_apart) {
+  BenchRecord record{"box", 8, 27, {}, "ok", 0.0, 0.0, {}, {}, {}, {}};
+  EXPECT_FALSE(is_disturbed(record));  // no times
+  record.speed = Speed{};
+  record.speed->ns.lower_quartile = 10.0;
+  record.speed->ns.upper_quartile = 12.9;
+  EXPECT_FALSE(is_disturbed(record));
+  record.speed->ns.upper_quartile = 13.1;
+  EXPECT_TRUE(is_disturbed(record));
+}
+
 /// A made-up error that falls as 1 / (1 + n) is below 1 / k from n = k on; every limit is found to the very
 /// evaluation, with as many looks as the last one has binary digits.
 TEST(Rest, bisection_finds_the_first_below) {

@@ -135,6 +135,32 @@ def test_table_shows_every_method(tiny):
         assert text in tiny[0]
 
 
+def test_table_fits_a_terminal_and_shows_every_figure(tiny):
+    table, _ = tiny
+    assert [line for line in table.splitlines() if len(line) > 110] == []
+    heads = "".join(line for line in table.splitlines() if line.startswith(" "))
+    for head in ("median", "q3", "s per", "p99", "counted", "of peak", "roofline"):
+        assert heads.count(head) == 1
+
+
+def test_quartiles_that_are_far_apart_are_warned_of(block, tmp_path):
+    file = tmp_path / "bench.json"
+    outcome = sandglass(
+        *f"bench {block} --methods tl-full tl-none --threads 1 --repetitions 20".split(),
+        "--json",
+        file,
+    )
+    records = json.loads(file.read_text())["records"]
+    wide = [
+        record
+        for record in records
+        if record["ns_upper_quartile"] > 1.3 * record["ns_lower_quartile"]
+    ]
+    words = f"warning: q3 is more than 1.3 times q1 in {len(wide)} of {len(records)} rows: "
+    assert (words in outcome.stderr) == bool(wide)
+    assert ("warning" in outcome.stderr) == bool(wide)
+
+
 def test_operations_are_those_of_the_flops_command(tiny, tmp_path):
     assert sandglass("flops", "--json", tmp_path / "flops.json").returncode == 0
     records = json.loads((tmp_path / "flops.json").read_text())["records"]

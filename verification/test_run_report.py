@@ -3,6 +3,7 @@
 import os
 import pty
 import re
+import resource
 import shutil
 import subprocess
 
@@ -43,6 +44,58 @@ def test_units_that_are_wrong_by_a_thousand_are_seen(block):
     size, material, _ = lines_of(sandglass("run", block))[:3]
     assert "100 m x 100 m x 200 m, 2e+06 m^3, 2e+09 kg" in size
     assert "Young's modulus 3 GPa" in material and "waves of 7.17 km/s" in material
+
+
+def test_a_mesh_in_mm_is_warned_of_with_a_way_out(block, tmp_path):
+    def outcome_of(factor):
+        mesh = tmp_path / "mesh.h5"
+        assert sandglass("mesh", block, "-o", mesh).returncode == 0
+        with h5py.File(mesh, "a") as file:
+            for points in (file["mesh/points"],):
+                points[:] = factor * points[:]
+        case = tmp_path / "own.toml"
+        start, end = BLOCK.index("[mesh]"), BLOCK.index("[material]")
+        text = BLOCK[:start] + '[mesh]\nfile = "mesh.h5"\n' + BLOCK[end:]
+        case.write_text(text.replace("[0.2, 0.2]", f"[{0.2 * factor}, {0.2 * factor}]"))
+        return sandglass("run", case)
+
+    assert "warning: the mesh" not in outcome_of(1.0).stderr
+    assert outcome_of(1000.0).stderr.startswith(
+        "warning: the mesh is 200 m long, and files are read in m: if it is in mm, multiply its "
+        "points by 0.001 (no key does so), or give the whole case in mm, s, t, N and MPa"
+    )
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (("--method", "tl-perturbatoin"), "method: 'tl-perturbatoin' is not known"),
+        (("--kappa", "-1"), "kappa"),
+        (("--accuracy", "1%"), "--accuracy: 'tl-perturbation' does not adapt"),
+        (("-o", "there/is/no/folder.h5"), "folder"),
+    ],
+)
+def test_an_error_of_the_input_is_all_that_is_said(block, options, words):
+    outcome = sandglass("run", block, *options)
+    assert outcome.returncode == 2 and words in outcome.stderr
+    assert outcome.stdout == ""
+
+
+def test_a_condensed_method_in_motion_is_refused_before_anything_is_said(block):
+    block.write_text(dynamic(BLOCK))
+    outcome = sandglass("run", block, "--method", "linear-condensed")
+    assert outcome.returncode == 2 and outcome.stdout == ""
+
+
+def test_memory_that_a_run_lacks_is_told_before_it_starts(block):
+    # A mesh of 250,000 elements takes 90 MB, the search for equilibrium on it 875 MB.
+    block.write_text(BLOCK.replace("[2, 2, 4]", "[50, 50, 100]"))
+    limit = (800 << 20, 800 << 20)
+    outcome = sandglass(
+        "run", block, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit)
+    )
+    assert outcome.returncode == 3 and outcome.stdout == ""
+    assert "2.5e+05 elements need about 0.9 GB, and 0.8 GB are free" in outcome.stderr
 
 
 def test_the_last_lines_are_those_of_the_result(block):

@@ -66,6 +66,13 @@ def test_without_a_golden_its_twin_is_the_judge(block):
         outcome = sandglass("score", result, "--case", block, "--limit", "max=0.001%")
         assert outcome.returncode == code
         assert "max error against the golden's twin" in outcome.stdout
+        first, heads, figures = outcome.stdout.splitlines()[:3]
+        assert first.startswith(f"block: {result.stem}, errors")
+        assert figures.startswith("against the golden's twin (computed) ")
+        assert len(heads) == len(figures)  # columns end with their heads
+    own = block.parent / "block.h5"
+    own.write_bytes(twin.read_bytes())
+    assert sandglass("score", own, "--case", block).stdout.startswith("block: errors in %")
 
 
 @pytest.mark.parametrize(

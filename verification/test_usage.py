@@ -148,7 +148,13 @@ def test_memory_that_does_not_suffice_is_told_in_gigabytes(block, tmp_path):
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit),
     )
     assert outcome.returncode == 3
-    assert re.search(r"^error: not enough memory: \d+\.\d GB are free", outcome.stderr)
+    # 27e9 elements of 350 bytes each
+    assert re.match(
+        r"error: not enough memory: 2\.7e\+10 elements need about 9450\.0 GB, and [1-4]\.\d GB "
+        r"are free on this machine or allowed by the shell; remedy: at most about [\d.]+e\+0[67] "
+        r"elements\n",
+        outcome.stderr,
+    )
     assert not (tmp_path / "mesh.h5").exists()
 
 

@@ -25,7 +25,8 @@ const MethodEntry& method_named(std::string_view name, std::string_view key) {
   const auto found = std::find_if(methods().begin(), methods().end(),
                                   [&](const MethodEntry& entry) { return entry.name == name; });
   if (found == methods().end()) {
-    throw InputError(fmt::format("{}: '{}' is not known; {}", key, name, suggestion(name, method_names())));
+    throw InputError(fmt::format("{}: '{}' is not known; {}; `sandglass methods` lists all", key, name,
+                                 suggestion(name, method_names())));
   }
   return *found;
 }

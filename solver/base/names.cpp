@@ -59,7 +59,16 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   const std::string near = nearest_name(name, known);
   const std::string hint = near.empty() ? "" : fmt::format("did you mean '{}'? ", near);
-  return fmt::format("{}known: {}", hint, fmt::join(known, ", "));
+  constexpr std::size_t many = 16, few = 3;  // one line of a terminal
+  if (known.size() <= many) return fmt::format("{}known: {}", hint, fmt::join(known, ", "));
+  std::vector<std::string> by_distance = known;
+  const auto distance = [&](const std::string& other) {
+    return edit_distance(without_dashes(name), without_dashes(other));
+  };
+  std::stable_sort(by_distance.begin(), by_distance.end(),
+                   [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  by_distance.resize(few);
+  return fmt::format("{}nearest of {}: {}", hint, known.size(), fmt::join(by_distance, ", "));
 }
 
 std::string decimal_comma_hint(std::string_view text) {

@@ -13,7 +13,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// "; did you mean 'x'?", or "" when no known name is near enough.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known);
 
-/// The sentence "did you mean 'x'? known: a, b, c" that ends an error about an unknown name.
+/// The sentence "did you mean 'x'? known: a, b, c" that ends an error about an unknown name; of many known
+/// names the three nearest: "nearest of 20: a, b, c".
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
 /// "; did you mean 0.49, with a decimal point?" for a number with a decimal comma, with or without a unit; ""

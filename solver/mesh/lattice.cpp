@@ -1,8 +1,11 @@
 #include "mesh/lattice.hpp"
 
+#include "base/memory.hpp"
+
 namespace sandglass {
 
 Mesh lattice(const std::array<int, 3>& n, const std::function<Vector(const Vector&)>& place) {
+  require_memory(1.0 * n[0] * n[1] * n[2], MeshUse::storing);
   Mesh mesh;
   for (int k = 0; k <= n[2]; ++k) {
     for (int j = 0; j <= n[1]; ++j) {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "assembly/method_entry.hpp"
+#include "base/memory.hpp"
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/cost.hpp"
 #include "benchmark/force_check.hpp"
@@ -108,6 +109,10 @@ bool same_method(const MethodChoice& a, const MethodChoice& b) {
 
 bool is_wrong(const BenchRecord& record) {
   return record.status.starts_with("wrong");
+}
+
+bool is_disturbed(const BenchRecord& record) {
+  return record.speed && record.speed->ns.upper_quartile > most_spread * record.speed->ns.lower_quartile;
 }
 
 std::string_view name_of(KernelWidth kernel) {

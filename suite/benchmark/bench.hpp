@@ -63,6 +63,12 @@ struct BenchRecord {
 /// Whether what was computed is wrong.
 bool is_wrong(const BenchRecord& record);
 
+/// Upper over lower quartile of the times of a variant above which something else took its processor.
+inline constexpr double most_spread = 1.3;
+
+/// Whether its times were disturbed, so that it should be measured again on a quiet machine.
+bool is_disturbed(const BenchRecord& record);
+
 /// Every variant of the plan, and the scalar kernel in double precision where the program has it.
 std::vector<MethodChoice> variants_of(const BenchPlan& plan);
 

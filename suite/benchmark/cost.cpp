@@ -6,6 +6,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/machine_speed.hpp"
 #include "benchmark/statistics.hpp"

@@ -1,7 +1,5 @@
 #include "benchmark/machine_speed.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -77,15 +75,6 @@ std::size_t last_level_cache() {
     if (std::size_t found = 0; size >> found) kibibytes = std::max(kibibytes, found);
   }
   return kibibytes > 0 ? kibibytes << 10 : std::size_t{32} << 20;
-}
-
-std::size_t available_memory() {
-  std::ifstream info("/proc/meminfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("MemAvailable:")) return std::stoull(line.substr(13)) * 1024;
-  }
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) /
-         2;
 }
 
 int available_processors() {

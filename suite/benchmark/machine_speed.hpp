@@ -14,9 +14,6 @@ namespace sandglass {
 /// Bytes of the last cache between a processor and memory, as the system tells it; 32 MiB where it does not.
 std::size_t last_level_cache();
 
-/// Bytes of memory that new data may take without harm to others.
-std::size_t available_memory();
-
 /// Processors on which this process may run.
 int available_processors();
 

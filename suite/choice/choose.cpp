@@ -268,8 +268,9 @@ std::vector<std::string> remarks(const Choice& choice) {
   if (choice.chosen) return said;
   const Attempt* best = nearest(choice);
   if (best != nullptr) {
-    said.push_back(fmt::format("the nearest that was computed is {}, {}: {}", name_of(best->rung),
-                               best->rung.mesh->name(), percent(*best->evaluation.error)));
+    said.push_back(fmt::format("the nearest that was computed is {}, {}: {}; it was rejected: {}",
+                               name_of(best->rung), best->rung.mesh->name(), percent(*best->evaluation.error),
+                               best->evaluation.reason));
   }
   for (const auto& attempt : choice.attempts) {
     const auto& [rung, cost, evaluation, outcome] = attempt;
