@@ -2,6 +2,7 @@
 
 import base64
 import functools
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -90,6 +91,15 @@ class PaperSection:
     best: object  # Run of the kappa curve with the smallest error on the line, or None
 
 
+def with_hard_spaces(html):
+    """HTML in whose text no line ends between a number and its %; scripts and tags stay as they are."""
+    parts = re.split(r"(<(script|style)\b.*?</\2>|<[^>]*>)", html, flags=re.DOTALL)
+    # Of each three: text, what is between texts, the name of a script or style.
+    parts[::3] = [re.sub(r"(?<=\d) %", "\u00a0%", text) for text in parts[::3]]
+    del parts[2::3]
+    return "".join(parts)
+
+
 def write_report(inputs, page):
     """Writes the page, and its static figures to the folder figures/ next to it.
 
@@ -100,7 +110,7 @@ def write_report(inputs, page):
     sections = tuple(_paper_section(e, inputs.subjects, palette) for e in paper.EXPERIMENTS)
     bent = bending.bending_plates(inputs.verdicts.tips, palette)
     others = published.benchmarks(inputs.verdicts.tips, palette)
-    html = (
+    html = with_hard_spaces(
         _environment()
         .get_template("page.html.j2")
         .render(

@@ -163,3 +163,14 @@ def test_published_values_stand_in_tables(data):
 
 def test_without_published_values_there_is_no_section(page):
     assert 'id="beams"' not in page
+
+
+def test_a_number_keeps_its_percent_sign_on_its_line(page):
+    from sandglass_report.page import with_hard_spaces
+
+    html = '<p title="3 %">10 % of <b>5</b> % <script>a = 7 % b;</script>2 %</p>'
+    hard = html.replace("10 %", "10\u00a0%").replace("2 %", "2\u00a0%")
+    assert with_hard_spaces(html) == hard
+    text = re.sub(r"<(script|style)\b.*?</\1>|<[^>]*>", "", page, flags=re.DOTALL)
+    assert re.search(r"\d\u00a0%", text) and not re.search(r"\d %", text)
+    assert "without the checks of a run" in page

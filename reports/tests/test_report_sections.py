@@ -16,7 +16,7 @@ def section(page, name):
     """The part of the page from the heading with this id to the next one."""
     start = page.index(f'<h2 id="{name}">')
     end = page.find("<h2 id=", start + 1)
-    return page[start : end if end > 0 else None]
+    return (page[start : end if end > 0 else None]).replace("\u00a0", " ")
 
 
 def script(page, name):

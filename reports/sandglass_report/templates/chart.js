@@ -79,7 +79,7 @@ function startChart(Plotly) {
       `to ${named("golden", p.case)}: ${errors("golden")}`,
       `to ${named("truth", p.case)}: ${errors("truth")}`,
       `time: ${costs.join(", ") || "unknown"}`,
-      p.ns && `${digits(p.ns)} ns per element and step${p.checks ? `, checks ${digits((p.checks / p.step) * p.ns)} ns` : ""}${p.mean_step ? `, mean step ${seconds(p.mean_step)}` : ""}${p.step_remark ? `; ${escaped(p.step_remark)}` : ""}`,
+      p.ns && `${digits(p.ns)} ns per element and step${p.checks ? `, checks ${digits((p.checks / p.step) * p.ns)} ns` : p.simulated && p.mean_step ? ", without the checks of a run" : ""}${p.mean_step ? `, mean step ${seconds(p.mean_step)}` : ""}${p.step_remark ? `; ${escaped(p.step_remark)}` : ""}`,
       p.evaluations && `${p.evaluations} evaluations to equilibrium`,
       `finding: ${escaped(p.finding)}`,
       p.measured_by && `measured by ${escaped(p.measured_by)}`,
