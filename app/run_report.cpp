@@ -27,9 +27,9 @@ constexpr double much_kappa = 20.0;
 /// Extent of a mesh from a file above which it is probably not in m, m.
 constexpr double most_length = 10.0;
 
-/// The unexplained share of the energy from which on a motion is suspect: central differences at the stable
-/// step, and the damping summed from rows, leave a percent or two.
-constexpr double much_unexplained = 0.1;
+/// The unexplained share of the energy from which on a motion is suspect. Free motions gain at most a percent
+/// (energy_test), and the damping is summed from the rows of the history.
+constexpr double much_unexplained = 0.02, much_unexplained_if_damped = 0.1;
 
 /// The references of a scene; one that belongs to another case is told, not fatal: a case may be edited and
 /// run.
@@ -194,6 +194,9 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
   if (!quasi_static) {
     fmt::print(", kinetic {:.6g}, work of what is imposed {:.6g}", row.kinetic, row.external_work);
     if (row.adaption != 0.0) fmt::print(", brought by changes of levels {:.3g}", row.adaption);
+    const double damping = scene.description.dynamics.damping;
+    fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",
+               100.0 * history.unexplained_share(damping), damping > 0.0 ? ", after damping" : "");
   }
   fmt::print("\n");
   for (const auto& [set, force] : row.reactions) fmt::print("reaction at {} {}\n", set, force_text(force));
@@ -218,8 +221,9 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
         method, golden_method);
   }
   if (description.quasi_static) return;
-  const double unexplained = history.unexplained_share(description.dynamics.damping);
-  if (unexplained > much_unexplained || (unexplained < -much_unexplained && !dissipates(model))) {
+  const double damping = description.dynamics.damping, unexplained = history.unexplained_share(damping);
+  const double much = damping > 0.0 ? much_unexplained_if_damped : much_unexplained;
+  if (unexplained > much || (unexplained < -much && !dissipates(model))) {
     fmt::print(
         stderr,
         "warning: energy drifts: {:.2g} % of the largest is {}; take a smaller step (step_fraction) or "

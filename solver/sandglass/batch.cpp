@@ -11,6 +11,7 @@
 #include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/stable_step.hpp"
+#include "solve/steady_step.hpp"
 
 namespace sandglass {
 
@@ -70,6 +71,7 @@ class Batch<Real>::Parts {
       : problem_(std::move(scene), settings, precision_of<Real>),
         elements_(make_batch_force<Number>(problem_.model())),
         clock_{.damping = problem_.damping()},
+        longest_step_(problem_.damping()),
         frequency_squares_(bodies) {
     if (bodies == 0) throw InputError("bodies = 0 must be at least 1");
     const Number zero(Real(0));
@@ -98,7 +100,7 @@ class Batch<Real>::Parts {
   const DrivenProblem& problem() const { return problem_; }
   std::size_t size() const { return frequency_squares_.size(); }
   double time() const { return clock_.time; }
-  double step_size() const { return step_size_; }
+  double step_size() const { return longest_step_.step(); }
 
   void scale_stiffness(std::size_t body, double factor) {
     require_in_range("factor", factor, Range::positive());
@@ -125,7 +127,7 @@ class Batch<Real>::Parts {
     while (left > 0.0) {
       std::vector<Step> steps;
       do {
-        const double count = steps_in(left, step_size_);
+        const double count = steps_in(left, longest_step_.step());
         const double step = left / count;
         left = count > 1.0 ? left - step : 0.0;
         const auto coefficients = clock_.advance(step);
@@ -249,13 +251,13 @@ class Batch<Real>::Parts {
     for (std::size_t b = 0; b < size(); ++b) {
       square = std::max(square, frequency_squares_[b] * lane(packs_[b / lanes].stiffness, b));
     }
-    step_size_ = problem_.step_fraction() * stable_step_of(problem_.model(), square);
+    longest_step_.next(problem_.step_fraction() * stable_step_of(problem_.model(), square), time());
   }
 
   const DrivenProblem problem_;
   std::unique_ptr<BatchForce<Number>> elements_;
   LeapfrogClock clock_;
-  double step_size_ = 0.0;
+  SteadyStep longest_step_;
   std::vector<double>
       frequency_squares_;  // 1/s^2, of each body at the last check and the stiffness of the case
   std::vector<Side> packs_;

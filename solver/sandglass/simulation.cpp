@@ -10,6 +10,7 @@
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
+#include "solve/steady_step.hpp"
 
 namespace sandglass {
 
@@ -19,6 +20,7 @@ class Simulation<Real>::Parts {
   Parts(Scene the_scene, const SimulationSettings& settings)
       : problem_(std::make_shared<const DrivenProblem>(std::move(the_scene), settings, precision_of<Real>)),
         leapfrog_(model(), elements(), problem_->damping()),
+        longest_step_(problem_->damping()),
         adaption_(model(), body()),
         from_(scene().constraints.size(), 0.0),
         to_(from_),
@@ -34,7 +36,7 @@ class Simulation<Real>::Parts {
   const Scene& scene() const { return problem_->scene(); }
   const Body<Real>& body() const { return leapfrog_.body(); }
   double time() const { return leapfrog_.time(); }
-  double step_size() const { return step_size_; }
+  double step_size() const { return longest_step_.step(); }
 
   template <class Displacement>
   void move(const std::string& set, const Displacement& displacement) {
@@ -50,7 +52,7 @@ class Simulation<Real>::Parts {
     require_in_range("seconds", seconds, Range::positive());
     double left = seconds;
     while (left > 0.0) {
-      const double steps = steps_in(left, step_size_);
+      const double steps = steps_in(left, longest_step_.step());
       const double step = left / steps;
       left = steps > 1.0 ? left - step : 0.0;
       take(step, 1.0 - left / seconds);
@@ -159,7 +161,7 @@ class Simulation<Real>::Parts {
     } catch (const ComputationError& error) {
       const double failed = time();
       keep(StateCopy(std::as_const(whole_)));
-      leapfrog_.body().set_step(step_size_);
+      leapfrog_.body().set_step(longest_step_.step());
       to_ = imposed_;
       factor_to_ = factor_;
       arrive();
@@ -176,20 +178,20 @@ class Simulation<Real>::Parts {
   void keep(Archive archive) {
     leapfrog_.keep(archive);
     adaption_schedule_.keep(archive);
-    archive("longest step", step_size_);
+    longest_step_.keep(archive);
     archive("imposed", imposed_);
     archive("factor", factor_);
   }
 
   void choose_step() {
-    step_size_ = problem_->step_fraction() * leapfrog_.stable_step(model()).step;
-    leapfrog_.body().set_step(step_size_);
+    const double stable = leapfrog_.stable_step(model()).step;
+    leapfrog_.body().set_step(longest_step_.next(problem_->step_fraction() * stable, time()));
   }
 
   std::shared_ptr<const DrivenProblem> problem_;
   Leapfrog<Real> leapfrog_;
+  SteadyStep longest_step_;
   Adaption<Real> adaption_;
-  double step_size_ = 0.0;
   AdaptionSchedule adaption_schedule_;
   std::vector<double> from_, to_,
       imposed_;  // m, in the order of the scene's constraints; the last at present

@@ -11,6 +11,7 @@
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/stable_step.hpp"
+#include "solve/steady_step.hpp"
 
 namespace sandglass {
 
@@ -50,15 +51,6 @@ NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, c
   return between;
 }
 
-/// The energy (J) of nodes with these masses (kg) and velocities (m/s).
-double kinetic_energy(const std::vector<double>& masses, const NodalField& v) {
-  double sum = 0.0;
-  for (std::size_t n = 0; n < v.size(); ++n) {
-    sum += masses[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
-  }
-  return 0.5 * sum;
-}
-
 /// The quantities of the scheme, one function each; the order of calls is in `integrate_body`.
 template <class Real>
 class CentralDifference {
@@ -67,6 +59,7 @@ class CentralDifference {
       : model_(model),
         settings_(model.scene().description.dynamics),
         leapfrog_(model, elements, settings_.damping),
+        steady_step_(settings_.damping),
         body_(leapfrog_.body()),
         reactions_(model.scene().constraints.size(), 0.0),
         works_(reactions_.size(), 0.0),
@@ -88,10 +81,22 @@ class CentralDifference {
 
   double adaption_energy() const { return adaption_energy_; }
 
+  /// The kinetic energy (J) at velocities v (m/s), of the product of velocities half a step before and after:
+  /// with the strain energy, central differences keep this one, in small motions exactly.
+  double kinetic_energy(const NodalField& v) const {
+    const std::vector<double>& masses = model_.masses();
+    double sum = 0.0;
+    for (std::size_t n = 0; n < v.size(); ++n) {
+      sum += masses[n] * (v[n][0] * v[n][0] + v[n][1] * v[n][1] + v[n][2] * v[n][2]);
+    }
+    return 0.5 * sum - leapfrog_.energy_of_step();
+  }
+
   /// The data that the next step depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
     leapfrog_.keep(archive);
+    steady_step_.keep(archive);
     reactions_ = body_.of_all_constraints(reactions_);
     works_ = body_.of_all_constraints(works_);
     archive("reaction", reactions_);
@@ -110,7 +115,9 @@ class CentralDifference {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
-      next_step_ = settings_.step_fraction * stable.step;
+      const double before = steady_step_.step(), left = settings_.duration - time();
+      const double step = steady_step_.next(settings_.step_fraction * stable.step, time());
+      if (step != before) next_step_ = left / std::ceil(left / step);  // equal steps to the end
     }
     body_.set_step(next_step_);
   }
@@ -120,8 +127,9 @@ class CentralDifference {
 
   /// Takes the next step. The last one is shortened so that the run ends at its duration.
   void advance() {
-    next_step_ = std::min(next_step_, settings_.duration - time());
-    leapfrog_.advance(next_step_, [this](Body<Real>& body) { body.impose(loading(time()), time()); });
+    const double left = settings_.duration - time();
+    leapfrog_.advance(left < next_step_ * (1.0 + 1e-6) ? left : next_step_,
+                      [this](Body<Real>& body) { body.impose(loading(time()), time()); });
   }
 
   /// Takes the next step and tells the displacements that an observer asks for within it.
@@ -226,6 +234,7 @@ class CentralDifference {
   const Model& model_;
   const DynamicsSettings& settings_;
   Leapfrog<Real> leapfrog_;
+  SteadyStep steady_step_;
   Body<Real>& body_;
   std::vector<double> reactions_;
   std::vector<double> works_;                     // J, of constraints
@@ -252,7 +261,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   const auto report = [&] {
     NodalField v = scheme.velocities();
     energies = body.energies();
-    observer.history({scheme.time(), kinetic_energy(model.masses(), v), energies.strain, energies.hourglass,
+    observer.history({scheme.time(), scheme.kinetic_energy(v), energies.strain, energies.hourglass,
                       scheme.external_work(), body.residual(), scheme.step_size(), scheme.adaption_energy(),
                       body.set_reactions()});
     if (frame_due()) {

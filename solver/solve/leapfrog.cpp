@@ -76,6 +76,19 @@ NodalField Leapfrog<Real>::free_velocities() const {
   return body_.field(rows);
 }
 
+template <class Real>
+double Leapfrog<Real>::energy_of_step() const {
+  const Rows<Real>& force = body_.free_forces();
+  double sum = 0.0;
+  for (std::size_t r = 0; r < force.size(); ++r) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto f = static_cast<double>(force[r][i]);
+      sum += static_cast<double>(inverse_masses_[r][i]) * f * f;
+    }
+  }
+  return 0.125 * clock_.step_size * clock_.step_size * sum;
+}
+
 template class Leapfrog<double>;
 template class Leapfrog<float>;
 

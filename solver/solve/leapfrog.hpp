@@ -83,6 +83,10 @@ class Leapfrog {
   /// damping included; zero on constrained components.
   NodalField free_velocities() const;
 
+  /// dt^2/8 f M^-1 f (J): by how much the kinetic energy of `free_velocities` exceeds half the product of
+  /// masses and velocities half a step before and after.
+  double energy_of_step() const;
+
   /// The data that the next step depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
