@@ -86,7 +86,9 @@ TEST_P(OwnMotionTest, has_the_steps_of_a_simulation) {
               1e-12);
   const double simulated = mean_step_of_simulation(GetParam(), pressed(0.08), own_motion_crossings * crossing,
                                                    own_motion_damping / crossing);
-  EXPECT_NEAR(*motion.mean_step, simulated, 0.005 * simulated);
+  // Steps of a run are equal to its end, so that after every change they are up to one part of their number
+  // shorter.
+  EXPECT_NEAR(*motion.mean_step, simulated, 0.015 * simulated);
   const Model model(scene, choice);
   const double at_rest = 0.9 * stable_step(model, NodalField(scene.mesh.points.size())).step;
   const double at_end = 0.9 * stable_step(model, motion.end).step;

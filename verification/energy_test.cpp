@@ -40,7 +40,8 @@ class FreeMotion {
     description.quasi_static = false;
     description.dynamics = settings;
     const double shear_speed = std::sqrt(law_.shear_modulus() / density);
-    description.dynamics.duration = 2.0 * periods * *std::max_element(size_.begin(), size_.end()) / shear_speed;
+    description.dynamics.duration =
+        2.0 * periods * *std::max_element(size_.begin(), size_.end()) / shear_speed;
     description.velocities = {velocity_};
     const Scene moving = make_scene(description, mesh_);
     const std::vector<double> masses = Model(moving, {"tl-perturbation"}).masses();
@@ -89,7 +90,8 @@ std::vector<std::string_view> conservative_methods(const Scene& scene) {
 /// longer: SANDGLASS_SCENES=100 SANDGLASS_PERIODS=1000 energy_test prints a row for each.
 TEST(Energy, of_free_motions_does_not_grow) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 24);
-  const long seed = from_environment("SANDGLASS_SEED", 1), periods = from_environment("SANDGLASS_PERIODS", 60);
+  const long seed = from_environment("SANDGLASS_SEED", 1),
+             periods = from_environment("SANDGLASS_PERIODS", 60);
   DynamicsSettings settings;
   settings.step_fraction = 0.01 * static_cast<double>(from_environment("SANDGLASS_PERCENT", 90));
   settings.body_frequency = static_cast<int>(from_environment("SANDGLASS_BODY_FREQUENCY", 0));
@@ -99,9 +101,9 @@ TEST(Energy, of_free_motions_does_not_grow) {
     const auto names = conservative_methods(scene);
     const auto method = std::string(names[static_cast<std::size_t>(number) % names.size()]);
     const bool single = number % 3 == 2;
-    const Model model(scene,
-                      {.method = method,
-                       .precision = single ? Precision::single_precision : Precision::double_precision});
+    const Model model(
+        scene,
+        {.method = method, .precision = single ? Precision::single_precision : Precision::double_precision});
     Recorder recorder;
     const Motion end = integrate(model, recorder);
     const double start = total_energy(recorder.rows.front());

@@ -208,9 +208,11 @@ TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
     integrate(Model(scene, this->method()), recorder);
     return energy_imbalance(recorder.rows);
   };
-  const double coarse = imbalance(0.4);
-  EXPECT_LT(coarse, 0.02);
-  EXPECT_NEAR(coarse / imbalance(0.2), 4.0, 1.2);
+  // (omega dt)^2 is .01 to .1; terms of second order cancel in part, so that the ratio may be below 4.
+  const double coarse = imbalance(0.4), fine = imbalance(0.2);
+  EXPECT_LT(coarse, 4e-3);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_GT(coarse / fine, 1.9);
 }
 
 /// A free body under a force that follows the loading curve has the momentum F T / 2 at the end of the ramp,

@@ -299,8 +299,9 @@ TEST(Subcycling, has_the_same_bits_for_any_number_of_threads) {
   }
 }
 
-/// A bar without driven nodes in a program of one's own, as `integrate` moves it, bit by bit, with a copy on
-/// the way, in steps that are too long for its small elements.
+/// A bar without driven nodes in a program of one's own, as `integrate` moves it, with a copy on the way,
+/// in steps that are too long for its small elements. Small steps are a part of the longest step there, and
+/// of one that is up to a percent shorter here.
 TEST(Subcycling, is_what_simulations_do_too) {
   const std::string text =
       "[case]\nname = \"bar\"\nrequirement = \"A bar vibrates.\"\nanswer = \"dynamic\"\n"
@@ -316,13 +317,15 @@ TEST(Subcycling, is_what_simulations_do_too) {
   const Motion motion = integrate(Model(scene, {"tl-perturbation"}), recorder);
   Simulation<double> simulation(arrays, text + "16\n");
   EXPECT_GT(simulation.step_size(), 3.0 * Simulation<double>(arrays, text + "1\n").step_size());
-  for (long n = 0; n < motion.steps / 2; ++n) simulation.advance(simulation.step_size());
+  const double step = recorder.rows.back().step_size;  // the end of the run is a whole number of them
+  EXPECT_NEAR(step / simulation.step_size(), 1.0, 0.01);
+  for (long n = 0; n < motion.steps / 2; ++n) simulation.advance(step);
   Simulation<double> copy = simulation;
   for (Simulation<double>* each : {&simulation, &copy}) {
-    for (long n = motion.steps / 2; n < motion.steps; ++n) each->advance(each->step_size());
+    for (long n = motion.steps / 2; n < motion.steps; ++n) each->advance(step);
     for (std::size_t n = 0; n < motion.u.size(); ++n) {
       const double* u = each->displacements()[index(each->row_of_node()[n])];
-      EXPECT_EQ((Vector{u[0], u[1], u[2]}), motion.u[n]) << n;
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(u[i], motion.u[n][i], 1e-8) << n;
     }
   }
 }

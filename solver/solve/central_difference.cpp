@@ -117,7 +117,7 @@ class CentralDifference {
     } else {
       const double before = steady_step_.step(), left = settings_.duration - time();
       const double step = steady_step_.next(settings_.step_fraction * stable.step, time());
-      if (step != before) next_step_ = left / std::ceil(left / step);  // equal steps to the end
+      if (step != before) next_step_ = left / std::max(1.0, std::ceil(left / step));  // equal to the end
     }
     body_.set_step(next_step_);
   }

@@ -79,14 +79,11 @@ NodalField Leapfrog<Real>::free_velocities() const {
 template <class Real>
 double Leapfrog<Real>::energy_of_step() const {
   const Rows<Real>& force = body_.free_forces();
-  double sum = 0.0;
+  Rows<Real> acceleration(force.size());
   for (std::size_t r = 0; r < force.size(); ++r) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto f = static_cast<double>(force[r][i]);
-      sum += static_cast<double>(inverse_masses_[r][i]) * f * f;
-    }
+    for (std::size_t i = 0; i < 3; ++i) acceleration[r][i] = inverse_masses_[r][i] * force[r][i];
   }
-  return 0.125 * clock_.step_size * clock_.step_size * sum;
+  return 0.125 * clock_.step_size * clock_.step_size * dot(force, acceleration, body_.layout().row_blocks);
 }
 
 template class Leapfrog<double>;
