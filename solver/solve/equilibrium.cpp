@@ -242,21 +242,28 @@ double Equilibrium<Real>::extend(double load, double most) {
   };
   acceleration_.clear();
   const double first = evaluate();
+  double least = first;
+  MixedVector best = x;
   constexpr int most_cycles = 30;
-  for (int k = 0; k < most_cycles; ++k) {
+  for (int k = 0; k < most_cycles && least > 0.1 * first; ++k) {
     step_ = correction_ = zero;
     acceleration_.combine(reduced_, step_);
     mixed_.correct(reduced_, correction_);
     add(1.0f, correction_, step_, blocks());
     add(1.0f, step_, x, blocks());
     acceleration_.moved(step_);
-    if (!(evaluate() > 0.1 * first)) break;
+    const double norm = evaluate();
+    if (!std::isfinite(norm)) break;
+    if (norm < least) {
+      least = norm;
+      best = x;
+    }
   }
-  const double gradient = mixed_.multigrid().elements().largest_gradient(x.u);
+  const double gradient = mixed_.multigrid().elements().largest_gradient(best.u);
   const double share = mixed_.is_linear() ? 1.0 : std::min(1.0, most / gradient);
   const double reached = share < 1.0 ? load_before + share * (load - load_before) : load;
   body().move_to(before);
-  mixed_.move(x, share);
+  mixed_.move(best, share);
   body().impose(reached);
   return reached;
 }
