@@ -210,7 +210,7 @@ Answer static_answer(const Model& model, const std::optional<double>& sleep, Run
   observer.end();
   const Precision precision = model.choice().precision;
   print_static_ending(found, precision, model.scene().description.relaxation.tolerance, from != nullptr);
-  return {std::move(found.u), in_equilibrium(found, precision) ? "complete" : outcome(found, precision),
+  return {std::move(found.u), in_equilibrium(found) ? "complete" : outcome(found, precision),
           found.seconds, found.adaption_seconds};
 }
 

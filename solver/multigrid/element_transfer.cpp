@@ -21,9 +21,10 @@ bool is_wide(const Vector& extent, const Vector& box) {
   return extent[0] > wide * box[0] || extent[1] > wide * box[1] || extent[2] > wide * box[2];
 }
 
-/// At the body's edge a node of the grid may move nodes of elements, whose forces it then receives, and hardly
-/// any sample: it would yield a millionfold. Where the elements' centres give it less than this share of what
-/// their nodes do, the elements there are sampled at their nodes too, with that share of their volume.
+/// At the body's edge a node of the grid may move nodes of elements, whose forces it then receives, and
+/// hardly any sample: it would yield a millionfold. Where the elements' centres give it less than this share
+/// of what their nodes do, the elements there are sampled at their nodes too, with that share of their
+/// volume.
 constexpr float sparse = 0.25f, sparse_share_at_nodes = 0.4f;
 
 /// The gradients (1/m) of a box's functions, by corner.
@@ -70,8 +71,9 @@ ElementTransfer::ElementTransfer(const Mesh& mesh, const Layout& layout, const E
   }
   const std::vector<bool> sparse = sparse_boxes(mesh);
   for (std::size_t element = 0; element < mesh.cells.size(); ++element) {
-    const bool reaches = std::any_of(mesh.cells[element].begin(), mesh.cells[element].end(),
-                                     [&](int n) { return sparse[grid.grid().locate(mesh.points[at(n)]).box]; });
+    const bool reaches = std::any_of(mesh.cells[element].begin(), mesh.cells[element].end(), [&](int n) {
+      return sparse[grid.grid().locate(mesh.points[at(n)]).box];
+    });
     sample(mesh, element, reaches ? sparse_share_at_nodes : 0.0f);
   }
 }

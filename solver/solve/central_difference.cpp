@@ -66,6 +66,7 @@ class CentralDifference {
   CentralDifference(const Model& model, const InternalForce<Real>& elements)
       : model_(model),
         settings_(model.scene().description.dynamics),
+        undeformed_step_(sandglass::stable_step(model, NodalField(model.masses().size())).step),
         leapfrog_(model, elements, settings_.damping),
         body_(leapfrog_.body()),
         reactions_(model.scene().constraints.size(), 0.0),
@@ -110,6 +111,7 @@ class CentralDifference {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
+      require_worthwhile(stable);
       next_step_ = settings_.step_fraction * stable.step;
     }
     body_.set_step(next_step_);
@@ -223,8 +225,20 @@ class CentralDifference {
     throw ComputationError(text);
   }
 
+  /// An element that collapses takes the steps of the whole body with it: the run would not end.
+  void require_worthwhile(const StableStep& stable) const {
+    constexpr double least_share = 1e-3;
+    if (stable.step >= least_share * undeformed_step_) return;
+    throw ComputationError(fmt::format(
+        "the stable step has collapsed at {:.6g} s, step {}: element {} allows {:.3g} s, less than {} of the "
+        "undeformed body's {:.3g} s; remedy: impose less displacement or load, use a law that resists "
+        "compression, or refine the mesh",
+        time(), step(), stable.element, stable.step, least_share, undeformed_step_));
+  }
+
   const Model& model_;
   const DynamicsSettings& settings_;
+  double undeformed_step_;  // s
   Leapfrog<Real> leapfrog_;
   Body<Real>& body_;
   std::vector<double> reactions_;

@@ -58,6 +58,13 @@ class MixedBody {
   /// Body::residual of the last evaluation.
   double residual() const { return residual_; }
 
+  /// Whether what is left of the residuals may be the rounding of the displacements and of the arithmetic: in
+  /// both unknowns, or in the displacements alone. See README.md, "Rounding".
+  bool at_rounding(bool in_both) const;
+
+  /// Whether reactions and loads, too, may be no more than that: the body bears nothing.
+  bool bears_nothing() const;
+
   /// step = minus an approximate solution of the linear problem for weighted residuals.
   void correct(const MixedVector& weighted, MixedVector& step);
 
@@ -122,6 +129,11 @@ class MixedBody {
     return static_cast<double>(multigrid_.elements().tangents()[cell(element)].volume);
   }
   void update_multigrid();
+
+  /// The sum over all components of a term of the stiffness (N/m), the displacement (m) and the weighted
+  /// force (root of J).
+  template <class Term>
+  double sum_over_components(const Term& term) const;
 
   /// See InternalForce::replace_pressures.
   void replace_pressures(const std::vector<Real>& pressures, const std::vector<double>& lambdas);
