@@ -90,6 +90,10 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       residuals_(weights_),
       b_(weights_) {
   for (const ModelModuli& moduli : moduli_) lambdas_.push_back(moduli.lambda);
+  linearize();
+  for (const Row<float>& k : multigrid_.elements().stiffness()) {
+    for (std::size_t i = 0; i < 3; ++i) stiffest_ = std::max(stiffest_, static_cast<double>(k[i]));
+  }
 }
 
 template <class Real>
@@ -206,8 +210,8 @@ bool MixedBody<Real>::at_rounding(bool in_both) const {
 
 template <class Real>
 bool MixedBody<Real>::bears_nothing() const {
-  const double square = sum_over_components([](double k, double u, double) { return k * u * k * u; });
-  return body_.carried() <= rounding<Real> * std::sqrt(square);
+  const double square = sum_over_components([](double, double u, double) { return u * u; });
+  return body_.carried() <= rounding<Real> * stiffest_ * std::sqrt(square);
 }
 
 template <class Real>

@@ -14,7 +14,7 @@ namespace sandglass {
 template <class Real>
 class MixedBody {
  public:
-  /// The undeformed body of the model; `linearize` must follow.
+  /// The undeformed body of the model, linearized; `weigh` must follow.
   MixedBody(const Model& model, const InternalForce<Real>& elements);
 
   /// The body; its forces are those of the last evaluation.
@@ -62,7 +62,8 @@ class MixedBody {
   /// both unknowns, or in the displacements alone. See README.md, "Rounding".
   bool at_rounding(bool in_both) const;
 
-  /// Whether reactions and loads, too, may be no more than that: the body bears nothing.
+  /// Whether reactions and loads, too, are no more than rounding at the undeformed body's stiffest node would
+  /// be: the body bears nothing.
   bool bears_nothing() const;
 
   /// step = minus an approximate solution of the linear problem for weighted residuals.
@@ -166,6 +167,7 @@ class MixedBody {
   const Materials& materials_;
   std::vector<ModelModuli> moduli_;  // of each material
   std::vector<double> lambdas_;      // Pa
+  double stiffest_ = 0.0;            // N/m, of the undeformed body's nodes
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;

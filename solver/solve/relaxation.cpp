@@ -146,18 +146,28 @@ class Search {
     first_evaluation_ = equilibrium_.evaluations();
     Stagnation stagnation(epsilon, amplification_);
     int stagnations = 0;
+    std::optional<State<Real>> best;  // since only rounding is left, in which a search may wander off
+    double least = INFINITY;
     equilibrium_.start(load_levels_.effort());
     while (!arrived() || settle()) {
       check();
       if (ended_) return false;
       if (!equilibrium_.step() && !stagnation.at_roundoff()) return false;
       stagnation.take(equilibrium_.residual(), at_rounding());
+      if (stagnation.at_roundoff() && equilibrium_.residual() < least && !elements_.needs_increment()) {
+        least = equilibrium_.residual();
+        best = body().state();
+      }
       if (!stagnation.reached()) continue;
       if (++stagnations > 1 || at_rounding()) {
         if (!settle()) break;
         stagnations = 0;
       }
       stagnation = Stagnation(epsilon, amplification_);
+      equilibrium_.start(load_levels_.effort());
+    }
+    if (best && !near()) {
+      body().state() = *best;
       equilibrium_.start(load_levels_.effort());
     }
     const bool healthy = body().healthy();
