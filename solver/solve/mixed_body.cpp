@@ -29,6 +29,10 @@ constexpr double least_lambda_over_mu = 0.1;
 template <class Real>
 constexpr double rounding = 8.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
+/// Reactions that are more than this share of what a node of the undeformed body would bear are never
+/// rounding.
+constexpr double most_rounding = 1e-4;
+
 /// The multigrid method prepares steps as if lambda were no larger, in shear moduli: the step is then wrong
 /// by a percent, and the coarsest grid, which eliminates pressures, does not lose mu beside lambda.
 constexpr double most_lambda_over_mu = 100.0;
@@ -89,11 +93,17 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       weights_(multigrid_.elements().zero()),
       residuals_(weights_),
       b_(weights_) {
-  for (const ModelModuli& moduli : moduli_) lambdas_.push_back(moduli.lambda);
-  linearize();
-  for (const Row<float>& k : multigrid_.elements().stiffness()) {
-    for (std::size_t i = 0; i < 3; ++i) stiffest_ = std::max(stiffest_, static_cast<double>(k[i]));
+  double amplification = 1.0;  // of the rounding of J - 1
+  for (const ModelModuli& moduli : moduli_) {
+    lambdas_.push_back(moduli.lambda);
+    amplification = std::max(amplification, moduli.lambda / moduli.mu);
   }
+  linearize();
+  double stiffest = 0.0;
+  for (const Row<float>& k : multigrid_.elements().stiffness()) {
+    for (std::size_t i = 0; i < 3; ++i) stiffest = std::max(stiffest, static_cast<double>(k[i]));
+  }
+  unfelt_ = std::min(rounding<Real> * amplification, most_rounding) * stiffest;
 }
 
 template <class Real>
@@ -211,7 +221,7 @@ bool MixedBody<Real>::at_rounding(bool in_both) const {
 template <class Real>
 bool MixedBody<Real>::bears_nothing() const {
   const double square = sum_over_components([](double, double u, double) { return u * u; });
-  return body_.carried() <= rounding<Real> * stiffest_ * std::sqrt(square);
+  return body_.carried() <= unfelt_ * std::sqrt(square);
 }
 
 template <class Real>

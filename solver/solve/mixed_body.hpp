@@ -62,8 +62,8 @@ class MixedBody {
   /// both unknowns, or in the displacements alone. See README.md, "Rounding".
   bool at_rounding(bool in_both) const;
 
-  /// Whether reactions and loads, too, are no more than rounding at the undeformed body's stiffest node would
-  /// be: the body bears nothing.
+  /// Whether reactions and loads, too, may be the rounding of the undeformed body's stiffest node: the body
+  /// bears nothing.
   bool bears_nothing() const;
 
   /// step = minus an approximate solution of the linear problem for weighted residuals.
@@ -167,7 +167,7 @@ class MixedBody {
   const Materials& materials_;
   std::vector<ModelModuli> moduli_;  // of each material
   std::vector<double> lambdas_;      // Pa
-  double stiffest_ = 0.0;            // N/m, of the undeformed body's nodes
+  double unfelt_ = 0.0;              // N/m, reactions over displacements that may be rounding
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;

@@ -146,7 +146,8 @@ class Search {
     first_evaluation_ = equilibrium_.evaluations();
     Stagnation stagnation(epsilon, amplification_);
     int stagnations = 0;
-    std::optional<State<Real>> best;  // since only rounding is left, in which a search may wander off
+    std::optional<std::pair<State<Real>, std::vector<Real>>>
+        best;  // since only rounding is left, in which a search may wander off
     double least = INFINITY;
     equilibrium_.start(load_levels_.effort());
     while (!arrived() || settle()) {
@@ -156,7 +157,7 @@ class Search {
       stagnation.take(equilibrium_.residual(), at_rounding());
       if (stagnation.at_roundoff() && equilibrium_.residual() < least && !elements_.needs_increment()) {
         least = equilibrium_.residual();
-        best = body().state();
+        best.emplace(body().state(), equilibrium_.pressures());
       }
       if (!stagnation.reached()) continue;
       if (++stagnations > 1 || at_rounding()) {
@@ -166,8 +167,9 @@ class Search {
       stagnation = Stagnation(epsilon, amplification_);
       equilibrium_.start(load_levels_.effort());
     }
-    if (best && !near()) {
-      body().state() = *best;
+    if (best && !near() && !at_rounding()) {
+      body().state() = best->first;
+      equilibrium_.pressures() = best->second;
       equilibrium_.start(load_levels_.effort());
     }
     const bool healthy = body().healthy();
