@@ -18,7 +18,7 @@ void SemidefiniteInverse::invert_block(std::size_t first, double floor, Block& B
   }
   for (std::size_t k = 0; k < panel; ++k) {
     const double pivot = B[k][k], original = diagonal_[first + k];
-    const bool left_out = pivot <= 1e-5 * original || original <= floor;
+    const bool left_out = pivot <= 1e-6 * original || original <= floor;
     const double reciprocal = left_out ? 0.0 : 1.0 / pivot;
     const std::array<double, panel> row = B[k];
     for (std::size_t p = 0; p < panel; ++p) {
