@@ -1,5 +1,5 @@
-"""Runs that users and random scenes brought to light, at rest and in motion: right answers are called right, wrong
-ones are not, and no run goes on without end. The inputs are in reported/."""
+"""Runs that users and random scenes brought to light, at rest and in motion: right answers are called right,
+wrong ones are not, and no run goes on without end. The inputs are in reported/."""
 
 import re
 import signal
@@ -74,7 +74,7 @@ def test_two_parts_that_share_no_node_rest(precision, tmp_path):
 
 
 def test_a_small_load_on_a_body_that_is_moved_is_not_taken_for_rounding(tmp_path):
-    """The load moves the middle by some 1e-9 of the shift, seven orders above the rounding of the shift."""
+    """It moves the middle by some 1e-9 of the shift, seven orders above the shift's rounding."""
     pushed = """
 [[force]]
 set = "middle"
@@ -98,7 +98,7 @@ on = "nodes"
     [("planar-force", 16.815492096, 1e-6), ("biaxial-mooney", 29.07063936, 1e-4)],
 )
 def test_next_to_incompressible_rubber_rests(name, force, digits, tmp_path):
-    """K / mu up to 6e7: a stretch of 5, in closed form if no volume changed. Digits: stress over K."""
+    """K / mu up to 6e7: a stretch of 5, in closed form for constant volume. Digits: stress over K."""
     outcome, result = run(name, tmp_path)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert f"{force:.3g}" in outcome.stdout
@@ -119,8 +119,8 @@ def test_a_wrong_answer_is_not_within_the_rounding_of_single_precision(name, tmp
 
 
 def test_a_clamped_strip_rests(tmp_path):
-    """Six elements, whose load never grew: nodes of the coarsest grid beyond all samples moved by a million times
-    too much."""
+    """Six elements, whose load never grew: nodes of the coarsest grid beyond all samples moved by a
+    million times too much."""
     outcome, result = run("strip", tmp_path)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert evaluations(outcome) < 300
@@ -141,8 +141,8 @@ def test_the_largest_number_of_evaluations_is_kept_to(tmp_path):
 
 @pytest.mark.parametrize("levels", [0, 20, 50])
 def test_levels_that_forces_remember_are_solved(levels, tmp_path):
-    """Levels at equilibrium: the end moves as with many, to the 2 % that the path makes. One level was accepted
-    with a residual of 1.3, and the end moved by a quarter less."""
+    """Levels at equilibrium: the end moves as with many, to the 2 % that the path makes. One level
+    was accepted with a residual of 1.3, and the end moved by a quarter less."""
     lines = {"[relaxation]": f"[relaxation]\nlevels = {levels}"}
     outcome, result = run("arc", tmp_path, "--method", "ul-perturbation", lines=lines)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
