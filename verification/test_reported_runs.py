@@ -1,5 +1,5 @@
-"""Runs that users and random scenes brought to light, at rest and in motion: right answers are called right,
-wrong ones are not, and no run goes on without end. The inputs are in reported/."""
+"""Runs that users and random scenes brought to light: right answers are called right, wrong ones
+are not, and no run goes on without end. The inputs are in reported/."""
 
 import re
 import signal
@@ -98,7 +98,7 @@ on = "nodes"
     [("planar-force", 16.815492096, 1e-6), ("biaxial-mooney", 29.07063936, 1e-4)],
 )
 def test_next_to_incompressible_rubber_rests(name, force, digits, tmp_path):
-    """K / mu up to 6e7: a stretch of 5, in closed form for constant volume. Digits: stress over K."""
+    """K / mu up to 6e7: a stretch of 5 if no volume changed. Digits: stress over K."""
     outcome, result = run(name, tmp_path)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert f"{force:.3g}" in outcome.stdout

@@ -160,7 +160,7 @@ class Search {
         best.emplace(body().state(), equilibrium_.pressures());
       }
       if (!stagnation.reached()) continue;
-      if (++stagnations > 1 || at_rounding()) {
+      if (++stagnations > 1) {
         if (!settle()) break;
         stagnations = 0;
       }
