@@ -210,8 +210,8 @@ Answer static_answer(const Model& model, const std::optional<double>& sleep, Run
   observer.end();
   const Precision precision = model.choice().precision;
   print_static_ending(found, precision, model.scene().description.relaxation.tolerance, from != nullptr);
-  return {std::move(found.u), in_equilibrium(found, precision) ? "complete" : outcome(found, precision),
-          found.seconds, found.adaption_seconds};
+  return {std::move(found.u), in_equilibrium(found) ? "complete" : outcome(found, precision), found.seconds,
+          found.adaption_seconds};
 }
 
 Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoint* from) {

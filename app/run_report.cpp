@@ -155,12 +155,13 @@ double HistoryReport::unexplained_share(double damping) const {
 }
 
 void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on) {
-  const bool rests = in_equilibrium(found, precision);
+  const bool rests = in_equilibrium(found);
   fmt::print("{}: {}, {:.3g} s{}; residual {:.2e}, tolerance {:.2g}{}\n",
              rests ? "equilibrium" : "no equilibrium", plural(found.steps, "evaluation"), found.seconds,
              went_on ? " since the checkpoint" : "", found.residual, tolerance,
              !rests             ? "; " + outcome(found, precision)
-             : !found.converged ? ": single precision resolves no more"
+             : !found.converged ? fmt::format(": {} precision resolves no more",
+                                              precision == Precision::single_precision ? "single" : "double")
                                 : "");
 }
 

@@ -60,7 +60,7 @@ TEST(CondensedTest, single_precision_is_as_near_as_its_digits) {
   choice.precision = Precision::single_precision;
   Observer silent;
   const Relaxation answer = relax(Model(scene, choice), silent);
-  EXPECT_TRUE(in_equilibrium(answer, choice.precision));
+  EXPECT_TRUE(in_equilibrium(answer));
   // Columns, products and sums of six are rounded once each.
   EXPECT_LT(largest_distance(answer.u, relaxed(scene, condensed_method)), 8 * 6e-8 * largest_imposed(scene));
 }

@@ -66,7 +66,7 @@ class FloatBudgetTest : public ::testing::TestWithParam<std::string> {
     const Model model(scene, {GetParam(), {}, precision});
     Observer silent;
     const Relaxation found = relax(model, silent);
-    EXPECT_TRUE(in_equilibrium(found, precision)) << outcome(found, precision);
+    EXPECT_TRUE(in_equilibrium(found)) << outcome(found, precision);
     return found.u;
   }
 

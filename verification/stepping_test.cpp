@@ -157,13 +157,13 @@ TYPED_TEST(StepperTest, single_precision_ends_where_its_rounding_begins) {
   Observer silent;
   MethodChoice choice = this->method();
   const Relaxation fine = relax(Model(scene, choice), silent);
-  EXPECT_TRUE(in_equilibrium(fine, choice.precision));
+  EXPECT_TRUE(in_equilibrium(fine));
   EXPECT_EQ(outcome(fine, choice.precision), "at rest");
   choice.precision = Precision::single_precision;
   const Relaxation coarse = relax(Model(scene, choice), silent);
   EXPECT_TRUE(coarse.stagnated);
   EXPECT_FALSE(coarse.converged);
-  EXPECT_TRUE(in_equilibrium(coarse, choice.precision));
+  EXPECT_TRUE(in_equilibrium(coarse));
   EXPECT_TRUE(contains(outcome(coarse, choice.precision), "rounding of single precision"));
   EXPECT_LT(coarse.steps, 1000);
   EXPECT_LT(largest_distance(coarse.u, fine.u), 1e-4 * largest_imposed(scene));
@@ -178,7 +178,7 @@ TYPED_TEST(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
   const Relaxation answer = relax(Model(scene, choice), silent);
   EXPECT_TRUE(answer.stagnated);
   EXPECT_FALSE(answer.converged);
-  EXPECT_FALSE(in_equilibrium(answer, choice.precision));
+  EXPECT_FALSE(in_equilibrium(answer));
   EXPECT_TRUE(contains(outcome(answer, choice.precision), "not at rest"));
 }
 

@@ -21,6 +21,12 @@ bool is_wide(const Vector& extent, const Vector& box) {
   return extent[0] > wide * box[0] || extent[1] > wide * box[1] || extent[2] > wide * box[2];
 }
 
+/// At the body's edge a node of the grid may move nodes of elements, whose forces it then receives, and
+/// hardly any sample: it would yield a millionfold. Where the elements' centres give it less than this share
+/// of what their nodes do, the elements there are sampled at their nodes too, with that share of their
+/// volume.
+constexpr float sparse = 0.25f, sparse_share_at_nodes = 0.4f;
+
 /// The gradients (1/m) of a box's functions, by corner.
 std::array<std::array<float, 3>, 8> gradients(const std::array<float, 3>& local, const Vector& size) {
   const auto factor = [&](std::size_t c, std::size_t i) {
@@ -63,28 +69,58 @@ ElementTransfer::ElementTransfer(const Mesh& mesh, const Layout& layout, const E
     if (row < layout.nodes && elements.ties().shares_of(row).empty())
       contents_[places_[row].box].rows.push_back(static_cast<std::uint32_t>(row));
   }
-  for (std::size_t element = 0; element < mesh.cells.size(); ++element) sample(mesh, element);
+  const std::vector<bool> sparse = sparse_boxes(mesh);
+  for (std::size_t element = 0; element < mesh.cells.size(); ++element) {
+    const bool reaches = std::any_of(mesh.cells[element].begin(), mesh.cells[element].end(), [&](int n) {
+      return sparse[grid.grid().locate(mesh.points[at(n)]).box];
+    });
+    sample(mesh, element, reaches ? sparse_share_at_nodes : 0.0f);
+  }
 }
 
-/// Samples an element at its centre, or at eight points of a Gauss rule.
-void ElementTransfer::sample(const Mesh& mesh, std::size_t element) {
+/// The boxes with a corner that has few elements' centres for the elements' nodes around it.
+std::vector<bool> ElementTransfer::sparse_boxes(const Mesh& mesh) const {
+  const Grid& grid = grid_.grid();
+  std::vector<float> centres(grid.nodes()), nodes(centres);
+  const auto add = [&](const Vector& x, float share, std::vector<float>& sums) {
+    const Grid::Location place = grid.locate(x);
+    const auto w = weights(place.local);
+    for (std::size_t a = 0; a < 8; ++a) sums[place.box + grid.corner(a)] += share * w[a];
+  };
+  for (const auto& cell : mesh.cells) {
+    add(mean_at(cell, mesh.points), 1.0f, centres);
+    for (const int n : cell) add(mesh.points[at(n)], 0.125f, nodes);
+  }
+  std::vector<bool> boxes(grid.nodes());
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    if (centres[node] >= sparse * nodes[node]) continue;
+    for (std::size_t a = 0; a < 8; ++a) boxes[node - grid.corner(a)] = true;
+  }
+  return boxes;
+}
+
+/// Samples an element at its centre, or at eight points of a Gauss rule, and with a share at its nodes.
+void ElementTransfer::sample(const Mesh& mesh, std::size_t element, float share_at_nodes) {
   const Grid& grid = grid_.grid();
   const auto cell = static_cast<std::uint32_t>(elements_.cells()[element]);
   const Vector middle = mean_at(mesh.cells[element], mesh.points);
   const Grid::Location place = grid.locate(middle);
   boxes_[cell] = place.box;
   contents_[place.box].cells.push_back(cell);
-  if (!is_wide(extent(mesh, mesh.cells[element]), grid.size)) {
-    contents_[place.box].samples.push_back({cell, 1.0f, place.local});
-    return;
-  }
-  for (const int n : mesh.cells[element]) {
-    Vector x = middle;
-    for (std::size_t i = 0; i < 3; ++i) {
-      x[i] += (mesh.points[static_cast<std::size_t>(n)][i] - middle[i]) / std::sqrt(3.0);
+  const auto sample_corners = [&](double distance, float share) {
+    for (const int n : mesh.cells[element]) {
+      Vector x = middle;
+      for (std::size_t i = 0; i < 3; ++i) x[i] += distance * (mesh.points[at(n)][i] - middle[i]);
+      const Grid::Location corner = grid.locate(x);
+      contents_[corner.box].samples.push_back({cell, 0.125f * share, corner.local});
     }
-    const Grid::Location at = grid.locate(x);
-    contents_[at.box].samples.push_back({cell, 0.125f, at.local});
+  };
+  const float rest = 1.0f - share_at_nodes;
+  if (share_at_nodes > 0.0f) sample_corners(1.0, share_at_nodes);
+  if (is_wide(extent(mesh, mesh.cells[element]), grid.size)) {
+    sample_corners(1.0 / std::sqrt(3.0), rest);
+  } else {
+    contents_[place.box].samples.push_back({cell, rest, place.local});
   }
 }
 

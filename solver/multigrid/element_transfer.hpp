@@ -37,7 +37,8 @@ class ElementTransfer {
     std::vector<std::uint32_t> cells;
   };
 
-  void sample(const Mesh& mesh, std::size_t element);
+  std::vector<bool> sparse_boxes(const Mesh& mesh) const;
+  void sample(const Mesh& mesh, std::size_t element, float share_at_nodes);
   BoxProblem problem_of(const Contents& contents) const;
 
   const ElementLevel& elements_;

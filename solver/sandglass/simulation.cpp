@@ -65,7 +65,7 @@ class Simulation<Real>::Parts {
     const Model at_present(present, model().choice());
     LevelsObserver observer;
     const Relaxation answer = relax(at_present, observer);
-    if (!in_equilibrium(answer, model().choice().precision)) {
+    if (!in_equilibrium(answer)) {
       throw ComputationError(fmt::format("no equilibrium: {} after {} evaluations, residual {:.1e}",
                                          outcome(answer, model().choice().precision), answer.steps,
                                          answer.residual));

@@ -8,7 +8,9 @@ namespace sandglass {
 
 /// Adds the last step and the change of the residual along it.
 void Acceleration::remember(const MixedVector& residual) {
-  if (pairs_.size() == most_pairs) {
+  const double largest_square = most_times_residual * most_times_residual * dot(residual, residual, blocks_);
+  const auto useless = [&](const Pair& pair) { return pair.with_earlier.back() > largest_square; };
+  while (!pairs_.empty() && (pairs_.size() == most_pairs || useless(pairs_.front()))) {
     pairs_.pop_front();
     for (Pair& pair : pairs_) pair.with_earlier.erase(pair.with_earlier.begin());
   }

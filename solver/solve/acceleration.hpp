@@ -35,6 +35,10 @@ class Acceleration {
   /// The number of steps it remembers.
   static constexpr std::size_t most_pairs = 15;
 
+  /// A change that is so many times the present residual is forgotten: of vectors in single precision it
+  /// would bring its own rounding, and a body of a few nodes has no 15 independent steps.
+  static constexpr double most_times_residual = 1e5;
+
   struct Pair {
     MixedVector step;
     MixedVector change;                ///< of the residual

@@ -113,14 +113,18 @@ void Body<Real>::evaluate_forces() {
 }
 
 template <class Real>
-double Body<Real>::residual() const {
-  const double unbalanced = std::sqrt(dot(force_, force_, layout().row_blocks));
+double Body<Real>::carried() const {
   const std::vector<double> all = of_all_constraints(reactions_);
   double carried_square = 0.0;
 #pragma omp simd reduction(+ : carried_square)
   for (std::size_t k = 0; k < all.size(); ++k) carried_square += all[k] * all[k];
-  const double carried = std::sqrt(carried_square + loads_.square());
-  return carried > 0.0 ? unbalanced / carried : unbalanced;
+  return std::sqrt(carried_square + loads_.square());
+}
+
+template <class Real>
+double Body<Real>::residual() const {
+  const double unbalanced = std::sqrt(dot(force_, force_, layout().row_blocks)), sum = carried();
+  return sum > 0.0 ? unbalanced / sum : unbalanced;
 }
 
 template <class Real>

@@ -62,6 +62,9 @@ class Body {
   /// that the update of increments can ignore constraints.
   void evaluate_forces();
 
+  /// The norm of reactions and loads together, N.
+  double carried() const;
+
   /// |free forces| over the norm of reactions and loads together; |free forces| (N) if these are zero.
   double residual() const;
 

@@ -58,6 +58,7 @@ class CentralDifference {
   CentralDifference(const Model& model, const InternalForce<Real>& elements)
       : model_(model),
         settings_(model.scene().description.dynamics),
+        undeformed_step_(sandglass::stable_step(model, NodalField(model.masses().size())).step),
         leapfrog_(model, elements, settings_.damping),
         steady_step_(settings_.damping),
         body_(leapfrog_.body()),
@@ -115,6 +116,7 @@ class CentralDifference {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
+      require_worthwhile(stable);
       const double before = steady_step_.step(), left = settings_.duration - time();
       const double step = steady_step_.next(settings_.step_fraction * stable.step, time());
       if (step != before) next_step_ = left / std::max(1.0, std::ceil(left / step));  // equal to the end
@@ -231,8 +233,20 @@ class CentralDifference {
     throw ComputationError(text);
   }
 
+  /// An element that collapses takes the steps of the whole body with it: the run would not end.
+  void require_worthwhile(const StableStep& stable) const {
+    constexpr double least_share = 1e-3;
+    if (stable.step >= least_share * undeformed_step_) return;
+    throw ComputationError(fmt::format(
+        "the stable step has collapsed at {:.6g} s, step {}: element {} allows {:.3g} s, less than {} of the "
+        "undeformed body's {:.3g} s; remedy: impose less displacement or load, use a law that resists "
+        "compression, or refine the mesh",
+        time(), step(), stable.element, stable.step, least_share, undeformed_step_));
+  }
+
   const Model& model_;
   const DynamicsSettings& settings_;
+  double undeformed_step_;  // s
   Leapfrog<Real> leapfrog_;
   SteadyStep steady_step_;
   Body<Real>& body_;

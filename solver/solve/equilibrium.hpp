@@ -49,6 +49,10 @@ class Equilibrium {
   /// The residual of the last evaluation; see Body::residual.
   double residual() const { return mixed_.residual(); }
 
+  /// See MixedBody.
+  bool at_rounding() const { return mixed_.at_rounding(stage_ != Stage::descent); }
+  bool bears_nothing() const { return mixed_.bears_nothing(); }
+
   /// The norm of the residuals of both unknowns over that at the start; 1 in the last stage, which has no
   /// pressures.
   double reduction() const { return stage_ == Stage::descent ? 1.0 : mixed_.norm() / first_; }

@@ -12,6 +12,19 @@
 
 namespace sandglass {
 
+/// Twice the largest distance (m) from the mean of some points, however they are turned.
+inline double span(const NodalField& points) {
+  const double count = static_cast<double>(points.size());
+  Vector mean{};
+  for (const Vector& x : points) {
+    for (std::size_t i = 0; i < 3; ++i) mean[i] += x[i] / count;
+  }
+  double radius = 0.0;
+  for (const Vector& x : points)
+    radius = std::max(radius, length({x[0] - mean[0], x[1] - mean[1], x[2] - mean[2]}));
+  return 2.0 * radius;
+}
+
 /// A load factor so small that no element inverts wherever the load acts. Driven nodes move by at most a
 /// hundredth of the smallest element's size h; and a cantilever as long as the mesh and as thick as that
 /// element, with the smallest shear modulus for E, would rotate by about a hundredth under the sum F of the
@@ -24,7 +37,7 @@ inline double first_load(const Model& model) {
     smallest = std::min(smallest, model.element_masses()[e] / material.density);
   }
   const double h = std::cbrt(smallest);
-  const double l = diagonal(scene.mesh.points);
+  const double l = span(scene.mesh.points);
   const std::vector<double> moduli = shear_moduli(scene.materials);
   const double mu = *std::min_element(moduli.begin(), moduli.end());
   double F = 0.0;
@@ -82,6 +95,13 @@ class LoadLevels {
 
   double load() const { return load_; }
   double increment() const { return load_ - last_.load; }
+
+  /// Whether more levels are left: as many as the user wants of each leg, and a thousand. Each writes a
+  /// frame.
+  bool has_more() const { return solved_ < more_than_asked + chosen_ * static_cast<int>(turns_.size()); }
+
+  /// Whether the load of this level is another than that of the last one, beyond rounding.
+  bool advances() const { return std::abs(increment()) > least_increment; }
 
   /// The load of the last level that was solved.
   double solved_load() const { return last_.load; }
@@ -145,10 +165,12 @@ class LoadLevels {
     failures_ = few_failures;
   }
 
-  /// Whether a search below the full load has come far enough for predictions.
-  static bool far_enough(const Equilibrium<Real>& search) {
-    constexpr double residual = 0.1, reduction = 0.03;
-    return search.residual() < residual || search.reduction() < reduction;
+  /// Whether a search below the full load has come far enough for predictions. Forces that depend on the path
+  /// remember every level, and of equal levels the first decides how many there are.
+  bool far_enough(const Equilibrium<Real>& search) const {
+    constexpr double residual = 0.1, reduction = 0.03, residual_of_first = 1e-3;
+    if (equal_ && last_.load == 0.0) return search.residual() < residual_of_first;
+    return search.residual() < residual || (!depends_on_path_ && search.reduction() < reduction);
   }
 
   /// Proceeds to the next load level from a solved one.
@@ -160,6 +182,7 @@ class LoadLevels {
       increment_ = std::min(2.0 * std::abs(increment()), longest_);
     }
     in_a_row_ = 0;
+    ++solved_;
     before_ = {last_.load, std::move(last_.state.u), std::move(last_.pressures)};
     last_ = {load_, body.state(), search.pressures()};
     if (load_ == turns_[leg_] && leg_ + 1 < turns_.size()) {
@@ -175,7 +198,7 @@ class LoadLevels {
     increment_ = 0.5 * std::abs(increment());
     aim();
     ++in_a_row_;
-    return ++failures_ <= most_failures && in_a_row_ <= most_in_a_row && load_ != last_.load;
+    return ++failures_ <= most_failures && in_a_row_ <= most_in_a_row && advances();
   }
 
   /// The data that the next load levels depend on, for a body at the last one; see checkpoint.hpp.
@@ -197,6 +220,7 @@ class LoadLevels {
     archive("pressure before", before_.pressures);
     archive("last load", last_.load);
     archive("last pressure", last_.pressures);
+    archive("solved levels", solved_);
     archive("failures", failures_);
     archive("failures in a row", in_a_row_);
     last_.state = body.state();
@@ -205,6 +229,11 @@ class LoadLevels {
  private:
   /// The change of displacement gradients that the first level may have.
   static constexpr double largest_first_gradient = 0.4;
+
+  static constexpr int more_than_asked = 1000;
+
+  /// An increment below the rounding of single precision, in which the multigrid method computes, is none.
+  static constexpr double least_increment = 1e-9;
 
   /// The load increment may shrink to a few millionths of itself.
   static constexpr int most_in_a_row = 20;
@@ -257,6 +286,7 @@ class LoadLevels {
   double before_leg_ = 0.0;  // length of the path up to the previous one
   double load_;
   double increment_;
+  int solved_ = 0;
   int failures_ = 0;
   int in_a_row_ = 0;
   Solved last_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "assembly/method_entry.hpp"
 #include "element/perturbation_stiffness.hpp"
@@ -22,6 +23,19 @@ constexpr double strongest_resistance = 16.0;
 /// The pressures carry lambda (J - 1), and at least this share of mu for lambda: where Poisson's ratio is
 /// zero or less, they would carry nothing, and 1 / lambda has no value. How much they carry is free.
 constexpr double least_lambda_over_mu = 0.1;
+
+/// A displacement is rounded by half an epsilon, which the stiffness of all elements at a node, at most three
+/// times the diagonal, turns into forces; the arithmetic of an element rounds a few times as much.
+template <class Real>
+constexpr double rounding = 8.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+
+/// Reactions that are more than this share of what a node of the undeformed body would bear are never
+/// rounding.
+constexpr double most_rounding = 1e-4;
+
+/// The multigrid method prepares steps as if lambda were no larger, in shear moduli: the step is then wrong
+/// by a percent, and the coarsest grid, which eliminates pressures, does not lose mu beside lambda.
+constexpr double most_lambda_over_mu = 100.0;
 
 /// Of the undeformed laws and of the method's control.
 std::vector<ModelModuli> moduli_of(const Model& model) {
@@ -79,7 +93,17 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       weights_(multigrid_.elements().zero()),
       residuals_(weights_),
       b_(weights_) {
-  for (const ModelModuli& moduli : moduli_) lambdas_.push_back(moduli.lambda);
+  double amplification = 1.0;  // of the rounding of J - 1
+  for (const ModelModuli& moduli : moduli_) {
+    lambdas_.push_back(moduli.lambda);
+    amplification = std::max(amplification, moduli.lambda / moduli.mu);
+  }
+  linearize();
+  double stiffest = 0.0;
+  for (const Row<float>& k : multigrid_.elements().stiffness()) {
+    for (std::size_t i = 0; i < 3; ++i) stiffest = std::max(stiffest, static_cast<double>(k[i]));
+  }
+  unfelt_ = std::min(rounding<Real> * amplification, most_rounding) * stiffest;
 }
 
 template <class Real>
@@ -102,7 +126,8 @@ template <class Real>
 void MixedBody<Real>::update_multigrid() {
   std::vector<ModelModuli> moduli = moduli_;
   const std::vector<double> lambdas = remaining(linearized_penalty_);
-  for (std::size_t m = 0; m < moduli.size(); ++m) moduli[m].lambda = lambdas[m];
+  for (std::size_t m = 0; m < moduli.size(); ++m)
+    moduli[m].lambda = std::min(lambdas[m], most_lambda_over_mu * moduli[m].mu);
   multigrid_.update(linearized_at_, moduli);
   linearized_ = true;
 }
@@ -168,6 +193,35 @@ void MixedBody<Real>::compare() {
   for_each_element([&](std::size_t e, std::size_t c) {
     residuals_.p[c] = weights_.p[c] * static_cast<float>(defect_[e]);
   });
+}
+
+template <class Real>
+template <class Term>
+double MixedBody<Real>::sum_over_components(const Term& term) const {
+  const float *k = numbers_of(multigrid_.elements().stiffness()), *w = numbers_of(weights_.u);
+  const Real *u = numbers_of(body_.state().u), *f = numbers_of(body_.free_forces());
+  return multigrid_.elements().blocks().u.sum([&](std::size_t first, std::size_t last) {
+    double sum = 0.0;
+    for (std::size_t n = first; n < last; ++n) {
+      sum += term(static_cast<double>(k[n]), static_cast<double>(u[n]),
+                  static_cast<double>(w[n]) * static_cast<double>(f[n]));
+    }
+    return sum;
+  });
+}
+
+template <class Real>
+bool MixedBody<Real>::at_rounding(bool in_both) const {
+  const double energy = sum_over_components([](double k, double u, double) { return k * u * u; });
+  const double limit = rounding<Real> * std::sqrt(energy);
+  return (in_both && norm() <= limit) ||
+         std::sqrt(sum_over_components([](double, double, double f) { return f * f; })) <= limit;
+}
+
+template <class Real>
+bool MixedBody<Real>::bears_nothing() const {
+  const double square = sum_over_components([](double, double u, double) { return u * u; });
+  return body_.carried() <= unfelt_ * std::sqrt(square);
 }
 
 template <class Real>

@@ -14,7 +14,7 @@ namespace sandglass {
 template <class Real>
 class MixedBody {
  public:
-  /// The undeformed body of the model; `linearize` must follow.
+  /// The undeformed body of the model, linearized; `weigh` must follow.
   MixedBody(const Model& model, const InternalForce<Real>& elements);
 
   /// The body; its forces are those of the last evaluation.
@@ -57,6 +57,14 @@ class MixedBody {
 
   /// Body::residual of the last evaluation.
   double residual() const { return residual_; }
+
+  /// Whether what is left of the residuals may be the rounding of the displacements and of the arithmetic: in
+  /// both unknowns, or in the displacements alone. See README.md, "Rounding".
+  bool at_rounding(bool in_both) const;
+
+  /// Whether reactions and loads, too, may be the rounding of the undeformed body's stiffest node: the body
+  /// bears nothing.
+  bool bears_nothing() const;
 
   /// step = minus an approximate solution of the linear problem for weighted residuals.
   void correct(const MixedVector& weighted, MixedVector& step);
@@ -123,6 +131,11 @@ class MixedBody {
   }
   void update_multigrid();
 
+  /// The sum over all components of a term of the stiffness (N/m), the displacement (m) and the weighted
+  /// force (root of J).
+  template <class Term>
+  double sum_over_components(const Term& term) const;
+
   /// See InternalForce::replace_pressures.
   void replace_pressures(const std::vector<Real>& pressures, const std::vector<double>& lambdas);
 
@@ -154,6 +167,7 @@ class MixedBody {
   const Materials& materials_;
   std::vector<ModelModuli> moduli_;  // of each material
   std::vector<double> lambdas_;      // Pa
+  double unfelt_ = 0.0;              // N/m, reactions over displacements that may be rounding
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;

@@ -52,7 +52,7 @@ class Search {
         return checkpoint;
       });
       load_levels_.predict(equilibrium_);
-      if (body().healthy() && solve()) {
+      if (load_levels_.advances() && body().healthy() && solve()) {
         finish_load_level();
       } else if (!ended_) {
         retry_load_level();
@@ -71,7 +71,7 @@ class Search {
     equilibrium_.take_own_pressures();
     const auto& coarser = model_.scene().coarser;
     if (!coarser.empty()) equilibrium_.average_pressures(coarser.front().element_of);
-    if (!solve() || result_.stagnated) return std::nullopt;
+    if (!solve() || (result_.stagnated && !result_.rounded)) return std::nullopt;
     observer_.frame(rest);
     finish_load_level();
     return finish();
@@ -146,12 +146,19 @@ class Search {
     first_evaluation_ = equilibrium_.evaluations();
     Stagnation stagnation(epsilon, amplification_);
     int stagnations = 0;
+    std::optional<std::pair<State<Real>, std::vector<Real>>>
+        best;  // since only rounding is left, in which a search may wander off
+    double least = INFINITY;
     equilibrium_.start(load_levels_.effort());
     while (!arrived() || settle()) {
       check();
       if (ended_) return false;
       if (!equilibrium_.step() && !stagnation.at_roundoff()) return false;
-      stagnation.take(equilibrium_.residual());
+      stagnation.take(equilibrium_.residual(), at_rounding());
+      if (stagnation.at_roundoff() && equilibrium_.residual() < least && !elements_.needs_increment()) {
+        least = equilibrium_.residual();
+        best.emplace(body().state(), equilibrium_.pressures());
+      }
       if (!stagnation.reached()) continue;
       if (++stagnations > 1) {
         if (!settle()) break;
@@ -160,16 +167,34 @@ class Search {
       stagnation = Stagnation(epsilon, amplification_);
       equilibrium_.start(load_levels_.effort());
     }
+    if (best && !near() && !at_rounding()) {
+      body().state() = best->first;
+      equilibrium_.pressures() = best->second;
+      equilibrium_.start(load_levels_.effort());
+    }
     const bool healthy = body().healthy();
-    result_.stagnated = healthy && !arrived();
+    result_.stagnated = healthy && !near();
+    const bool single = std::is_same_v<Real, float>;
+    result_.rounded =
+        result_.stagnated && (at_rounding() || (single && stagnation.reaches(equilibrium_.residual())));
     return healthy;
   }
 
+  /// Whether what is left of the forces may be rounding, and is little beside reactions and loads, or these
+  /// are rounding, too. Whoever asks for a tolerance below that of double precision wants to see how far the
+  /// search comes.
+  bool at_rounding() const {
+    constexpr double most_residual = 0.01;
+    return settings_.tolerance >= std::numeric_limits<double>::epsilon() && equilibrium_.at_rounding() &&
+           (equilibrium_.residual() < most_residual || equilibrium_.bears_nothing());
+  }
+
   /// Whether the search may end. Where an element is inverted it may not: another equilibrium may be near.
-  bool arrived() {
-    const bool near =
-        load_levels_.full() ? equilibrium_.residual() < tolerance() : load_levels_.far_enough(equilibrium_);
-    return near && body().healthy();
+  bool arrived() { return (near() || (at_rounding() && equilibrium_.bears_nothing())) && body().healthy(); }
+
+  bool near() const {
+    return load_levels_.full() ? equilibrium_.residual() < tolerance()
+                               : load_levels_.far_enough(equilibrium_);
   }
 
   /// Lets elements choose their levels at the present displacements; whether the search must continue. At the
@@ -212,12 +237,20 @@ class Search {
 
   void finish_load_level() {
     result_.converged = load_levels_.full() && !result_.stagnated;
-    ended_ = load_levels_.full();
+    ended_ = load_levels_.full() || equilibrium_.evaluations() >= most_evaluations_;
     add_work();
     report();
     if (ended_) return;
     observer_.frame(body().frame(load_levels_.travelled(), no_velocity_));
     load_levels_.solved(equilibrium_);
+    if (!ended_ && !load_levels_.has_more()) {
+      throw ComputationError(
+          fmt::format(
+              "more than a thousand load levels beside those asked for; the last equilibrium is at {:.6g} "
+              "of the load; remedy: impose less, or refine the mesh",
+              load_levels_.solved_load()),
+          Breakdown::no_balance);
+    }
   }
 
   void retry_load_level() {
@@ -305,8 +338,8 @@ class Search {
 
 }  // namespace
 
-bool in_equilibrium(const Relaxation& relaxation, Precision precision) {
-  return relaxation.converged || (relaxation.stagnated && precision == Precision::single_precision);
+bool in_equilibrium(const Relaxation& relaxation) {
+  return relaxation.converged || relaxation.rounded;
 }
 
 std::string outcome(const Relaxation& relaxation, Precision precision) {
@@ -318,7 +351,9 @@ std::string outcome(const Relaxation& relaxation, Precision precision) {
     return fmt::format("not at rest after {}{}", evaluations,
                        relaxation.inverted ? ", and elements are inverted" : "");
   }
-  if (in_equilibrium(relaxation, precision)) return "at rest within the rounding of single precision";
+  if (in_equilibrium(relaxation))
+    return fmt::format("at rest within the rounding of {} precision",
+                       precision == Precision::single_precision ? "single" : "double");
   return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
 }
 

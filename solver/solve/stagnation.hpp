@@ -6,16 +6,18 @@
 namespace sandglass {
 
 /// Detects that a residual has reached the roundoff of the number type: it has not halved in 12 steps, and is
-/// below ten thousand epsilon, or more where a nearly incompressible law amplifies the roundoff of J - 1.
+/// below ten thousand epsilon, or more where a nearly incompressible law amplifies the roundoff of J - 1, but
+/// never more than a tenth; or the body finds all that is left within its rounding.
 class Stagnation {
  public:
   /// `epsilon` is the number type's, `amplification` the largest lambda / mu of the body.
   Stagnation(double epsilon, double amplification)
-      : reachable_(1e4 * epsilon * std::max(1.0, 0.01 * amplification)) {}
+      : reachable_(std::min(0.1, 1e4 * epsilon * std::max(1.0, 0.01 * amplification))) {}
 
-  /// Records the residual of another step.
-  void take(double residual) {
+  /// Records the residual of another step, and whether the body finds it within its rounding.
+  void take(double residual, bool at_rounding) {
     ++waited_;
+    at_rounding_ = at_rounding;
     if (residual < 0.5 * halved_) {
       halved_ = residual;
       waited_ = 0;
@@ -23,7 +25,10 @@ class Stagnation {
   }
 
   /// Whether the residual is so low that roundoff may be all that is left.
-  bool at_roundoff() const { return halved_ < reachable_; }
+  bool at_roundoff() const { return at_rounding_ || halved_ < reachable_; }
+
+  /// Whether a residual is as low as that.
+  bool reaches(double residual) const { return residual < reachable_; }
 
   bool reached() const { return at_roundoff() && waited_ >= 12; }
 
@@ -31,6 +36,7 @@ class Stagnation {
   double reachable_;
   double halved_ = INFINITY;  ///< the residual when it last halved
   long waited_ = 0;
+  bool at_rounding_ = false;
 };
 
 }  // namespace sandglass

@@ -79,7 +79,7 @@ RestRecord time_to_rest(const Scene& scene, const MethodChoice& choice, const Pr
   }
   record.evaluations = rest.steps;
   record.residual = rest.residual;
-  if (!in_equilibrium(rest, choice.precision)) {
+  if (!in_equilibrium(rest)) {
     record.status = fmt::format("failed: {}", outcome(rest, choice.precision));
     return record;
   }

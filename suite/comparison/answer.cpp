@@ -54,7 +54,7 @@ Answer resting_answer(const Model& model, Observer& observer) {
                 .steps = relaxation.steps,
                 .residual = relaxation.residual,
                 .seconds = relaxation.seconds};
-  if (in_equilibrium(relaxation, model.choice().precision)) return answer;
+  if (in_equilibrium(relaxation)) return answer;
   answer.failure = Finding::not_at_rest;
   answer.status = outcome(relaxation, model.choice().precision);
   return answer;
