@@ -180,13 +180,15 @@ class Search {
     return healthy;
   }
 
-  /// Whether what is left of the forces may be rounding, and is little beside reactions and loads, or these
-  /// are rounding, too. Whoever asks for a tolerance below that of double precision wants to see how far the
-  /// search comes.
+  /// Whether what is left of the forces may be rounding, of displacements or of J - 1, and is little beside
+  /// reactions and loads, or these are rounding, too. Whoever asks for a tolerance below that of double
+  /// precision wants to see how far the search comes.
   bool at_rounding() const {
-    constexpr double most_residual = 0.01;
-    return settings_.tolerance >= std::numeric_limits<double>::epsilon() && equilibrium_.at_rounding() &&
-           (equilibrium_.residual() < most_residual || equilibrium_.bears_nothing());
+    constexpr double most_residual = 0.01, double_precision = std::numeric_limits<double>::epsilon();
+    if (settings_.tolerance < double_precision) return false;
+    const double residual = equilibrium_.residual();
+    if (residual < 8.0 * double_precision * amplification_) return true;
+    return equilibrium_.at_rounding() && (residual < most_residual || equilibrium_.bears_nothing());
   }
 
   /// Whether the search may end. Where an element is inverted it may not: another equilibrium may be near.
