@@ -322,7 +322,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"mesh.generator = 'torus' is not known", "known: box, ellipsoid, cylinder"}},
         BadCase{"unknown_method",
                 with("method = \"tl-perturbation\"", "method = \"tl-nothing\""),
-                {"expect.method = 'tl-nothing'", "tl-none", "tl-mean-dilatation"}},
+                {"expect.method = 'tl-nothing'", "nearest of 20: tl-none"}},
         BadCase{"unknown_answer",
                 with("\"quasi-static\"", "\"static\""),
                 {"case.answer = 'static'", "quasi-static, dynamic"}},

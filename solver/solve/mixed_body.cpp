@@ -35,7 +35,7 @@ constexpr double most_rounding = 1e-4;
 
 /// The multigrid method prepares steps as if lambda were no larger, in shear moduli: the step is then wrong
 /// by a percent, and the coarsest grid, which eliminates pressures, does not lose mu beside lambda.
-constexpr double most_lambda_over_mu = 100.0;
+constexpr double most_lambda_over_mu = 1e4;
 
 /// Of the undeformed laws and of the method's control.
 std::vector<ModelModuli> moduli_of(const Model& model) {

@@ -160,7 +160,8 @@ class Search {
         best.emplace(body().state(), equilibrium_.pressures());
       }
       if (!stagnation.reached()) continue;
-      if (++stagnations > 1) {
+      // In single precision a second attempt comes nearer.
+      if (++stagnations > 1 || (std::is_same_v<Real, double> && at_rounding())) {
         if (!settle()) break;
         stagnations = 0;
       }
