@@ -1,5 +1,5 @@
-"""Runs that users and random scenes brought to light: right answers are called right, wrong ones
-are not, and no run goes on without end. The inputs are in reported/."""
+"""Runs that users and random scenes brought to light: right answers are accepted, wrong ones are
+refused, and every run ends. The inputs are in reported/."""
 
 import re
 import signal

@@ -232,7 +232,8 @@ class LoadLevels {
 
   static constexpr int more_than_asked = 1000;
 
-  /// An increment below the rounding of single precision, in which the multigrid method computes, is none.
+  /// An increment below the rounding of single precision, in which the multigrid method computes, changes
+  /// nothing.
   static constexpr double least_increment = 1e-9;
 
   /// The load increment may shrink to a few millionths of itself.

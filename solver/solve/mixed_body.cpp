@@ -34,7 +34,8 @@ constexpr double rounding = 8.0 * static_cast<double>(std::numeric_limits<Real>:
 constexpr double most_rounding = 1e-4;
 
 /// The multigrid method prepares steps as if lambda were no larger, in shear moduli: the step is then wrong
-/// by a percent, and the coarsest grid, which eliminates pressures, does not lose mu beside lambda.
+/// by a hundredth of a percent, and the coarsest grid, which eliminates pressures, does not lose mu beside
+/// lambda.
 constexpr double most_lambda_over_mu = 1e4;
 
 /// Of the undeformed laws and of the method's control.
