@@ -117,13 +117,13 @@ class LoadLevels {
   }
 
   /// Extrapolates the search from the last two load levels linearly, and imposes this load; the first time by
-  /// the linear answer, as far as that goes.
+  /// the linear answer, as far as that goes, and so where extrapolation has failed before.
   void predict(Equilibrium<Real>& search) {
     Body<Real>& body = search.body();
     body.move_to(last_.state.u);
     search.pressures() = last_.pressures;
-    if (last_.load == before_.load) {
-      load_ = search.extend(load_, largest_first_gradient);
+    if (last_.load == before_.load || (failures_ > 0 && !equal_)) {
+      load_ = search.extend(load_, largest_linear_gradient);
       return;
     }
     const auto t = static_cast<Real>((load_ - last_.load) / (last_.load - before_.load));
@@ -203,8 +203,8 @@ class LoadLevels {
   }
 
  private:
-  /// The change of displacement gradients that the first level may have.
-  static constexpr double largest_first_gradient = 0.4;
+  /// The change of displacement gradients up to which the linear answer predicts a level.
+  static constexpr double largest_linear_gradient = 0.4;
 
   /// The load increment may shrink to a few millionths of itself.
   static constexpr int most_in_a_row = 20;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "multigrid/saddle_multigrid.hpp"
 #include "solve/body.hpp"
 
@@ -123,6 +125,9 @@ class MixedBody {
   }
   void update_multigrid();
 
+  /// How much stiffer than undeformed the laws are where the multigrid method was linearized, by cell.
+  std::vector<float> stiffening_of_laws() const;
+
   /// See InternalForce::replace_pressures.
   void replace_pressures(const std::vector<Real>& pressures, const std::vector<double>& lambdas);
 
@@ -151,9 +156,11 @@ class MixedBody {
 
   const InternalForce<Real>& elements_;
   Body<Real> body_;
+  const Mesh& mesh_;
   const Materials& materials_;
-  std::vector<ModelModuli> moduli_;  // of each material
-  std::vector<double> lambdas_;      // Pa
+  std::vector<ModelModuli> moduli_;             // of each material
+  std::vector<double> lambdas_;                 // Pa
+  std::vector<std::optional<CalledLaw>> laws_;  // of each material; none where stiffening is not known
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;
