@@ -87,14 +87,11 @@ class Elements final : public ElementLevel {
   }
 
   double largest_gradient(const Rows<float>& u) const override {
-    Number largest(0.0f);
-    for (std::size_t c = layout_.own_chunks.first; c < layout_.own_chunks.last; ++c) {
-      for_each_pack(layout_.chunks[c], [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
-        const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), elements_[pack].body);
-        largest = max(largest, double_dot(H, H));
-      });
-    }
-    return std::sqrt(largest_of_all(largest_lane(largest)));
+    return largest_norm(u, [](const Tensor<Number>& H) { return double_dot(H, H); });
+  }
+
+  double largest_strain(const Rows<float>& u) const override {
+    return largest_norm(u, [](const Tensor<Number>& H) { return double_dot(weighted_strain(Number(1.0f), H), H); });
   }
 
  protected:
@@ -136,6 +133,18 @@ class Elements final : public ElementLevel {
         std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.first == row; });
     if (known == columns.end()) known = columns.insert(columns.end(), {row, {}});
     for (std::size_t i = 0; i < 3; ++i) known->second[i] += weight * b[i];
+  }
+
+  /// The largest root of square(H) for the gradients H of elements.
+  template <class Square>
+  double largest_norm(const Rows<float>& u, const Square& square) const {
+    Number largest(0.0f);
+    for (std::size_t c = layout_.own_chunks.first; c < layout_.own_chunks.last; ++c) {
+      for_each_pack(layout_.chunks[c], [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
+        largest = max(largest, square(OnePoint::mean_gradient(modes_of(u, face), elements_[pack].body)));
+      });
+    }
+    return std::sqrt(largest_of_all(largest_lane(largest)));
   }
 
   float largest_of_all(float largest) const {

@@ -43,6 +43,9 @@ class ElementLevel : public SaddleLevel {
   /// The largest norm of an element's gradient of displacements u, in the present configuration.
   virtual double largest_gradient(const Rows<float>& u) const = 0;
 
+  /// The same of the symmetric part of the gradient.
+  virtual double largest_strain(const Rows<float>& u) const = 0;
+
   /// The cell of each element of the mesh.
   const std::vector<std::size_t>& cells() const { return cells_; }
 

@@ -10,10 +10,10 @@ namespace sandglass {
 
 namespace {
 
-/// The steps in which the norm must halve; near the answer, below this share of the first norm, there is
-/// nothing better to do than to wait. A body that buckles descends far before its norm falls.
-constexpr int accelerated_patience = 12, patience_near_answer = 40, patient_patience = 100,
-              multiplied_patience = 100, descent_patience = 300;
+/// The steps in which the norm must halve. A body that buckles descends far before its norm falls; near the
+/// answer, below this share of the first norm, steps lead there, however slowly.
+constexpr int accelerated_patience = 12, patient_patience = 100, multiplied_patience = 100,
+              descent_patience = 300;
 constexpr double near_answer = 0.01;
 
 /// The method of multipliers ends when the norm has fallen to this share.
@@ -106,9 +106,8 @@ bool Equilibrium<Real>::accelerated() {
     best_norm_ = norm;
     best_ = {body().state(), pressures()};
   }
-  const int patience = effort_ == Effort::patient                              ? patient_patience
-                       : norms_.empty() || norm > near_answer * norms_.front() ? accelerated_patience
-                                                                               : patience_near_answer;
+  const bool near = !norms_.empty() && norm < near_answer * norms_.front();
+  const int patience = near || effort_ == Effort::patient ? patient_patience : accelerated_patience;
   if (progress_.take(norm, patience) && linearized_step()) return true;
   if (effort_ != Effort::full) return false;
   if (returns_++ < most_returns) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <numeric>
 
@@ -116,20 +117,28 @@ class LoadLevels {
     return changes;
   }
 
-  /// Extrapolates the search from the last two load levels linearly, and imposes this load; the first time by
-  /// the linear answer, as far as that goes, and so where extrapolation has failed before.
+  /// Extrapolates the search from the last two load levels linearly, and imposes this load, or one before it
+  /// at which no element is strained further by more than `largest_strain`: a law may stiffen a hundredfold
+  /// beyond. The first time by the linear answer, as far as that goes.
   void predict(Equilibrium<Real>& search) {
     Body<Real>& body = search.body();
     body.move_to(last_.state.u);
     search.pressures() = last_.pressures;
-    if (last_.load == before_.load || (failures_ > 0 && !equal_)) {
-      load_ = search.extend(load_, largest_linear_gradient);
+    if (last_.load == before_.load) {
+      load_ = search.extend(load_, largest_first_gradient);
       return;
     }
-    const auto t = static_cast<Real>((load_ - last_.load) / (last_.load - before_.load));
     Rows<Real> target = last_.state.u;
     const Real* before = numbers_of(before_.u);
     Real* to = numbers_of(target);
+    if (!equal_) {
+      Rows<float> change(target.size());
+      for (std::size_t k = 0; k < 4 * target.size(); ++k)
+        numbers_of(change)[k] = static_cast<float>(to[k] - before[k]);
+      const double most = largest_strain / search.strain(change) * std::abs(last_.load - before_.load);
+      if (std::abs(load_ - last_.load) > most) load_ = last_.load + std::copysign(most, load_ - last_.load);
+    }
+    const auto t = static_cast<Real>((load_ - last_.load) / (last_.load - before_.load));
     for (std::size_t k = 0; k < 4 * target.size(); ++k) to[k] += t * (to[k] - before[k]);
     for (std::size_t e = 0; e < before_.pressures.size(); ++e) {
       search.pressures()[e] += t * (last_.pressures[e] - before_.pressures[e]);
@@ -203,8 +212,11 @@ class LoadLevels {
   }
 
  private:
-  /// The change of displacement gradients up to which the linear answer predicts a level.
-  static constexpr double largest_linear_gradient = 0.4;
+  /// The change of displacement gradients that the first level may have.
+  static constexpr double largest_first_gradient = 0.4;
+
+  /// The strain, in the present configuration, up to which levels are extrapolated.
+  static inline const double largest_strain = getenv("MOST") ? atof(getenv("MOST")) : 0.4;
 
   /// The load increment may shrink to a few millionths of itself.
   static constexpr int most_in_a_row = 20;
