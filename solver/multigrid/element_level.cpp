@@ -91,7 +91,8 @@ class Elements final : public ElementLevel {
   }
 
   double largest_strain(const Rows<float>& u) const override {
-    return largest_norm(u, [](const Tensor<Number>& H) { return double_dot(weighted_strain(Number(1.0f), H), H); });
+    return largest_norm(
+        u, [](const Tensor<Number>& H) { return double_dot(weighted_strain(Number(1.0f), H), H); });
   }
 
  protected:

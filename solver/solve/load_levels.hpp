@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <numeric>
 
@@ -216,7 +215,7 @@ class LoadLevels {
   static constexpr double largest_first_gradient = 0.4;
 
   /// The strain, in the present configuration, up to which levels are extrapolated.
-  static inline const double largest_strain = getenv("MOST") ? atof(getenv("MOST")) : 0.4;
+  static constexpr double largest_strain = 0.3;
 
   /// The load increment may shrink to a few millionths of itself.
   static constexpr int most_in_a_row = 20;
