@@ -175,8 +175,10 @@ class Search {
     const bool healthy = body().healthy();
     result_.stagnated = healthy && !near();
     const bool single = std::is_same_v<Real, float>;
-    result_.rounded =
-        result_.stagnated && (at_rounding() || (single && stagnation.reaches(equilibrium_.residual())));
+    const double of_volumes = 8.0 * epsilon * amplification_;  // J - 1 has the rounding of 1
+    const bool rounded = at_rounding() || equilibrium_.residual() < of_volumes ||
+                         (single && stagnation.reaches(equilibrium_.residual()));
+    result_.rounded = result_.stagnated && rounded;
     return healthy;
   }
 
