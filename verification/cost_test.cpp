@@ -75,7 +75,7 @@ class OwnMotionTest : public ::testing::TestWithParam<const char*> {};
 
 /// The step that counts is the motion's. Of a block pressed by 40 % it is between those at both ends, and
 /// what a simulation of the same motion takes: both choose their steps in the same way, so they differ by the
-/// one step that ends at the duration.
+/// one step that ends at the duration. A slower motion has the same mean step, or it would be the speed's.
 TEST_P(OwnMotionTest, has_the_steps_of_a_simulation) {
   const Scene scene = scene_of(pressed(0.08));
   const MethodChoice choice{.method = GetParam()};
@@ -89,6 +89,10 @@ TEST_P(OwnMotionTest, has_the_steps_of_a_simulation) {
   // Steps of a run are equal to its end, so that after every change they are up to one part of their number
   // shorter.
   EXPECT_NEAR(*motion.mean_step, simulated, 0.015 * simulated);
+  const double slower =
+      mean_step_of_simulation(GetParam(), pressed(0.08), 7.0 * crossing, own_motion_damping / crossing);
+  // The cautious steps of the first half crossing count twice as much.
+  EXPECT_NEAR(*motion.mean_step, slower, 0.04 * slower);
   const Model model(scene, choice);
   const double at_rest = 0.9 * stable_step(model, NodalField(scene.mesh.points.size())).step;
   const double at_end = 0.9 * stable_step(model, motion.end).step;

@@ -76,7 +76,7 @@ def growth_plate(records):
     )
     note = (
         "A bent beam on ever finer meshes, one thread. Poisson's ratio: "
-        ".3 dotted, .49 solid, .4999 dashed. Sandglass: evaluations of the forces, each "
+        "0.3 dotted, 0.49 solid, 0.4999 dashed. Sandglass: evaluations of the forces, each "
         "with a multigrid cycle; FEniCSx and CalculiX: Newton iterations, each with a "
         "factorisation."
     )

@@ -83,7 +83,7 @@ def refinement_plate(records):
     note = (
         "tl-mean-dilatation, one thread, from the model on. Distance from the truth at the worst "
         "node of the case's own mesh, over the imposed displacement. All elements split 0, 1, 2 "
-        "times, to rest or a residual of .001; and refined where the answer needs it."
+        "times, to rest or a residual of 0.001; and refined where the answer needs it."
     )
     legend = tuple((words, colour, "o") for words, colour, _ in LINES.values())
     panels = tuple(panel(name) for name in names)

@@ -1,6 +1,7 @@
 """The page in a headless Chromium: it draws, its controls work, it requests nothing."""
 
 import json
+import re
 import time
 from pathlib import Path
 
@@ -164,12 +165,13 @@ def test_a_mark_tells_everything_beside_the_chart(browser):
     label, text = point_at(browser, 0.002)
     for words in ("tl-perturbation", "column", "κ 0.0065 (auto)", "double", "12 elements"):
         assert words in text
-    for words in ("max 0.2 %", "max 8 %", "per step 1.44 µs", "to equilibrium 500 ms", "finding"):
+    for words in ("max 0.2\u00a0%", "max 8\u00a0%", "per step 1.44 µs", "to equilibrium 500 ms"):
         assert words in text
     for words in (
         "120 ns per element and step, checks 40 ns",
         "mean step 80 µs",
         "100 evaluations",
+        "finding",
     ):
         assert words in text
     assert label == "tl-perturbation"  # more would cover other marks
@@ -363,7 +365,7 @@ def test_stars_of_another_machine_lead_nothing_and_share_a_switch(tmp_path):
     with Browser() as other:
         other.open(data.page)
         other.until(DRAWN)
-        assert "Cheapest within 1 % and 1 s: tl-perturbation" in other.run(headline)
+        assert "Cheapest within 1\u00a0% and 1 s: tl-perturbation" in other.run(headline)
         assert "1 of 2 are within both" in other.run(headline)
         assert other.run(shown) == 4
         (star,) = other.run(
@@ -385,6 +387,29 @@ def test_a_link_opens_what_is_folded_below_its_heading(page):
         fresh.until(f"{limits}.open")
 
 
+def test_the_chart_begins_on_the_first_screen(page):
+    """What is asked stands above it; the rest of the menu is folded, also after a click."""
+    with Browser(width=1280, height=800) as screen:
+        screen.open(page)
+        screen.until(DRAWN)
+        top = "document.querySelector('#chart .plot').getBoundingClientRect().top"
+        assert 0 < screen.run(top) < 760
+        more = "document.querySelector('nav .more')"
+        assert screen.run(f"{more}.open") is False
+        screen.run(f"{more}.querySelector('summary').click()")
+        assert screen.run(f"{more}.open") is True
+        links = f"[...{more}.querySelectorAll('a')].map((a) => a.getBoundingClientRect().right)"
+        assert 0 < min(screen.run(links)) and max(screen.run(links)) <= 1280
+        screen.run(f"{more}.querySelector('a').click()")
+        screen.until(f"!{more}.open")
+
+
+def test_texts_that_scripts_make_keep_numbers_and_percent_signs_together(browser):
+    choose(browser, "tolerance", -2)
+    texts = browser.run("document.querySelector('#chart').textContent")
+    assert "within 1\u00a0%" in texts and not re.search(r"\d %", texts)
+
+
 def test_on_paper_there_is_no_menu_and_nothing_is_cut(page):
     """A4 less its margins is 703 px wide; what the reader opened stays open, and closes after."""
     with Browser(width=703) as paper:
@@ -394,7 +419,7 @@ def test_on_paper_there_is_no_menu_and_nothing_is_cut(page):
         paper._call("Emulation.setEmulatedMedia", media="print")
         paper.run("dispatchEvent(new Event('beforeprint'))")
         opened = "[...document.querySelectorAll('details[open]')].map((d) => d.className)"
-        assert sorted(paper.run(opened)) == ["fold", "static print"]
+        assert sorted(paper.run(opened)) == ["fold", "print", "static print"]
         for selector in ("nav.sections", "#chart", "#viewer", "#shapes"):
             shown = f"getComputedStyle(document.querySelector('{selector}')).display"
             assert paper.run(shown) == "none", selector

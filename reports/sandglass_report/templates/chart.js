@@ -7,13 +7,13 @@ const WHY = {
   simulated: "not measured", step: "not measured", equilibrium: "no search: the case moves",
 };
 const digits = (v) => (v >= 1000 || v === 0 ? String(Math.round(v)) : String(+v.toPrecision(3)));
-const percent = (f) => (100 * f < 1e-4 && f > 0 ? `${(100 * f).toExponential(0)} %` : `${digits(100 * f)} %`);
+const percent = (f) => (100 * f < 1e-4 && f > 0 ? `${(100 * f).toExponential(0)}\u00a0%` : `${digits(100 * f)}\u00a0%`);
 const seconds = (s) =>
   s < 1e-6 ? `${digits(1e9 * s)} ns` : s < 1e-3 ? `${digits(1e6 * s)} µs` : s < 1 ? `${digits(1e3 * s)} ms` : `${digits(s)} s`;
 const escaped = (text) => String(text).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
 
 function startChart(Plotly) {
-  const data = JSON.parse(document.querySelector("#chart-data").textContent);
+  const data = JSON.parse(document.querySelector("#chart-data").textContent.replace(/(\d) %/g, "$1\u00a0%"));
   const tools = document.querySelector("#chart");
   const plot = tools.querySelector(".plot");
   const get = (name) => tools.querySelector(`[name=${name}]`);

@@ -8,6 +8,8 @@ function unfold() {
   }
   target.closest("details")?.setAttribute("open", "");
 }
+const more = document.querySelector("nav .more");
+addEventListener("click", (event) => { if (!event.target.closest("nav summary")) more.open = false; });
 addEventListener("hashchange", unfold);
 unfold();
 let before = [];

@@ -141,7 +141,7 @@
   function caption(body, name, key) {
     if (name === "at rest") return "at rest";
     const shown = answer(body, name);
-    const largest = shown.largest === null || name === "golden" ? "" : `: up to ${number(100 * shown.largest)} % from the golden`;
+    const largest = shown.largest === null || name === "golden" ? "" : `: up to ${number(100 * shown.largest)}\u00a0% from the golden`;
     const missing = shown.levels[key] ? "" : ` (grey: it has no ${data.scales[key].words})`;
     return (name === "golden" ? "golden, the mixed element" : name) + largest + missing;
   }
