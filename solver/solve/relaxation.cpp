@@ -175,20 +175,20 @@ class Search {
     const bool healthy = body().healthy();
     result_.stagnated = healthy && !near();
     const bool single = std::is_same_v<Real, float>;
-    const double of_volumes = 8.0 * epsilon * amplification_;  // J - 1 has the rounding of 1
-    const bool rounded = at_rounding() || equilibrium_.residual() < of_volumes ||
-                         (single && stagnation.reaches(equilibrium_.residual()));
-    result_.rounded = result_.stagnated && rounded;
+    result_.rounded =
+        result_.stagnated && (at_rounding() || (single && stagnation.reaches(equilibrium_.residual())));
     return healthy;
   }
 
-  /// Whether what is left of the forces may be rounding, and is little beside reactions and loads, or these
-  /// are rounding, too. Whoever asks for a tolerance below that of double precision wants to see how far the
-  /// search comes.
+  /// Whether what is left of the forces may be rounding, of displacements or of J - 1, and is little beside
+  /// reactions and loads, or these are rounding, too. Whoever asks for a tolerance below that of double
+  /// precision wants to see how far the search comes.
   bool at_rounding() const {
-    constexpr double most_residual = 0.01;
-    return settings_.tolerance >= std::numeric_limits<double>::epsilon() && equilibrium_.at_rounding() &&
-           (equilibrium_.residual() < most_residual || equilibrium_.bears_nothing());
+    constexpr double most_residual = 0.01, double_precision = std::numeric_limits<double>::epsilon();
+    if (settings_.tolerance < double_precision) return false;
+    const double residual = equilibrium_.residual();
+    if (residual < 8.0 * double_precision * amplification_) return true;
+    return equilibrium_.at_rounding() && (residual < most_residual || equilibrium_.bears_nothing());
   }
 
   /// Whether the search may end. Where an element is inverted it may not: another equilibrium may be near.
