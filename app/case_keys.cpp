@@ -83,7 +83,7 @@ constexpr std::string_view several_materials = R"(
 
 constexpr std::string_view sets_and_loads = R"(
 [sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = "z",
-  center = [x, y], semi_axes = [a, b] } }
+  center = [x, y], semi_axes = [a, b] }, ellipsoid = { center = [x, y, z], semi_axes = [a, b, c] } }
   all conditions must hold; lengths in m; inf and -inf are allowed
 
 [[refine]] around = NAME, depth 1 to 8 (default: 1), layers 1 to 8 (default: 2): so many layers of elements at

@@ -294,6 +294,43 @@ TEST(NodeSets, cylinder_selects_what_lies_inside) {
   }
 }
 
+TEST(NodeSets, ellipsoid_selects_what_lies_inside) {
+  const Mesh mesh = box({1.0, 1.0, 1.0}, {6, 6, 6});
+  const NodeSetRule rule{"egg", false, {}, {}, EllipsoidRegion{{0.4, 0.7, 0.1}, {0.31, 0.22, 0.54}}};
+  const auto inside = [](const Vector& X) {
+    const double a = (X[0] - 0.4) / 0.31, b = (X[1] - 0.7) / 0.22, c = (X[2] - 0.1) / 0.54;
+    return a * a + b * b + c * c < 1.0;
+  };
+  EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), rule), nodes_where(mesh.points, inside));
+}
+
+/// The elements of Land's mesh of so many layers, its surfaces on their ellipsoids, its rim in one plane.
+TEST(CanonicalMesh, ventricle_lies_between_its_ellipsoids) {
+  const Scene scene =
+      read_scene(read_cases(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "ventricle.toml").front());
+  ASSERT_EQ(scene.mesh.cells.size(), 504U);
+  for (const auto& cell : scene.mesh.cells) {
+    EXPECT_GT(OnePoint::precompute(gather(scene.mesh.points, cell)).V, 0.0);
+  }
+  const auto on = [](const Vector& X, double a, double c) {
+    return std::abs((X[0] * X[0] + X[1] * X[1]) / (a * a) + X[2] * X[2] / (c * c) - 1.0) < 1e-12;
+  };
+  std::size_t inside = 0, outside = 0, rim = 0;
+  for (const Vector& X : scene.mesh.points) {
+    inside += on(X, 7.0, 17.0);
+    outside += on(X, 10.0, 20.0);
+    rim += std::abs(X[2] - 5.0) < 1e-12;
+  }
+  const std::size_t surface = scene.mesh.points.size() / 3;
+  EXPECT_EQ(inside, surface);
+  EXPECT_EQ(outside, surface);
+  EXPECT_EQ(rim, 3U * 24U);
+  EXPECT_EQ(scene.sets.at("inside").size(), surface);
+  EXPECT_EQ(scene.sets.at("rim").size(), rim);
+  EXPECT_EQ(scene.sets.at("apex").size(), 1U);
+  EXPECT_EQ(scene.pressures.size(), 252U);
+}
+
 TEST(MeshHash, sees_points_cells_and_sets_but_not_the_last_bits) {
   Mesh mesh = box({0.1, 0.2, 0.3}, {2, 2, 2});
   const NodeSets sets{{"a", {1, 2}}};

@@ -42,7 +42,8 @@ struct HeldBar {
     }
     multigrid = std::make_unique<SaddleMultigrid>(mesh, ties, coarser, layout, free, Rows<float>{});
     const NeoHookean law{.young_modulus = 3.0, .poisson_ratio = poisson_ratio};
-    multigrid->update(Rows<float>(layout.rows()), {{lame_lambda(law), law.shear_modulus(), 1.0 / 3.0}});
+    multigrid->update(Rows<float>(layout.rows()), {{lame_lambda(law), law.shear_modulus(), 1.0 / 3.0}},
+                      std::vector<float>(layout.elements.size(), 1.0f));
   }
 
   MixedVector random_vector(std::uint64_t seed) const {

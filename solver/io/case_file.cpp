@@ -43,6 +43,14 @@ CylinderRegion read_cylinder(TableReader table) {
   return region;
 }
 
+EllipsoidRegion read_ellipsoid(TableReader table) {
+  EllipsoidRegion region;
+  region.center = table.optional<Vector>("center").value_or(Vector{});
+  region.semi_axes = table.required<Vector>("semi_axes", Range::positive());
+  table.finish();
+  return region;
+}
+
 NodeSetRule read_set(TableReader table, const std::string& name, bool of_nodes) {
   NodeSetRule rule;
   rule.name = name;
@@ -57,6 +65,7 @@ NodeSetRule read_set(TableReader table, const std::string& name, bool of_nodes) 
     rule.within[i] = Interval{low, high};
   }
   if (auto cylinder = table.table("cylinder")) rule.cylinder = read_cylinder(*cylinder);
+  if (auto ellipsoid = table.table("ellipsoid")) rule.ellipsoid = read_ellipsoid(*ellipsoid);
   table.finish();
   return rule;
 }

@@ -12,13 +12,23 @@ bool inside(const CylinderRegion& region, const Vector& point, double tolerance)
   return a * a + b * b <= 1.0;
 }
 
+bool inside(const EllipsoidRegion& region, const Vector& point, double tolerance) {
+  double square = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double x = (point[i] - region.center[i]) / (region.semi_axes[i] + tolerance);
+    square += x * x;
+  }
+  return square <= 1.0;
+}
+
 bool selects(const NodeSetRule& rule, const Vector& point, double tolerance) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!rule.within[i]) continue;
     if (point[i] < rule.within[i]->low - tolerance || point[i] > rule.within[i]->high + tolerance)
       return false;
   }
-  return !rule.cylinder || inside(*rule.cylinder, point, tolerance);
+  return (!rule.cylinder || inside(*rule.cylinder, point, tolerance)) &&
+         (!rule.ellipsoid || inside(*rule.ellipsoid, point, tolerance));
 }
 
 }  // namespace

@@ -21,6 +21,12 @@ struct CylinderRegion {
   std::array<double, 2> semi_axes{};  ///< m
 };
 
+/// The inside of an ellipsoid.
+struct EllipsoidRegion {
+  Vector center{};     ///< m
+  Vector semi_axes{};  ///< m
+};
+
 /// A geometric rule that selects nodes; all its conditions must hold. Conditions are closed, with a tolerance
 /// of 1e-9 of the mesh's diagonal, so that nodes meant to lie on a plane are found on it.
 struct NodeSetRule {
@@ -28,6 +34,7 @@ struct NodeSetRule {
   bool surface = false;  ///< only nodes on the boundary
   std::array<std::optional<Interval>, 3> within;
   std::optional<CylinderRegion> cylinder;
+  std::optional<EllipsoidRegion> ellipsoid = {};
 };
 
 /// The nodes that a rule selects, sorted; the caller decides whether the result may be empty.

@@ -50,12 +50,14 @@ class Elements final : public ElementLevel {
     }
   }
 
-  void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli) override {
+  void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
+              const std::vector<float>& stiffening) override {
     for (std::size_t r = 0; r < present_.size(); ++r) {
       for (std::size_t i = 0; i < 3; ++i) present_[r][i] = coordinates_[r][i] + u[r][i];
     }
     std::vector<float> bounds(layout_.chunks.size());
-    layout_.for_each_local_chunk([&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c], moduli); });
+    layout_.for_each_local_chunk(
+        [&](std::size_t c) { bounds[c] = set_blocks(layout_.chunks[c], moduli, stiffening); });
     sum_over_chunks(layout_, numbers_of(stiffness_),
                     [&](std::size_t c) { add_diagonals(layout_.chunks[c]); });
     ties_.hand_on(stiffness_);  // means are convex: D - A stays positive where it was
@@ -85,14 +87,12 @@ class Elements final : public ElementLevel {
   }
 
   double largest_gradient(const Rows<float>& u) const override {
-    Number largest(0.0f);
-    for (std::size_t c = layout_.own_chunks.first; c < layout_.own_chunks.last; ++c) {
-      for_each_pack(layout_.chunks[c], [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
-        const Tensor<Number> H = OnePoint::mean_gradient(modes_of(u, face), elements_[pack].body);
-        largest = max(largest, double_dot(H, H));
-      });
-    }
-    return std::sqrt(largest_of_all(largest_lane(largest)));
+    return largest_norm(u, [](const Tensor<Number>& H) { return double_dot(H, H); });
+  }
+
+  double largest_strain(const Rows<float>& u) const override {
+    return largest_norm(
+        u, [](const Tensor<Number>& H) { return double_dot(weighted_strain(Number(1.0f), H), H); });
   }
 
  protected:
@@ -134,6 +134,18 @@ class Elements final : public ElementLevel {
         std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.first == row; });
     if (known == columns.end()) known = columns.insert(columns.end(), {row, {}});
     for (std::size_t i = 0; i < 3; ++i) known->second[i] += weight * b[i];
+  }
+
+  /// The largest root of square(H) for the gradients H of elements.
+  template <class Square>
+  double largest_norm(const Rows<float>& u, const Square& square) const {
+    Number largest(0.0f);
+    for (std::size_t c = layout_.own_chunks.first; c < layout_.own_chunks.last; ++c) {
+      for_each_pack(layout_.chunks[c], [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
+        largest = max(largest, square(OnePoint::mean_gradient(modes_of(u, face), elements_[pack].body)));
+      });
+    }
+    return std::sqrt(largest_of_all(largest_lane(largest)));
   }
 
   float largest_of_all(float largest) const {
@@ -290,20 +302,23 @@ class Elements final : public ElementLevel {
     return largest;
   }
 
-  [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk, const std::vector<ModelModuli>& moduli) {
+  [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk, const std::vector<ModelModuli>& moduli,
+                                    const std::vector<float>& stiffening) {
     Number largest(1.0f);
     for_each_pack(chunk, [&](std::size_t pack, std::size_t face, std::size_t material) {
-      const auto mu = static_cast<float>(moduli[material].mu),
+      const auto initial_mu = static_cast<float>(moduli[material].mu),
                  lambda = static_cast<float>(moduli[material].lambda);
+      const Number stiffer = load(stiffening, pack);
       const Modes<Number> x = modes_of(present_, face);
       const auto reference = OnePoint::geometry(modes_of(coordinates_, face));
       const Tensor<Number> F_inverse = inverse(OnePoint::mean_gradient(x, reference));
       Block& block = elements_[pack];
       block.body = OnePoint::geometry(x);
-      block.stress = Number(2.0f * mu) * reference.V;
+      block.stress = Number(2.0f * initial_mu) * stiffer * reference.V;
       // eq. 12; |h|^2 by nodes is eight times that by modes
       block.hourglass = Number(static_cast<float>(moduli[material].hourglass)) * reference.V *
                         double_dot(block.body.h, block.body.h);
+      if (moduli[material].hourglass_stiffens) block.hourglass = stiffer * block.hourglass;
       largest = max(largest, eigenvalue_bound(block));
       for (int lane = 0; lane < W; ++lane) {
         const std::size_t cell = pack * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
@@ -313,7 +328,7 @@ class Elements final : public ElementLevel {
           tangent.inverse[n] = Lanes<Number>::get(F_inverse.entries[n], lane);
         tangent.volume = Lanes<Number>::get(reference.V, lane);
         tangent.jacobian = Lanes<Number>::get(block.body.V, lane) / tangent.volume;
-        tangent.mu = mu;
+        tangent.mu = initial_mu * stiffening[cell];
         tangent.lambda = lambda;
         compliance_[cell] = tangent.volume / lambda;
       }

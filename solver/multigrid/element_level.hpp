@@ -12,6 +12,7 @@ struct ModelModuli {
   double lambda;
   double mu;
   double hourglass;  ///< what kappa is for the perturbation control: its k is this times V |h|^2 / 8 (eq. 12)
+  bool hourglass_stiffens = false;  ///< with the law, as it is the law's and not a constant control's
 };
 
 /// An element as the levels below see it.
@@ -19,12 +20,13 @@ struct ElementTangent {
   std::array<float, 9> inverse;  ///< F^-1 by rows
   float volume;                  ///< reference volume, m^3
   float jacobian;                ///< det F
-  float mu, lambda;              ///< of the material, Pa
+  float mu, lambda;              ///< Pa
 };
 
 /// The finest level, in single precision as all levels: every element as a one-point hexahedron in the
-/// present configuration with the law's initial moduli and a constant hourglass stiffness, whatever the
-/// method. Nothing is assembled. Rows are those of a layout, cells its lanes, pack by pack.
+/// present configuration with the law's initial lambda, a shear modulus for each element and an hourglass
+/// stiffness, whatever the method. Nothing is assembled. Rows are those of a layout, cells its lanes, pack by
+/// pack.
 class ElementLevel : public SaddleLevel {
  public:
   ElementLevel(const Layout& layout, int pressure_steps)
@@ -33,12 +35,16 @@ class ElementLevel : public SaddleLevel {
   /// The order of its rows and cells.
   const Layout& layout() const { return layout_; }
 
-  /// Takes the configuration with displacements u (m), in which no element may be inverted, and the moduli of
-  /// each material.
-  virtual void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli) = 0;
+  /// Takes the configuration with displacements u (m), in which no element may be inverted, the moduli of
+  /// each material, and by cell how much stiffer than that the law has become.
+  virtual void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
+                      const std::vector<float>& stiffening) = 0;
 
   /// The largest norm of an element's gradient of displacements u, in the present configuration.
   virtual double largest_gradient(const Rows<float>& u) const = 0;
+
+  /// The same of the symmetric part of the gradient.
+  virtual double largest_strain(const Rows<float>& u) const = 0;
 
   /// The cell of each element of the mesh.
   const std::vector<std::size_t>& cells() const { return cells_; }

@@ -53,6 +53,17 @@ Rows<float> MeshTransfer::at_common_nodes(const Rows<float>& fine) const {
   return u;
 }
 
+std::vector<float> MeshTransfer::means(const std::vector<float>& fine) const {
+  std::vector<float> sums(coarse_.tangents().size(), 0.0f), parts = sums;
+  for (const auto& [from, to] : cells_) {
+    sums[to] += fine[from];
+    parts[to] += 1.0f;
+  }
+  for (std::size_t cell = 0; cell < sums.size(); ++cell)
+    sums[cell] = parts[cell] > 0.0f ? sums[cell] / parts[cell] : 1.0f;
+  return sums;
+}
+
 void MeshTransfer::restrict_residual(const MixedVector& r, MixedVector& b) const {
   coarse_.blocks().u.for_each([&](std::size_t first, std::size_t last) {
     for (std::size_t row = first / 4; row < last / 4; ++row) {

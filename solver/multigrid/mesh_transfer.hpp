@@ -16,6 +16,9 @@ class MeshTransfer {
   /// Displacements (m) of the coarser mesh from those of the finer one, at the nodes that both have.
   Rows<float> at_common_nodes(const Rows<float>& fine) const;
 
+  /// The mean over the parts of each element of the coarser mesh, by cell; 1 in empty cells.
+  std::vector<float> means(const std::vector<float>& fine) const;
+
   /// b = the residual r of the finer mesh for the coarser one.
   void restrict_residual(const MixedVector& r, MixedVector& b) const;
 

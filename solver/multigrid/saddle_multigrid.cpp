@@ -72,18 +72,21 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
   }
 }
 
-void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli>& moduli) {
-  elements_->update(u, moduli);
+void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
+                             const std::vector<float>& stiffening) {
+  elements_->update(u, moduli, stiffening);
   Rows<float> coarse_u = u;
+  std::vector<float> coarse_stiffening = stiffening;
   for (MeshStage& stage : meshes_) {
     coarse_u = stage.to_finer->at_common_nodes(coarse_u);
-    stage.level->update(coarse_u, moduli);
+    coarse_stiffening = stage.to_finer->means(coarse_stiffening);
+    stage.level->update(coarse_u, moduli, coarse_stiffening);
     // Without the nodes in its middle an element may be inverted.
     const auto& tangents = stage.level->tangents();
     const bool healthy = std::all_of(tangents.begin(), tangents.end(), [](const ElementTangent& t) {
       return t.volume == 0.0f || t.jacobian > 0.0f;
     });
-    if (!healthy) stage.level->update(Rows<float>(coarse_u.size()), moduli);
+    if (!healthy) stage.level->update(Rows<float>(coarse_u.size()), moduli, coarse_stiffening);
   }
   to_grid_->gather();
   for (GridStage& stage : grids_) {

@@ -19,8 +19,9 @@ class SaddleMultigrid {
                   const Layout& layout, const Rows<float>& free, const Rows<float>& springs);
 
   /// Takes the configuration with displacements u, rows of the layout (m), in which no element may be
-  /// inverted, and the moduli of each material.
-  void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli);
+  /// inverted, the moduli of each material, and by cell of the mesh how much stiffer the law has become.
+  void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
+              const std::vector<float>& stiffening);
 
   /// x = an approximate solution for b: linear in b and symmetric, without the pressures positive.
   void cycle(const MixedVector& b, MixedVector& x);

@@ -30,6 +30,7 @@ std::string described(const NodeSetRule& rule) {
   }
   if (const auto& c = rule.cylinder)
     text += fmt::format(",cylinder({},{},{})", c->axis, c->center, c->semi_axes);
+  if (const auto& e = rule.ellipsoid) text += fmt::format(",ellipsoid({},{})", e->center, e->semi_axes);
   return text + ")";
 }
 

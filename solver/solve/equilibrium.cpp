@@ -10,9 +10,11 @@ namespace sandglass {
 
 namespace {
 
-/// The steps in which the norm must halve. A body that buckles descends far before its norm falls.
+/// The steps in which the norm must halve. A body that buckles descends far before its norm falls; near the
+/// answer, below this share of the first norm, steps lead there, however slowly.
 constexpr int accelerated_patience = 12, patient_patience = 100, multiplied_patience = 100,
               descent_patience = 300;
+constexpr double near_answer = 0.01;
 
 /// The method of multipliers ends when the norm has fallen to this share.
 constexpr double multiplied_share = 0.1;
@@ -108,7 +110,8 @@ bool Equilibrium<Real>::accelerated() {
     best_norm_ = norm;
     best_ = {body().state(), pressures()};
   }
-  const int patience = effort_ == Effort::patient ? patient_patience : accelerated_patience;
+  const bool near = !norms_.empty() && norm < near_answer * norms_.front();
+  const int patience = near || effort_ == Effort::patient ? patient_patience : accelerated_patience;
   if (progress_.take(norm, patience) && linearized_step()) return true;
   if (effort_ != Effort::full) return false;
   if (returns_++ < most_returns) {

@@ -39,6 +39,12 @@ class Equilibrium {
   /// no element's displacement gradient by more than `most`. Returns the load.
   double extend(double load, double most);
 
+  /// The largest strain of an element, in the present configuration, by a further displacement (m).
+  double strain(const Rows<float>& further) {
+    mixed_.linearize();
+    return mixed_.multigrid().elements().largest_strain(further);
+  }
+
   /// Starts from the present displacements and pressures, at which no element may be inverted, with one
   /// evaluation. Later stages descend a potential, which forces must have.
   void start(Effort effort);

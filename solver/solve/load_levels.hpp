@@ -136,8 +136,9 @@ class LoadLevels {
     return changes;
   }
 
-  /// Extrapolates the search from the last two load levels linearly, and imposes this load; the first time by
-  /// the linear answer, as far as that goes.
+  /// Extrapolates the search from the last two load levels linearly, and imposes this load, or one before it
+  /// at which no element is strained further by more than `largest_strain`: a law may stiffen a hundredfold
+  /// beyond. The first time by the linear answer, as far as that goes.
   void predict(Equilibrium<Real>& search) {
     Body<Real>& body = search.body();
     body.move_to(last_.state.u);
@@ -146,10 +147,17 @@ class LoadLevels {
       load_ = search.extend(load_, largest_first_gradient);
       return;
     }
-    const auto t = static_cast<Real>((load_ - last_.load) / (last_.load - before_.load));
     Rows<Real> target = last_.state.u;
     const Real* before = numbers_of(before_.u);
     Real* to = numbers_of(target);
+    if (!equal_) {
+      Rows<float> change(target.size());
+      for (std::size_t k = 0; k < 4 * target.size(); ++k)
+        numbers_of(change)[k] = static_cast<float>(to[k] - before[k]);
+      const double most = largest_strain / search.strain(change) * std::abs(last_.load - before_.load);
+      if (std::abs(load_ - last_.load) > most) load_ = last_.load + std::copysign(most, load_ - last_.load);
+    }
+    const auto t = static_cast<Real>((load_ - last_.load) / (last_.load - before_.load));
     for (std::size_t k = 0; k < 4 * target.size(); ++k) to[k] += t * (to[k] - before[k]);
     for (std::size_t e = 0; e < before_.pressures.size(); ++e) {
       search.pressures()[e] += t * (last_.pressures[e] - before_.pressures[e]);
@@ -235,6 +243,9 @@ class LoadLevels {
   /// An increment below the rounding of single precision, in which the multigrid method computes, changes
   /// nothing.
   static constexpr double least_increment = 1e-9;
+
+  /// The strain, in the present configuration, up to which levels are extrapolated.
+  static constexpr double largest_strain = 0.3;
 
   /// The load increment may shrink to a few millionths of itself.
   static constexpr int most_in_a_row = 20;

@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "assembly/method_entry.hpp"
+#include "element/one_point.hpp"
 #include "element/perturbation_stiffness.hpp"
+#include "material/stiffening.hpp"
 #include "math/row_loops.hpp"
 
 namespace sandglass {
@@ -50,7 +52,8 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
     const double unit = young_modulus(law) / 9.0;
     const double control = std::min(PerturbationStiffness::modulus(law, settings), unit);
     const double resistance = std::min(unit + lambda / 9.0, strongest_resistance * unit);
-    return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control};
+    return ModelModuli{lambda, law.shear_modulus(), method.pressure_varies ? resistance : control,
+                       method.integration_points > 1};
   };
   return by_material(model.scene().materials,
                      [&](const Material& material) { return std::visit(moduli, material.law); });
@@ -80,6 +83,7 @@ template <class Real>
 MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elements)
     : elements_(elements),
       body_(model, elements),
+      mesh_(model.scene().mesh),
       materials_(model.scene().materials),
       moduli_(moduli_of(model)),
       linear_(method_named(model.choice().method).is_linear),
@@ -99,6 +103,10 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
     lambdas_.push_back(moduli.lambda);
     amplification = std::max(amplification, moduli.lambda / moduli.mu);
   }
+  laws_ = by_material(materials_, [&](const Material& material) {
+    const bool known = !linear_ && splits_volume(material.law);
+    return known ? std::optional(elastic_law(kernel_law(material))) : std::nullopt;
+  });
   linearize();
   double stiffest = 0.0;
   for (const Row<float>& k : multigrid_.elements().stiffness()) {
@@ -129,8 +137,30 @@ void MixedBody<Real>::update_multigrid() {
   const std::vector<double> lambdas = remaining(linearized_penalty_);
   for (std::size_t m = 0; m < moduli.size(); ++m)
     moduli[m].lambda = std::min(lambdas[m], most_lambda_over_mu * moduli[m].mu);
-  multigrid_.update(linearized_at_, moduli);
+  multigrid_.update(linearized_at_, moduli, stiffening_of_laws());
   linearized_ = true;
+}
+
+template <class Real>
+std::vector<float> MixedBody<Real>::stiffening_of_laws() const {
+  const ElementLevel& level = multigrid_.elements();
+  const Layout& layout = level.layout();
+  std::vector<float> by_cell(layout.elements.size(), 1.0f);
+  if (std::ranges::none_of(laws_, [](const auto& law) { return law.has_value(); })) return by_cell;
+  for_each_element([&](std::size_t e, std::size_t c) {
+    const auto& law = laws_[materials_.of(e)];
+    if (!law) return;
+    const auto element = OnePoint::geometry(to_modes(gather(mesh_.points, mesh_.cells[e])));
+    NodalVectors<double> u;
+    for (int I = 0; I < 8; ++I) {
+      const auto& row = linearized_at_[at(layout.row_of_node[at(mesh_.cells[e][at(I)])])];
+      for (int i = 0; i < 3; ++i) u(I, i) = row[at(i)];
+    }
+    by_cell[c] = static_cast<float>(stiffening(*law, OnePoint::mean_gradient(to_modes(u), element),
+                                               materials_.axes.empty() ? nullptr : &materials_.axes[e]));
+  });
+  layout.gather_cells(by_cell.data());
+  return by_cell;
 }
 
 template <class Real>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "multigrid/saddle_multigrid.hpp"
 #include "solve/body.hpp"
 
@@ -136,6 +138,9 @@ class MixedBody {
   template <class Term>
   double sum_over_components(const Term& term) const;
 
+  /// How much stiffer than undeformed the laws are where the multigrid method was linearized, by cell.
+  std::vector<float> stiffening_of_laws() const;
+
   /// See InternalForce::replace_pressures.
   void replace_pressures(const std::vector<Real>& pressures, const std::vector<double>& lambdas);
 
@@ -164,10 +169,12 @@ class MixedBody {
 
   const InternalForce<Real>& elements_;
   Body<Real> body_;
+  const Mesh& mesh_;
   const Materials& materials_;
-  std::vector<ModelModuli> moduli_;  // of each material
-  std::vector<double> lambdas_;      // Pa
-  double unfelt_ = 0.0;              // N/m, reactions over displacements that may be rounding
+  std::vector<ModelModuli> moduli_;             // of each material
+  std::vector<double> lambdas_;                 // Pa
+  std::vector<std::optional<CalledLaw>> laws_;  // of each material; none where stiffening is not known
+  double unfelt_ = 0.0;                         // N/m, reactions over displacements that may be rounding
   bool linear_;
   bool pressure_varies_;
   Rows<Real> free_;
