@@ -29,7 +29,9 @@ void Acceleration::remember(const MixedVector& residual) {
 
 /// The shares of the changes whose sum is nearest to the residual, by normal equations of unit diagonal.
 std::vector<double> Acceleration::best_shares() const {
-  constexpr double least = 1e-11;  // added to the diagonal: steps may repeat each other
+  // Added to the diagonal: steps may repeat each other, and products of vectors in single precision are
+  // rounded to about this. A combination that makes more of their differences leads anywhere.
+  constexpr double least = 1e-6;
   const auto n = static_cast<Eigen::Index>(pairs_.size());
   Eigen::MatrixXd products(n, n);
   Eigen::VectorXd shares(n), scale(n);

@@ -10,10 +10,8 @@ namespace sandglass {
 
 namespace {
 
-/// The steps in which the norm must halve. A body that buckles descends far before its norm falls; near the
-/// answer, below this share of the first norm, steps lead there, however slowly.
-constexpr int accelerated_patience = 12, patient_patience = 100, multiplied_patience = 100,
-              descent_patience = 300;
+/// The norm, over that at the start, below which accelerated steps lead to the answer, however slowly; unless
+/// an element is inverted.
 constexpr double near_answer = 0.01;
 
 /// The method of multipliers ends when the norm has fallen to this share.
@@ -45,12 +43,12 @@ constexpr double most_extended_growth = 10.0;
 }  // namespace
 
 template <class Real>
-bool Equilibrium<Real>::Progress::take(double norm, int patience) {
-  if (norm < 0.5 * halved) {
-    halved = norm;
+bool Equilibrium<Real>::Progress::take(double norm, const Patience& patience) {
+  if (norm < patience.share * fallen) {
+    fallen = norm;
     waited = 0;
   }
-  return ++waited <= patience;
+  return ++waited <= patience.steps;
 }
 
 template <class Real>
@@ -110,9 +108,10 @@ bool Equilibrium<Real>::accelerated() {
     best_norm_ = norm;
     best_ = {body().state(), pressures()};
   }
-  const bool near = !norms_.empty() && norm < near_answer * norms_.front();
-  const int patience = near || effort_ == Effort::patient ? patient_patience : accelerated_patience;
-  if (progress_.take(norm, patience) && linearized_step()) return true;
+  const bool near = !norms_.empty() && norm < near_answer * norms_.front() && body().healthy();
+  const bool patient = near || effort_ == Effort::patient;
+  if (progress_.take(norm, patient ? patient_patience : accelerated_patience) && linearized_step())
+    return true;
   if (effort_ != Effort::full) return false;
   if (returns_++ < most_returns) {
     begin_multipliers();
@@ -166,7 +165,7 @@ void Equilibrium<Real>::begin_multipliers() {
   go_to(best_);
   mixed_.evaluate();
   progress_ = {mixed_.norm()};
-  enough_ = multiplied_share * progress_.halved;
+  enough_ = multiplied_share * progress_.fallen;
 }
 
 /// One Newton step with the pressures as multipliers, which follow.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "solve/acceleration.hpp"
@@ -39,10 +40,12 @@ class Equilibrium {
   /// no element's displacement gradient by more than `most`. Returns the load.
   double extend(double load, double most);
 
-  /// The largest strain of an element, in the present configuration, by a further displacement (m).
-  double strain(const Rows<float>& further) {
+  /// How many times the body may move by `change` (m) until an element is strained by `most`, in the present
+  /// configuration; as often as one likes where laws are not known to stiffen.
+  double steps_to_strain(const Rows<float>& change, double most) {
+    if (!mixed_.may_stiffen()) return INFINITY;
     mixed_.linearize();
-    return mixed_.multigrid().elements().largest_strain(further);
+    return most / mixed_.multigrid().elements().largest_strain(change);
   }
 
   /// Starts from the present displacements and pressures, at which no element may be inverted, with one
@@ -60,8 +63,8 @@ class Equilibrium {
   bool bears_nothing() const { return mixed_.bears_nothing(); }
 
   /// The norm of the residuals of both unknowns over that at the start; 1 in the last stage, which has no
-  /// pressures.
-  double reduction() const { return stage_ == Stage::descent ? 1.0 : mixed_.norm() / first_; }
+  /// pressures, and once steps have gone astray, after which a body with a small norm may have collapsed.
+  double reduction() const { return returns_ > 0 || stage_ == Stage::descent ? 1.0 : mixed_.norm() / first_; }
 
   /// Evaluations of the forces since construction.
   long evaluations() const { return mixed_.evaluations(); }
@@ -81,14 +84,25 @@ class Equilibrium {
     std::vector<Real> pressures;
   };
 
-  /// Waits for a norm to halve.
+  /// The steps in which a norm must fall to a share of itself.
+  struct Patience {
+    double share;
+    int steps;
+  };
+
+  /// Waits for a norm to fall.
   struct Progress {
-    double halved = 0.0;
+    double fallen = 0.0;
     int waited = 0;
 
-    /// Counts a step; whether it is within `patience` steps of the last halving.
-    bool take(double norm, int patience);
+    /// Counts a step; whether the norm has fallen in time.
+    bool take(double norm, const Patience& patience);
   };
+
+  /// A body that buckles descends far before its norm falls, and slow steps are as good as any near the
+  /// answer.
+  static constexpr Patience accelerated_patience{0.75, 12}, patient_patience{0.5, 100},
+      multiplied_patience{0.5, 100}, descent_patience{0.5, 300};
 
   const MixedBlocks& blocks() const { return mixed_.multigrid().elements().blocks(); }
   void begin();

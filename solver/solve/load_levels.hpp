@@ -154,7 +154,8 @@ class LoadLevels {
       Rows<float> change(target.size());
       for (std::size_t k = 0; k < 4 * target.size(); ++k)
         numbers_of(change)[k] = static_cast<float>(to[k] - before[k]);
-      const double most = largest_strain / search.strain(change) * std::abs(last_.load - before_.load);
+      const double most =
+          search.steps_to_strain(change, largest_strain) * std::abs(last_.load - before_.load);
       if (std::abs(load_ - last_.load) > most) load_ = last_.load + std::copysign(most, load_ - last_.load);
     }
     const auto t = static_cast<Real>((load_ - last_.load) / (last_.load - before_.load));

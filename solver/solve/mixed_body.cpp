@@ -146,7 +146,7 @@ std::vector<float> MixedBody<Real>::stiffening_of_laws() const {
   const ElementLevel& level = multigrid_.elements();
   const Layout& layout = level.layout();
   std::vector<float> by_cell(layout.elements.size(), 1.0f);
-  if (std::ranges::none_of(laws_, [](const auto& law) { return law.has_value(); })) return by_cell;
+  if (!may_stiffen()) return by_cell;
   for_each_element([&](std::size_t e, std::size_t c) {
     const auto& law = laws_[materials_.of(e)];
     if (!law) return;

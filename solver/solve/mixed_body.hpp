@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "multigrid/saddle_multigrid.hpp"
@@ -33,6 +34,11 @@ class MixedBody {
   /// Whether the method resists volume changes otherwise than by one pressure for each element, which is all
   /// that the pressures here can carry.
   bool pressure_varies() const { return pressure_varies_; }
+
+  /// Whether the stiffening of a law is known.
+  bool may_stiffen() const {
+    return std::ranges::any_of(laws_, [](const auto& law) { return law.has_value(); });
+  }
 
   /// Adapts the multigrid method to the present configuration, unless that has hardly changed since the last
   /// time; no element may be inverted.
