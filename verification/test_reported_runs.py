@@ -94,17 +94,19 @@ on = "nodes"
 
 
 @pytest.mark.parametrize(
-    "name, force, digits",
-    [("planar-force", 16.815492096, 1e-6), ("biaxial-mooney", 29.07063936, 1e-4)],
+    "name, force, digits, most",
+    [("planar-force", 16.815492096, 1e-6, 120), ("biaxial-mooney", 29.07063936, 1e-4, 3000)],
 )
-def test_next_to_incompressible_rubber_rests(name, force, digits, tmp_path):
-    """K / mu up to 6e7: a stretch of 5 if no volume changed. Digits: stress over K."""
+def test_next_to_incompressible_rubber_rests(name, force, digits, most, tmp_path):
+    """K / mu up to 6e7: a stretch of 5 if no volume changed. Digits: stress over K. One element
+    took 287 evaluations where steps were combined beyond the rounding of single precision: it has
+    fewer unknowns than the steps that are remembered."""
     outcome, result = run(name, tmp_path)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert f"{force:.3g}" in outcome.stdout
     right = points(result)[:, 0] == 1.0
     assert abs(last_displacement(result)[right, 0] - 4.0).max() < 4.0 * digits
-    assert evaluations(outcome) < 3000
+    assert evaluations(outcome) < most
 
 
 @pytest.mark.parametrize("name", ["planar-force", "biaxial-mooney"])
@@ -116,6 +118,40 @@ def test_a_wrong_answer_is_not_within_the_rounding_of_single_precision(name, tmp
     right = points(result)[:, 0] == 1.0
     good = abs(last_displacement(result)[right, 0] - 4.0).max() < 0.04
     assert good or outcome.returncode == 3
+
+
+@pytest.mark.parametrize(
+    "elements, bulk, apex",
+    [
+        (2, 20000, -8.8477),  # the golden's: reference/solve.py
+        (4, 20000, -8.870),  # FEniCSx on another mesh of as many elements
+        (8, 20000, -8.82),  # Land et al. 2015, to .5 % of the place, -27.32
+        (2, 2000, None),
+        (2, 200, None),
+        (4, 2000, None),
+        (4, 200, None),
+    ],
+)
+def test_an_inflated_ventricle_rests_soon(elements, bulk, apex, tmp_path):
+    """Problem 2 of Land et al. 2015: up to 100,000 evaluations were not enough. Meshes of as many
+    elements differ by .1 % of the displacement; softer muscle gives way further."""
+    sizes = {2: (6, 9, 2), 4: (12, 18, 4), 8: (24, 36, 8)}[elements]
+    text = (ROOT / "cases" / "ventricle.toml").read_text().split("[[variants")[0]
+    keys = zip(("core_elements", "rings", "layers"), sizes)
+    text = text.replace("rim = 5.0\n", "rim = 5.0\n" + "".join(f"{k} = {n}\n" for k, n in keys), 1)
+    text = text.replace("bulk_modulus = 20000.0", f"bulk_modulus = {bulk}.0")
+    (tmp_path / "case.toml").write_text(text)
+    result = tmp_path / "result.h5"
+    outcome = sandglass("run", tmp_path / "case.toml", "-o", result)
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    assert evaluations(outcome) <= 300
+    with h5py.File(result) as file:
+        found = last_displacement(result)[file["mesh/sets/apex"][0], 2]
+    if apex is None:
+        assert -12.0 < found < -8.9
+    else:
+        tolerance = {2: 1e-4, 4: 0.002 * 8.87, 8: 0.005 * 27.32}[elements]
+        assert abs(found - apex) < tolerance
 
 
 def test_a_clamped_strip_rests(tmp_path):
