@@ -175,10 +175,15 @@ class LoadLevels {
   }
 
   /// Whether a search below the full load has come far enough for predictions. Forces that depend on the path
-  /// remember every level, and of equal levels the first decides how many there are.
+  /// remember every level, and of equal levels the first decides how many there are. Where many levels have
+  /// failed, one that is further from equilibrium than by the increment of the load would mislead the next.
   bool far_enough(const Equilibrium<Real>& search) const {
     constexpr double residual = 0.1, reduction = 0.03, residual_of_first = 1e-3;
     if (equal_ && last_.load == 0.0) return search.residual() < residual_of_first;
+    if (failures_ >= few_failures) {
+      const double load = std::max(std::abs(load_), std::abs(last_.load));
+      return search.residual() < std::min(residual, std::abs(increment()) / load);
+    }
     return search.residual() < residual || (!depends_on_path_ && search.reduction() < reduction);
   }
 
