@@ -11,8 +11,9 @@ namespace sandglass {
 /// would suffice for half the tolerance.
 enum class Demotion { never, where_enough, reluctant };
 
-/// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it is
-/// frequent while elements are promoted, and becomes rarer while none is. Elements are only promoted: one
+/// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it begins at
+/// the first checks, since a motion may be short, is frequent while elements are promoted, and becomes rarer
+/// while none is. Elements are only promoted: one
 /// that is demoted when its hourglass modes pass through zero, and promoted again when they are large, would
 /// pump energy into every vibration.
 class AdaptionSchedule {
@@ -22,7 +23,8 @@ class AdaptionSchedule {
 
   /// Sets the next check at which they are, from whether elements were promoted at this one.
   void done(bool promoted) {
-    wait_ = promoted ? std::max(wait_ / 2, shortest) : std::min(2 * wait_, longest);
+    const bool begun = wait_ >= shortest;
+    wait_ = begun && promoted ? std::max(wait_ / 2, shortest) : std::min(2 * wait_, longest);
     next_ = checks_ + wait_;
   }
 
@@ -37,8 +39,8 @@ class AdaptionSchedule {
   static constexpr long shortest = 10, longest = 160;
 
   long checks_ = 0;
-  long wait_ = shortest;
-  long next_ = shortest;
+  long wait_ = 1;
+  long next_ = 1;
 };
 
 /// Chooses the levels of the elements of an adaptive method: the error of an element's force may displace its
