@@ -175,6 +175,12 @@ void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elemen
              went_on ? " since the checkpoint"
                      : fmt::format(", {:.4g} ns per element and step",
                                    1e9 * of_step / static_cast<double>(elements)));
+  if (found.never_adapted) {
+    fmt::print(
+        stderr,
+        "warning: the motion ended before the levels of elements were chosen: all had the lowest; take more "
+        "steps (dynamics.step_fraction), or tl-mean-dilatation\n");
+  }
 }
 
 void print_answer(const Scene& scene, const NodalField& u, const std::vector<double>& volume_ratios,

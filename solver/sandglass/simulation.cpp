@@ -211,7 +211,7 @@ class Simulation<Real>::Parts {
   SteadyStep longest_step_;
   double undeformed_step_ = 0.0;  // s
   Adaption<Real> adaption_;
-  AdaptionSchedule adaption_schedule_;
+  AdaptionSchedule adaption_schedule_ = adaption_.schedule();
   std::vector<double> from_, to_,
       imposed_;  // m, in the order of the scene's constraints; the last at present
   double factor_from_ = 0.0, factor_to_ = 0.0, factor_ = 0.0;

@@ -299,7 +299,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   CentralDifference<Real> scheme(model, elements);
   Body<Real>& body = scheme.body();
   Adaption<Real> adaption(model, body);
-  AdaptionSchedule adaption_schedule;
+  AdaptionSchedule adaption_schedule = adaption.schedule();
   Motion motion;
   int frames = 0;
   EnergyWatch watch;
@@ -385,6 +385,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   motion.v = scheme.velocities();
   motion.time = scheme.time();
   motion.steps = scheme.step();
+  motion.never_adapted = adaption.active() && adaption_schedule.choices() == 0;
   motion.adaption_seconds = adaption.seconds();
   motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return motion;

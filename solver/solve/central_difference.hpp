@@ -14,6 +14,7 @@ struct Motion {
   double smallest_step = 0.0;  ///< s
   int most_substeps = 1;       ///< of small elements in a step; see Subcycling
   long repeated = 0;  ///< times that steps were taken again, shorter, since the first proved too long
+  bool never_adapted = false;  ///< an adaptive method's, which ended before levels were chosen
   bool interrupted = false;
   double seconds = 0.0;           ///< wall time of the steps
   double adaption_seconds = 0.0;  ///< the share of it for the choice of levels, adaptive methods
