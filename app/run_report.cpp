@@ -175,6 +175,12 @@ void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elemen
              went_on ? " since the checkpoint"
                      : fmt::format(", {:.4g} ns per element and step",
                                    1e9 * of_step / static_cast<double>(elements)));
+  if (found.never_adapted) {
+    fmt::print(
+        stderr,
+        "warning: the motion ended before the levels of elements were chosen: all had the lowest; take more "
+        "steps (dynamics.step_fraction), or tl-mean-dilatation\n");
+  }
 }
 
 void print_answer(const Scene& scene, const NodalField& u, const std::vector<double>& volume_ratios,
@@ -193,7 +199,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
   fmt::print("\nenergies (J): strain {:.6g}, hourglass {:.6g}", row.strain, row.hourglass);
   // In a relaxation part of the external work is damped away, so that there its sum tells nothing.
   if (!quasi_static) {
-    fmt::print(", kinetic {:.6g}, work of what is imposed {:.6g}", row.kinetic, row.external_work);
+    fmt::print(", kinetic {:.6g}, external work {:.6g}", row.kinetic, row.external_work);
     if (row.adaption != 0.0) fmt::print(", brought by changes of levels {:.3g}", row.adaption);
     const double damping = scene.description.dynamics.damping;
     fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",

@@ -326,7 +326,8 @@ TEST(Adaptive, motion_keeps_its_energy) {
 }
 
 /// Single precision stops at its rounding, and only then do its elements settle: as near, and at the same
-/// levels or higher ones, for it has more lanes to fill, but for those that roundoff decides.
+/// levels or higher ones, for it has more lanes to fill, but for those that roundoff decides, which come with
+/// their mirror images.
 TEST(Adaptive, floats_settle_too) {
   const Scene scene = pressed_block(0.02);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
@@ -341,7 +342,7 @@ TEST(Adaptive, floats_settle_too) {
     int lower = 0;
     const auto &a = in_double.frames.back().levels, &b = in_float.frames.back().levels;
     for (std::size_t e = 0; e < a.size(); ++e) lower += b[e] < a[e] ? 1 : 0;
-    EXPECT_LE(lower, static_cast<int>(a.size() / 50)) << accuracy;
+    EXPECT_LE(lower, static_cast<int>(a.size() / 20)) << accuracy;
   }
 }
 

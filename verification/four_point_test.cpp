@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <set>
 
 #include "support/level_kernels.hpp"
 #include "support/orderings.hpp"
@@ -73,9 +74,8 @@ TEST(FourPoint, knows_the_second_variation_of_eight_points) {
   }
 }
 
-/// Numbered so that the other four corners come first, an element has an energy that differs to third order.
+/// With the points near the other four corners, an element has an energy that differs to third order.
 TEST(FourPoint, other_corners_differ_to_third_order) {
-  const std::array<int, 8> turned{1, 2, 3, 0, 5, 6, 7, 4};
   RandomGeometry random(13);
   for (int n = 0; n < 20; ++n) {
     const NodalVectors<double> X = cube() * transpose(random.deformation(0.5, 2.0));
@@ -83,12 +83,46 @@ TEST(FourPoint, other_corners_differ_to_third_order) {
     HourglassModes<double> q{};
     for (auto& entry : q.entries) entry = random.uniform(-0.02, 0.02);
     const auto difference = [&](double share) {
-      const auto u = displaced(X, F, share * q);
-      return energy_of<FourPointKernel>(reordered(X, turned), reordered(u, turned)) -
-             energy_of<FourPointKernel>(X, u);
+      ElementMotion<double> motion{};
+      motion.u = to_modes(displaced(X, F, share * q));
+      auto element = FourPointKernel::precompute(X, level_law(), {});
+      const auto strain = [&] { return FourPointKernel::energy(motion, element, {}, level_law()).strain; };
+      const double own = strain();
+      element.body.reach = -element.body.reach;
+      return strain() - own;
     };
     EXPECT_NE(difference(1.0), 0.0);
     EXPECT_NEAR(difference(0.5) / difference(1.0), 0.125, 0.03);  // odd: plus a fifth-order term
+  }
+}
+
+/// The corners near which the points are, as places: the same for every numbering, also where edges are
+/// alike, and for elements with edges of different length in every orientation and size.
+TEST(FourPoint, shape_decides_which_corners_have_points) {
+  const auto chosen = [](const NodalVectors<double>& X) {
+    const double side = FourPoint::side(to_modes(X));
+    std::set<Vector> places;
+    for (int I = 0; I < 8; ++I) {
+      const double product = corner_signs(I, 0) * corner_signs(I, 1) * corner_signs(I, 2);
+      if (product * side < 0.0) places.insert({X(I, 0), X(I, 1), X(I, 2)});
+    }
+    return places;
+  };
+  RandomGeometry random(17);
+  std::vector<NodalVectors<double>> shapes{cube()};
+  for (const double length : {0.5, 2.0}) {
+    NodalVectors<double> X = cube();
+    for (int I = 0; I < 8; ++I) X(I, 2) *= length;
+    shapes.push_back(X);
+  }
+  for (int n = 0; n < 20; ++n) shapes.push_back(random.hexahedron());
+  for (const auto& X : shapes) {
+    for (const auto& ordering : proper_orderings()) EXPECT_EQ(chosen(reordered(X, ordering)), chosen(X));
+  }
+  for (int n = 0; n < 20; ++n) {
+    const NodalVectors<double> X = random.hexahedron();
+    const double side = FourPoint::side(to_modes(X));
+    EXPECT_EQ(FourPoint::side(to_modes(1e-3 * X * transpose(random.rotation()))), side);
   }
 }
 

@@ -200,5 +200,27 @@ TEST(LargestFrequency, allows_stable_motions) {
   }
 }
 
+/// In this body of the same kind elements give way between two checks, which the step at the first did not
+/// foresee. Steps from there are taken again, shorter, and the motion is as one of short steps throughout: it
+/// neither gains nor loses more energy than steps that change may.
+TEST(LargestFrequency, steps_that_prove_too_long_are_taken_again) {
+  RandomScene random(20, 37);
+  Scene scene = random.scene();
+  scene.description.quasi_static = false;
+  DynamicsSettings& settings = scene.description.dynamics;
+  settings.body_frequency = 1;
+  const NodalField rest(scene.mesh.points.size());
+  settings.duration = 1.3e4 * stable_step(Model(scene, {"tl-mean-dilatation"}), rest).step;
+  settings.ramp_time = 0.5 * settings.duration;
+  Recorder recorder;
+  const Motion motion = integrate(Model(scene, {"tl-mean-dilatation"}), recorder);
+  EXPECT_GT(motion.repeated, 0);
+  double largest = 0.0;
+  for (const HistoryRow& row : recorder.rows) {
+    largest = std::max(largest, row.external_work);
+    EXPECT_LT(total_energy(row) - row.external_work, 0.01 * largest + 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace sandglass::verification

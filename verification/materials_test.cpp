@@ -27,9 +27,6 @@ struct MaterialsTest : ::testing::Test {
   using Method = MethodType;
   static constexpr bool remembers = knows_law<Method, Viscoelastic<CalledLaw>>;
 
-  /// Whether a force depends on elements of other materials around.
-  static constexpr bool averages = FormulationOf<Method, CalledLaw>::averages_over_nodes;
-
   static MethodChoice choice(int threads = 1) {
     return {.method = std::string(Method::name), .threads = threads};
   }
@@ -82,7 +79,6 @@ TYPED_TEST_SUITE(MaterialsTest, MethodTypes, EntryName);
 /// The body is the sum of its parts, each of one material: forces and energies add up, and what belongs to an
 /// element is that of its part. Meshes of many chunks, with materials that leave lanes empty.
 TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
-  if (TestFixture::averages) GTEST_SKIP() << "dilatations are averaged over all elements around a node";
   const Mesh mesh = box({0.1, 0.12, 0.2}, {6, 7, 12});
   RandomGeometry random(5);
   NodalField u(mesh.points.size());
@@ -174,7 +170,7 @@ TYPED_TEST(MaterialsTest, bits_do_not_depend_on_threads) {
 /// Two layers pressed together, their sides held: each is strained uniformly, the stress across is the same.
 /// Every element represents that exactly; the strains follow from two numbers.
 TYPED_TEST(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
-  if (TestFixture::averages || is_linear<TypeParam>) GTEST_SKIP() << "another stress";
+  if (is_linear<TypeParam>) GTEST_SKIP() << "another stress";
   Case description = plain_case(NeoHookean{});
   const NeoHookean stiff = sample_law<NeoHookean>(0.3, 9000.0);
   const MooneyRivlin soft = sample_law<MooneyRivlin>(0.4);

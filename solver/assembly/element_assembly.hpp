@@ -43,8 +43,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
 
   State<Real> undeformed() const override {
     State<Real> state = Base::undeformed();
-    state.history.resize(history_numbers * layout_->packs() +
-                         (Base::averages_over_nodes ? 4 * layout_->rows() : 0));
+    state.history.resize(history_numbers * layout_->packs() + this->volume_numbers());
     return state;
   }
 
@@ -52,7 +51,9 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     layout_->gather_rows(state.u.data());
     layout_->gather_rows(state.increment.data());
     layout_->gather_cells(state.history.data(), history_numbers / width);
-    if constexpr (Base::averages_over_nodes) layout_->gather_rows(volumes_of(state), 4);
+    for (std::size_t n = 0; n < this->volume_numbers(); n += this->volumes_of_each()) {
+      layout_->gather_rows(volumes_of(state) + n, 4);
+    }
   }
 
   StrainEnergies energies(const State<Real>& state) const override {
@@ -335,14 +336,15 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
     const Real* const volumes = this->volumes_of(state);
     for (std::size_t g = first; g < last; ++g) {
       const ElementGroups::Group group = groups.groups[g];
-      FaceMotion lower = this->template gather_face<Method>(groups, state, volumes, group.first_face);
+      FaceMotion lower =
+          this->template gather_face<Method>(groups, state, volumes, group.material, group.first_face);
       const auto* const blocks = part.blocks.data() + (group.first_pack - part.first_block);
       Faces carried{};
       for (std::size_t k = 0; k < group.packs; ++k) {
         const std::size_t block = group.first_pack + k;
         const auto& element = blocks[k];
-        const FaceMotion upper =
-            this->template gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
+        const FaceMotion upper = this->template gather_face<Method>(groups, state, volumes, group.material,
+                                                                    group.first_face + k + 1);
         if (this->streams_) prefetch_block(part, state, block + packs_ahead);
         auto remembered = this->template history<Method>(state, block);
         if (timeless) remembered.law = {};  // irrelevant here, and possibly left by a failed trial

@@ -86,7 +86,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       : layout_(std::make_shared<Layout>(make_layout(mesh, width,
                                                      adapts ? SpareRows::everywhere : SpareRows::where_needed,
                                                      materials.of_element, team))),
-        axes_(materials.axes) {
+        axes_(materials.axes),
+        alike_(numbers_of_alike(materials)) {
     for (const Material& material : materials.list) {
       setups_.push_back({elastic_law(kernel_law(material)), settings});
       setups_.back().settings.density = material.density;
@@ -142,11 +143,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   void replace_pressures(const State<Real>& state, std::span<const Real> p, std::span<const double> lambdas,
                          Rows<Real>& force, std::span<Real> defect) const override {
     const Plan& plan = plan_of(state);
-    std::vector<Real> volumes;
-    if constexpr (averages_over_nodes) {
-      volumes.resize(4 * layout_->rows());
-      sum_volumes(state, volumes.data());
-    }
+    const std::vector<Real> volumes = volumes_around_nodes(state);
     sum_over_chunks(*layout_, numbers_of(force), [&](std::size_t c) {
       std::apply(
           [&](const auto&... part) {
@@ -186,9 +183,10 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     std::array<Number, 4> dilatation;
   };
 
+  /// Of `volumes` only those of the elements' own and like materials are used.
   template <class Method>
   FaceMotion gather_face(const ElementGroups& groups, const State<Real>& state, const Real* volumes,
-                         std::size_t face) const {
+                         std::size_t material, std::size_t face) const {
     FaceMotion motion;
     motion.u = gather_face_modes<Number>(state.u, groups, face);
     if constexpr (KernelOf<Method>::needs_increment) {
@@ -199,7 +197,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
     if constexpr (KernelOf<Method>::averages_over_nodes) {
       for (std::size_t corner = 0; corner < 4; ++corner) {
-        const auto [change, reference, unused] = gather<Number>(volumes, groups.places(face, corner));
+        const auto [change, reference, unused] =
+            gather<Number>(volumes + alike_[material] * volumes_of_each(), groups.places(face, corner));
         motion.dilatation[corner] = change / reference;
       }
     }
@@ -223,13 +222,29 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     return motion;
   }
 
-  /// Sets each row of `volumes`, four numbers, to the change of volume around the node and to the reference
-  /// volume (m^3).
+  /// The numbers in `sum_volumes` of materials that are alike, and of all; none unless volumes are averaged.
+  std::size_t volumes_of_each() const { return averages_over_nodes ? 4 * layout_->rows() : 0; }
+  std::size_t volume_numbers() const {
+    return (*std::max_element(alike_.begin(), alike_.end()) + 1) * volumes_of_each();
+  }
+
+  /// Sets, for one material after the other, each row of `volumes`, four numbers, to the change of volume of
+  /// this material around the node and to its reference volume (m^3). Volumes of different materials have no
+  /// common pressure: averaged together, forces would not be the gradient of an energy.
   void sum_volumes(const State<Real>& state, Real* volumes) const {
     const Plan& plan = plan_of(state);
-    sum_over_chunks(*layout_, volumes, [&](std::size_t c) {
-      std::apply([&](const auto&... part) { (add_volumes(part, state, volumes), ...); }, *plan.chunks[c]);
-    });
+    for (std::size_t n = 0; n * volumes_of_each() < volume_numbers(); ++n) {
+      Real* const own = volumes + n * volumes_of_each();
+      sum_over_chunks(*layout_, own, [&](std::size_t c) {
+        std::apply([&](const auto&... part) { (add_volumes(part, state, n, own), ...); }, *plan.chunks[c]);
+      });
+    }
+  }
+
+  std::vector<Real> volumes_around_nodes(const State<Real>& state) const {
+    std::vector<Real> volumes(volume_numbers());
+    if constexpr (averages_over_nodes) sum_volumes(state, volumes.data());
+    return volumes;
   }
 
   /// A block of elements: its chunk, its index among those of its groups, its material, the axes of its
@@ -247,20 +262,17 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   /// where for_each_lane(use) calls use(e, lane) for each lane with the number of its element.
   template <class Visit>
   void for_each_block(const State<Real>& state, const Visit& visit) const {
-    std::vector<Real> volumes;
-    if constexpr (averages_over_nodes) {
-      volumes.resize(4 * layout_->rows());
-      sum_volumes(state, volumes.data());
-    }
+    const std::vector<Real> volumes = volumes_around_nodes(state);
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     const auto visit_part = [&]<class Method>(const Part<Method>& part, std::size_t c) {
       for (std::size_t g = part.first; g < part.last; ++g) {
         const auto group = part.groups->groups[g];
-        FaceMotion lower = gather_face<Method>(*part.groups, state, volumes.data(), group.first_face);
+        FaceMotion lower =
+            gather_face<Method>(*part.groups, state, volumes.data(), group.material, group.first_face);
         for (std::size_t k = 0; k < group.packs; ++k) {
           const std::size_t block = group.first_pack + k;
-          const FaceMotion upper =
-              gather_face<Method>(*part.groups, state, volumes.data(), group.first_face + k + 1);
+          const FaceMotion upper = gather_face<Method>(*part.groups, state, volumes.data(), group.material,
+                                                       group.first_face + k + 1);
           visit.template operator()<Method>(
               between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block],
               BlockPlace{c, block, group.material, part.axes_at(block), part.groups.get(),
@@ -308,6 +320,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   std::shared_ptr<const Layout> layout_;    // of all elements
   std::vector<MaterialAxes<double>> axes_;  // of each element; empty: those of space
   std::vector<Setup> setups_;               // of each material
+  std::vector<std::size_t> alike_;          // see numbers_of_alike
   Rows<Real> coordinates_;                  // only if kernels need them, or adaptive methods
   bool streams_ = false;                    // whether constants do not remain in the cache from step to step
 
@@ -386,14 +399,15 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     }
   }
 
-  /// Adds the nodal volumes of a part, in the order of the forces.
+  /// Adds the nodal volumes of a part's elements of materials with a number, in the order of the forces.
   template <class Method>
   [[gnu::flatten, gnu::aligned(64)]] void add_volumes(const Part<Method>& part, const State<Real>& state,
-                                                      Real* volumes) const {
+                                                      std::size_t alike, Real* volumes) const {
     if constexpr (KernelOf<Method>::averages_over_nodes) {
       const ElementGroups& groups = *part.groups;
       for (std::size_t g = part.first; g < part.last; ++g) {
         const ElementGroups::Group group = groups.groups[g];
+        if (alike_[group.material] != alike) continue;
         Faces lower = gather_face_modes<Number>(state.u, groups, group.first_face);
         NodalVolumes<Number> carried{};
         for (std::size_t k = 0; k < group.packs; ++k) {
@@ -424,12 +438,13 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
       const ElementGroups::Group group = groups.groups[g];
       const auto lambda = static_cast<Real>(lambdas[group.material]);
       const Number stiffness(lambda), compliance(Real(1) / lambda);
-      FaceMotion lower = gather_face<Method>(groups, state, volumes, group.first_face);
+      FaceMotion lower = gather_face<Method>(groups, state, volumes, group.material, group.first_face);
       Faces carried{};
       for (std::size_t k = 0; k < group.packs; ++k) {
         const std::size_t block = group.first_pack + k;
         const int* numbers = groups.elements.data() + block * width;
-        const FaceMotion upper = gather_face<Method>(groups, state, volumes, group.first_face + k + 1);
+        const FaceMotion upper =
+            gather_face<Method>(groups, state, volumes, group.material, group.first_face + k + 1);
         const auto motion = between<Method>(lower, upper, inverse_step);
         const auto& body = part.blocks[block - part.first_block].body;
         Number own(Real(0));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 
 #include "element/one_point.hpp"
 #include "element/point_bound.hpp"
@@ -17,13 +18,51 @@ namespace sandglass {
 /// as the mean-dilatation element.
 ///
 /// The fourth mode would couple with the others through the mean of xi eta zeta, which is not zero over
-/// alternate corners. It is left to an hourglass control. Constants are those of the one-point element.
+/// alternate corners. It is left to an hourglass control.
+///
+/// The other four corners are as good, and differ to third order in the fluctuation. `side` decides by the
+/// element's shape, never by its numbering. No such rule can be its own mirror image, since a mirror maps a
+/// cuboid to itself and its alternate corners to the others, nor can it turn with an element of equal edges.
 struct FourPoint : OnePoint {
   static constexpr int points = 4;
   static constexpr bool averages_pressure = true;
 
-  /// Whether forces depend, to third order, on which corners the numbering of the nodes puts first.
-  static constexpr bool alternates_corners = true;
+  /// What is constant in time: that of one point, and which corners the points are near.
+  template <class T>
+  struct Element : OnePoint::Element<T> {
+    T reach;  ///< the points' coordinate, 1/sqrt 3; negative for the other four corners
+  };
+
+  static Element<double> precompute(const NodalVectors<double>& X) { return geometry(to_modes(X)); }
+
+  /// The same from the modes of the nodal coordinates x (m).
+  template <class T>
+  static Element<T> geometry(const Modes<T>& x) {
+    return {OnePoint::geometry(x), T(gauss_coordinate) * side(x)};
+  }
+
+  /// 1 or -1: which alternate corners have the points, from the modes of the nodal coordinates x (m). Axes of
+  /// different length, shear or taper have a handedness, the sign of the permutation that sorts them, which
+  /// changes sign with the numbering as the corners do and turns with the element. Where two axes are alike,
+  /// the corner that lies farthest along a fixed direction has a point.
+  template <class T>
+  static T side(const Modes<T>& x) {
+    const auto product = [&](int m, int n) {
+      return x(m, 0) * x(n, 0) + x(m, 1) * x(n, 1) + x(m, 2) * x(n, 2);
+    };
+    const auto measure = [&](int k, int l, int m) {
+      return product(k, k) + abs(product(l, m)) + product(3 + k, 3 + k);
+    };
+    const T a = measure(0, 1, 2), b = measure(1, 2, 0), c = measure(2, 0, 1), sum = a + b + c;
+    const T handedness = (a - b) * (b - c) * (c - a) / (sum * sum * sum);
+    // No integer combination of these components is zero: no edge of a regular mesh is perpendicular to them.
+    const auto along = [&](int k) {
+      return x(k, 0) + T(std::numbers::sqrt2 / 2) * x(k, 1) + T(std::numbers::inv_sqrt3) * x(k, 2);
+    };
+    const T farthest = -(along(0) * along(1) * along(2));  // the points have xi eta zeta < 0
+    const T decisive = select(abs(handedness) > T(alike), handedness, farthest);
+    return select(decisive < T(0), T(-1), T(1));
+  }
 
   /// The deformation at each point.
   template <class T>
@@ -65,9 +104,9 @@ struct FourPoint : OnePoint {
     if constexpr (Hourglass::active) Q = Hourglass::resistance(now.q, control);
     for (int i = 0; i < 3; ++i) {
       if constexpr (!Hourglass::active) Q(3, i) = T(0);
-      Q(0, i) = scale<T>() * (row_dot(along_eta, i, element, 2) + row_dot(along_zeta, i, element, 1));
-      Q(1, i) = scale<T>() * (row_dot(along_xi, i, element, 2) + row_dot(along_zeta, i, element, 0));
-      Q(2, i) = scale<T>() * (row_dot(along_xi, i, element, 1) + row_dot(along_eta, i, element, 0));
+      Q(0, i) = element.reach * (row_dot(along_eta, i, element, 2) + row_dot(along_zeta, i, element, 1));
+      Q(1, i) = element.reach * (row_dot(along_xi, i, element, 2) + row_dot(along_zeta, i, element, 0));
+      Q(2, i) = element.reach * (row_dot(along_xi, i, element, 1) + row_dot(along_eta, i, element, 0));
     }
     return OnePoint::modal_forces(transpose(lower + upper), Q, element.c, element);
   }
@@ -119,8 +158,8 @@ struct FourPoint : OnePoint {
   template <class T>
   static Matrix<T, 4, 3> fluctuation(std::size_t point, const Element<T>& element) {
     constexpr std::array<std::array<double, 3>, 4> signs{{{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}}};
-    const T xi = T(signs[point][0]) * scale<T>(), eta = T(signs[point][1]) * scale<T>(),
-            zeta = T(signs[point][2]) * scale<T>();
+    const T xi = T(signs[point][0]) * element.reach, eta = T(signs[point][1]) * element.reach,
+            zeta = T(signs[point][2]) * element.reach;
     Matrix<T, 4, 3> G;
     for (int l = 0; l < 3; ++l) {
       G(0, l) = eta * element.h(2, l) + zeta * element.h(1, l);
@@ -132,11 +171,8 @@ struct FourPoint : OnePoint {
   }
 
  private:
-  /// A point's coordinate. Modes are sums over the nodes, eight times amplitudes, and h contains the eighth.
-  template <class T>
-  static T scale() {
-    return T(gauss_coordinate);
-  }
+  /// The handedness below which axes count as alike: above what coordinates in single precision leave.
+  static constexpr double alike = 1e-6;
 
   template <class T>
   static std::array<VolumeChange<T>, 4> volume_changes(const std::array<Tensor<T>, 4>& H) {
@@ -169,7 +205,7 @@ struct FourPoint : OnePoint {
   template <class T>
   static std::array<Tensor<T>, 4> point_gradients(const Tensor<T>& H, const HourglassModes<T>& q,
                                                   const Element<T>& element) {
-    const auto modes = scale<T>() * q;
+    const auto modes = element.reach * q;
     const auto along = [&](int i, int l, int b, int j, int c, int k) {
       return modes(b, i) * element.h(j, l) + modes(c, i) * element.h(k, l);
     };

@@ -58,7 +58,7 @@ struct OwnPressure {
 
 /// Averaged nodal pressures (Bonet & Burton 1998; Joldes, Wittek & Miller 2009): a quarter of each
 /// tetrahedron belongs to each of its nodes. With V_I the undeformed volume that belongs to node I and J_I
-/// its volume ratio, the energy is
+/// its volume ratio, both for each material at the node on its own, the energy is
 ///   sum_e V_e W_iso(F_e) + sum_I V_I U(J_I),
 /// so that the pressure of a tetrahedron is the mean of p_I = U'(J_I) over its nodes, and its stress
 /// P_iso(F) + p cof F, as in Bonet and Burton. Joldes et al. evaluate the law for (Jbar/J)^(1/3) F instead,

@@ -15,6 +15,17 @@ bool holds(const KernelLaw& law) {
   return std::holds_alternative<Law>(law);
 }
 
+bool alike(const Material& a, const Material& b) {
+  if (a.volume.index() != b.volume.index() || a.law.index() != b.law.index()) return false;
+  return std::visit(
+      [&]<class Law>(const Law& law) {
+        const Law& other = std::get<Law>(b.law);
+        return std::apply([&](const auto&... p) { return ((law.*p.member == other.*p.member) && ...); },
+                          Law::parameters());
+      },
+      a.law);
+}
+
 }  // namespace
 
 Materials materials_of(const Materials& whole, std::span<const int> elements) {
@@ -39,6 +50,17 @@ KernelLaws kernel_laws(const Materials& materials) {
     return converted(to_viscoelastic);
   if (std::any_of(laws.begin(), laws.end(), holds<CalledLaw>)) return converted(elastic_law);
   return converted([](const KernelLaw& law) { return std::get<NeoHookean>(law); });
+}
+
+std::vector<std::size_t> numbers_of_alike(const Materials& materials) {
+  std::vector<std::size_t> numbers, firsts;
+  for (std::size_t m = 0; m < materials.list.size(); ++m) {
+    std::size_t n = 0;
+    while (n < firsts.size() && !alike(materials.list[firsts[n]], materials.list[m])) ++n;
+    if (n == firsts.size()) firsts.push_back(m);
+    numbers.push_back(n);
+  }
+  return numbers;
 }
 
 std::vector<double> shear_moduli(const Materials& materials) {

@@ -47,6 +47,10 @@ using KernelLaws =
 
 KernelLaws kernel_laws(const Materials& materials);
 
+/// A number for each material, from 0 on, which those of equal law and parameters share, whatever their
+/// density.
+std::vector<std::size_t> numbers_of_alike(const Materials& materials);
+
 /// Initial shear moduli of the materials, Pa.
 std::vector<double> shear_moduli(const Materials& materials);
 

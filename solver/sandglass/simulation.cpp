@@ -10,6 +10,7 @@
 #include "solve/adaption.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
+#include "solve/stable_step.hpp"
 #include "solve/steady_step.hpp"
 
 namespace sandglass {
@@ -50,12 +51,16 @@ class Simulation<Real>::Parts {
 
   void advance(double seconds) {
     require_in_range("seconds", seconds, Range::positive());
-    double left = seconds;
+    const double end = time() + seconds;
+    double whole = seconds, left = seconds;
     while (left > 0.0) {
       const double steps = steps_in(left, longest_step_.step());
       const double step = left / steps;
       left = steps > 1.0 ? left - step : 0.0;
-      take(step, 1.0 - left / seconds);
+      if (take(step, 1.0 - left / whole)) continue;
+      from_ = imposed_;  // back at the last check, from where the way is a straight one
+      factor_from_ = factor_;
+      left = whole = end - time();
     }
     arrive();
   }
@@ -133,44 +138,55 @@ class Simulation<Real>::Parts {
     factor_from_ = factor_to_;
   }
 
-  /// A step that ends where a share of the way from `from_` to `to_` is gone.
-  void take(double step, double share) {
+  /// A step that ends where a share of the way from `from_` to `to_` is gone. False if it was the last of
+  /// steps that proved too long: the state is that of the last check, and steps are shorter from there.
+  bool take(double step, double share) {
     const double rest = 1.0 - share;
     for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
     factor_ = share * factor_to_ + rest * factor_from_;
     leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor_, leapfrog_.time()); });
-    if (leapfrog_.step() % scene().description.dynamics.check_interval == 0) check();
+    return leapfrog_.step() % scene().description.dynamics.check_interval != 0 || check();
   }
 
-  void check() {
-    require_whole();
-    if (adaption_.active() && adaption_schedule_.due()) {
-      const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
-      if (rose) leapfrog_.body().evaluate_forces();
-      adaption_schedule_.done(rose);
-    }
-    choose_step();
-    keep(StateCopy(whole_));
-  }
-
-  /// Returns to the last state that was whole, and throws ComputationError, if an element is inverted or no
-  /// longer finite.
-  void require_whole() {
-    try {
-      leapfrog_.body().require_healthy(leapfrog_.step());
-    } catch (const ComputationError& error) {
-      const double failed = time();
+  /// False as for `take`.
+  bool check() {
+    const bool healthy = leapfrog_.body().healthy();
+    if (!healthy && longest_step_.may_shorten()) {
       keep(StateCopy(std::as_const(whole_)));
+      longest_step_.shorten();
       leapfrog_.body().set_step(longest_step_.step());
-      to_ = imposed_;
-      factor_to_ = factor_;
-      arrive();
-      throw ComputationError(
-          fmt::format("at {:.6g} s, {}\nthe simulation is back at {:.6g} s, where all elements "
-                      "were whole, with driven nodes and forces as they were then",
-                      failed, error.what(), time()),
-          error.breakdown());
+      keep(StateCopy(whole_));
+      return false;
     }
+    try {
+      if (!healthy) leapfrog_.body().require_healthy(leapfrog_.step());
+      if (adaption_.active() && adaption_schedule_.due()) {
+        const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
+        if (rose) leapfrog_.body().evaluate_forces();
+        adaption_schedule_.done(rose);
+      }
+      choose_step();
+    } catch (const ComputationError& error) {
+      fail(error);
+    }
+    keep(StateCopy(whole_));
+    return true;
+  }
+
+  /// Returns to the last state that was whole and could be continued, and throws what is wrong with the
+  /// present one.
+  [[noreturn]] void fail(const ComputationError& error) {
+    const double failed = time();
+    keep(StateCopy(std::as_const(whole_)));
+    leapfrog_.body().set_step(longest_step_.step());
+    to_ = imposed_;
+    factor_to_ = factor_;
+    arrive();
+    throw ComputationError(
+        fmt::format("at {:.6g} s, {}\nthe simulation is back at {:.6g} s, where all elements "
+                    "were whole, with driven nodes and forces as they were then",
+                    failed, error.what(), time()),
+        error.breakdown());
   }
 
   /// The data that the next step depends on; see checkpoint.hpp.
@@ -184,15 +200,18 @@ class Simulation<Real>::Parts {
   }
 
   void choose_step() {
-    const double stable = leapfrog_.stable_step(model()).step;
-    leapfrog_.body().set_step(longest_step_.next(problem_->step_fraction() * stable, time()));
+    const StableStep stable = leapfrog_.stable_step(model());
+    if (undeformed_step_ == 0.0) undeformed_step_ = stable.step;
+    require_worthwhile(stable, undeformed_step_, fmt::format("step {}", leapfrog_.step()));
+    leapfrog_.body().set_step(longest_step_.next(problem_->step_fraction() * stable.step, time()));
   }
 
   std::shared_ptr<const DrivenProblem> problem_;
   Leapfrog<Real> leapfrog_;
   SteadyStep longest_step_;
+  double undeformed_step_ = 0.0;  // s
   Adaption<Real> adaption_;
-  AdaptionSchedule adaption_schedule_;
+  AdaptionSchedule adaption_schedule_ = adaption_.schedule();
   std::vector<double> from_, to_,
       imposed_;  // m, in the order of the scene's constraints; the last at present
   double factor_from_ = 0.0, factor_to_ = 0.0, factor_ = 0.0;

@@ -11,24 +11,34 @@ namespace sandglass {
 /// would suffice for half the tolerance.
 enum class Demotion { never, where_enough, reluctant };
 
-/// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it is
-/// frequent while elements are promoted, and becomes rarer while none is. Elements are only promoted: one
+/// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it begins at
+/// the first checks, since a motion may be short, but where no displacement is imposed: there the unit of
+/// accuracy must grow first. It is frequent while elements are promoted, and becomes rarer while none is.
+/// Elements are only promoted: one
 /// that is demoted when its hourglass modes pass through zero, and promoted again when they are large, would
 /// pump energy into every vibration.
 class AdaptionSchedule {
  public:
+  explicit AdaptionSchedule(bool early) : wait_(early ? 1 : shortest), next_(wait_) {}
+
   /// Counts a check; whether levels are to be chosen at it.
   bool due() { return ++checks_ >= next_; }
 
   /// Sets the next check at which they are, from whether elements were promoted at this one.
   void done(bool promoted) {
-    wait_ = promoted ? std::max(wait_ / 2, shortest) : std::min(2 * wait_, longest);
+    ++choices_;
+    const bool begun = wait_ >= shortest;
+    wait_ = begun && promoted ? std::max(wait_ / 2, shortest) : std::min(2 * wait_, longest);
     next_ = checks_ + wait_;
   }
+
+  /// How often levels were chosen.
+  long choices() const { return choices_; }
 
   template <class Archive>
   void keep(Archive& archive) {
     archive("checks", checks_);
+    archive("judgements", choices_);
     archive("wait for a judgement", wait_);
     archive("next judgement", next_);
   }
@@ -37,8 +47,9 @@ class AdaptionSchedule {
   static constexpr long shortest = 10, longest = 160;
 
   long checks_ = 0;
-  long wait_ = shortest;
-  long next_ = shortest;
+  long wait_;
+  long next_;
+  long choices_ = 0;
 };
 
 /// Chooses the levels of the elements of an adaptive method: the error of an element's force may displace its
@@ -54,6 +65,8 @@ class Adaption {
 
   /// Whether there are levels to choose.
   bool active() const { return active_; }
+
+  AdaptionSchedule schedule() const { return AdaptionSchedule(imposed_ > 0.0); }
 
   /// Chooses the levels of the elements for the present displacements of a body. Its forces remain those of
   /// the previous levels until they are evaluated again.

@@ -51,6 +51,31 @@ NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, c
   return between;
 }
 
+/// Notices energy that no work explains: steps that are too long feed the fastest vibrations.
+class EnergyWatch {
+ public:
+  /// Takes a motion's energy and the work done on it (J), and the step (s). Whether the difference has risen
+  /// noticeably above its least value since the step changed, which changes the energy that is kept.
+  bool rises(double energy, double work, double step) {
+    constexpr double noticeable = 0.005;  // of the largest energy
+    largest_ = std::max({largest_, energy, std::abs(work)});
+    least_ = step == step_ ? std::min(least_, energy - work) : energy - work;
+    step_ = step;
+    return !(energy - work - least_ <= noticeable * largest_);
+  }
+
+  template <class Archive>
+  void keep(Archive& archive) {
+    archive("largest energy", largest_);
+    archive("least unexplained energy", least_);
+    archive("step of least unexplained energy", step_);
+  }
+
+ private:
+  double largest_ = 0.0, least_ = 0.0;  // J
+  double step_ = 0.0;                   // s
+};
+
 /// The quantities of the scheme, one function each; the order of calls is in `integrate_body`.
 template <class Real>
 class CentralDifference {
@@ -116,11 +141,20 @@ class CentralDifference {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
-      require_worthwhile(stable);
-      const double before = steady_step_.step(), left = settings_.duration - time();
-      const double step = steady_step_.next(settings_.step_fraction * stable.step, time());
-      if (step != before) next_step_ = left / std::max(1.0, std::ceil(left / step));  // equal to the end
+      require_worthwhile(stable, undeformed_step_, fmt::format("{:.6g} s, step {}", time(), step()));
+      const double before = steady_step_.step();
+      if (steady_step_.next(settings_.step_fraction * stable.step, time()) != before) divide_what_is_left();
     }
+    body_.set_step(next_step_);
+  }
+
+  /// Whether steps may be shorter than those that `choose_step` sets.
+  bool may_shorten() const { return settings_.time_step == 0.0 && steady_step_.may_shorten(); }
+
+  /// Takes shorter steps from now on.
+  void shorten() {
+    steady_step_.shorten();
+    divide_what_is_left();
     body_.set_step(next_step_);
   }
 
@@ -134,17 +168,23 @@ class CentralDifference {
                       [this](Body<Real>& body) { body.impose(loading(time()), time()); });
   }
 
-  /// Takes the next step and tells the displacements that an observer asks for within it.
-  void advance(Observer& observer) {
+  /// Takes the next step and passes on the displacements that an observer asks for within it, unless the body
+  /// is not healthy after it. Whether it asks for any.
+  bool advance(Observer& observer) {
     const bool asked = observer.next_sample() <= time() + next_step_ * (1.0 + 1e-9);
-    if (!asked) return advance();
+    if (!asked) {
+      advance();
+      return false;
+    }
     const NodalField u = body_.field(body_.state().u), v = velocities();
     advance();
+    if (!body_.healthy()) return true;
     const NodalField u_after = body_.field(body_.state().u), v_after = velocities();
     while (observer.next_sample() <= time() * (1.0 + 1e-12)) {
       const double left = (time() - observer.next_sample()) / step_size();
       observer.sample(cubic(1.0 - left, step_size(), u, v, u_after, v_after));
     }
+    return true;
   }
 
   /// Adds the work of imposed displacements and forces over the last step, from the mean of the forces at its
@@ -188,6 +228,12 @@ class CentralDifference {
   }
 
  private:
+  /// Steps equal to the end, of at most the steady one.
+  void divide_what_is_left() {
+    const double left = settings_.duration - time();
+    next_step_ = left / std::max(1.0, std::ceil(left / steady_step_.step()));
+  }
+
   double ramp_time() const { return settings_.ramp_time > 0.0 ? settings_.ramp_time : settings_.duration; }
   double loading(double time) const { return loading_curve(time / ramp_time()); }
   double loading_rate(double time) const { return loading_curve_rate(time / ramp_time()) / ramp_time(); }
@@ -233,17 +279,6 @@ class CentralDifference {
     throw ComputationError(text);
   }
 
-  /// An element that collapses takes the steps of the whole body with it: the run would not end.
-  void require_worthwhile(const StableStep& stable) const {
-    constexpr double least_share = 1e-3;
-    if (stable.step >= least_share * undeformed_step_) return;
-    throw ComputationError(fmt::format(
-        "the stable step has collapsed at {:.6g} s, step {}: element {} allows {:.3g} s, less than {} of the "
-        "undeformed body's {:.3g} s; remedy: impose less displacement or load, use a law that resists "
-        "compression, or refine the mesh",
-        time(), step(), stable.element, stable.step, least_share, undeformed_step_));
-  }
-
   const Model& model_;
   const DynamicsSettings& settings_;
   double undeformed_step_;  // s
@@ -264,20 +299,27 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   CentralDifference<Real> scheme(model, elements);
   Body<Real>& body = scheme.body();
   Adaption<Real> adaption(model, body);
-  AdaptionSchedule adaption_schedule;
+  AdaptionSchedule adaption_schedule = adaption.schedule();
   Motion motion;
   int frames = 0;
-  StrainEnergies energies;  // of the last report
+  EnergyWatch watch;
+  NodalField v;  // at the last check, with its energies
+  StrainEnergies energies;
+  double kinetic = 0.0;
 
   const auto frame_due = [&] {
     return scheme.finished() || scheme.time() >= frames * settings.duration / settings.frames;
   };
-  const auto report = [&] {
-    NodalField v = scheme.velocities();
+  const auto gains_energy = [&] {
+    v = scheme.velocities();
     energies = body.energies();
-    observer.history({scheme.time(), scheme.kinetic_energy(v), energies.strain, energies.hourglass,
-                      scheme.external_work(), body.residual(), scheme.step_size(), scheme.adaption_energy(),
-                      body.set_reactions()});
+    kinetic = scheme.kinetic_energy(v);
+    return watch.rises(kinetic + energies.strain + energies.hourglass,
+                       scheme.external_work() + scheme.adaption_energy(), scheme.step_size());
+  };
+  const auto report = [&] {
+    observer.history({scheme.time(), kinetic, energies.strain, energies.hourglass, scheme.external_work(),
+                      body.residual(), scheme.step_size(), scheme.adaption_energy(), body.set_reactions()});
     if (frame_due()) {
       observer.frame(body.frame(scheme.time(), std::move(v)));
       ++frames;
@@ -290,8 +332,10 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     scheme.keep(archive);
     archive("frames", frames);
     adaption_schedule.keep(archive);
+    watch.keep(archive);
     archive("smallest step", motion.smallest_step);
     archive("most substeps", motion.most_substeps);
+    archive("repeated intervals", motion.repeated);
   };
   const auto checkpoint = [&] {
     Checkpoint state;
@@ -308,27 +352,40 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     body.evaluate_forces();
     body.add_work_of_loads();  // from here on
     scheme.set_initial_velocities();
+    gains_energy();
     report();
     observer.resumable(checkpoint);
   }
+  std::vector<std::byte> sound;                           // the state at the last check
+  const bool alone = model.choice().ranks->count() == 1;  // what one rank keeps is not the whole state
+  if (alone) keep(StateCopy(sound));
   while (!scheme.finished() && !motion.interrupted) {
-    scheme.advance(observer);
+    const bool sampled = scheme.advance(observer);
     scheme.add_external_work();
     motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
     motion.most_substeps = std::max(motion.most_substeps, body.substeps());
-    if (scheme.step() % settings.check_interval == 0 || frame_due()) {
-      body.require_healthy(scheme.step());
+    const bool due = scheme.step() % settings.check_interval == 0 || frame_due();
+    if (!due && !sampled) continue;
+    const bool healthy = body.healthy();
+    if ((!healthy || gains_energy()) && alone && scheme.may_shorten()) {
+      keep(StateCopy(std::as_const(sound)));
+      scheme.shorten();
+      ++motion.repeated;
+    } else if (due) {
+      if (!healthy) body.require_healthy(scheme.step());
       report();
       if (adaption.active() && adaption_schedule.due())
         adaption_schedule.done(scheme.adapt(adaption, energies));
       scheme.choose_step();
       observer.resumable(checkpoint);
     }
+    if (alone) keep(StateCopy(sound));
   }
   motion.u = body.field(body.state().u);
   motion.v = scheme.velocities();
   motion.time = scheme.time();
   motion.steps = scheme.step();
+  motion.never_adapted = adaption.active() && adaption_schedule.choices() == 0;
   motion.adaption_seconds = adaption.seconds();
   motion.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return motion;

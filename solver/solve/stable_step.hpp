@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "problem/model.hpp"
@@ -24,6 +25,10 @@ StableStep stable_step(const Model& model, std::span<const double> stiffness_bou
 
 /// The same at displacements u (m).
 StableStep stable_step(const Model& model, const NodalField& u);
+
+/// Throws ComputationError if a step has collapsed to less than a thousandth of the undeformed body's: one
+/// element takes the steps of the whole body with it, and the motion would not end. `where` says when.
+void require_worthwhile(const StableStep& stable, double undeformed_step, const std::string& where);
 
 /// The stable step (s) of a body whose elements alone have frequencies up to a square (1/s^2).
 double stable_step_of(const Model& model, double square);

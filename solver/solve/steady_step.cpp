@@ -16,6 +16,7 @@ SteadyStep::SteadyStep(double damping)
     : longest_wait_(damping > 0.0 ? 1.0 / damping : std::numeric_limits<double>::infinity()) {}
 
 double SteadyStep::next(double longest, double time) {
+  longest *= share_;
   const bool first = step_ == 0.0;
   if (first) wait_ = std::min(first_wait * longest, longest_wait_);
   if (first || longest < step_) {
@@ -33,6 +34,13 @@ double SteadyStep::next(double longest, double time) {
   least_ = longest;
   since_ = time;
   return step_;
+}
+
+void SteadyStep::shorten() {
+  constexpr double by = 0.7;
+  share_ *= by;
+  step_ *= by;
+  least_ = step_;
 }
 
 }  // namespace sandglass

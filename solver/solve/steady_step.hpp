@@ -22,6 +22,13 @@ class SteadyStep {
   /// The next step (s) at `time` (s), where `longest` (s) is allowed.
   double next(double longest, double time);
 
+  /// Whether steps may still prove too long: once they are a fifth of what is allowed, they are not the
+  /// cause.
+  bool may_shorten() const { return share_ > 0.2; }
+
+  /// Shortens the present step, and all that are allowed later, since they proved too long.
+  void shorten();
+
   /// The data that the next call depends on; see checkpoint.hpp.
   template <class Archive>
   void keep(Archive& archive) {
@@ -29,6 +36,7 @@ class SteadyStep {
     archive("least longest step", least_);
     archive("steady since", since_);
     archive("steady wait", wait_);
+    archive("steady share", share_);
   }
 
  private:
@@ -37,6 +45,7 @@ class SteadyStep {
   double least_ = 0.0;   // s, of the longest steps allowed since
   double since_ = 0.0;   // s, the start of the wait
   double wait_ = 0.0;    // s
+  double share_ = 1.0;   // of what is said to be allowed
 };
 
 }  // namespace sandglass
