@@ -231,7 +231,6 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   const bool quasi_static = scene.description.quasi_static;
   const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
   if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
-  watch_for_interrupt();
   RunObserver observer(model, writer, keeper);
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
   Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
@@ -284,6 +283,7 @@ int run_case(const RunOptions& options) {
   std::optional<Model> on_refined;
   if (refined) on_refined.emplace(refined->mesh.scene, choice);
   const Model& model = on_refined ? *on_refined : own;
+  watch_for_interrupt();  // before files are there that would be left
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
   std::optional<ResultWriter> writer;

@@ -75,6 +75,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
 void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli>& moduli) {
   elements_->update(u, moduli);
   Rows<float> coarse_u = u;
+  if (!meshes_.empty()) elements_->layout().gather_rows(coarse_u.data());
   for (MeshStage& stage : meshes_) {
     coarse_u = stage.to_finer->at_common_nodes(coarse_u);
     stage.level->update(coarse_u, moduli);
