@@ -160,7 +160,8 @@ void require_quasi_static(const RunOptions& options, const Case& description) {
 /// What a run has found, static or dynamic.
 struct Answer {
   NodalField u;
-  std::string status;  ///< "complete", or why not
+  std::string status;          ///< "complete", or why not
+  std::string stability = {};  ///< of a static answer at rest; see stability_text
   double seconds = 0.0;
   double adaption_seconds = 0.0;
   bool near_enough = true;  ///< to the exact answer, if that is asked for
@@ -210,8 +211,12 @@ Answer static_answer(const Model& model, const std::optional<double>& sleep, Run
   observer.end();
   const Precision precision = model.choice().precision;
   print_static_ending(found, precision, model.scene().description.relaxation.tolerance, from != nullptr);
-  return {std::move(found.u), in_equilibrium(found) ? "complete" : outcome(found, precision), found.seconds,
-          found.adaption_seconds};
+  const bool rests = in_equilibrium(found);
+  return {.u = std::move(found.u),
+          .status = rests ? "complete" : outcome(found, precision),
+          .stability = rests ? stability_text(found) : "",
+          .seconds = found.seconds,
+          .adaption_seconds = found.adaption_seconds};
 }
 
 Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoint* from) {
@@ -219,9 +224,10 @@ Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoin
   observer.end();
   const Scene& scene = model.scene();
   print_dynamic_ending(found, scene.description.dynamics.subcycles, scene.mesh.cells.size(), from != nullptr);
-  return {std::move(found.u),
-          found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete", found.seconds,
-          found.adaption_seconds};
+  return {.u = std::move(found.u),
+          .status = found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete",
+          .seconds = found.seconds,
+          .adaption_seconds = found.adaption_seconds};
 }
 
 /// Computes and prints an answer; `refined`, `writer` and `keeper` may be null.
@@ -231,7 +237,6 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   const bool quasi_static = scene.description.quasi_static;
   const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
   if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
-  watch_for_interrupt();
   RunObserver observer(model, writer, keeper);
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
   Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
@@ -284,6 +289,7 @@ int run_case(const RunOptions& options) {
   std::optional<Model> on_refined;
   if (refined) on_refined.emplace(refined->mesh.scene, choice);
   const Model& model = on_refined ? *on_refined : own;
+  watch_for_interrupt();  // before files are there that would be left
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
   std::optional<ResultWriter> writer;
@@ -301,6 +307,7 @@ int run_case(const RunOptions& options) {
                            error.breakdown());
   }
   if (writer) {
+    if (!answer.stability.empty()) writer->note("stability", answer.stability);
     writer->commit(answer.status);
     fmt::print("wrote {}; open {} in ParaView\n", options.output, guide_of(options.output).string());
   } else if (answer.status == "complete") {

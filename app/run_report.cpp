@@ -156,8 +156,12 @@ double HistoryReport::unexplained_share(double damping) const {
 
 void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on) {
   const bool rests = in_equilibrium(found);
-  fmt::print("{}: {}, {:.3g} s{}; residual {:.2e}, tolerance {:.2g}{}\n",
-             rests ? "equilibrium" : "no equilibrium", plural(found.steps, "evaluation"), found.seconds,
+  const std::string stability = found.stability_evaluations > 0
+                                    ? fmt::format(" and {} of its stability", found.stability_evaluations)
+                                    : std::string();
+  fmt::print("{}: {}{}, {:.3g} s{}; residual {:.2e}, tolerance {:.2g}{}\n",
+             rests ? fmt::format("static equilibrium ({})", stability_text(found)) : "no equilibrium",
+             plural(found.steps, "evaluation"), stability, found.seconds,
              went_on ? " since the checkpoint" : "", found.residual, tolerance,
              !rests             ? "; " + outcome(found, precision)
              : !found.converged ? fmt::format(": {} precision resolves no more",

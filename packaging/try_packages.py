@@ -103,9 +103,9 @@ def use(system, case, run, module_in):
     activate = "" if module_in.startswith("/usr") else ". venv/bin/activate && "
     system.run(f"{activate}sandglass --version", says=f"sandglass {version} ")
     system.run(f"{activate}sandglass cases", says="ellipsoid-indentation")
-    system.run(f"{activate}{run}", says="equilibrium: ")
+    system.run(f"{activate}{run}", says="static equilibrium")
     system.run(f"{activate}sandglass choose {case} --tolerance 5% -o chosen.toml")
-    system.run(f"{activate}sandglass run chosen.toml -o chosen.h5", says="equilibrium: ")
+    system.run(f"{activate}sandglass run chosen.toml -o chosen.h5", says="static equilibrium")
     # Meshes of other programs are read by scripts that are found beside the program or the module.
     system.run(f"{activate}sandglass mesh hook.toml -o hook.h5")
     script = "import sandglass; sandglass.Simulation('hook.toml').settle(); "

@@ -3,12 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <fstream>
 
-#include "io/checkpoint_file.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
+#include "support/kept_run.hpp"
 #include "support/scenes.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/typed_lists.hpp"
@@ -35,51 +34,6 @@ Scene loaded_block(const AnyLaw& law, bool quasi_static) {
   description.dynamics.frames = 6;
   description.velocities = {{.value = {0.0, 0.05, 0.0}}};
   return make_scene(description, mesh, sets);
-}
-
-/// Records all reports, and every checkpoint with the reports before it.
-class KeepingRecorder final : public Observer {
- public:
-  explicit KeepingRecorder(RunSoFar run = {}) : run_(std::move(run)) {}
-  void frame(const Frame& frame) override { run_.frames.push_back(frame); }
-  void history(const HistoryRow& row) override { run_.history.push_back(row); }
-  void resumable(const std::function<Checkpoint()>& checkpoint) override {
-    run_.point = checkpoint();
-    kept_.push_back(run_);
-  }
-  const RunSoFar& run() const { return run_; }
-  const std::vector<RunSoFar>& kept() const { return kept_; }
-
- private:
-  RunSoFar run_;
-  std::vector<RunSoFar> kept_;
-};
-
-/// The bits of all reports of a run and of its final answer.
-std::vector<std::uint64_t> bits_of(const RunSoFar& run, const NodalField& answer) {
-  std::vector<std::uint64_t> bits;
-  const auto add = [&](double number) { bits.push_back(std::bit_cast<std::uint64_t>(number)); };
-  const auto add_field = [&](const NodalField& field) {
-    for (const auto& row : field) std::for_each(row.begin(), row.end(), add);
-  };
-  for (const auto& frame : run.frames) {
-    add(frame.time);
-    add_field(frame.u);
-    add_field(frame.v);
-    std::for_each(frame.jacobians.begin(), frame.jacobians.end(), add);
-    std::for_each(frame.hourglass_energy_densities.begin(), frame.hourglass_energy_densities.end(), add);
-    std::for_each(frame.stresses.begin(), frame.stresses.end(), add);
-    for (const auto& [set, force] : frame.reactions) add_field({force});
-  }
-  for (const auto& row : run.history) {
-    for (const double number : {row.time, row.kinetic, row.strain, row.hourglass, row.external_work,
-                                row.residual, row.step_size, row.adaption}) {
-      add(number);
-    }
-    for (const auto& [set, force] : row.reactions) add_field({force});
-  }
-  add_field(answer);
-  return bits;
 }
 
 /// How a run ended: the bits, and what it says of itself. One that breaks down says that, and is compared all

@@ -101,7 +101,7 @@ TEST(FourPoint, other_corners_differ_to_third_order) {
 TEST(FourPoint, shape_decides_which_corners_have_points) {
   const auto chosen = [](const NodalVectors<double>& X) {
     const double side = FourPoint::side(to_modes(X));
-    std::set<Vector> places;
+    std::set<std::array<double, 3>> places;
     for (int I = 0; I < 8; ++I) {
       const double product = corner_signs(I, 0) * corner_signs(I, 1) * corner_signs(I, 2);
       if (product * side < 0.0) places.insert({X(I, 0), X(I, 1), X(I, 2)});

@@ -209,6 +209,7 @@ def test_run_writes_what_it_says(block):
             "method",
             "kappa",
             "status",
+            "stability",
         ):
             assert file.attrs[name]
         assert text_of(file.attrs["method"]) == "tl-perturbation"

@@ -11,7 +11,7 @@ import pytest
 from command_line import BINARY, catches_interrupts, sandglass
 
 from common.program import ROOT
-from common.result_file import last_displacement
+from common.result_file import last_displacement, text_of
 
 FOLDER = ROOT / "verification" / "reported"
 
@@ -253,6 +253,59 @@ def test_equal_materials_are_one(method, tmp_path):
     assert outcome.returncode == 0, outcome.stderr
     # Sums in another order, over some hundred steps.
     assert numpy.abs(last_displacement(tmp_path / "one.h5") - parts).max() < 1e-10
+
+
+def end_of(result):
+    """The mean displacement of the nodes at the end, x and y."""
+    with h5py.File(result) as file:
+        return last_displacement(result)[file["mesh/sets/end"][:]].mean(axis=0)[:2]
+
+
+ELASTICA = {"elastica-1152": (-0.259, 0.593), "elastica-1884": (-0.877, 0.803)}
+
+
+@pytest.mark.parametrize("precision", ["double", "float"])
+@pytest.mark.parametrize(
+    "method", ["tl-perturbation", "tl-enhanced", "tl-assumed-strain", "tl-mean-dilatation"]
+)
+@pytest.mark.parametrize("name", ELASTICA)
+def test_a_column_beyond_its_buckling_load_is_an_elastica(name, method, precision, tmp_path):
+    """The table of Timoshenko and Gere. The search may find the straight column first. Tolerance:
+    of the mesh, two elements across; with eight points they are some 4 % stiffer in bending, as if
+    the load were as much smaller, between rows of the table that are .09 and .17 apart. In single
+    precision rounding is as large as the side force and as the least eigenvalue."""
+    outcome, result = run(name, tmp_path, "--method", method, "--precision", precision)
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    with h5py.File(result) as file:
+        stability = text_of(file.attrs["stability"])
+    assert f"static equilibrium ({stability})" in outcome.stdout
+    rounded = precision == "float" and "may be rounding" in stability
+    assert stability.startswith("stable") or rounded
+    x, y = end_of(result)
+    if precision == "float":
+        y = abs(y)
+    tolerance = 0.07 if method == "tl-mean-dilatation" else 0.01 if precision == "double" else 0.02
+    assert abs(numpy.subtract((x, y), ELASTICA[name])).max() < tolerance
+
+
+def test_a_column_bends_to_the_side_of_its_load(tmp_path):
+    """To where it ends in damped motion; an unstable equilibrium is found first."""
+    outcome, result = run("column", tmp_path)
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    assert "static equilibrium (stable, after an unstable one was left)" in outcome.stdout
+    motion = """
+[dynamics]
+duration = 60.0
+ramp_time = 10.0
+damping = 3.0
+frames = 2
+"""
+    lines = {'answer = "quasi-static"': 'answer = "dynamic"'}
+    answer = end_of(result)
+    assert abs(answer - (-0.245, 0.580)).max() < 5e-4
+    moved, result = run("column", tmp_path, lines=lines, more=motion)
+    assert moved.returncode == 0, moved.stderr
+    assert abs(answer - end_of(result)).max() < 1e-4
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])

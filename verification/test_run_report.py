@@ -103,7 +103,8 @@ def test_the_last_lines_are_those_of_the_result(block):
     lines = lines_of(sandglass("run", block, "-o", result))
     text = "\n".join(lines)
     ending = re.search(
-        r"^equilibrium: (\d+) evaluations, \S+ s; residual (\S+), tolerance 1e-08$",
+        r"^static equilibrium \(stable\): (\d+) evaluations and \d of its stability, \S+ s; "
+        r"residual (\S+), tolerance 1e-08$",
         text,
         re.MULTILINE,
     )
@@ -149,7 +150,7 @@ def test_a_motion_ends_with_its_steps_and_energies(block):
 
 def test_a_residual_above_the_tolerance_is_explained(block):
     outcome = sandglass("run", block, "-p", "float")
-    ending = next(line for line in lines_of(outcome) if line.startswith("equilibrium: "))
+    ending = next(line for line in lines_of(outcome) if line.startswith("static equilibrium"))
     residual, explained = re.search(r"residual (\S+), tolerance 1e-08(.*)$", ending).groups()
     assert float(residual) > 1e-8 and explained == ": single precision resolves no more"
 
@@ -176,7 +177,7 @@ def test_the_readme_shows_what_its_first_case_prints(tmp_path):
     assert len(shown) == len(printed)
     for ours, theirs in zip(shown, printed):
         assert re.sub(NUMBER, "#", ours) == re.sub(NUMBER, "#", theirs)
-        if ours.startswith("equilibrium: "):  # seconds, and the last rounding of the residual
+        if ours.startswith("static equilibrium"):  # seconds, and the last rounding of the residual
             continue
         numbers = [[float(n) for n in re.findall(NUMBER, line)] for line in (ours, theirs)]
         assert numbers[0] == pytest.approx(numbers[1], rel=0.01)  # one in the last of three digits
@@ -299,4 +300,4 @@ def test_a_terminal_shows_load_and_residual_from_the_start(block):
     first = shown.decode().split("\r\x1b[K")[1]
     assert re.search(r"^block \[.*\] +\d+ % load \S+, evaluation 1, residual \S+$", first)
     assert shown.endswith(b"\r\x1b[K")  # nothing is left of it
-    assert "equilibrium: " in text
+    assert "static equilibrium (stable): " in text

@@ -28,7 +28,7 @@ def test_what_sleeps_is_in_the_result_at_rest(beam):
     assert outcome.returncode == 0, outcome.stderr
     awake = next(line for line in outcome.stdout.splitlines() if line.startswith("awake: "))
     assert 0 < int(awake.split()[1]) < 120 and awake.endswith("of 240 elements")
-    assert "equilibrium: " in outcome.stdout
+    assert "static equilibrium (stable): " in outcome.stdout
     with h5py.File(result) as file:
         points = file["mesh/points"][:]
     u = last_displacement(result)

@@ -65,7 +65,7 @@ def test_meshes_of_gmsh_run(tmp_path, mesh):
     case = case_of(tmp_path, mesh)
     head = "head_plate" if mesh.endswith("inp") else "head plate"
     case.write_text(case.read_text().replace('set = "head"', f'set = "{head}"'))
-    assert "equilibrium:" in succeeds("run", case, "-o", tmp_path / "a.h5").stdout
+    assert "static equilibrium (stable):" in succeeds("run", case, "-o", tmp_path / "a.h5").stdout
     with h5py.File(tmp_path / "a.h5") as file:
         points = file["mesh/points"][...]
     u = last_displacement(tmp_path / "a.h5")
@@ -93,7 +93,7 @@ def test_what_is_put_right_is_told_and_the_run_goes_on(tmp_path):
     assert done.stderr.startswith(
         f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
     )
-    assert "equilibrium:" in done.stdout
+    assert "static equilibrium (stable):" in done.stdout
 
 
 def test_files_that_are_no_mesh(tmp_path):

@@ -39,6 +39,23 @@ bool is_abandoned(const fs::path& part, const std::string& process) {
   return free;
 }
 
+/// Keeps what would end the program waiting while it lives, so that no file is left that is about to go.
+class Undisturbed {
+ public:
+  Undisturbed() {
+    sigset_t both;
+    sigemptyset(&both);
+    for (const int signal : {SIGINT, SIGTERM}) sigaddset(&both, signal);
+    pthread_sigmask(SIG_BLOCK, &both, &before_);
+  }
+  Undisturbed(const Undisturbed&) = delete;
+  Undisturbed& operator=(const Undisturbed&) = delete;
+  ~Undisturbed() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_{};
+};
+
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -102,6 +119,7 @@ void require_place(const fs::path& path, const std::vector<fs::path>& inputs) {
     throw InputError(fmt::format(
         "{}: is what this command reads, and would be lost; name another file to write", path.string()));
   }
+  const Undisturbed meanwhile;
   const NewFile tried(path);
 }
 

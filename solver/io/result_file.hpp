@@ -40,6 +40,9 @@ class ResultWriter {
   /// The frames so far; the first is the undeformed body.
   std::size_t frames() const { return times_.size(); }
 
+  /// A text attribute of the whole.
+  void note(const std::string& name, const std::string& text) { file_.write_attribute("/", name, text); }
+
   /// `status` is "complete" or says how the run ended.
   void commit(const std::string& status);
 

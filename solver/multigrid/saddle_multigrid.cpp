@@ -77,6 +77,7 @@ void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli
   elements_->update(u, moduli, stiffening);
   Rows<float> coarse_u = u;
   std::vector<float> coarse_stiffening = stiffening;
+  if (!meshes_.empty()) elements_->layout().gather_rows(coarse_u.data());
   for (MeshStage& stage : meshes_) {
     coarse_u = stage.to_finer->at_common_nodes(coarse_u);
     coarse_stiffening = stage.to_finer->means(coarse_stiffening);

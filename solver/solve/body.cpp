@@ -113,6 +113,15 @@ void Body<Real>::evaluate_forces() {
 }
 
 template <class Real>
+void Body<Real>::evaluate_forces(State<Real>& state, Rows<Real>& force) const {
+  elements_.evaluate(state, force);
+  Loads<Real> loads = loads_;
+  loads.subtract(state, force);
+  ties_.hand_on(force);
+  for (const RowConstraint& constraint : constraints_) force[constraint.row][constraint.component] = Real(0);
+}
+
+template <class Real>
 double Body<Real>::carried() const {
   const std::vector<double> all = of_all_constraints(reactions_);
   double carried_square = 0.0;

@@ -62,6 +62,9 @@ class Body {
   /// that the update of increments can ignore constraints.
   void evaluate_forces();
 
+  /// Sets `force` to the free forces of another state, and leaves those of the last evaluation.
+  void evaluate_forces(State<Real>& state, Rows<Real>& force) const;
+
   /// The norm of reactions and loads together, N.
   double carried() const;
 

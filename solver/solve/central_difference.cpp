@@ -231,7 +231,8 @@ class CentralDifference {
   /// Steps equal to the end, of at most the steady one.
   void divide_what_is_left() {
     const double left = settings_.duration - time();
-    next_step_ = left / std::max(1.0, std::ceil(left / steady_step_.step()));
+    constexpr double rounding = 1e-9;  // of a step, which must not decide how many there are
+    next_step_ = left / std::max(1.0, std::ceil(left / steady_step_.step() - rounding));
   }
 
   double ramp_time() const { return settings_.ramp_time > 0.0 ? settings_.ramp_time : settings_.duration; }
@@ -307,8 +308,8 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   StrainEnergies energies;
   double kinetic = 0.0;
 
-  const auto frame_due = [&] {
-    return scheme.finished() || scheme.time() >= frames * settings.duration / settings.frames;
+  const auto frame_due = [&] {  // up to the roundoff of a sum of steps
+    return scheme.time() >= frames * settings.duration / settings.frames * (1.0 - 1e-12) || scheme.finished();
   };
   const auto gains_energy = [&] {
     v = scheme.velocities();

@@ -101,6 +101,7 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
     result.converged = result.residual < settings.tolerance;
     result.stagnated = !result.converged && result.residual < 1e4 * epsilon;  // as in Stagnation
     result.rounded = result.stagnated && std::is_same_v<Real, float>;
+    result.stability = Stability::stable;  // its stiffness has been factorised
     result.interrupted = !observer.proceed(1, 1.0, result.residual);
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,

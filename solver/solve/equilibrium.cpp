@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "math/row_loops.hpp"
 #include "solve/newton_step.hpp"
@@ -14,8 +15,9 @@ namespace {
 /// an element is inverted.
 constexpr double near_answer = 0.01;
 
-/// The method of multipliers ends when the norm has fallen to this share.
-constexpr double multiplied_share = 0.1;
+/// The method of multipliers ends when the norm has fallen to this share; later on the way from a saddle, to
+/// which accelerated steps would return.
+constexpr double multiplied_share = 0.1, multiplied_share_from_saddle = 1e-4;
 
 /// So often it may hand over to accelerated steps before the potential's descent begins.
 constexpr int most_returns = 2;
@@ -39,6 +41,10 @@ constexpr double most_growth = 1.5, most_growth_of_the_last_try = 3.0;
 /// The residual of a linear answer that was not reached may have grown, in slender bodies, and the answer be
 /// good to start from all the same; beyond this it is not.
 constexpr double most_extended_growth = 10.0;
+
+/// A saddle is left by this change of displacement gradients and its doubles, in the first of the directions
+/// in which potentials are equal but for this share of what they fall.
+constexpr double shortest_leap = 1e-3, hardly_lower = 1e-5;
 
 }  // namespace
 
@@ -66,6 +72,8 @@ void Equilibrium<Real>::begin() {
 template <class Real>
 void Equilibrium<Real>::start(Effort effort) {
   effort_ = effort;
+  leaves_saddle_ = false;
+  convex_ = true;
   returns_ = 0;
   begin();
   mixed_.evaluate();
@@ -165,20 +173,21 @@ void Equilibrium<Real>::begin_multipliers() {
   go_to(best_);
   mixed_.evaluate();
   progress_ = {mixed_.norm()};
-  enough_ = multiplied_share * progress_.fallen;
+  enough_ = (leaves_saddle_ ? multiplied_share_from_saddle : multiplied_share) * progress_.fallen;
 }
 
 /// One Newton step with the pressures as multipliers, which follow.
 template <class Real>
 bool Equilibrium<Real>::multiplied() {
-  if (mixed_.norm() < enough_) {
+  if (mixed_.norm() < enough_ && convex_) {
     begin_acceleration();
     return accelerated();
   }
   if (progress_.take(mixed_.norm(), multiplied_patience)) {
     const auto multipliers = mixed_.multipliers(penalty_over_shear);
     if (body().healthy()) mixed_.linearize(multipliers.penalty);
-    if (newton_step(mixed_, &multipliers, most_products_with_multipliers)) {
+    if (newton_step(mixed_, &multipliers, most_products_with_multipliers,
+                    leaves_saddle_ ? &convex_ : nullptr)) {
       mixed_.take_pressures(multipliers);
       begin();
       mixed_.compare();
@@ -201,6 +210,69 @@ template <class Real>
 bool Equilibrium<Real>::descended() {
   if (body().healthy()) mixed_.linearize();
   return progress_.take(residual(), descent_patience) && newton_step<Real>(mixed_, nullptr, most_products);
+}
+
+template <class Real>
+SoftestMotions Equilibrium<Real>::softest_motions(const NodalField& points) {
+  acceleration_.clear();
+  mixed_.linearize();
+  if (stage_ == Stage::descent) mixed_.take_own_pressures();
+  return sandglass::softest_motions(mixed_, points);
+}
+
+template <class Real>
+bool Equilibrium<Real>::leave(const std::vector<MixedVector>& falling, bool slowly) {
+  effort_ = Effort::full;
+  returns_ = 0;
+  leaves_saddle_ = true;
+  convex_ = false;
+  using Multipliers = typename MixedBody<Real>::Multipliers;
+  const auto held = mixed_.pressure_varies() ? std::optional<Multipliers>()
+                                             : std::optional(mixed_.multipliers(penalty_over_shear));
+  const Multipliers* multipliers = held ? &*held : nullptr;
+  const Point saddle{body().state(), pressures()};
+  Rows<Real> f;
+  const auto potential_along = [&](const MixedVector& motion, double length) {
+    go_to(saddle);
+    mixed_.move(motion, length);
+    mixed_.evaluate(multipliers, f);
+    return body().healthy() ? mixed_.potential(multipliers) : INFINITY;
+  };
+  const double at_saddle = potential_along(falling.front(), 0.0);
+  double least = at_saddle;
+  const int directions = falling.size() > 1 ? 8 : 2;
+  for (int k = 0; k < directions; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / directions;
+    MixedVector motion = falling.front();
+    multiply(static_cast<float>(std::cos(angle)), motion, blocks());
+    if (falling.size() > 1) add(static_cast<float>(std::sin(angle)), falling[1], motion, blocks());
+    double length = shortest_leap / mixed_.multigrid().elements().largest_gradient(motion.u);
+    for (double before = at_saddle, now = 0.0;; before = now, length *= 2.0) {
+      now = potential_along(motion, length);
+      if (!(now < before)) break;
+      if (now < least - hardly_lower * (at_saddle - least)) {
+        least = now;
+        best_ = {body().state(), pressures()};
+      }
+    }
+  }
+  if (!(least < at_saddle)) {
+    go_to(saddle);
+    mixed_.evaluate();
+    return false;
+  }
+  go_to(best_);
+  mixed_.evaluate(multipliers, f);
+  if (multipliers != nullptr) mixed_.take_pressures(*multipliers);
+  start_ = best_ = {body().state(), pressures()};
+  begin();
+  mixed_.evaluate();
+  if (multipliers != nullptr && !slowly) {
+    begin_multipliers();
+  } else {
+    begin_descent();
+  }
+  return true;
 }
 
 template <class Real>

@@ -5,6 +5,7 @@
 
 #include "solve/acceleration.hpp"
 #include "solve/mixed_body.hpp"
+#include "solve/softest_motions.hpp"
 
 namespace sandglass {
 
@@ -54,6 +55,14 @@ class Equilibrium {
 
   /// Takes one step with one evaluation, or more in later stages; false if the search goes astray.
   bool step();
+
+  /// How the body resists small motions from the last evaluation, which must be that of an answer.
+  SoftestMotions softest_motions(const NodalField& points);
+
+  /// Leaves a saddle along the falling motions, to where the potential is least along them or combinations of
+  /// the first two; `step` descends further, the body's own potential if `slowly`. Returns false if it falls
+  /// along none.
+  bool leave(const std::vector<MixedVector>& falling, bool slowly);
 
   /// The residual of the last evaluation; see Body::residual.
   double residual() const { return mixed_.residual(); }
@@ -126,9 +135,12 @@ class Equilibrium {
   Progress progress_;
   Point start_, best_;
   double best_norm_ = 0.0;
-  double first_ = 1.0;         // norm
-  double enough_ = 0.0;        // norm at which multipliers have done their work
-  int returns_ = 0;            // to acceleration
+  double first_ = 1.0;   // norm
+  double enough_ = 0.0;  // norm at which multipliers have done their work
+  int returns_ = 0;      // to acceleration
+  bool leaves_saddle_ = false;
+  bool convex_ =
+      true;  // whether the last Newton step met no negative curvature; only asked where a saddle is left
   std::vector<double> norms_;  // since acceleration began
 };
 

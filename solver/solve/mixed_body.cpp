@@ -227,6 +227,45 @@ void MixedBody<Real>::compare() {
 }
 
 template <class Real>
+void MixedBody<Real>::differentiate(const MixedVector& direction, double length, double most_lambda_over_mu,
+                                    Rows<float>& change) {
+  const auto step = static_cast<Real>(length);
+  State<Real> state = body_.state();
+  for (std::size_t row = 0; row < free_.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) state.u[row][i] += step * static_cast<Real>(direction.u[row][i]);
+  }
+  body_.ties().follow(state.u);
+  Rows<Real> f(free_.size()), before = body_.free_forces();
+  body_.evaluate_forces(state, f);
+  const auto replace = [&](const State<Real>& at, const std::vector<Real>& p) {
+    elements_.replace_pressures(at, p, lambdas_, pressure_force_, defect_);
+    body_.ties().hand_on(pressure_force_);
+  };
+  const auto add_pressures = [&](Rows<Real>& forces) {
+    for (std::size_t row = 0; row < forces.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) forces[row][i] += free_[row][i] * pressure_force_[row][i];
+    }
+  };
+  if (!pressure_varies_) {
+    std::vector<Real> p = p_;
+    replace(body_.state(), p_);
+    add_pressures(before);
+    const std::vector<Real> defect = defect_;
+    replace(state, p_);
+    for_each_element([&](std::size_t e, std::size_t) {
+      const double resists = std::min(lambda(e), most_lambda_over_mu * moduli_[materials_.of(e)].mu);
+      p[e] += static_cast<Real>(resists / volume(e)) * (defect_[e] - defect[e]);
+    });
+    replace(state, p);
+    add_pressures(f);
+  }
+  for (std::size_t row = 0; row < f.size(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i)
+      change[row][i] = static_cast<float>((f[row][i] - before[row][i]) / step);
+  }
+}
+
+template <class Real>
 template <class Term>
 double MixedBody<Real>::sum_over_components(const Term& term) const {
   const float *k = numbers_of(multigrid_.elements().stiffness()), *w = numbers_of(weights_.u);

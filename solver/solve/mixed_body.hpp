@@ -57,6 +57,12 @@ class MixedBody {
   /// Evaluates residuals from the forces of the last evaluation.
   void compare();
 
+  /// change = the tangent stiffness times displacements (m): N, the difference of forces over `length` times
+  /// these, with one evaluation. Volume changes of an element are resisted by lambda up to so many shear
+  /// moduli, where pressures vary within elements by all of it. The body stays at the last evaluation.
+  void differentiate(const MixedVector& direction, double length, double most_lambda_over_mu,
+                     Rows<float>& change);
+
   /// Weighted residuals of the last evaluation, root of J.
   const MixedVector& residuals() const { return residuals_; }
 

@@ -31,6 +31,9 @@ class NewtonStep {
     size_ = std::sqrt(dot(start_force_, start_force_, blocks().u));
   }
 
+  /// Whether all directions so far had positive curvature.
+  bool convex() const { return convex_; }
+
   bool take(int most_products) {
     if (!(size_ > 0.0) || !std::isfinite(size_)) return false;
     const double start_potential = mixed_.potential(multipliers_);
@@ -116,7 +119,10 @@ class NewtonStep {
       }
       q.u = product(d);
       const double curvature = dot(d, q, blocks());
-      if (!(curvature > 0.0)) return k > 0 ? x : longest_along(std::move(d));
+      if (!(curvature > 0.0)) {
+        convex_ = false;
+        return k > 0 ? x : longest_along(std::move(d));
+      }
       const auto length = static_cast<float>(rz / curvature);
       add(length, d, x, blocks());
       add(-length, q, r, blocks());
@@ -143,17 +149,21 @@ class NewtonStep {
   const State<Real> start_;
   Rows<Real> start_force_;
   double size_ = 0.0;
+  bool convex_ = true;
 };
 
 }  // namespace
 
 template <class Real>
 bool newton_step(MixedBody<Real>& mixed, const typename MixedBody<Real>::Multipliers* multipliers,
-                 int most_products) {
-  return NewtonStep<Real>(mixed, multipliers).take(most_products);
+                 int most_products, bool* convex) {
+  NewtonStep<Real> step(mixed, multipliers);
+  const bool taken = step.take(most_products);
+  if (convex != nullptr) *convex = step.convex();
+  return taken;
 }
 
-template bool newton_step(MixedBody<double>&, const MixedBody<double>::Multipliers*, int);
-template bool newton_step(MixedBody<float>&, const MixedBody<float>::Multipliers*, int);
+template bool newton_step(MixedBody<double>&, const MixedBody<double>::Multipliers*, int, bool*);
+template bool newton_step(MixedBody<float>&, const MixedBody<float>::Multipliers*, int, bool*);
 
 }  // namespace sandglass

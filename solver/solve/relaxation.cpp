@@ -52,7 +52,7 @@ class Search {
         return checkpoint;
       });
       load_levels_.predict(equilibrium_);
-      if (load_levels_.advances() && body().healthy() && solve()) {
+      if (load_levels_.advances() && body().healthy() && solve() && descend_from_saddles()) {
         finish_load_level();
       } else if (!ended_) {
         retry_load_level();
@@ -72,6 +72,7 @@ class Search {
     const auto& coarser = model_.scene().coarser;
     if (!coarser.empty()) equilibrium_.average_pressures(coarser.front().element_of);
     if (!solve() || (result_.stagnated && !result_.rounded)) return std::nullopt;
+    if (!descend_from_saddles()) return std::nullopt;
     observer_.frame(rest);
     finish_load_level();
     return finish();
@@ -88,6 +89,9 @@ class Search {
   /// Elements without stiffness against hourglass modes have no stable equilibrium, but on coarse meshes; the
   /// search for one ends after so many evaluations.
   static constexpr int few_evaluations = 2000;
+
+  /// The saddles that are left one after another.
+  static constexpr int most_saddles = 5;
 
   static bool without_stiffness(const Model& model) {
     const MethodEntry& method = method_named(model.choice().method);
@@ -144,12 +148,17 @@ class Search {
   /// element inverted. A search that stagnates starts once more, without the roundoff of its earlier steps.
   bool solve() {
     first_evaluation_ = equilibrium_.evaluations();
+    equilibrium_.start(load_levels_.effort());
+    return search();
+  }
+
+  /// The same from where the search has started.
+  bool search() {
     Stagnation stagnation(epsilon, amplification_);
     int stagnations = 0;
     std::optional<std::pair<State<Real>, std::vector<Real>>>
         best;  // since only rounding is left, in which a search may wander off
     double least = INFINITY;
-    equilibrium_.start(load_levels_.effort());
     while (!arrived() || settle()) {
       check();
       if (ended_) return false;
@@ -179,6 +188,44 @@ class Search {
     result_.rounded =
         result_.stagnated && (at_rounding() || (single && stagnation.reaches(equilibrium_.residual())));
     return healthy;
+  }
+
+  /// Why the tangent does not decide whether an equilibrium is stable; empty if it does.
+  std::string no_potential() const {
+    if (elements_.needs_increment()) return "forces depend on the path";
+    if (!model_.scene().pressures.empty()) return "pressures follow their faces";
+    return without_stiffness(model_) ? "hourglass modes are not resisted" : "";
+  }
+
+  /// At the full load leaves equilibria at which the tangent has a negative eigenvalue, for minima of the
+  /// potential; false if the run ends.
+  bool descend_from_saddles() {
+    if (!load_levels_.full() || (result_.stagnated && !result_.rounded)) return true;
+    result_.why_not_decided = no_potential();
+    if (!result_.why_not_decided.empty()) return true;
+    result_.stability = Stability::stable;
+    if (method_named(model_.choice().method).is_linear) return true;
+    for (int left = 0;; ++left) {
+      const SoftestMotions softest = equilibrium_.softest_motions(model_.scene().mesh.points);
+      result_.stability_evaluations += softest.evaluations;
+      if (softest.resists()) return true;
+      if (softest.falling.empty()) {
+        result_.stability = Stability::not_decided;
+        result_.why_not_decided = fmt::format(
+            "the least eigenvalue, {:.1g} of the initial stiffness, may be rounding", softest.least);
+        return true;
+      }
+      result_.stability = Stability::saddle_left;
+      if (left == most_saddles || !equilibrium_.leave(softest.falling, left > 0) || (!search() && !ended_)) {
+        throw ComputationError(
+            fmt::format("the equilibrium that was found is unstable: over the initial stiffness, the least "
+                        "eigenvalue of the present one is {:.2g}; the way down from it led to no other; "
+                        "remedy: a small force that decides where the body goes, or a motion with damping",
+                        softest.least),
+            Breakdown::no_balance);
+      }
+      if (ended_) return false;
+    }
   }
 
   /// Whether what is left of the forces may be rounding, of displacements or of J - 1, and is little beside
@@ -340,25 +387,6 @@ class Search {
 };
 
 }  // namespace
-
-bool in_equilibrium(const Relaxation& relaxation) {
-  return relaxation.converged || relaxation.rounded;
-}
-
-std::string outcome(const Relaxation& relaxation, Precision precision) {
-  if (relaxation.converged) return "at rest";
-  const std::string evaluations =
-      fmt::format("{} evaluation{}", relaxation.steps, relaxation.steps == 1 ? "" : "s");
-  if (relaxation.interrupted) return fmt::format("interrupted after {}", evaluations);
-  if (!relaxation.stagnated) {
-    return fmt::format("not at rest after {}{}", evaluations,
-                       relaxation.inverted ? ", and elements are inverted" : "");
-  }
-  if (in_equilibrium(relaxation))
-    return fmt::format("at rest within the rounding of {} precision",
-                       precision == Precision::single_precision ? "single" : "double");
-  return fmt::format("not at rest: residual stopped falling at {:.1e}", relaxation.residual);
-}
 
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
   const auto start = std::chrono::steady_clock::now();

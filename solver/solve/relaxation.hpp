@@ -5,6 +5,13 @@
 
 namespace sandglass {
 
+/// Whether an answer at rest is known to be a minimum of the potential.
+enum class Stability {
+  not_decided,
+  stable,
+  saddle_left  ///< stable, and the search came from an equilibrium that is not
+};
+
 /// A static answer and the course of the search for it.
 struct Relaxation {
   NodalField u;                   ///< m
@@ -18,6 +25,9 @@ struct Relaxation {
   StrainEnergies energies;        ///< at u
   double seconds = 0.0;           ///< wall time from the model to the answer
   double adaption_seconds = 0.0;  ///< the share of `seconds` for the choice of levels, adaptive methods
+  Stability stability = Stability::not_decided;
+  std::string why_not_decided = {};  ///< empty if it is
+  long stability_evaluations = 0;    ///< of the forces, beside `steps`
 };
 
 /// Finds the displacements at which forces are in equilibrium, with the settings of the case. The imposed
@@ -35,6 +45,9 @@ Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from 
 /// may keep the residual above the tolerance, in single precision often, in double precision where
 /// displacements are large and what the body bears is little, or where it is next to incompressible.
 bool in_equilibrium(const Relaxation& relaxation);
+
+/// Whether the answer is a minimum, in words: "stable", or the reason why that is not known.
+std::string stability_text(const Relaxation& relaxation);
 
 /// The end of the search in words: "at rest", or the reason why not.
 std::string outcome(const Relaxation& relaxation, Precision precision);

@@ -1,0 +1,247 @@
+#include "solve/softest_motions.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "math/row_loops.hpp"
+#include "mesh/mesh.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Volume changes are resisted by no more than this, over the shear modulus: corrections of the multigrid
+/// method keep volumes nearly, and what is left must not hide that the rest has lost its stiffness.
+constexpr float most_lambda_over_mu = 10.0f;
+
+/// Fewer motions may not have met the softest one.
+constexpr long fewest_evaluations = 3, most_evaluations = 100;
+
+/// The motions that are kept, and those that are left of them when there are more.
+constexpr Eigen::Index most_kept = 12, fewest_kept = 4;
+
+/// A start may have little of some motion by accident. Where the least eigenvalue is not above this, it must
+/// have settled up to a share of itself, and another start follows.
+constexpr double clearly = 0.1, little = 0.1, first_phase = 1.0, second_phase = 2.3;
+
+/// Motions that fall are good enough where so many steps have not brought the residual to this share.
+constexpr int most_stalled = 4;
+constexpr double much_less = 0.7;
+
+/// A method of Davidson for K x = theta A x, K the tangent and A the model problem's, both with the same
+/// limited resistance to volume changes: in the space of the motions so far, the Rayleigh quotient is made
+/// stationary, and the residual of the least one, prepared by a multigrid cycle, is the next motion.
+template <class Real>
+class Davidson {
+ public:
+  Davidson(MixedBody<Real>& mixed, const NodalField& points)
+      : mixed_(mixed), elements_(mixed.multigrid().elements()), points_(points) {
+    resistance_.resize(elements_.zero().p.size());
+    for (std::size_t c = 0; c < resistance_.size(); ++c) {
+      const ElementTangent& t = elements_.tangents()[c];
+      const float lambda =
+          mixed.pressure_varies() ? t.lambda : std::min(t.lambda, most_lambda_over_mu * t.mu);
+      if (t.volume > 0.0f) resistance_[c] = lambda / t.volume;
+    }
+    // The rounding of differences, and their second order.
+    length_ = std::pow(static_cast<double>(std::numeric_limits<Real>::epsilon()), 0.4);
+    found_.resolved = 2.0 * length_;
+  }
+
+  SoftestMotions find() {
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
+    MixedVector next = start(first_phase);
+    if (!(dot(next, next, blocks()) > 0.0)) found_.least = 1.0;  // nothing can move
+    bool once_more = true;
+    long fewest = fewest_evaluations;
+    for (int stalled = 0; expand(std::move(next)); ++stalled) {
+      small.compute(K_);
+      const double before = found_.least;
+      const auto [residual, falling] = examine(small, next);
+      if (residual < much_less * least_residual_ || falling != falling_) stalled = 0;
+      if (stalled == 0) least_residual_ = residual;
+      falling_ = falling;
+      const bool settled = found_.least > clearly || before - found_.least < little * found_.least;
+      const bool done = (falling > 0 && (residual < found_.resolved || stalled >= most_stalled)) ||
+                        (found_.evaluations >= fewest && found_.resists() && settled);
+      if (done && (found_.least > clearly || !std::exchange(once_more, false))) break;
+      if (done) {
+        next = start(second_phase);
+        fewest = found_.evaluations + fewest_evaluations;
+        stalled = -1;
+      }
+      if (found_.evaluations >= most_evaluations) break;
+      if (K_.rows() == most_kept) restart(small.eigenvectors().leftCols(fewest_kept));
+    }
+    for (Eigen::Index k = 0; k < falling_; ++k)
+      found_.falling.push_back(combination(small.eigenvectors().col(k), &Motion::direction));
+    return std::move(found_);
+  }
+
+ private:
+  struct Motion {
+    MixedVector direction;   // m
+    MixedVector model;       // A times it, N
+    MixedVector resistance;  // K times it, N
+  };
+
+  const MixedBlocks& blocks() const { return elements_.blocks(); }
+
+  /// Sets the least eigenvalue and its error, and `next` to the prepared residual that is largest: of the
+  /// least one alone or, as potentials will be compared along them, of the first two motions that fall.
+  /// Returns its norm, and how many fall.
+  std::pair<double, Eigen::Index> examine(const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& small,
+                                          MixedVector& next) {
+    const Eigen::VectorXd& values = small.eigenvalues();
+    found_.least = values[0];
+    Eigen::Index falling = 0;
+    while (falling < std::min<Eigen::Index>(2, values.size()) && values[falling] < -found_.resolved)
+      ++falling;
+    double largest = -1.0;
+    for (Eigen::Index k = 0; k < std::max<Eigen::Index>(1, falling); ++k) {
+      MixedVector correction = elements_.zero();
+      const double residual = correct(values[k], small.eigenvectors().col(k), correction);
+      if (k == 0) {
+        const double gap = values.size() > 1 ? values[1] - values[0] : 0.0;
+        found_.error = gap > residual ? residual * residual / gap : residual;
+      }
+      if (residual > largest) {
+        largest = residual;
+        next = std::move(correction);
+      }
+    }
+    return {largest, falling};
+  }
+
+  /// Forces of every wave length, which depend on places alone, and the same smoothed: of the answers of the
+  /// model problem to both, the second has the softest motions, the first has some of all.
+  MixedVector start(double first) {
+    const auto [low, high] = bounding_box(points_);
+    const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+    MixedVector r = elements_.zero(), rough = r, smooth = r, forces = r;
+    const auto& diagonal = elements_.stiffness();
+    for (std::size_t row = 0; row < elements_.layout().nodes; ++row) {
+      const Vector& X = points_[at(elements_.layout().node_of_row[row])];
+      double phase = first;
+      for (std::size_t i = 0; i < 3; ++i)
+        phase += (7.3 + 5.1 * static_cast<double>(i)) * (X[i] - low[i]) / size;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double wave = std::sin(3000.0 * std::pow(phase + static_cast<double>(i), 2));
+        r.u[row][i] = elements_.free()[row][i] * static_cast<float>(wave) * std::sqrt(diagonal[row][i]);
+      }
+    }
+    const auto answer = [&](MixedVector& x) {
+      mixed_.multigrid().cycle(r, x);
+      std::fill(x.p.begin(), x.p.end(), 0.0f);
+      const double energy = energy_of(x, forces);
+      multiply(energy > 0.0 ? static_cast<float>(1.0 / std::sqrt(energy)) : 0.0f, x, blocks());
+    };
+    answer(rough);
+    for (std::size_t row = 0; row < r.u.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i)
+        r.u[row][i] = elements_.free()[row][i] * diagonal[row][i] * rough.u[row][i];
+    }
+    answer(smooth);
+    add(0.5f, rough, smooth, blocks());
+    return smooth;
+  }
+
+  /// The norm of the residual of an eigenpair of the small problem; sets `correction` to it, prepared.
+  double correct(double value, const Eigen::VectorXd& shares, MixedVector& correction) {
+    MixedVector r = combination(shares, &Motion::resistance);
+    add(static_cast<float>(-value), combination(shares, &Motion::model), r, blocks());
+    mixed_.multigrid().cycle(r, correction);
+    return std::sqrt(std::max(0.0, dot(r.u, correction.u, blocks().u)));
+  }
+
+  /// x with the pressures that resist its volume changes.
+  MixedVector with_pressures(const MixedVector& x) const {
+    MixedVector both = x;
+    elements_.divergence(x.u, both.p);
+    for (std::size_t c = 0; c < both.p.size(); ++c) both.p[c] *= resistance_[c];
+    return both;
+  }
+
+  /// x A x; sets `forces` to A x.
+  double energy_of(const MixedVector& x, MixedVector& forces) const {
+    elements_.apply(with_pressures(x), forces);
+    std::fill(forces.p.begin(), forces.p.end(), 0.0f);
+    for (std::size_t row = 0; row < forces.u.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) forces.u[row][i] *= elements_.free()[row][i];
+    }
+    return dot(x, forces, blocks());
+  }
+
+  /// Adds a motion, as far as it is another than those before; false if it is not.
+  bool expand(MixedVector x) {
+    std::fill(x.p.begin(), x.p.end(), 0.0f);
+    Motion motion{x, elements_.zero(), elements_.zero()};
+    MixedVector& direction = motion.direction;
+    for (int round = 0; round < 2; ++round) {
+      for (const Motion& other : motions_)
+        add(static_cast<float>(-dot(other.model, direction, blocks())), other.direction, direction, blocks());
+      const double energy = energy_of(direction, motion.model);
+      if (!(energy > 0.0) || !std::isfinite(energy)) return false;
+      const auto scale = static_cast<float>(1.0 / std::sqrt(energy));
+      multiply(scale, direction, blocks());
+      multiply(scale, motion.model, blocks());
+    }
+    mixed_.differentiate(direction, length_ / elements_.largest_gradient(direction.u),
+                         static_cast<double>(most_lambda_over_mu), motion.resistance.u);
+    ++found_.evaluations;
+    motions_.push_back(std::move(motion));
+    const Motion& last = motions_.back();
+    const Eigen::Index n = K_.rows();
+    K_.conservativeResize(n + 1, n + 1);
+    for (Eigen::Index k = 0; k <= n; ++k) {
+      const Motion& other = motions_[static_cast<std::size_t>(k)];
+      K_(k, n) = K_(n, k) = 0.5 * (dot(other.direction, last.resistance, blocks()) +
+                                   dot(last.direction, other.resistance, blocks()));
+    }
+    return std::isfinite(K_(n, n));
+  }
+
+  MixedVector combination(const Eigen::VectorXd& shares, MixedVector Motion::*of) const {
+    MixedVector sum = elements_.zero();
+    for (std::size_t k = 0; k < motions_.size(); ++k)
+      add(static_cast<float>(shares[static_cast<Eigen::Index>(k)]), motions_[k].*of, sum, blocks());
+    return sum;
+  }
+
+  void restart(const Eigen::MatrixXd& kept) {
+    std::vector<Motion> motions;
+    for (Eigen::Index k = 0; k < kept.cols(); ++k) {
+      motions.push_back({combination(kept.col(k), &Motion::direction),
+                         combination(kept.col(k), &Motion::model),
+                         combination(kept.col(k), &Motion::resistance)});
+    }
+    motions_ = std::move(motions);
+    K_ = kept.transpose() * K_ * kept;
+  }
+
+  MixedBody<Real>& mixed_;
+  const ElementLevel& elements_;
+  const NodalField& points_;
+  std::vector<float> resistance_;  // Pa/m^3, by cell
+  double length_;
+  std::vector<Motion> motions_;  // A-orthonormal
+  Eigen::MatrixXd K_;            // between them
+  double least_residual_ = 0.0;
+  Eigen::Index falling_ = 0;  // motions, of at most two
+  SoftestMotions found_;
+};
+
+}  // namespace
+
+template <class Real>
+SoftestMotions softest_motions(MixedBody<Real>& mixed, const NodalField& points) {
+  return Davidson<Real>(mixed, points).find();
+}
+
+template SoftestMotions softest_motions(MixedBody<double>&, const NodalField&);
+template SoftestMotions softest_motions(MixedBody<float>&, const NodalField&);
+
+}  // namespace sandglass
