@@ -76,8 +76,8 @@ def read_run(case, method, text):
     rest = re.search(EQUILIBRIUM, text, re.MULTILINE)
     if not rest:
         raise ComputationError(
-            f"sandglass run {case} -m {method}: 'static equilibrium (...): N evaluations, T s; residual "
-            f"R' is required, but it printed {text!r}"
+            f"sandglass run {case} -m {method}: 'static equilibrium (...): N evaluations, T s; "
+            f"residual R' is required, but it printed {text!r}"
         )
     return record(
         program="sandglass",
