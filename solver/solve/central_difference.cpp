@@ -141,7 +141,7 @@ class CentralDifference {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
-      require_worthwhile(stable, undeformed_step_, fmt::format("{:.6g} s, step {}", time(), step()));
+      require_worthwhile(stable, undeformed_step_, time(), step());
       const double before = steady_step_.step();
       if (steady_step_.next(settings_.step_fraction * stable.step, time()) != before) divide_what_is_left();
     }
