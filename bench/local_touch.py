@@ -26,6 +26,7 @@ if __name__ == "__main__":
 from common.command import exit_code, whole_number
 from common.program import binary, output_of
 from common.result_file import last_displacement
+from rest_records import EQUILIBRIUM
 
 EDGE = 0.002  # m, of an element
 
@@ -85,7 +86,7 @@ def run(case, method, folder, share=None):
     result = Path(folder) / "result.h5"
     sleep = ["--sleep", share] if share else []
     text = output_of(binary(), "run", case, "--method", method, "--output", result, *sleep)
-    seconds = float(re.search(r"evaluations?, (\S+) s;", text)[1])
+    seconds = float(re.search(EQUILIBRIUM, text, re.MULTILINE)[2])
     awake = re.search(r"awake: (\d+) of (\d+)", text)
     share_awake = int(awake[1]) / int(awake[2]) if awake else 1.0
     return seconds, share_awake, last_displacement(result)

@@ -198,7 +198,7 @@ def sandglass_at_rest(bench, method, precision):
         output = bench.fresh_folder() / "result.h5"
         words = ["run", bench.path, "-m", method, "--precision", precision, "-t", 1, "-o", output]
         done = bench.sandglass(*words)
-        steps = int(_said(r"equilibrium: (\d+) evaluation", done.output))
+        steps = int(_said(r"equilibrium \(.*\): (\d+) evaluation", done.output))
         return Run(done.seconds, done.processor_seconds, steps, 0, output)
 
     return run

@@ -62,7 +62,10 @@ def _checked(where, found):
 
 
 # What `sandglass run` prints of a body at rest: evaluations, seconds, residual.
-EQUILIBRIUM = r"^equilibrium: (\d+) evaluations?, (\S+) s; residual ([\d.e+-]+)"
+EQUILIBRIUM = (
+    r"^static equilibrium \(.*\): (\d+) evaluations?(?: and \d+ of its stability)?, (\S+) s; "
+    r"residual ([\d.e+-]+)"
+)
 
 
 def read_run(case, method, text):
@@ -73,8 +76,8 @@ def read_run(case, method, text):
     rest = re.search(EQUILIBRIUM, text, re.MULTILINE)
     if not rest:
         raise ComputationError(
-            f"sandglass run {case} -m {method}: 'equilibrium: N evaluations, T s; residual R' is "
-            f"required, but it printed {text!r}"
+            f"sandglass run {case} -m {method}: 'static equilibrium (...): N evaluations, T s; "
+            f"residual R' is required, but it printed {text!r}"
         )
     return record(
         program="sandglass",

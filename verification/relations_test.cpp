@@ -115,7 +115,7 @@ Verdict precision(const Problem& problem, const Answer& own, RandomGeometry& /*r
   return compare(problem, own, answer_of(single), budget);
 }
 
-/// A run that goes on from one of its checkpoints.
+/// A run that is resumed from one of its checkpoints.
 Verdict resume(const Problem& problem, const Answer& /*own*/, RandomGeometry& random) {
   const Scene scene = problem.scene();
   KeepingRecorder whole;

@@ -250,7 +250,7 @@ TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
 }
 
 /// A head pushed through the foot turns elements inside out. All nodes are driven, so that there is no way
-/// round: no number is returned, and the text helps.
+/// round: no number is returned, and the text helps. Steps may collapse first.
 TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   Case description = plain_case(sample_law<NeoHookean>(0.49));
   const Mesh mesh = box({0.2, 0.2, 0.1}, {2, 2, 1});
@@ -262,7 +262,8 @@ TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   const auto expect_helpful = [](const std::string& text) {
     EXPECT_TRUE(contains(text, "step "));
     EXPECT_TRUE(contains(text, "element "));
-    EXPECT_TRUE(contains(text, "det F"));
+    EXPECT_TRUE(text.find("det F") != std::string::npos || text.find("collapsed") != std::string::npos)
+        << text;
     EXPECT_TRUE(contains(text, "remedy: "));
   };
   try {

@@ -21,7 +21,8 @@ constexpr double oracle_tolerance = 1e-10;
 template <class Method>
 class TimeOracleTest : public ::testing::Test {
  protected:
-  static MethodChoice choice() { return {std::string(Method::name)}; }
+  /// Elements of an adaptive method keep their levels at this accuracy.
+  static MethodChoice choice() { return {.method = std::string(Method::name), .accuracy = 1.0}; }
 };
 
 TYPED_TEST_SUITE(TimeOracleTest, MovingMethodTypes, EntryName);

@@ -202,7 +202,7 @@ class Simulation<Real>::Parts {
   void choose_step() {
     const StableStep stable = leapfrog_.stable_step(model());
     if (undeformed_step_ == 0.0) undeformed_step_ = stable.step;
-    require_worthwhile(stable, undeformed_step_, fmt::format("step {}", leapfrog_.step()));
+    require_worthwhile(stable, undeformed_step_, time(), leapfrog_.step());
     leapfrog_.body().set_step(longest_step_.next(problem_->step_fraction() * stable.step, time()));
   }
 

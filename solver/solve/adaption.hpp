@@ -11,12 +11,11 @@ namespace sandglass {
 /// would suffice for half the tolerance.
 enum class Demotion { never, where_enough, reluctant };
 
-/// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it begins at
-/// the first checks, since a motion may be short, but where no displacement is imposed: there the unit of
-/// accuracy must grow first. It is frequent while elements are promoted, and becomes rarer while none is.
-/// Elements are only promoted: one
-/// that is demoted when its hourglass modes pass through zero, and promoted again when they are large, would
-/// pump energy into every vibration.
+/// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it is
+/// frequent while elements are promoted, and becomes rarer while none is. Where displacements are imposed it
+/// begins at the first check, since a motion may be short; elsewhere accuracy is relative to displacements
+/// that must grow first. Elements are only promoted: one that is demoted when its hourglass modes pass
+/// through zero, and promoted again when they are large, would pump energy into every vibration.
 class AdaptionSchedule {
  public:
   explicit AdaptionSchedule(bool early) : wait_(early ? 1 : shortest), next_(wait_) {}
@@ -66,6 +65,7 @@ class Adaption {
   /// Whether there are levels to choose.
   bool active() const { return active_; }
 
+  /// When to choose them in a motion: early where displacements are imposed.
   AdaptionSchedule schedule() const { return AdaptionSchedule(imposed_ > 0.0); }
 
   /// Chooses the levels of the elements for the present displacements of a body. Its forces remain those of

@@ -57,7 +57,7 @@ class EnergyWatch {
   /// Takes a motion's energy and the work done on it (J), and the step (s). Whether the difference has risen
   /// noticeably above its least value since the step changed, which changes the energy that is kept.
   bool rises(double energy, double work, double step) {
-    constexpr double noticeable = 0.005;  // of the largest energy
+    constexpr double noticeable = 0.02;  // of the largest energy
     largest_ = std::max({largest_, energy, std::abs(work)});
     least_ = step == step_ ? std::min(least_, energy - work) : energy - work;
     step_ = step;
@@ -141,7 +141,7 @@ class CentralDifference {
       require_stable(stable);
       next_step_ = settings_.time_step;
     } else {
-      require_worthwhile(stable, undeformed_step_, fmt::format("{:.6g} s, step {}", time(), step()));
+      require_worthwhile(stable, undeformed_step_, time(), step());
       const double before = steady_step_.step();
       if (steady_step_.next(settings_.step_fraction * stable.step, time()) != before) divide_what_is_left();
     }
@@ -149,7 +149,11 @@ class CentralDifference {
   }
 
   /// Whether steps may be shorter than those that `choose_step` sets.
-  bool may_shorten() const { return settings_.time_step == 0.0 && steady_step_.may_shorten(); }
+  bool may_shorten() const {
+    const bool chosen_unstable =
+        settings_.time_step > 0.0 || settings_.step_fraction > 1.0;  // to see what happens
+    return !chosen_unstable && steady_step_.may_shorten();
+  }
 
   /// Takes shorter steps from now on.
   void shorten() {

@@ -194,7 +194,13 @@ class Search {
   std::string no_potential() const {
     if (elements_.needs_increment()) return "forces depend on the path";
     if (!model_.scene().pressures.empty()) return "pressures follow their faces";
-    return without_stiffness(model_) ? "hourglass modes are not resisted" : "";
+    if (without_stiffness(model_)) return "hourglass modes are not resisted";
+    // Softest motions are sought with less resistance to volume changes, which such a law does not separate:
+    // what is found then depends on the orientation.
+    const auto& materials = model_.scene().materials.list;
+    const auto splits = [](const Material& material) { return splits_volume(material.law); };
+    return std::all_of(materials.begin(), materials.end(), splits) ? ""
+                                                                   : "a law does not split its volume part";
   }
 
   /// At the full load leaves equilibria at which the tangent has a negative eigenvalue, for minima of the

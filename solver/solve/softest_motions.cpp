@@ -57,8 +57,8 @@ class Davidson {
     if (!(dot(next, next, blocks()) > 0.0)) found_.least = 1.0;  // nothing can move
     bool once_more = true;
     long fewest = fewest_evaluations;
-    for (int stalled = 0; expand(std::move(next)); ++stalled) {
-      small.compute(K_);
+    for (int stalled = 0; expand(next); ++stalled) {
+      small.compute(stiffness_);
       const double before = found_.least;
       const auto [residual, falling] = examine(small, next);
       if (residual < much_less * least_residual_ || falling != falling_) stalled = 0;
@@ -74,7 +74,7 @@ class Davidson {
         stalled = -1;
       }
       if (found_.evaluations >= most_evaluations) break;
-      if (K_.rows() == most_kept) restart(small.eigenvectors().leftCols(fewest_kept));
+      if (stiffness_.rows() == most_kept) restart(small.eigenvectors().leftCols(fewest_kept));
     }
     for (Eigen::Index k = 0; k < falling_; ++k)
       found_.falling.push_back(combination(small.eigenvectors().col(k), &Motion::direction));
@@ -194,14 +194,14 @@ class Davidson {
     ++found_.evaluations;
     motions_.push_back(std::move(motion));
     const Motion& last = motions_.back();
-    const Eigen::Index n = K_.rows();
-    K_.conservativeResize(n + 1, n + 1);
+    const Eigen::Index n = stiffness_.rows();
+    stiffness_.conservativeResize(n + 1, n + 1);
     for (Eigen::Index k = 0; k <= n; ++k) {
       const Motion& other = motions_[static_cast<std::size_t>(k)];
-      K_(k, n) = K_(n, k) = 0.5 * (dot(other.direction, last.resistance, blocks()) +
-                                   dot(last.direction, other.resistance, blocks()));
+      stiffness_(k, n) = stiffness_(n, k) = 0.5 * (dot(other.direction, last.resistance, blocks()) +
+                                                   dot(last.direction, other.resistance, blocks()));
     }
-    return std::isfinite(K_(n, n));
+    return std::isfinite(stiffness_(n, n));
   }
 
   MixedVector combination(const Eigen::VectorXd& shares, MixedVector Motion::*of) const {
@@ -219,7 +219,7 @@ class Davidson {
                          combination(kept.col(k), &Motion::resistance)});
     }
     motions_ = std::move(motions);
-    K_ = kept.transpose() * K_ * kept;
+    stiffness_ = kept.transpose() * stiffness_ * kept;
   }
 
   MixedBody<Real>& mixed_;
@@ -228,7 +228,7 @@ class Davidson {
   std::vector<float> resistance_;  // Pa/m^3, by cell
   double length_;
   std::vector<Motion> motions_;  // A-orthonormal
-  Eigen::MatrixXd K_;            // between them
+  Eigen::MatrixXd stiffness_;    // between them
   double least_residual_ = 0.0;
   Eigen::Index falling_ = 0;  // motions, of at most two
   SoftestMotions found_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "problem/model.hpp"
@@ -27,8 +26,9 @@ StableStep stable_step(const Model& model, std::span<const double> stiffness_bou
 StableStep stable_step(const Model& model, const NodalField& u);
 
 /// Throws ComputationError if a step has collapsed to less than a thousandth of the undeformed body's: one
-/// element takes the steps of the whole body with it, and the motion would not end. `where` says when.
-void require_worthwhile(const StableStep& stable, double undeformed_step, const std::string& where);
+/// element takes the steps of the whole body with it, and the motion would not end. `time` (s) and `step` are
+/// the present ones.
+void require_worthwhile(const StableStep& stable, double undeformed_step, double time, long step);
 
 /// The stable step (s) of a body whose elements alone have frequencies up to a square (1/s^2).
 double stable_step_of(const Model& model, double square);

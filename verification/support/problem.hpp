@@ -79,7 +79,7 @@ struct Answer {
   double busiest = 0.0;                 ///< J, the largest energy or work of all rows
 };
 
-/// Calls `act`, which returns an answer, and may throw what a user is told.
+/// Calls `act`, which returns an answer or throws an error with its message for users.
 template <class Act>
 Answer attempt(const Act& act) {
   Answer answer;
