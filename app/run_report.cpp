@@ -11,6 +11,7 @@
 #include "comparison/comparison.hpp"
 #include "comparison/verdict.hpp"
 #include "mesh/hexahedron.hpp"
+#include "mesh/parts.hpp"
 #include "solve/stable_step.hpp"
 
 namespace sandglass {
@@ -70,6 +71,12 @@ bool dissipates(const Model& model) {
          method_named(model.choice().method).damps_only;
 }
 
+/// Nothing for a body in one piece.
+std::string parts_text(const Scene& scene) {
+  const int parts = number_of_parts(scene.mesh, scene.ties);
+  return parts > 1 ? fmt::format("; {} separate parts", parts) : "";
+}
+
 }  // namespace
 
 void print_problem(const Scene& scene) {
@@ -81,12 +88,12 @@ void print_problem(const Scene& scene) {
     mass += scene.materials.list[scene.materials.of(e)].density * V;
   }
   const auto [low, high] = bounding_box(mesh.points);
-  fmt::print("{}: {} x {} x {}, {}, {}; {}, {}\n", scene.description.name, length_text(high[0] - low[0]),
+  fmt::print("{}: {} x {} x {}, {}, {}; {}, {}{}\n", scene.description.name, length_text(high[0] - low[0]),
              length_text(high[1] - low[1]), length_text(high[2] - low[2]),
              volume < 1e-3 ? fmt::format("{:.3g} cm^3", 1e6 * volume) : fmt::format("{:.3g} m^3", volume),
              mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass),
              plural(static_cast<long>(mesh.cells.size()), "element"),
-             plural(static_cast<long>(mesh.points.size()), "node"));
+             plural(static_cast<long>(mesh.points.size()), "node"), parts_text(scene));
   const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
   if (std::holds_alternative<MeshFile>(scene.description.mesh) && longest > most_length) {
     fmt::print(
@@ -196,6 +203,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
     fmt::print("; smallest det F of an element {:.3g}",
                *std::min_element(volume_ratios.begin(), volume_ratios.end()));
   }
+  fmt::print("{}", parts_text(scene));
   const bool quasi_static = scene.description.quasi_static;
   const double share = history.hourglass_share(quasi_static);
   if (share > 0.0) fmt::print("; hourglass energy {:.3g} % of strain energy", 100.0 * share);

@@ -44,7 +44,7 @@ class HistoryReport {
 };
 
 /// How a run ended, and what it found: the largest displacement of u (m), the smallest volume ratio of an
-/// element, the share of the hourglass energy, reactions.
+/// element, the share of the hourglass energy, reactions, separate parts.
 void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on);
 void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elements, bool went_on);
 void print_answer(const Scene& scene, const NodalField& u, const std::vector<double>& volume_ratios,

@@ -193,6 +193,29 @@ TEST(Batch, the_step_shortens_as_one_body_stiffens) {
   EXPECT_NEAR(batch.step_size(), alone.step_size(), 0.02 * at_rest);
 }
 
+// One element, all of whose nodes are driven, is pressed to 1/2500 of its height, and its step with it:
+// without a word, the rest of the motion would take thousands of times as long.
+TEST(Batch, a_body_whose_step_collapses_is_named) {
+  const Mesh mesh = box({0.1, 0.1, 0.1}, {1, 1, 1});
+  const std::string material =
+      "law = \"neo-hookean\"\ndensity = 1000.0\nyoung_modulus = 1000.0\npoisson_ratio = 0.0\n";
+  Batch<double> batch(
+      {mesh.points, mesh.cells, {}},
+      "[case]\nname = \"one\"\nrequirement = \"It is pressed.\"\nanswer = \"dynamic\"\n[material]\n" +
+          material +
+          "[sets]\nfoot = { z = [0.0, 0.0] }\nhead = { z = [0.1, 0.1] }\n"
+          "[[displacement]]\nset = \"foot\"\nvalue = [0.0, 0.0, 0.0]\n"
+          "[[displacement]]\nset = \"head\"\nvalue = [0.0, 0.0, 0.0]\n[dynamics]\nduration = 0.2\n",
+      10);
+  batch.move(7, "head", {0.0, 0.0, -0.09996});
+  try {
+    batch.advance(1.0);
+    FAIL();
+  } catch (const ComputationError& error) {
+    EXPECT_NE(std::string(error.what()).find("body 7 allows"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Batch, an_inverted_body_is_named) {
   Batch<double> batch(block(false), text_of(1.0), 12);
   batch.move(9, "head", {0.0, 0.0, -0.5});

@@ -13,6 +13,7 @@
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/node_set.hpp"
+#include "mesh/parts.hpp"
 #include "mesh/quality.hpp"
 #include "problem/masses.hpp"
 #include "support/plain_generators.hpp"
@@ -329,6 +330,26 @@ TEST(CanonicalMesh, ventricle_lies_between_its_ellipsoids) {
   EXPECT_EQ(scene.sets.at("rim").size(), rim);
   EXPECT_EQ(scene.sets.at("apex").size(), 1U);
   EXPECT_EQ(scene.pressures.size(), 252U);
+}
+
+/// Two bars beside each other, with a node of no element between them: nodes in order, the second bar first
+/// as its nodes are. A tie of one node makes one part of them, and two cells that share a node are one part.
+TEST(Parts, are_joined_by_nodes_and_ties) {
+  Mesh mesh = box({1.0, 1.0, 2.0}, {1, 1, 2});
+  const Mesh other = mesh;
+  const int shift = static_cast<int>(mesh.points.size()) + 1;
+  mesh.points.push_back({1.5, 0.0, 0.0});
+  for (const Vector& X : other.points) mesh.points.push_back({X[0] + 2.0, X[1], X[2]});
+  for (auto cell : other.cells) {
+    for (int& node : cell) node += shift;
+    mesh.cells.insert(mesh.cells.begin(), cell);
+  }
+  const std::vector<int> parts = parts_of_nodes(mesh, {});
+  for (int n = 0; n < static_cast<int>(parts.size()); ++n)
+    EXPECT_EQ(parts[at(n)], n < shift - 1 ? 0 : n == shift - 1 ? -1 : 1) << n;
+  EXPECT_EQ(number_of_parts(mesh, {}), 2);
+  EXPECT_EQ(number_of_parts(mesh, {{shift + 3, {{2, 0.25}, {5, 0.75}}}}), 1);
+  EXPECT_EQ(number_of_parts({}, {}), 0);
 }
 
 TEST(MeshHash, sees_points_cells_and_sets_but_not_the_last_bits) {

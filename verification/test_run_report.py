@@ -8,6 +8,7 @@ import shutil
 import subprocess
 
 import h5py
+import meshio
 import numpy
 import pytest
 from command_line import BARE, BINARY, BLOCK, ROOT, dynamic, sandglass
@@ -32,6 +33,20 @@ def test_the_first_lines_are_what_was_understood(block):
     assert re.fullmatch(
         r"tl-perturbation, kappa 0.00\d+ \(auto\), double, stable step \d\S* ms", method
     )
+
+
+def test_separate_parts_are_counted_at_the_start_and_at_the_end(block, tmp_path):
+    """Two blocks that share no node, in a mesh of a file."""
+    corners = [(x, y, z) for z in (0.0, 0.2) for y in (0.0, 0.1) for x in (0.0, 0.1)]
+    points = corners + [(x + 0.3, y, z) for x, y, z in corners]
+    order = (0, 1, 3, 2, 4, 5, 7, 6)
+    cells = [order, [n + 8 for n in order]]
+    meshio.Mesh(points, [("hexahedron", cells)]).write(tmp_path / "two.vtu")
+    start, end = BLOCK.index("[mesh]"), BLOCK.index("[material]")
+    block.write_text(BLOCK[:start] + '[mesh]\nfile = "two.vtu"\n\n' + BLOCK[end:])
+    lines = lines_of(sandglass("run", block))
+    assert lines[0].endswith("2 elements, 16 nodes; 2 separate parts")
+    assert any(re.match("largest displacement .*; 2 separate parts", line) for line in lines)
 
 
 def test_units_that_are_wrong_by_a_thousand_are_seen(block):

@@ -243,6 +243,11 @@ class Batch<Real>::Parts {
       }
       frequency_squares_[b] = lane(extremes[b / lanes].frequency_square, b);
     }
+    const auto fastest = std::max_element(frequency_squares_.begin(), frequency_squares_.end());
+    const double shortest = stable_step_of(problem_.model(), *fastest);
+    if (undeformed_step_ == 0.0) undeformed_step_ = shortest;
+    require_worthwhile({shortest, static_cast<int>(fastest - frequency_squares_.begin())}, undeformed_step_,
+                       time(), clock_.step, "body");
     choose_step();
   }
 
@@ -258,6 +263,7 @@ class Batch<Real>::Parts {
   std::unique_ptr<BatchForce<Number>> elements_;
   LeapfrogClock clock_;
   SteadyStep longest_step_;
+  double undeformed_step_ = 0.0;  // s, of a body with the stiffness of the case
   std::vector<double>
       frequency_squares_;  // 1/s^2, of each body at the last check and the stiffness of the case
   std::vector<Side> packs_;

@@ -38,7 +38,7 @@ class Batch {
   void impose(std::size_t body, double factor);
 
   /// Goes on for `seconds` with all bodies, see Simulation::advance. Threads compute bodies of their own.
-  /// Throws ComputationError, which names the body, for inverted elements and not-a-number.
+  /// Throws ComputationError, which names the body, for inverted elements, not-a-number and collapsing steps.
   void advance(double seconds);
 
   double time() const;       ///< s

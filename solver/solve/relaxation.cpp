@@ -195,6 +195,7 @@ class Search {
     if (elements_.needs_increment()) return "forces depend on the path";
     if (!model_.scene().pressures.empty()) return "pressures follow their faces";
     if (without_stiffness(model_)) return "hourglass modes are not resisted";
+    if (method_named(model_.choice().method).is_linear) return "";
     // Softest motions are sought with less resistance to volume changes, which such a law does not separate:
     // what is found then depends on the orientation.
     const auto& materials = model_.scene().materials.list;

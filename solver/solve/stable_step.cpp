@@ -52,15 +52,15 @@ StableStep stable_step(const Model& model, std::span<const double> bounds) {
   return smallest;
 }
 
-void require_worthwhile(const StableStep& stable, double undeformed_step, double time, long step) {
+void require_worthwhile(const StableStep& stable, double undeformed_step, double time, long step,
+                        std::string_view part) {
   constexpr double least_share = 1e-3;
   if (stable.step >= least_share * undeformed_step) return;
   throw ComputationError(fmt::format(
-      "the stable step has collapsed at {:.6g} s, step {}: element {} allows {:.3g} s, less than {} of the "
-      "undeformed body's "
-      "{:.3g} s; remedy: impose less displacement or load, use a law that resists compression, "
-      "or refine the mesh",
-      time, step, stable.element, stable.step, least_share, undeformed_step));
+      "the stable step has collapsed at {:.6g} s, step {}: {} {} allows {:.3g} s, less than {} of the "
+      "undeformed body's {:.3g} s; remedy: impose less displacement or load, use a law that resists "
+      "compression, or refine the mesh",
+      time, step, part, stable.element, stable.step, least_share, undeformed_step));
 }
 
 double stable_step_of(const Model& model, double square) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "problem/model.hpp"
@@ -27,8 +28,9 @@ StableStep stable_step(const Model& model, const NodalField& u);
 
 /// Throws ComputationError if a step has collapsed to less than a thousandth of the undeformed body's: one
 /// element takes the steps of the whole body with it, and the motion would not end. `time` (s) and `step` are
-/// the present ones.
-void require_worthwhile(const StableStep& stable, double undeformed_step, double time, long step);
+/// the present ones; `part` says what `stable.element` counts.
+void require_worthwhile(const StableStep& stable, double undeformed_step, double time, long step,
+                        std::string_view part = "element");
 
 /// The stable step (s) of a body whose elements alone have frequencies up to a square (1/s^2).
 double stable_step_of(const Model& model, double square);
