@@ -77,6 +77,7 @@ struct Answer {
   double largest = 0.0, fastest = 0.0;  ///< m, m/s, of all frames
   double energy = 0.0, work = 0.0;      ///< J, at the end
   double busiest = 0.0;                 ///< J, the largest energy or work of all rows
+  bool stable = false;                  ///< an equilibrium that was found to be
 };
 
 /// Calls `act`, which returns an answer or throws an error with its message for users.
@@ -104,7 +105,8 @@ inline Answer run(const Scene& scene, const MethodChoice& choice, Observer& obse
       Relaxation found = relax(model, observer, from, near);
       return {.u = std::move(found.u),
               .failure = in_equilibrium(found) ? "" : "no rest",
-              .words = outcome(found, choice.precision)};
+              .words = outcome(found, choice.precision),
+              .stable = found.stability != Stability::not_decided};
     }
     Motion motion = integrate(model, observer, from);
     return {.u = std::move(motion.u),
