@@ -274,6 +274,14 @@ constexpr auto relations = std::to_array<Relation>({
      }},
     {"a load as two", [](P problem, A own, R) { return compare(problem, own, with_split_loads(problem)); }},
     {"tables as formulas", [](P problem, A own, R) { return compare(problem, own, with_formulas(problem)); }},
+    {"frames",
+     [](P problem, A own, R) {
+       if (problem.at_rest() || !own.failure.empty()) return Verdict{};
+       Problem other = problem;
+       other.description.dynamics.frames += 4;
+       const Answer answer = answer_of(other);
+       return held_if(answer.u == own.u && answer.failure.empty(), largest_distance(answer.u, own.u));
+     }},
     {"threads", threads},
     {"ranks", ranks},
     {"precision", precision},

@@ -369,7 +369,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     scheme.add_external_work();
     motion.smallest_step = std::min(motion.smallest_step, scheme.step_size());
     motion.most_substeps = std::max(motion.most_substeps, body.substeps());
-    const bool due = scheme.step() % settings.check_interval == 0 || frame_due();
+    const bool check_due = scheme.step() % settings.check_interval == 0, due = check_due || frame_due();
     if (!due && !sampled) continue;
     const bool healthy = body.healthy();
     if ((!healthy || gains_energy()) && alone && scheme.may_shorten()) {
@@ -379,9 +379,11 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     } else if (due) {
       if (!healthy) body.require_healthy(scheme.step());
       report();
-      if (adaption.active() && adaption_schedule.due())
-        adaption_schedule.done(scheme.adapt(adaption, energies));
-      scheme.choose_step();
+      if (check_due) {  // the number of frames does not change the motion
+        if (adaption.active() && adaption_schedule.due())
+          adaption_schedule.done(scheme.adapt(adaption, energies));
+        scheme.choose_step();
+      }
       observer.resumable(checkpoint);
     }
     if (alone) keep(StateCopy(sound));
