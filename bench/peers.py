@@ -1,7 +1,7 @@
 """Other programs and Sandglass on the same mesh, in turn, on one thread each: seconds and errors.
 
 Usage: /usr/bin/python3 bench/peers.py [CASE] --program NAME[:BUILD]=PATH... [--json FILE]
-`ci/peers` calls it. Needs the programs (bench/README.md tells how to build them) and the solver's
+`ci/peers` calls it. Needs the programs (bench/README.md names their versions) and the solver's
 binary: build/release/sandglass, or the one given by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """

@@ -206,7 +206,7 @@ class Machines(Directive):
 def machines():
     """(files, machine, how it was built) of everything that was measured and is stored."""
     found = collections.defaultdict(set)
-    for pattern in ("bench/measured/*.json", "reports/figures/*.json", "reports/maps/*.json"):
+    for pattern in ("reports/figures/*.json", "reports/maps/*.json"):
         for file in sorted(ROOT.glob(pattern)):
             data = json.loads(file.read_text())
             cores = f", {data['cores']} cores" if "cores" in data else ""
