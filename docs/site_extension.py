@@ -21,11 +21,12 @@ from sphinx import addnodes
 from sphinx.transforms import SphinxTransform
 from sphinx.util import logging
 
-from check_links import PUBLISHED
 from common.errors import InputError
 from common.program import ROOT, binary
 
 DOCS = ROOT / "docs"
+# What `ci/site` puts beside the documentation, and where.
+PUBLISHED = {"build/report/index.html": "report/index.html"}
 MATHJAX = Path("/usr/share/javascript/mathjax")  # Debian's libjs-mathjax
 MATHJAX_PARTS = (
     "MathJax.js",
