@@ -142,7 +142,7 @@ def main(arguments=None):
     add("--seed", type=int, default=1, help="of --random (default 1)")
     add("--since", default="HEAD~1", metavar="REV", help="of --random: what changed (HEAD~1)")
     add("--jobs", type=int, default=1, help="compilers side by side (default 1)")
-    add("--timeout", type=float, default=1800, help="s for each mutant (1800)")
+    add("--timeout", type=float, default=1800, help="s of tests for each mutant (1800)")
     add("--table", action="store_true", help="write RESULTS.md, and run nothing")
     options = parser.parse_args(arguments)
     stop = threading.Event()

@@ -123,7 +123,7 @@ class Worker:
         self._lock.close()
 
     def first_failure(self, patch, seconds):
-        """Applies a Patch, builds and tests program after program for at most so many seconds.
+        """Applies a Patch, then builds and runs tests, which take at most so many seconds in all.
 
         Returns the first Failure or None. Programs that noticed most of the mutants before come
         first; what the patch cannot change is not run. A test that fails in the tree without the
@@ -132,26 +132,28 @@ class Worker:
         programs = [one for one in programs_of(self.tree) if self._may_change(one, patch)]
         programs.sort(key=lambda one: -self._kills[one.name])
         with self._applied(patch) as since:
-            failure = self._failure(patch, programs, since, time.monotonic() + seconds)
+            failure = self._failure(patch, programs, since, seconds)
         if failure and failure.kind != "broken":
             self._kills[failure.program.name] += 1
             if not self._passes(failure):
                 return replace(failure, kind="false alarm")
         return failure
 
-    def _failure(self, patch, programs, since, deadline):
+    def _failure(self, patch, programs, since, seconds):
         scripts = {name.partition("/")[0] for name in patch.files} - set(COMPILED)
         for program in programs:
-            status, text = self._make(program, deadline - time.monotonic())
+            status, text = self._make(program)
             if status:
                 error = re.search(r"^.*error: .*$", text, re.MULTILINE)
                 return Failure("broken", error[0] if error else text[-300:], program)
             read = scripts & set(PYTHON_FOLDERS.get(program.name, ()))
             if not read and self._binary(program).stat().st_mtime < since:
                 continue
-            found = self._test(program, deadline - time.monotonic())
+            started = time.monotonic()
+            found = self._test(program, seconds)
             if found:
                 return found
+            seconds -= time.monotonic() - started
         return None
 
     def _may_change(self, program, patch):
@@ -162,10 +164,10 @@ class Worker:
         sources = PYTHON_FOLDERS.get(program.name, (*COMPILED, "verification"))
         return any(name.partition("/")[0] in sources for name in patch.files)
 
-    def _make(self, program, limit=None):
+    def _make(self, program):
         target = "sandglass_cli" if program.is_python else program.name
         command = ["ninja", "-C", self.build, f"-j{self._jobs}", target]
-        return self._run(command, limit=limit, check=False)
+        return self._run(command, check=False)
 
     def _passes(self, failure):
         """Whether the test of a Failure passes in the tree as it is."""
