@@ -1,4 +1,4 @@
-"""READMEs are true: steps are taken and commands run as they stand, and what is named is there.
+"""READMEs are true: steps are taken and commands run as they stand.
 
 Each document is followed from its top down in a copy of the project, with the program that is
 built; `commands.toml` lists what is not run as it stands. A step that adds a law, a control or a
