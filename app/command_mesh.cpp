@@ -72,8 +72,8 @@ void add_mesh_command(CLI::App& app) {
       command->add_option("--format", options->format, "h5, vtu, xdmf or inp, if the ending does not say it");
   auto* deck = command
                    ->add_option("--deck", options->deck.program,
-                                "write a complete input of this program: calculix, febio, niftysim, "
-                                "openradioss or sofa (exchange/README.md)")
+                                "write a complete input of this program: calculix, febio, niftysim "
+                                "or openradioss (exchange/README.md)")
                    ->excludes(format);
   command->add_option("--element", options->deck.element, "for a deck: element, by the program's own name")
       ->needs(deck);

@@ -1,6 +1,6 @@
-"""The table of bench/README.md from the files that `ci/peers --json` wrote.
+"""The tables of bench/README.md from the entries of results/ that the authors of Sandglass made.
 
-Usage: /usr/bin/python3 bench/peer_table.py FILE...; those of bench/measured by default.
+Usage: /usr/bin/python3 bench/peer_table.py
 """
 
 import sys
@@ -10,12 +10,12 @@ if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
 from common.command import exit_code
-from common.files import read_json
-from common.program import ROOT
 from rest_records import table
+from results.entry import entry_files, read_entry
 
-# Builds for this processor; those that ship are a little slower, and in the files.
-SHOWN = ("native", "")
+AUTHORS = "the authors of Sandglass"
+# Builds for this processor are shown where there are several; the others are in the entries.
+OTHER_BUILDS = ("shipped", "plain")
 
 
 def percent(fraction):
@@ -30,41 +30,39 @@ COLUMNS = (
     ("to truth, %", "truth", percent),
     ("ns", "ns_per_element_step", lambda ns: f"{float(f'{ns:.3g}'):g}"),
     ("step, ms", "time_step", lambda seconds: f"{1e3 * seconds:.3g}"),
-    ("to rest, s", "seconds", "{:.3g}".format),
+    ("to rest, s", "seconds_to_rest", "{:.3g}".format),
 )
 
 
-def rows_of(documents):
-    """A row for each element at rest, with the cost of its steps, from files of one case."""
-    rows = {}
-    for document in documents:
-        for record in document["at_rest"]:
-            if (record["build"] or "") in SHOWN:
-                label = f"{record['program']} {record['element']}"
-                rows.setdefault((label, record["precision"]), {**record, "label": label})
-        for record in document["in_motion"]:
-            label = f"{record['program']} {record['element']}"
-            row = rows.get((label, record["precision"]))
-            if row and (record["build"] or "") in SHOWN and not row["ns_per_element_step"]:
-                row["ns_per_element_step"] = record["ns_per_element_step"]
-    return sorted(rows.values(), key=lambda row: row["label"].startswith("Sandglass"))
+def row_of(entry):
+    """What a table shows of an entry."""
+    errors = {name: figures["max"] for name, figures in entry["errors"].items()}
+    return (
+        dict.fromkeys(key for _, key, _ in COLUMNS)
+        | entry
+        | errors
+        | {"label": f"{entry['program']} {entry['element']}"}
+    )
 
 
-def tables(paths):
-    """The Markdown tables of all cases, one after another. Raises InputError."""
-    documents = [read_json(path, "ci/peers --json") for path in paths]
+def tables(measured):
+    """The Markdown tables of entries, one for each case."""
+    measured = [entry for entry in measured if entry["submitted_by"] == AUTHORS]
     parts = []
-    for case in dict.fromkeys(document["case"] for document in documents):
-        own = [document for document in documents if document["case"] == case]
-        elements, processor = own[0]["elements"], own[0]["processor"]
-        parts += [f"`{case}`, {elements} elements, one thread of an {processor}:", ""]
-        parts += [table(rows_of(own), COLUMNS), ""]
+    for case in sorted({entry["case"] for entry in measured}):
+        own = [
+            entry
+            for entry in measured
+            if entry["case"] == case and not entry["build"].startswith(OTHER_BUILDS)
+        ]
+        own.sort(key=lambda entry: entry["program"] == "Sandglass")
+        parts += [f"`{case}`, on an {own[0]['machine']}:", "", table(map(row_of, own), COLUMNS), ""]
     return "\n".join(parts).rstrip()
 
 
-def main(arguments):
+def main(_):
     """Prints the tables."""
-    print(tables(arguments or sorted((ROOT / "bench/measured").glob("*.json"))))
+    print(tables(map(read_entry, entry_files())))
 
 
 if __name__ == "__main__":

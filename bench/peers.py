@@ -1,7 +1,7 @@
 """Other programs and Sandglass on the same mesh, in turn, on one thread each: seconds and errors.
 
 Usage: /usr/bin/python3 bench/peers.py [CASE] --program NAME[:BUILD]=PATH... [--json FILE]
-`ci/peers` calls it. Needs the programs (bench/README.md tells how to build them) and the solver's
+`ci/peers` calls it. Needs the programs (bench/README.md names their versions) and the solver's
 binary: build/release/sandglass, or the one given by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """
@@ -25,9 +25,9 @@ import peer_runs
 from common.accuracy import relative_errors
 from common.command import exit_code, whole_number
 from common.errors import ComputationError, InputError, suggestion
-from common.files import require_writable, write_json, write_whole
-from rest_records import table
-from rest_search import WITHIN, RestSearch
+from common.files import require_writable, write_json
+from peer_report import COLUMNS_AT_REST, COLUMNS_IN_MOTION, TWIN, report
+from rest_search import RestSearch
 from rivals import PROGRAMS
 
 METHODS = ("tl-perturbation", "tl-four-point", "tl-mean-dilatation", "tl-full")
@@ -35,76 +35,10 @@ AT_REST = (*METHODS, "tl-energy-sampling")
 IN_MOTION = (*METHODS, "ul-perturbation")
 # Computed in single precision as well, for programs that do so.
 IN_FLOAT = ("tl-perturbation", "tl-mean-dilatation")
-# The golden element's explicit twin, the reference for motions.
-TWIN = "tl-mean-dilatation"
 NEWTON, RELAXATION, EXPLICIT = "Newton", "search for rest", "central differences"
 DAMPED = "damped motion"
 # What a way to solve counts: explicit steps, load steps of Newton's method, evaluations of forces.
 COUNTED = {NEWTON: "load_steps", RELAXATION: "evaluations", EXPLICIT: "steps", DAMPED: "steps"}
-
-NOTES_AT_REST = """
-The same answer by different methods. CalculiX and FEBio use Newton's method with a direct solver,
-Sandglass its search for rest, all until their residuals are below 1e-8. Programs that only
-integrate in time find it by a damped motion. Its step, duration and damping were searched for
-beforehand: it is the quickest whose end differs by less than {within:g} of the imposed displacement
-from that of a long one. The search is not part of the seconds. Seconds and errors of any two rows
-are comparable, times per step are not.
-seconds: wall time of the whole process; of OpenRadioss, of its engine. CPU: processor time. max to
-golden, to truth: largest error at any node over the largest imposed displacement, by `sandglass
-score`; to twin: for a case without a golden, to tl-mean-dilatation.
-"""
-NOTES_IN_MOTION = """
-The same motion by the same method: central differences with lumped masses and the same step,
-{step:.3g} s, or a shorter one if the program considers that unstable; {share:.3g} of the case's
-displacements, imposed in {steps} steps. The comparable figure is the time per element and step: the
-additional processor time of a longer run over its additional steps, so start-up does not count.
-There is no golden for a motion. to {twin}: largest difference from its final displacement over the
-imposed one. nearest: the method of Sandglass with the most similar motion; C3D8 and tl-full are the
-same element and must agree. A motion that is far from all others is not sound.
-"""
-
-
-def percent(fraction):
-    """A fraction as text."""
-    return f"{100 * fraction:.3g} %"
-
-
-def spread(seconds):
-    """Median and range of a list of seconds, as text."""
-    return f"{statistics.median(seconds):.3g} ({min(seconds):.3g} to {max(seconds):.3g})"
-
-
-SHARED = (
-    ("program", "program", str),
-    ("build", "build", str),
-    ("element", "element", str),
-    ("numbers", "precision", str),
-    ("solve", "solve", str),
-    ("seconds (range)", "seconds_of_runs", spread),
-    ("CPU, s (range)", "processor_seconds_of_runs", spread),
-    ("steps", "steps", str),
-)
-COLUMNS_AT_REST = (
-    *SHARED,
-    ("load steps", "load_steps", str),
-    ("evaluations", "evaluations", str),
-    ("iterations", "iterations", str),
-    ("step, ms", "time_step", lambda seconds: f"{1e3 * seconds:.3g}"),
-    ("ms a step", "seconds_per_step", lambda seconds: f"{1e3 * seconds:.3g}"),
-    ("max to golden", "golden", percent),
-    ("max to truth", "truth", percent),
-    ("max to twin", "twin", percent),
-    ("failed", "failure", str),
-)
-COLUMNS_IN_MOTION = (
-    *SHARED,
-    ("step, ms", "time_step", lambda seconds: f"{1e3 * seconds:.3g}"),
-    ("us a step", "seconds_per_step", lambda seconds: f"{1e6 * seconds:.3g}"),
-    ("ns per element and step (range)", "ns_of_rounds", spread),
-    (f"to {TWIN}", "to_twin", percent),
-    ("nearest", "nearest", lambda found: f"{found['method']}, {percent(found['difference'])}"),
-    ("failed", "failure", str),
-)
 
 
 class Row:
@@ -331,8 +265,8 @@ def programs_of(options):
 
 def measure(options):
     """Measure, print, store. Returns the exit code. Raises InputError."""
-    for path in filter(None, (options.json, options.markdown)):
-        require_writable(path)
+    if options.json:
+        require_writable(options.json)
     programs = programs_of(options)
     path = time_to_rest.case_path(options.case)
     time_to_rest.require_quasi_static(path)
@@ -369,12 +303,9 @@ def measure(options):
             document |= {"time_step": motion.time_step, "share_of_displacements": motion.share}
         if options.answers:
             keep_answers(at_rest, options.answers)
-    text = report(document, options)
-    print(text)
+    print(report(document, options.steps))
     if options.json:
         write_json(options.json, document)
-    if options.markdown:
-        write_whole(options.markdown, text + "\n")
     failed = [row for row in (*at_rest, *in_motion) if row.failure]
     for row in failed:
         print(f"error: {row.program} {row.element}, {row.solve}: {row.failure}", file=sys.stderr)
@@ -386,36 +317,6 @@ def keep_answers(rows, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for row in filter(lambda row: row.sound, rows):
         shutil.copy(row.clocked["answer"][0].answer, folder / row.answer_name())
-
-
-def shown(records, columns):
-    """A Markdown table of the non-empty columns."""
-    known = [
-        column for column in columns if any(record[column[1]] is not None for record in records)
-    ]
-    return table(records, known)
-
-
-def report(document, options):
-    """The report in Markdown: measurements, machine and notes."""
-    loads = "{load_average_before:.2f} to {load_average_after:.2f}".format(**document)
-    programs = [f"sandglass {document['sandglass']}"]
-    programs += ["{name} {build} {version} {about}".format(**p) for p in document["programs"]]
-    lines = [
-        "{case}: {nodes} nodes, {elements} elements".format(**document),
-        f"on {document['processor']}, {document['cores']} cores, load {loads}; every run on one "
-        f"thread of processor {document['processor_of_all_runs']}, in turn, "
-        f"medians of {document['repetitions']}",
-        *(" ".join(text.split()) for text in programs),
-    ]
-    if document["at_rest"]:
-        lines += ["", "## At rest", "", shown(document["at_rest"], COLUMNS_AT_REST)]
-        lines.append(NOTES_AT_REST.format(within=WITHIN))
-    if document["in_motion"]:
-        share, step = document["share_of_displacements"], document["time_step"]
-        notes = NOTES_IN_MOTION.format(steps=options.steps, step=step, share=share, twin=TWIN)
-        lines += ["", "## In motion", "", shown(document["in_motion"], COLUMNS_IN_MOTION), notes]
-    return "\n".join(lines).strip()
 
 
 def main(arguments=None):
@@ -436,7 +337,6 @@ def main(arguments=None):
     )
     add("--about", action="append", metavar="NAME[:BUILD]=TEXT", help="its revision and flags")
     add("--json", metavar="FILE", help="write the records and where they come from to this file")
-    add("--markdown", metavar="FILE", help="write what is printed to this file")
     add("--answers", type=Path, metavar="FOLDER", help="keep the displacements at rest")
     add("--repetitions", type=whole_number(1), default=5, metavar="N", help="default: 5")
     add("--elements", nargs="+", metavar="ELEMENT", help="of the programs; default: all of a list")

@@ -27,7 +27,7 @@ energies (J): strain 0.394954, hourglass 0
 
 def _stored(tmp_path, document):
     path = tmp_path / "rest.json"
-    path.write_text(document if isinstance(document, str) else json.dumps(document))
+    path.write_text(json.dumps(document))
     return path
 
 
@@ -39,39 +39,18 @@ def test_records_of_the_solver(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "document, told",
-    [
-        ("[", "not a JSON file"),
-        ([], "must be an object, not list"),
-        ({}, "records is missing; it must be a list"),
-        ({"records": {}}, "records = {} must be a list"),
-    ],
-)
-def test_damaged_documents(tmp_path, document, told):
-    with pytest.raises(InputError, match=f"rest.json: {told}"):
-        rest_records.read_solver_records(_stored(tmp_path, document))
-
-
-@pytest.mark.parametrize(
     "records, told",
     [
+        ({}, "records = {} must be a list"),
         ([ENTRY, 1], r"records\[1\] = 1 must be an object"),
         ([{"case": "block"}], r"records\[0\].method is missing"),
-        ([{**ENTRY, "method": None}], "method = None must be a text"),
         ([{**ENTRY, "evaluations": "12"}], "evaluations = '12' must be a number or null"),
-        ([{**ENTRY, "evaluations": True}], "evaluations = True must be a number or null"),
         ([{**ENTRY, "residual": -1}], "residual = -1 must be >= 0 or null"),
-        ([{**ENTRY, "residual": float("nan")}], "residual = nan must be finite"),
     ],
 )
 def test_damaged_records(tmp_path, records, told):
     with pytest.raises(InputError, match=f"rest.json: .*{told}"):
         rest_records.read_solver_records(_stored(tmp_path, {"records": records}))
-
-
-def test_missing_records(tmp_path):
-    with pytest.raises(InputError, match="none.json: cannot be read: No such file"):
-        rest_records.read_solver_records(tmp_path / "none.json")
 
 
 def test_what_run_printed():

@@ -192,46 +192,23 @@ def time_calculix(job):
 
 
 def time_sandglass(job):
-    """Adds the records of Sandglass, from `sandglass bench --rest` if available.
-
-    Other METHODS get their seconds to rest from `sandglass run`. Raises ComputationError or
-    InputError.
-    """
+    """Adds the records of `sandglass bench --rest`. Raises ComputationError or InputError."""
     solver = binary()
     job.versions["sandglass"] = version_of(solver)
-    records = _records_of_bench(job, solver)
-    for method in METHODS:
-        command = [solver, "run", job.path, "-m", method]
-        output = job.folder / f"{method}.h5"
-        try:
-            if not any(timed["method"] == method for timed in records):
-                started = time.perf_counter()
-                timed = rest_records.read_run(job.case.name, method, output_of(*command))
-                timed["process_seconds"] = time.perf_counter() - started
-                records.append(timed)
-            # Run again for the displacement: writing frames must not count.
-            output_of(*command, "-o", output)
-        except ComputationError as error:
-            job.fail(f"{method}: {error}")
-            continue
-        for timed in records:
-            if (timed["method"], timed["precision"]) == (method, "double"):
-                job.displacements.append((timed, last_displacement(output)))
-    job.records += records
-
-
-def _records_of_bench(job, solver):
-    """The records of `bench --rest`; none if the solver has no such command."""
-    if "--rest" not in output_of(solver, "bench", "--help"):
-        note("this sandglass has no `bench --rest`: its seconds to 1 % and 0.1 % are not measured")
-        return []
     output = job.folder / "rest.json"
     try:
         output_of(solver, "bench", "--rest", job.path, "--json", output)
     except ComputationError as error:
         job.fail(error)
-    # It contains the runs that came to rest, even if others did not.
-    return rest_records.read_solver_records(output) if output.exists() else []
+    # The file contains the runs that came to rest, even if others did not.
+    records = rest_records.read_solver_records(output) if output.exists() else []
+    for timed in records:
+        if timed["precision"] == "double" and timed["method"] in METHODS:
+            # Run again for the displacement: writing frames must not count.
+            result = job.folder / f"{timed['method']}.h5"
+            output_of(solver, "run", job.path, "-m", timed["method"], "-o", result)
+            job.displacements.append((timed, last_displacement(result)))
+    job.records += records
 
 
 PROGRAMS = {"golden": time_golden, "calculix": time_calculix, "sandglass": time_sandglass}

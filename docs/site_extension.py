@@ -21,11 +21,12 @@ from sphinx import addnodes
 from sphinx.transforms import SphinxTransform
 from sphinx.util import logging
 
-from check_links import PUBLISHED
 from common.errors import InputError
 from common.program import ROOT, binary
 
 DOCS = ROOT / "docs"
+# What `ci/site` puts beside the documentation, and where.
+PUBLISHED = {"build/report/index.html": "report/index.html"}
 MATHJAX = Path("/usr/share/javascript/mathjax")  # Debian's libjs-mathjax
 MATHJAX_PARTS = (
     "MathJax.js",
@@ -206,7 +207,7 @@ class Machines(Directive):
 def machines():
     """(files, machine, how it was built) of everything that was measured and is stored."""
     found = collections.defaultdict(set)
-    for pattern in ("bench/measured/*.json", "reports/figures/*.json", "reports/maps/*.json"):
+    for pattern in ("reports/figures/*.json", "reports/maps/*.json"):
         for file in sorted(ROOT.glob(pattern)):
             data = json.loads(file.read_text())
             cores = f", {data['cores']} cores" if "cores" in data else ""

@@ -6,21 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-import formula
 from common.errors import InputError, suggestion
 from common.files import read_toml
 from common.records import NUMBER, entries, entry
 from laws import LAWS, VOLUMES, parameters
+from load_curve import CURVE, factor_and_curve
 
 
-KEYS_OF_ANY_LAW = ("law", "density", "elements", "volumetric") + (
-    "fibre_direction",  # the solver checks these and writes the axes that follow from them
-    "sheet_direction",
-    "fibres",
-)
-
-# The keys of a load's curve.
-CURVE = ("times", "factors", "formula")
+# The solver checks the directions of fibres and writes the axes that follow from them.
+FIBRES = ("fibre_direction", "sheet_direction", "fibres")
+KEYS_OF_ANY_LAW = ("law", "density", "elements", "volumetric", *FIBRES)
 
 
 @dataclass(frozen=True)
@@ -187,15 +182,11 @@ def read_case(path, name=None):
         found = entries(path, tables, key) if key in tables else ()
         return tuple(read(*one, *how) for one in found)
 
-    displacements, rotations = read_all("displacement", _displacement), read_all(
-        "rotation", _rotation
-    )
-    supports = read_all("support", _support)
+    displacements = read_all("displacement", _displacement)
+    rotations, supports = read_all("rotation", _rotation), read_all("support", _support)
     if not (displacements or rotations or supports or moving):
-        raise InputError(
-            f"{path}: has no [[displacement]], [[rotation]] or [[support]]; at least one table is "
-            "required"
-        )
+        tables = "[[displacement]], [[rotation]] or [[support]]"
+        raise InputError(f"{path}: has no {tables}; at least one table is required")
     if "materials" in tables:
         materials = read_all("materials", _material)
     else:
@@ -237,16 +228,15 @@ def _velocity(where, table):
     return InitialVelocity(
         entry(where, table, "set", str) if "set" in table else None,
         _vector(where, table, "value"),
-        _vector(where, table, "half_waves") if "half_waves" in table else (0.0, 0.0, 0.0),
+        _vector_or_zero(where, table, "half_waves"),
     )
 
 
 def _chosen(path, cases, name):
     """(name, tables) of the named case among those of a file; without a name the only one."""
     if name is None and len(cases) > 1:
-        raise InputError(
-            f"{path}: has {len(cases)} variants; name one of them; known: {', '.join(cases)}"
-        )
+        known = f"known: {', '.join(cases)}"
+        raise InputError(f"{path}: has {len(cases)} variants; name one of them; {known}")
     name = name or next(iter(cases))
     if name not in cases:
         raise InputError(f"{path}: has no case {name!r}; {suggestion(name, cases)}")
@@ -267,9 +257,8 @@ def _material(where, table):
     density = entry(where, table, "density", NUMBER) if "density" in table else 0.0
     volumetric = entry(where, table, "volumetric", str) if "volumetric" in table else "quadratic"
     if volumetric not in VOLUMES:
-        raise InputError(
-            f"{where}.volumetric = {volumetric!r} is not known; {suggestion(volumetric, VOLUMES)}"
-        )
+        known = suggestion(volumetric, VOLUMES)
+        raise InputError(f"{where}.volumetric = {volumetric!r} is not known; {known}")
     return Material(law, numbers, float(density), volumetric)
 
 
@@ -299,10 +288,8 @@ def _displacement(where, table):
     _check_keys(where, table, ("set", "value", "components"))
     letters = entry(where, table, "components", str) if "components" in table else "xyz"
     if not letters or len(set(letters)) != len(letters) or not set(letters) <= set("xyz"):
-        raise InputError(
-            f"{where}.components = {letters!r} must be one or more of the letters 'xyz', each at "
-            "most once"
-        )
+        rule = "must be one or more of the letters 'xyz', each at most once"
+        raise InputError(f"{where}.components = {letters!r} {rule}")
     return Displacement(
         entry(where, table, "set", str),
         _vector(where, table, "value"),
@@ -328,7 +315,7 @@ def _rotation(where, table):
         tuple(a / length for a in axis),
         entry(where, table, "angle", NUMBER) / 180 * math.pi,
         _vector(where, table, "center") if "center" in table else None,
-        _vector(where, table, "displacement") if "displacement" in table else (0.0, 0.0, 0.0),
+        _vector_or_zero(where, table, "displacement"),
     )
 
 
@@ -336,21 +323,18 @@ def _force(where, table, moving):
     """A checked [[force]] table as a Force."""
     _check_keys(where, table, ("set", "total", "moment", "on", *CURVE))
     if table.get("on", "faces") != "faces":
-        raise InputError(
-            f"{where}.on = {table['on']!r} must be 'faces': the reference knows no other"
-        )
-    factor, curve = _factor_and_curve(where, table, moving)
-    total, moment = (
-        tuple(factor * v for v in _vector(where, table, key)) if key in table else (0.0, 0.0, 0.0)
-        for key in ("total", "moment")
-    )
-    return Force(entry(where, table, "set", str), total, moment, curve)
+        rule = "must be 'faces': the reference knows no other"
+        raise InputError(f"{where}.on = {table['on']!r} {rule}")
+    factor, curve = factor_and_curve(where, table, moving)
+    vectors = (_vector_or_zero(where, table, key) for key in ("total", "moment"))
+    loads = (tuple(factor * v for v in vector) for vector in vectors)
+    return Force(entry(where, table, "set", str), *loads, curve)
 
 
 def _pressure(where, table, moving):
     """A checked [[pressure]] table as a Pressure."""
     _check_keys(where, table, ("set", "value", *CURVE))
-    factor, curve = _factor_and_curve(where, table, moving)
+    factor, curve = factor_and_curve(where, table, moving)
     value = factor * float(entry(where, table, "value", NUMBER))
     return Pressure(entry(where, table, "set", str), value, curve)
 
@@ -358,7 +342,7 @@ def _pressure(where, table, moving):
 def _gravity(where, table):
     """The acceleration of a checked [[gravity]] table."""
     _check_keys(where, table, ("value", *CURVE))
-    factor, _ = _factor_and_curve(where, table, moving=False)
+    factor, _ = factor_and_curve(where, table, moving=False)
     return tuple(factor * v for v in _vector(where, table, "value"))
 
 
@@ -370,35 +354,6 @@ def _support(where, table):
     return Support(entry(where, table, "set", str), float(stiffness), only_normal)
 
 
-def _factor_and_curve(where, table, moving):
-    """The constant factor of a load, and in motion its curve, if it has one.
-
-    At rest the factor is that of the end of the curve, where time is 1.
-    """
-    curve = _curve(where, table)
-    if curve is None:
-        return 1.0, None
-    return (1.0, curve) if moving else (curve(1.0), None)
-
-
-def _curve(where, table):
-    """The curve of a load as a function of the time in s, or None."""
-    if "formula" in table:
-        text = entry(where, table, "formula", str)
-
-        def factor(time):
-            try:
-                return formula.evaluate(text, time)
-            except InputError as error:
-                raise InputError(f"{where}.formula: {error}") from error
-
-        return factor
-    if "times" not in table and "factors" not in table:
-        return None
-    times, factors = (entry(where, table, key, list) for key in ("times", "factors"))
-    return lambda time: float(np.interp(time, times, factors))
-
-
 def _vector(where, table, key):
     """Three finite numbers of a table as a tuple."""
     value = entry(where, table, key, list)
@@ -406,6 +361,11 @@ def _vector(where, table, key):
     if not (len(value) == len(numbers) == 3 and all(map(math.isfinite, numbers))):
         raise InputError(f"{where}.{key} = {value!r} must be three finite numbers")
     return tuple(map(float, numbers))
+
+
+def _vector_or_zero(where, table, key):
+    """Three numbers of a table; zeros where it has none."""
+    return _vector(where, table, key) if key in table else (0.0, 0.0, 0.0)
 
 
 def _check_keys(where, table, known):

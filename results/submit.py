@@ -76,6 +76,7 @@ def of_peers(path, answers):
             "case": found["case"],
             "ns_per_element_step": moved.get("ns_per_element_step"),
             "time_step": row["time_step"] or moved.get("time_step"),
+            "nearest_motion": moved.get("nearest") if about else None,
             "seconds_to_rest": row["seconds"],
             "how": f"{row['solve']}, {_counted(row)}{_soundness(moved)}; by ci/peers",
         }

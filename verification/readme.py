@@ -101,66 +101,41 @@ def copy(tree):
     return shutil.copytree(ROOT, tree, ignore=left_out)
 
 
-# Parses the options of a script, as its own parser does, and ends where its work would begin.
-PARSE_ONLY = """
-import argparse, os, runpy, sys
-real = argparse.ArgumentParser.parse_args
-def parse_only(self, *arguments, **options):
-    real(self, *arguments, **options)
-    print("parsed", flush=True)
-    os._exit(0)
-argparse.ArgumentParser.parse_args = parse_only
-sys.argv = sys.argv[1:]
-if sys.argv[0] == "-m":
-    sys.argv = sys.argv[1:]
-    runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
-else:
-    sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))
-    runpy.run_path(sys.argv[0], run_name="__main__")
-"""
-
-
 def not_taken(command, binary):
     """Why a tool of the project would not take a command; an empty text where it would.
 
-    Python scripts parse their options; shell scripts that hand all over to one as well, else their
-    opening comment must know the words; the program gets a method that it refuses once all is read.
+    Its options, and the plain words of a shell script, must be in the script or in what it hands
+    all over to, and those of the program in its help; canonical cases are known to all.
     """
     words = [word for word in shlex.split(command) if not re.match(r"[A-Z_]+=", word)]
+    is_called, plain = words[0] not in ("bash", "/usr/bin/python3"), False
+    words = words if is_called else words[1:]
     if words[0].endswith("sandglass"):
-        done = _run([binary, *words[1:], "--methods", "no-such-method"])
-        return "" if "'no-such-method' is not known" in done.stderr else done.stderr or done.stdout
-    if words[0] in ("bash", "/usr/bin/python3"):
-        words = words[1:]
-    if words[:2] == ["-m", "pytest"]:
-        absent = [word for word in words[2:] if "/" in word and not (ROOT / word).exists()]
+        help_of = [binary, words[1], "--help"]
+        text = subprocess.run(help_of, capture_output=True, text=True).stdout + words[1]
+    elif words[0] == "-m":  # pytest
+        absent = [word for word in words if "/" in word and not (ROOT / word).exists()]
         return f"{absent} is not there" if absent else ""
-    if "/" not in words[0]:
+    elif "/" not in words[0]:
         return "" if shutil.which(words[0]) else f"{words[0]} is not there"
-    script = ROOT / words[0]
-    if not script.is_file():
-        return f"{words[0]} is not there"
-    if command.startswith(words[0]) and not script.stat().st_mode & 0o100:
-        return f"{words[0]} cannot be executed"
-    text = script.read_text()
-    if "python" not in text.partition("\n")[0] and not words[0].endswith(".py"):
-        handed = re.search(r'exec /usr/bin/python3 (.*) "\$@"', text)
-        if handed is None:
-            opening = re.match(r"(?:#.*\n)+", text)[0]
-            usage = rf"{words[0]} (?:\[*[A-Z]|{{}}\b)"  # a placeholder, or the word itself
-            unknown = [w for w in words[1:] if not re.search(usage.format(w), opening)]
-            unknown += [w for w in words[1:] if w.isalpha() and not re.search(rf"\b{w}\b", text)]
-            return f"{words[0]} does not tell of {unknown}" if unknown else ""
-        script = handed[1].replace('"', "").replace("$root/", "")
-        words = [*script.split(), *words[1:]]
-    done = _run(["/usr/bin/python3", "-c", PARSE_ONLY, *words])
-    return "" if done.stdout.endswith("parsed\n") and done.returncode == 0 else done.stderr
-
-
-def _run(command):
-    environment = {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(ROOT / "verification")}
-    environment["PYTHONDONTWRITEBYTECODE"] = "1"
-    return subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
+    else:
+        script = ROOT / words[0]
+        if not script.is_file():
+            return f"{words[0]} is not there"
+        if is_called and not script.stat().st_mode & 0o100:
+            return f"{words[0]} cannot be executed"
+        text, plain = script.read_text(), script.suffix != ".py"
+        for other in re.findall(r'exec /usr/bin/python3 (?:-m )?"?(?:\$root/)?([\w./]+)', text):
+            places = (ROOT / other, ROOT / "verification" / other / "__main__.py")
+            text += next(place for place in places if place.is_file()).read_text()
+    cases = {file.stem for file in (ROOT / "cases").glob("*.toml")}
+    asked = [word for word in words[1:] if word[0] == "-" or (plain and word.isalpha())]
+    unknown = [
+        word
+        for word in asked
+        if word not in cases and not re.search(rf"(?<![\w-]){word}(?![\w-])", text)
+    ]
+    return f"{words[0]} does not know {unknown}" if unknown else ""
 
 
 def main(tree, *documents):

@@ -1,29 +1,23 @@
-"""The mutants of verification/mutants: their patches apply to this tree, and the table has all.
+"""The mutants of verification/mutants: patches apply and the table has all; mistakes at random.
 
 What kills them is the work of `verification/mutants/run.py`, which takes hours.
 """
 
+import re
 import subprocess
 import threading
 from types import SimpleNamespace
 
+import outcomes
 import patches
 import pytest
-import outcomes
 import run
-from clean_runs import CleanRuns
 from command_line import ROOT
 from common.errors import InputError
-from worker import programs_of
+from plant import Mistake, mistakes_of, plant
+from worker import Failure, programs_of
 
 PATCHES = patches.read_patches()
-
-
-def test_there_are_enough_mutants_each_with_a_number_of_its_own():
-    assert len(PATCHES) >= 40
-    numbers = [patch.name[:3] for patch in PATCHES]
-    assert len(set(numbers)) == len(numbers)
-    assert len({patch.mistake for patch in PATCHES}) == len(PATCHES)
 
 
 @pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.name)
@@ -36,24 +30,16 @@ def test_patch_fits_this_tree(patch):
     assert all((ROOT / name).is_file() for name in patch.files)
 
 
-def test_table_names_exactly_the_mutants_there_are():
-    text = outcomes.TABLE.read_text()
-    rows = outcomes.rows_of(text)
+def test_every_mutant_is_of_one_kind_and_has_a_row():
+    numbers = [patch.name[:3] for patch in PATCHES]
+    kinds = re.findall(r"^\|.*\| ([\d, ]+) \|$", (patches.FOLDER / "README.md").read_text(), re.M)
+    assert sorted(number for kind in kinds for number in kind.split(", ")) == numbers
+    assert len(set(numbers)) == len(numbers) >= 50
+    rows = outcomes.rows_of(outcomes.TABLE.read_text())
     assert list(rows) == [patch.name for patch in PATCHES]
     for patch in PATCHES:
         assert rows[patch.name][1] == patch.mistake
         assert rows[patch.name][2] in ("killed", "equivalent", "survived", "not run"), patch.name
-
-
-def test_table_survives_being_written_anew(tmp_path, monkeypatch):
-    """Without stored results, as in a fresh clone, rows are unchanged."""
-    rows = outcomes.rows_of(outcomes.TABLE.read_text())
-    table = tmp_path / "RESULTS.md"
-    table.write_text(outcomes.TABLE.read_text())
-    monkeypatch.setattr(outcomes, "TABLE", table)
-    monkeypatch.setattr(outcomes, "STORE", tmp_path / "none")
-    outcomes.write_table(PATCHES, "0123456789ab")
-    assert outcomes.rows_of(table.read_text()) == rows
 
 
 def test_every_test_program_is_run():
@@ -62,43 +48,11 @@ def test_every_test_program_is_run():
     assert programs == {file.stem for file in (ROOT / "verification").glob("*_test.cpp")}
 
 
-def test_names_choose_mutants_and_that_of_the_clean_tree_none():
+def test_names_choose_mutants():
     assert run.chosen_patches([]) == PATCHES
     assert [patch.name[:3] for patch in run.chosen_patches(["017", "002-c"])] == ["002", "017"]
-    assert run.chosen_patches(["clean"]) == []
-    assert len(run.chosen_patches(["clean", "017"])) == 1
     with pytest.raises(InputError, match="no mutant begins with '999'"):
-        run.chosen_patches(["clean", "999"])
-
-
-@pytest.mark.parametrize(
-    "verdict, code", [("killed", 0), ("equivalent", 0), ("survived", 1), ("broken", 3), (None, 3)]
-)
-def test_the_table_is_made_of_stored_results_alone(
-    tmp_path, monkeypatch, empty_store, verdict, code
-):
-    monkeypatch.setattr(outcomes, "TABLE", tmp_path / "RESULTS.md")
-    monkeypatch.setattr(run, "Worker", None)  # so that none can be made
-    patch = PATCHES[0]
-    if verdict:
-        result = {"patch": patch.digest, "verdict": verdict, "by": "a.test", "seconds": 1.0}
-        outcomes.store(patch.name, result | {"revision": "0123456789ab"})
-    options = SimpleNamespace(names=[patch.name], table=True)
-    assert run.run(options, threading.Event()) == code
-    rows = outcomes.rows_of(outcomes.TABLE.read_text())
-    assert list(rows) == [patch.name for patch in PATCHES]
-    assert rows[patch.name][2] == (verdict or "not run")
-
-
-def test_no_copy_is_made_when_all_is_finished(tmp_path, monkeypatch, empty_store):
-    monkeypatch.setattr(outcomes, "TABLE", tmp_path / "RESULTS.md")
-    monkeypatch.setattr(run, "Worker", None)
-    tree, patch = run.tree_digest(), PATCHES[0]
-    outcomes.store("clean", {"tree": tree, "revision": "", "alarms": [[]], "seconds": {}})
-    result = {"patch": patch.digest, "tree": tree, "verdict": "killed", "by": "a.test"}
-    outcomes.store(patch.name, result | {"seconds": 1.0, "revision": "0123456789ab"})
-    options = SimpleNamespace(names=[patch.name], table=False, clean=1, jobs=2)
-    assert run.run(options, threading.Event()) == 0
+        run.chosen_patches(["999", "017"])
 
 
 def test_patch_without_a_sentence_is_refused(tmp_path):
@@ -109,57 +63,121 @@ def test_patch_without_a_sentence_is_refused(tmp_path):
 
 
 class FakeWorker:
-    """A copy of the tree with one program, whose first runs fail as given and later ones pass."""
+    """In the place of a copy of the tree; its outcome is given."""
 
-    def __init__(self, *failures):
-        self.failures_left = list(failures)
-        self.runs = 0
+    outcome = None
 
-    def programs(self):
-        return [SimpleNamespace(name="all_test")]
+    def __init__(self, *_):
+        assert self.outcome != "none is made"
 
-    def failures(self, program):
-        self.runs += 1
-        return (self.failures_left.pop(0) if self.failures_left else []), 1.0
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def first_failure(self, patch, _):
+        return self.outcome and Failure(self.outcome, "a.test", None)
 
 
 @pytest.fixture
-def empty_store(tmp_path, monkeypatch):
+def call(tmp_path, monkeypatch):
+    """Runs the command line with workers of a given outcome, and a store and table of its own."""
+    (tmp_path / "RESULTS.md").write_text(outcomes.TABLE.read_text())
+    monkeypatch.setattr(outcomes, "TABLE", tmp_path / "RESULTS.md")
     monkeypatch.setattr(outcomes, "STORE", tmp_path / "store")
+    monkeypatch.setattr(run, "Worker", FakeWorker)
+
+    def called(outcome, **given):
+        monkeypatch.setattr(FakeWorker, "outcome", outcome)
+        options = {"names": ["017"], "table": False, "jobs": 1, "timeout": 9.0, "random": 0}
+        code = run.run(SimpleNamespace(**options | given), threading.Event())
+        rows = outcomes.rows_of(outcomes.TABLE.read_text())
+        return code, next(row for name, row in rows.items() if name.startswith("017"))[2]
+
+    return called
 
 
-def clean_runs(wanted, tree="tree"):
-    return CleanRuns(wanted, tree, "0123456789ab")
+@pytest.mark.parametrize(
+    "outcome, code, verdict",
+    [
+        ("killed", 0, "killed"),
+        ("timeout", 0, "killed"),
+        (None, 1, "survived"),
+        ("broken", 3, "broken"),
+        ("false alarm", 3, "false alarm"),
+    ],
+)
+def test_verdicts_are_stored_and_written(call, outcome, code, verdict):
+    before = outcomes.rows_of(outcomes.TABLE.read_text())
+    assert call(outcome) == (code, verdict)
+    again = outcome if code == 3 else "none is made"  # what has a verdict is finished
+    assert call(again) == call("none is made", table=True) == (code, verdict)
+    after = outcomes.rows_of(outcomes.TABLE.read_text())
+    assert [name for name in before if before[name] != after[name]] == [
+        run.chosen_patches(["017"])[0].name
+    ]
 
 
-def test_workers_share_the_clean_runs(empty_store):
-    runs, workers = clean_runs(7), [FakeWorker(), FakeWorker()]
-    threads = [threading.Thread(target=runs.work, args=(worker,)) for worker in workers]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert runs.is_done()
-    assert sum(worker.runs for worker in workers) == 7
-    assert outcomes.stored(outcomes.CLEAN)["alarms"] == [[]] * 7
+@pytest.mark.parametrize(
+    "line, kind, mistakes",
+    [
+        ("  a += b * c[i];", "operator", ["a -= b * c[i];", "a += b / c[i];"]),
+        ("  if (a < b && c)", "operator", ["if (a <= b && c)", "if (a < b || c)"]),
+        ("  f(0.5);", "number", ["f(1.0);", "f(1.5);", "f(-0.5);"]),
+        ("  g(x[i]);", "index", ["g(x[0]);"]),
+        ("  g(x[i][2]);", "order", ["g(x[2][i]);"]),
+        ("  h(a, b[0]);", "order", ["h(b[0], a);"]),
+        ("  return -x;", "sign", ["return x;"]),
+        ('  const T y = q("a + 1", z);', "sign", ['const T y = -(q("a + 1", z));']),
+        ('  fail("a + 1");  // 2 * 3', "number", []),
+        ("#include <a>  // 1", "number", []),
+        ("int* p, const A<B>& q", "operator", []),
+    ],
+)
+def test_mistakes_of_a_line(line, kind, mistakes):
+    assert [text.strip() for one, text in mistakes_of(line) if one == kind] == mistakes
 
 
-def test_clean_runs_of_the_same_tree_count_and_of_another_do_not(empty_store):
-    clean_runs(2).work(FakeWorker())
-    assert clean_runs(3).missing() == 1
-    assert clean_runs(3, "another tree").missing() == 3
+@pytest.fixture
+def tree(tmp_path):
+    """A repository whose last commit adds three lines."""
+
+    def git(*words):
+        own = ["-c", "user.name=n", "-c", "user.email=e", "-c", "commit.gpgsign=false"]
+        subprocess.run(["git", "-C", tmp_path, *own, *words], check=True, capture_output=True)
+
+    (tmp_path / "solver").mkdir()
+    git("init", "-q")
+    for text in ("int old = 1 + 2;\n", "int old = 1 + 2;\n  a = b;\n  c = d * a;\n// 3 + 4\n"):
+        (tmp_path / "solver/a.cpp").write_text(text)
+        (tmp_path / "other.cpp").write_text(text)
+        git("add", "-A")
+        git("commit", "-qm", "c")
+    return tmp_path
 
 
-def test_a_single_failing_run_is_followed_by_another(empty_store):
-    runs, worker = clean_runs(1), FakeWorker(["a"])
-    runs.work(worker)
-    assert worker.runs == 2
-    runs.conclude()  # a false alarm: the second run had none
-    assert outcomes.stored(outcomes.CLEAN)["alarms"] == [["a"], []]
+def test_random_mistakes_are_of_the_change_and_apply(tree):
+    planted = plant(tree, "HEAD~1", 99, 7)
+    assert planted == plant(tree, "HEAD~1", 99, 7)
+    assert list(plant(tree, "HEAD~1", 1, 7)) == list(planted)[:1]
+    assert {mistake.line for mistake in planted} == {2, 3}
+    swapped = Mistake(
+        "solver/a.cpp", 2, "order", ("  a = b;", "  c = d * a;"), ("  c = d * a;", "  a = b;")
+    )
+    assert swapped in planted
+    for mistake, text in planted.items():
+        (tree / "a.patch").write_text(mistake.patch(text))
+        subprocess.run(["git", "-C", tree, "apply", "--check", "a.patch"], check=True)
 
 
-def test_what_fails_in_every_run_is_a_broken_tree(empty_store):
-    runs = clean_runs(2)
-    runs.work(FakeWorker(["a", "b"], ["b"]))
-    with pytest.raises(RuntimeError, match="the clean tree fails: b$"):
-        runs.conclude()
+def test_random_mistakes_are_reported(tree, call, monkeypatch, capsys):
+    monkeypatch.setattr(run, "ROOT", tree)
+    given = {"random": 2, "seed": 7, "since": "HEAD~1"}
+    assert call("killed", **given)[0] == 0
+    text = capsys.readouterr().out
+    assert "noticed by a.test\n    - " in text and "noticed: 2 of 2 that compile, 100 %" in text
+    assert call(None, **given)[0] == 1
+    assert "noticed: 0 of 2 that compile, 0 %" in capsys.readouterr().out
+    with pytest.raises(InputError, match="no lines of C"):
+        call(None, **given | {"since": "HEAD"})

@@ -1,4 +1,4 @@
-"""READMEs are true: steps are taken and commands run as they stand, and what is named is there.
+"""READMEs are true: steps are taken and commands run as they stand.
 
 Each document is followed from its top down in a copy of the project, with the program that is
 built; `commands.toml` lists what is not run as it stands. A step that adds a law, a control or a
@@ -30,7 +30,6 @@ DOCUMENTS = {
     for place in sorted(PLACES)
     if place.suffix == ".md"
 }
-PRESENT = [name for name in DOCUMENTS if name != "CHANGELOG.md"]  # which tells of what was there
 FOLLOWED = [name for name, text in DOCUMENTS.items() if parts(text)]
 TEST = re.compile(r"ci/build release (\w+) && build/release/verification/\1")
 
@@ -213,12 +212,12 @@ def test_long_commands_are_taken(command):
 @pytest.mark.parametrize(
     "command, why",
     [
-        ("bash ci/setup brench", "does not tell of"),
+        ("bash ci/setup brench", "does not know"),
         ("bash ci/gates", "is not there"),
-        ("bash ci/gate --acept", "unrecognized arguments"),
+        ("bash ci/gate --acept", "does not know"),
         ("bench/local_touch.py", "cannot be executed"),
-        ("/usr/bin/python3 bench/time_to_rest.py --elements C3D8I", "invalid choice"),
-        ("reference/regenerate --truth-only", "unrecognized arguments"),
+        ("/usr/bin/python3 bench/time_to_rest.py --elementz C3D8", "does not know"),
+        ("reference/regenerate --truth-only", "does not know"),
         ("build/release/sandglass bench --resting", "--resting"),
         ("/usr/bin/python3 -m pytest reference/test", "is not there"),
     ],
@@ -296,28 +295,7 @@ def test_what_a_new_thing_costs_is_what_contributing_says(tmp_path):
         assert measured == [int(number) for number in said], name
 
 
-@pytest.mark.parametrize("document", PRESENT)
-def test_sources_that_running_text_names_are_there(document):
-    """Files and folders, as the end of a path in the tree; those that a step makes apart."""
-    made = {part.path for part in parts(DOCUMENTS[document]) if part.kind == "file"}
-    for name in inline(DOCUMENTS[document]):
-        source = re.fullmatch(r"(?:\.\./)*([\w./-]+(?:\.(?:[ch]pp|py|md|cff|toml)|/))", name)
-        if source and name not in made and not name.startswith("build/"):
-            ending = "/" + source[1].rstrip("/")
-            assert any(str(place).endswith(ending) for place in PLACES), name
-
-
 THEORY = ["solver/element/README.md", "solver/material/README.md", "solver/solve/README.md"]
-
-
-@pytest.mark.parametrize("document", THEORY)
-def test_functions_that_a_table_of_theory_names_are_there(document):
-    code = "".join(file.read_text() for file in sorted((ROOT / "solver").rglob("*.[ch]pp")))
-    rows = re.findall(r"^\|.*\| ([^|]*) \|$", DOCUMENTS[document], re.MULTILINE)
-    named = re.findall(r"`(\w+(?:::\w+)*)`", " ".join(rows))
-    assert named
-    for name in named:
-        assert re.search(rf"\b{name.split('::')[-1]}\b[^;]*[({{]", code), name
 
 
 def test_every_equation_of_the_paper_is_in_the_theory_and_in_the_code():
@@ -373,30 +351,3 @@ def test_every_test_is_in_the_table_of_the_suite():
     tests = [*folder.glob("*_test.cpp"), *folder.glob("test_*.py")]
     text = DOCUMENTS["verification/README.md"]
     assert [test.name for test in tests if f"`{test.name}`" not in text] == []
-
-
-@pytest.fixture(scope="module")
-def help_of():
-    """Subcommand -> its help."""
-    names = re.findall(r"^  (\w+)  ", sandglass("--help").stdout, re.MULTILINE)
-    return {name: sandglass(name, "--help").stdout for name in names}
-
-
-@pytest.mark.parametrize("document", PRESENT)
-def test_what_running_text_names_is_there(document, help_of):
-    """Scripts of ci/, and subcommands of the program with their options and canonical cases."""
-    cases = {file.stem for file in (ROOT / "cases").glob("*.toml")}
-    for code in inline(DOCUMENTS[document]):
-        words = code.removeprefix("bash ").removeprefix("build/release/").split()
-        if not words:
-            continue
-        if re.fullmatch(r"ci/[\w-]+", words[0]):
-            assert (ROOT / words[0]).stat().st_mode & 0o100, code
-        if words[0] != "sandglass" or len(words) == 1:
-            continue
-        assert words[1] in help_of, code
-        for before, word in zip(words[1:], words[2:]):
-            if word.startswith("-"):
-                assert re.search(rf"(?<![\w-]){word}(?![\w-])", help_of[words[1]]), code
-            elif not before.startswith("-") and re.fullmatch(r"[a-z]+(-[a-z]+)*", word):
-                assert word in cases, code

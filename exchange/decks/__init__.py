@@ -8,14 +8,13 @@ returns the text of each file by its ending.
 from dataclasses import replace
 
 from common.errors import InputError, suggestion
-from exchange.decks import calculix, febio, niftysim, openradioss, sofa
+from exchange.decks import calculix, febio, niftysim, openradioss
 
 PROGRAMS = {
     "calculix": calculix,
     "febio": febio,
     "niftysim": niftysim,
     "openradioss": openradioss,
-    "sofa": sofa,
 }
 
 

@@ -1,7 +1,7 @@
 """Decks: their exact text for one brick, the constants of every law, and what is refused.
 
 The texts in data/decks were run: ccx, FEBio, NiftySim and OpenRadioss take them, and what they
-answer on the canonical cases is in results/. No one here has run that of SOFA.
+answer on the canonical cases is in results/.
 """
 
 import math
@@ -66,7 +66,6 @@ WRITTEN = {
     "moved.feb": ("febio", ".feb", problem(DAMPED), {"element": "udg-hex", "hourglass": 0.5}),
     "moved.xml": ("niftysim", ".xml", problem(DAMPED), {}),
     "moved_0000.rad": ("openradioss", "_0000.rad", problem(DAMPED), {}),
-    "moved.scn": ("sofa", ".scn", problem(DAMPED, force=0.0), {}),
 }
 
 
@@ -231,9 +230,6 @@ def test_a_quasi_static_case_becomes_a_damped_motion():
             {},
             "lasts as long as the motion: ramp_time = duration",
         ),
-        ("sofa", ".scn", problem(), {}, "nodal forces do not follow"),
-        ("sofa", ".scn", problem(force=0.0, held=(0,)), {}, "hold all components"),
-        ("sofa", ".scn", replace(two_materials()), {}, "has one material"),
     ],
 )
 def test_what_a_program_cannot_express_is_refused(program, ending, one, options, told):

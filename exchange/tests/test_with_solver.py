@@ -77,9 +77,8 @@ def test_rules_of_the_case_add_sets_to_those_of_the_file(block):
     folder = block.parent
     succeeds("mesh", block, "-o", folder / "own.vtu")
     own = case_of(folder, "own.vtu")
-    own.write_text(
-        own.read_text() + "[sets]\nmiddle = { z = [0.1, 0.1] }\nfoot = { z = [0, 0.05] }\n"
-    )
+    sets = "[sets]\nmiddle = { z = [0.1, 0.1] }\nfoot = { z = [0, 0.05] }\n"
+    own.write_text(own.read_text() + sets)
     said = succeeds("mesh", own, "-o", folder / "m.h5").stdout
     for line in ("set middle: 9 nodes", "set head: 9 nodes", "set foot: 18 nodes"):
         assert line in said
@@ -90,33 +89,27 @@ def test_what_is_put_right_is_told_and_the_run_goes_on(tmp_path):
     masks = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
     write(tmp_path / "own.vtu", POINTS / 20, mirrored, point_data=masks)
     done = succeeds("run", case_of(tmp_path, "own.vtu"))
-    assert done.stderr.startswith(
-        f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
-    )
+    told = f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
+    assert done.stderr.startswith(told)
     assert "static equilibrium (stable):" in done.stdout
 
 
 def test_files_that_are_no_mesh(tmp_path):
     case = case_of(tmp_path, "own.msh")
     output = ["-o", tmp_path / "out.h5"]
-    refused(
-        "run", case, *output, told=f"{case}: mesh.file: {tmp_path}/own.msh: cannot be read: No such"
-    )
+    told = f"{case}: mesh.file: {tmp_path}/own.msh: cannot be read: No such"
+    refused("run", case, *output, told=told)
     (tmp_path / "own.geo").touch()
-    refused(
-        "run", case, *output, told=f"; `gmsh -3 {tmp_path}/own.geo -o {tmp_path}/own.msh` makes"
-    )
+    told = f"; `gmsh -3 {tmp_path}/own.geo -o {tmp_path}/own.msh` makes"
+    refused("run", case, *output, told=told)
     (tmp_path / "own.geo").unlink()
     (tmp_path / "own.msh").write_bytes((DATA / "block-4.1.msh").read_bytes()[:1500])
     for command in ("run", "mesh"):
-        refused(
-            command, case, *output, told="own.msh: $Nodes has no $EndNodes: the file is cut off"
-        )
+        refused(command, case, *output, told="own.msh: $Nodes has no $EndNodes: the file is cut")
     refused("verify", case, told="own.msh: $Nodes has no $EndNodes")
     tetrahedra = write(tmp_path / "own.vtu", cells=[[0, 1, 2, 4]], kind="tetra")
-    refused(
-        "run", case_of(tmp_path, tetrahedra.name), *output, told="1 of type 'tetra', besides 0 hex"
-    )
+    case = case_of(tmp_path, tetrahedra.name)
+    refused("run", case, *output, told="1 of type 'tetra', besides 0 hex")
     assert sorted(file.name for file in tmp_path.iterdir()) == ["own.msh", "own.toml", "own.vtu"]
 
 
@@ -128,9 +121,8 @@ def test_a_file_whose_name_looks_like_an_option(tmp_path):
 
 def test_a_set_that_the_file_lacks(tmp_path):
     shutil.copy(DATA / "block-4.1.msh", tmp_path)
-    refused(
-        "run", case_of(tmp_path, "block-4.1.msh"), told="'head' is not a node set of this case; "
-    )
+    case = case_of(tmp_path, "block-4.1.msh")
+    refused("run", case, told="'head' is not a node set of this case; ")
 
 
 def test_a_file_without_sets(tmp_path):
@@ -142,9 +134,7 @@ def test_a_file_without_sets(tmp_path):
 def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
     (tmp_path / "own.geo").touch()
     case = case_of(tmp_path, "own.geo")
-    refused(
-        "run", case, told="own.geo: is not a complete HDF5 file (truncated, or of another kind); "
-    )
+    refused("run", case, told="own.geo: is not a complete HDF5 file (truncated, or of another")
     refused("run", case, told="must end in .msh (Gmsh), .inp (Abaqus), .vtu, .npy or .nii")
     case.write_text(case.read_text().replace("file =", "fiel ="))
     told = "mesh.generator is missing; this key or mesh.file must be given, but there is only fiel"
@@ -154,22 +144,10 @@ def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
 @pytest.mark.parametrize(
     "variable, value, told",
     [
-        (
-            "SANDGLASS_PYTHON",
-            "/no/python3",
-            "/no/python3: cannot be run: No such file or directory;",
-        ),
+        ("SANDGLASS_PYTHON", "/no/python3", "/no/python3: cannot be run: No such file or dir"),
         ("SANDGLASS_EXCHANGE", "/no/exchange", "/no/exchange/convert.py: is missing"),
-        (
-            "PYTHONPATH",
-            "meshio",
-            "meshio is not installed; files of other programs need packages pyt",
-        ),
-        (
-            "PYTHONPATH",
-            "h5py",
-            "h5py is not installed; files of other programs need packages python",
-        ),
+        ("PYTHONPATH", "meshio", "meshio is not installed; files of other programs need packag"),
+        ("PYTHONPATH", "h5py", "h5py is not installed; files of other programs need packages "),
     ],
 )
 def test_what_is_not_installed_is_named(tmp_path, variable, value, told):
@@ -186,10 +164,8 @@ def test_a_converter_that_dies(tmp_path):
     (tmp_path / "convert.py").write_text("import os\nos.abort()\n")
     environment = dict(os.environ, SANDGLASS_EXCHANGE=str(tmp_path))
     done = sandglass("run", case_of(tmp_path, "own.vtu"), env=environment)
-    assert (
-        done.returncode == 3
-        and "own.vtu: cannot be completed: convert.py was ended by" in done.stderr
-    )
+    assert done.returncode == 3
+    assert "own.vtu: cannot be completed: convert.py was ended by" in done.stderr
 
 
 @pytest.mark.parametrize("ending", ["vtu", "xdmf", "inp"])
@@ -261,17 +237,11 @@ def test_a_deck_of_a_motion_says_how_it_moves(block):
 def test_decks_that_cannot_be(block):
     folder, words = block.parent, ["-o", "a.inp", "--deck", "calculix"]
     block.write_text(BLOCK.replace('law = "neo-hookean"', 'law = "st-venant-kirchhoff"'))
-    refused(
-        "mesh",
-        block,
-        *words,
-        told="law = 'st-venant-kirchhoff' is not known to CalculiX",
-        cwd=folder,
-    )
+    told = "law = 'st-venant-kirchhoff' is not known to CalculiX"
+    refused("mesh", block, *words, told=told, cwd=folder)
     block.write_text(dynamic(BLOCK, duration=0.05))
-    refused(
-        "score", "a.csv", "--case", block, told="a dynamic case has no answer to score", cwd=folder
-    )
+    told = "a dynamic case has no answer to score"
+    refused("score", "a.csv", "--case", block, told=told, cwd=folder)
     assert [file.name for file in folder.iterdir()] == ["block.toml"]
 
 
@@ -296,17 +266,14 @@ def test_a_deck_says_what_the_case_says(block):
 
 
 def test_a_deck_ends_where_a_rotation_ends(block):
-    turned = (
-        '[[rotation]]\nset = "head"\naxis = "z"\nangle = 90.0\ndisplacement = [0.0, 0.0, 0.01]\n'
-    )
-    text = BLOCK[: BLOCK.rindex("[[displacement]]")] + turned
-    block.write_text(text)
+    turned = '[[rotation]]\nset = "head"\naxis = "z"\nangle = 90.0\n'
+    turned += "displacement = [0.0, 0.0, 0.01]\n"
+    block.write_text(BLOCK[: BLOCK.rindex("[[displacement]]")] + turned)
     succeeds("mesh", block, "--deck", "calculix", "-o", block.parent / "a.inp")
     lines = (block.parent / "a.inp").read_text().splitlines()
     points = [line.split(", ")[1:] for line in lines[3:48]]
-    boundary = lines[
-        lines.index("*BOUNDARY") + 1 : lines.index(next(n for n in lines if "FILE" in n))
-    ]
+    end = lines.index(next(n for n in lines if "FILE" in n))
+    boundary = lines[lines.index("*BOUNDARY") + 1 : end]
     u = np.full((45, 3), np.nan)
     for node, axis, _, value in (line.split(", ") for line in boundary):
         u[int(node) - 1, int(axis) - 1] = float(value)
@@ -399,10 +366,7 @@ def test_without_a_golden_its_twin_is_computed(answered):
         (["answer.h5", "--name", "a/b"], "--name must have no '/'"),
         (["answer.h5", "--json", "none/a.json"], "none/a.json: cannot be written"),
         (["golden.h5", "--case", "column"], "45 rows must be 0 to 495 or 1 to 496"),
-        (
-            ["answer.h5", "--case", "column"],
-            "nodes of the case have no node of the file within",
-        ),
+        (["answer.h5", "--case", "column"], "nodes of the case have no node of the file within"),
     ],
 )
 def test_wrong_ways_to_score(answered, words, told):

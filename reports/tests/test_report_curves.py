@@ -12,7 +12,7 @@ from common.program import ROOT
 from sandglass_report.curves import curve_plate, read_costs
 from sandglass_report.style import Palette, solver_methods
 
-SCRIPT = ROOT / "reports" / "make_curves.py"
+SCRIPT = ROOT / "reports" / "make_figures.py"
 
 
 def rung(method, seconds, error=0.01, **changed):

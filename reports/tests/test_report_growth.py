@@ -11,7 +11,7 @@ from common.errors import InputError
 from common.program import ROOT
 from sandglass_report.growth import growth_plate, read_growth
 
-SCRIPT = ROOT / "reports" / "make_timings.py"
+SCRIPT = ROOT / "reports" / "make_figures.py"
 
 
 def record(elements, seconds, **changed):

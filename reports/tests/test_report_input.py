@@ -16,11 +16,6 @@ def refused(data, capsys, *words):
     assert not data.page.exists()
 
 
-def test_missing_verdicts(data, capsys):
-    (data.folder / "verdicts.json").unlink()
-    refused(data, capsys, "verdicts.json", "sandglass verify --json")
-
-
 @pytest.mark.parametrize("text", ["{", "[]", "{}", '{"records": [], "limits": []}', "\xff"])
 def test_verdicts_that_are_none(data, capsys, text):
     (data.folder / "verdicts.json").write_text(text, encoding="latin-1")
@@ -49,9 +44,21 @@ def test_a_record_without_a_key(data, capsys):
     refused(data, capsys, "records[0].status", "missing")
 
 
-def test_a_case_without_a_file(data, capsys):
-    (data.folder / "cases/column.toml").unlink()
-    refused(data, capsys, "'column'", "no case file")
+@pytest.mark.parametrize(
+    ("file", "text", "words"),
+    [
+        ("verdicts.json", None, ["verdicts.json", "sandglass verify --json"]),
+        ("cases/column.toml", None, ["'column'", "no case file"]),
+        ("cases/column.toml", "[case\n", ["column.toml", "TOML"]),
+        ("results/column.tl-none.h5", None, ["column.tl-none.h5", "--results"]),
+        ("results/column.tl-none.h5", "text", ["column.tl-none.h5", "HDF5"]),
+    ],
+)
+def test_a_file_that_is_missing_or_another(data, capsys, file, text, words):
+    (data.folder / file).unlink()
+    if text:
+        (data.folder / file).write_text(text)
+    refused(data, capsys, *words)
 
 
 def test_a_case_from_elsewhere(data, capsys):
@@ -72,31 +79,18 @@ def test_no_folder_of_cases(data, capsys):
     refused(data, capsys, "cases", "no such folder")
 
 
-def test_a_case_file_that_is_no_toml(data, capsys):
-    (data.folder / "cases/column.toml").write_text("[case\n", encoding="utf-8")
-    refused(data, capsys, "column.toml", "TOML")
-
-
-def test_a_run_without_its_result(data, capsys):
-    (data.folder / "results/column.tl-none.h5").unlink()
-    refused(data, capsys, "column.tl-none.h5", "--results")
-
-
-def test_a_result_that_is_no_hdf5(data, capsys):
-    (data.folder / "results/column.tl-none.h5").write_text("text", encoding="utf-8")
-    refused(data, capsys, "column.tl-none.h5", "HDF5")
-
-
-def test_a_result_without_frames(data, capsys):
-    with h5py.File(data.folder / "results/column.tl-none.h5", "a") as file:
-        del file["frames"]
-    refused(data, capsys, "column.tl-none.h5", "frames")
-
-
-def test_a_result_without_the_profile_set(data, capsys):
-    with h5py.File(data.folder / "results/column.tl-none.h5", "a") as file:
-        del file["mesh/sets/edge"]
-    refused(data, capsys, "column.tl-none.h5", "edge")
+@pytest.mark.parametrize(
+    ("file", "lost"),
+    [
+        ("results/column.tl-none.h5", "frames"),
+        ("results/column.tl-none.h5", "mesh/sets/edge"),
+        ("reference/golden/column.h5", "displacement"),
+    ],
+)
+def test_a_result_without_a_part(data, capsys, file, lost):
+    with h5py.File(data.folder / file, "a") as opened:
+        del opened[lost]
+    refused(data, capsys, file.partition("/")[2], lost.rpartition("/")[2])
 
 
 def test_a_result_of_another_mesh(data, capsys):
@@ -113,12 +107,6 @@ def test_a_golden_of_another_mesh(data, capsys):
 def test_a_golden_of_another_size(data, capsys):
     data.write_reference("golden", data.answer[1:])
     refused(data, capsys, "golden/column.h5", "(35, 3)")
-
-
-def test_a_golden_without_displacements(data, capsys):
-    with h5py.File(data.folder / "reference/golden/column.h5", "a") as file:
-        del file["displacement"]
-    refused(data, capsys, "golden/column.h5", "displacement")
 
 
 def test_results_and_verdicts_of_different_runs(data, capsys):

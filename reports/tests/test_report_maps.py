@@ -10,7 +10,7 @@ from common.errors import InputError
 from common.program import ROOT
 from sandglass_report.maps import OUTCOMES, map_plates, map_texts, outcome, read_maps, words_in
 
-SCRIPT = ROOT / "reports" / "make_maps.py"
+SCRIPT = ROOT / "reports" / "make_figures.py"
 
 
 def cell(method="tl-none", x=1.0, y=0.3, finding="good", error=0.001, **changed):

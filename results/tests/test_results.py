@@ -166,6 +166,7 @@ def test_entries_of_a_comparison(answer, tmp_path):
     own = shared | {"program": "Sandglass", "build": "", "element": "tl-full"}
     more = {"seconds": 2.0, "steps": 7, "solve": "damped motion", "time_step": 1e-3}
     more["answer"] = answer.name
+    near = {"method": "tl-perturbation", "difference": 0.01}
     document = {
         "case": "column",
         "processor": "CPU",
@@ -179,7 +180,10 @@ def test_entries_of_a_comparison(answer, tmp_path):
             own | more,
             rival | more | {"element": "H9", "failure": "diverged"},
         ],
-        "in_motion": [rival | {"ns_per_element_step": 40.0}, own | {"ns_per_element_step": 4.0}],
+        "in_motion": [
+            rival | {"ns_per_element_step": 40.0, "nearest": near},
+            own | {"ns_per_element_step": 4.0},
+        ],
     }
     peers = tmp_path / "peers.json"
     peers.write_text(json.dumps(document))
@@ -192,4 +196,5 @@ def test_entries_of_a_comparison(answer, tmp_path):
     found = entries["NiftySim"]
     assert (found["version"], found["build"]) == ("2.5", "native, GCC -O3")
     assert (found["ns_per_element_step"], found["seconds_to_rest"]) == (40.0, 2.0)
+    assert found["nearest_motion"] == near and "nearest_motion" not in entries["Sandglass"]
     assert entries["Sandglass"]["version"] == "0.1" and entries["Sandglass"]["build"] == "GNU"

@@ -1,111 +1,102 @@
-"""Compares the solver with its baseline: accuracy, operations, bits, memory, ratios of times.
+"""Compares the solver's accuracy and operations with what was last accepted.
 
-Sources not given as files are run: SANDGLASS_BINARY, else build/release/sandglass.
+Areas not given as files are run: SANDGLASS_BINARY, else build/release/sandglass.
 Exit codes: 0 no regression, 1 a regression, 2 bad usage or input, 3 the solver failed.
 """
 
 import argparse
 import datetime
 import sys
+from collections import Counter
 from pathlib import Path
 
 from common.command import exit_code
 from common.errors import InputError, suggestion
+from common.files import write_whole
+from common.program import binary, output_of
+from common.records import entry
 
 from . import baseline as baselines
-from . import collect, tell
-from .bench import read_bench
-from .compare import compare, undecided
-from .records import Run, read_bits, read_flops, read_verdicts
+from .figures import AREAS, BETTER, FAILING, NEW, VANISHED, WORSE, compare
+from .figures import read_flops, read_verdicts
 
-# The areas of figures that a source provides.
+# What a file is made by, and read by. Broken limits of `verify` are left to ci/verify.
 SOURCES = {
-    "accuracy": ("accuracy",),
-    "operations": ("operations",),
-    "bits": ("bits",),
-    "speed": ("forces", "memory", "speed"),
+    "accuracy": (("verify", "--no-costs"), read_verdicts),
+    "operations": (("flops",), read_flops),
 }
+ORIGIN = ("processor", "compiler", "build_flags")
+MOST = 40  # figures of one verdict that are listed
 
 
 def arguments(given):
     """The command line, parsed. Raises InputError."""
     parser = argparse.ArgumentParser(prog="ci/gate", description=__doc__.splitlines()[0])
     add = parser.add_argument
-    add("sources", nargs="*", metavar="SOURCE", help=f"{', '.join(SOURCES)}; all when left out")
+    add("areas", nargs="*", metavar="AREA", help=f"{', '.join(AREAS)}; all when left out")
     baseline = "verification/gate/baseline.json"
     add("--baseline", type=Path, default=baseline, help="default: %(default)s")
-    add(
-        "--verdicts",
-        metavar="FILE",
-        action="append",
-        help="of sandglass verify --json, instead of a run",
-    )
-    add("--flops", metavar="FILE", action="append", help="of sandglass flops --json")
-    add("--bits", metavar="FILE", action="append", help="bits.json of an earlier run")
-    add("--bench", metavar="FILE", nargs="+", help="of processes of sandglass bench --json")
-    add(
-        "--most", type=int, default=32, help="processes of bench when few cannot tell (%(default)s)"
-    )
+    for area, (command, _) in SOURCES.items():
+        option = "--verdicts" if area == "accuracy" else "--flops"
+        said = f"of sandglass {command[0]} --json, instead of a run"
+        add(option, dest=area, type=Path, metavar="FILE", help=said)
     add("-o", "--output", type=Path, default="build/gate", help="folder (default: %(default)s)")
     add("--accept", action="store_true", help="make what is found the baseline; needs --reason")
     add("--reason", help="why, for the baseline's history")
     options = parser.parse_args(given)
-    for source in options.sources:
-        if source not in SOURCES:
-            raise InputError(f"SOURCE: '{source}' is not known; {suggestion(source, SOURCES)}")
+    for area in options.areas:
+        if area not in AREAS:
+            raise InputError(f"AREA: '{area}' is not known; {suggestion(area, AREAS)}")
     if options.accept and not (options.reason or "").strip():
         raise InputError("--accept: --reason TEXT is required: why is this the new baseline?")
     if options.reason and not options.accept:
         raise InputError("--reason: goes with --accept")
-    if options.most < collect.PROCESSES:
-        raise InputError(f"--most = {options.most} must be {collect.PROCESSES} or more")
-    options.sources = options.sources or list(SOURCES)
-    options.areas = [area for source in options.sources for area in SOURCES[source]]
+    options.areas = options.areas or list(AREAS)
     return options
 
 
-def say(text):
-    """Prints a line of progress."""
-    print(f"gate: {text}", file=sys.stderr, flush=True)
+def find(options):
+    """(figures, revision, machine), from files or, without them, from the program."""
+    figures, revision, machine = {}, None, None
+    for area in options.areas:
+        command, read = SOURCES[area]
+        file = getattr(options, area)
+        if file is None:
+            print(f"gate: running for {area}", file=sys.stderr, flush=True)
+            file = options.output / f"{area}.json"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            output_of(binary(), *command, "--json", file, allowed=(0, 1))
+        found, document = read(file)
+        figures |= found
+        revision = document.get("revision", revision)
+        if "processor" in document:
+            machine = "; ".join(entry(file, document, key, str) for key in ORIGIN)
+    return figures, revision, machine
 
 
-def find(options, baseline):
-    """The Run, from files or, if there are none, from the program."""
-    run = Run()
-    folder = options.output
-    folder.mkdir(parents=True, exist_ok=True)
-    readers = {
-        "accuracy": (options.verdicts, collect.verdicts, read_verdicts),
-        "operations": (options.flops, collect.flops, read_flops),
-        "bits": (options.bits, collect.bits, read_bits),
-    }
-    for source, (files, collected, read) in readers.items():
-        if source not in options.sources:
-            continue
-        if not files:
-            say(f"running for {source}")
-            files = [collected(folder)]
-        for file in files:
-            run.add(file, *read(file))
-    if "speed" in options.sources:
-        files = options.bench or bench_files(options, baseline, folder)
-        records, _, document = read_bench(files)
-        run.add(files[0], records, document)
-    return run
-
-
-def bench_files(options, baseline, folder):
-    """Files of as many processes of bench as a decision takes, at most `most`."""
-    files = []
-    while True:
-        say(f"running for speed, process {len(files) + 1}")
-        files.append(collect.bench(folder, f"bench-{len(files) + 1}"))
-        if len(files) < collect.PROCESSES:
-            continue
-        records, machine, _ = read_bench(files)
-        outcomes = compare(baseline, Run(records, machine=machine), ["speed"])
-        if len(files) >= options.most or not (options.accept or undecided(outcomes)):
-            return files
+def table(outcomes):
+    """The figures that are not the same, worst first, then their number by verdict."""
+    rows = []
+    for verdict in (WORSE, VANISHED, NEW, BETTER):
+        listed = [outcome for outcome in outcomes if outcome.verdict == verdict]
+        for o in listed[:MOST]:
+            values = [
+                "-" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v)
+                for v in (o.baseline, o.found)
+            ]
+            rows.append((verdict, o.area, o.name, o.figure, *values, o.reason))
+        if len(listed) > MOST:
+            rows.append((verdict, f"and {len(listed) - MOST} more", "", "", "", "", ""))
+    if rows:
+        rows.insert(0, ("verdict", "area", "what", "figure", "baseline", "found", ""))
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+    counts = Counter(outcome.verdict for outcome in outcomes)
+    regressions = sum(counts[verdict] for verdict in FAILING)
+    parts = [f"{len(outcomes)} figures", f"{regressions} regressions"]
+    parts += [f"{counts[verdict]} {verdict}" for verdict in (NEW, BETTER) if counts[verdict]]
+    lines.append(f"gate: {'FAILED' if regressions else 'passed'}: {', '.join(parts)}")
+    return "\n".join(lines)
 
 
 def gate(given):
@@ -113,18 +104,21 @@ def gate(given):
     options = arguments(given)
     known = options.baseline.exists() or not options.accept
     baseline = baselines.read(options.baseline) if known else baselines.Baseline()
-    run = find(options, baseline)
-    date = str(datetime.date.today())
-    outcomes = compare(baseline, run, options.areas)
-    tell.write_all(options.output, outcomes, baseline, run, date)
-    if not options.accept:
-        print(tell.table(outcomes))
-        return 1 if any(outcome.fails for outcome in outcomes) else 0
-    changed = baselines.accept(baseline, run, options.areas, options.reason, date)
-    baselines.write(options.baseline, baseline)
-    told = "; ".join(f"{area}: {what}" for area, what in changed.items()) or "nothing changed"
-    print(f"accepted in {options.baseline}: {told}")
-    return 0
+    figures, revision, machine = find(options)
+    if options.accept:
+        about = {"date": str(datetime.date.today()), "revision": revision}
+        about["reason"] = options.reason.strip()
+        changed = baselines.accept(baseline, figures, options.areas, machine, about)
+        baselines.write(options.baseline, baseline)
+        said = "; ".join(f"{area}: {what}" for area, what in changed.items())
+        print(f"accepted in {options.baseline}: {said or 'nothing changed'}")
+        return 0
+    outcomes = compare(baseline.of(options.areas, machine), figures)
+    text = table(outcomes)
+    options.output.mkdir(parents=True, exist_ok=True)
+    write_whole(options.output / "gate.txt", text + "\n")
+    print(text)
+    return 1 if any(outcome.verdict in FAILING for outcome in outcomes) else 0
 
 
 def main(given=None):

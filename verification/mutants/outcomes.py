@@ -1,6 +1,5 @@
 """Results of the mutants: a JSON file for each under build/, and the table RESULTS.md."""
 
-import collections
 import datetime
 import json
 import re
@@ -12,7 +11,13 @@ from patches import FOLDER
 STORE = ROOT / "build" / "mutant-results"
 TABLE = FOLDER / "RESULTS.md"
 COLUMNS = ("mutant", "mistake", "verdict", "by", "s", "revision")
-CLEAN = "clean"
+HEAD = """# Mutants
+
+Made by `verification/mutants/run.py` on {day}, revision {revision}: {counts}.
+
+Each row names the first test that failed. `README.md` says how the mutants were chosen.
+
+"""
 
 
 def store(name, result):
@@ -27,14 +32,6 @@ def stored(name):
         return json.loads((STORE / f"{name}.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-
-
-def killers():
-    """The number of mutants that each program has killed, among the stored results."""
-    found = collections.Counter()
-    for path in STORE.glob("[0-9]*.json"):
-        found[(stored(path.stem) or {}).get("program")] += 1
-    return found
 
 
 def rows_of(text):
@@ -63,14 +60,7 @@ def write_table(patches, revision):
     rows = [_row(patch, before) for patch in patches]
     verdicts = [row[2] for row in rows]
     counts = ", ".join(f"{verdicts.count(v)} {v}" for v in sorted(set(verdicts)))
-    clean = stored(CLEAN)
-    text = "# Mutants\n\n"
-    today = datetime.date.today()
-    text += f"Made by `verification/mutants/run.py` on {today}, revision {revision}: {counts}.\n"
-    if clean:
-        runs, alarms = len(clean["alarms"]), sum(map(len, clean["alarms"]))
-        text += f"The tree without a mistake: runs {runs}, false alarms {alarms}.\n"
-    text += "\nEach row names the first test that failed; programs run in order of their cost.\n\n"
+    text = HEAD.format(day=datetime.date.today(), revision=revision, counts=counts)
     text += "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|\n"
     text += "".join("| " + " | ".join(row) + " |\n" for row in rows)
     write_whole(TABLE, text)

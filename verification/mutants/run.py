@@ -1,186 +1,150 @@
-"""Mutation tests: does a test fail for every plausible mistake?
+"""Mutation tests: does a test fail for every mistake?
 
 Each patch of this folder is applied to a copy of HEAD, built and tested until the first failure.
 Prints what killed each mutant and writes RESULTS.md. Finished mutants are kept under
-build/mutant-results and not run again while patch and tree are the same.
-Exit codes: 0 all killed or proven equivalent, 1 some survived or a clean tree failed, 2 bad usage,
-3 interrupted or a mutant that does not build.
+build/mutant-results and not run again while patch and tree are the same. With --random, mistakes
+are planted at random in the lines of a change instead.
+Exit codes: 0 all killed or proven equivalent, 1 some survived, 2 bad usage, 3 interrupted, or a
+mutant without a verdict.
 """
 
 import argparse
 import datetime
 import hashlib
-import queue
 import signal
-import subprocess
 import sys
+import tempfile
 import threading
 import time
 from pathlib import Path
 
 if __name__ == "__main__":
-    sys.path.insert(1, str(Path(__file__).resolve().parent.parent.parent))
+    ROOT_OF_ALL = Path(__file__).resolve().parents[2]
+    sys.path[1:1] = [str(ROOT_OF_ALL), str(ROOT_OF_ALL / "ci")]
 
 import outcomes
-from clean_runs import CleanRuns
 from common.command import exit_code
 from common.errors import InputError
 from common.program import ROOT
-from patches import read_patches
+from patches import read_patch, read_patches
+from plant import git, plant
 from worker import OutOfTime, Stopped, Worker
-
-
-def git(*arguments):
-    """The output of a git command in the checkout."""
-    command = ["git", "-C", str(ROOT), *arguments]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
 def tree_digest():
     """Of all files of HEAD that can decide a verdict: not of texts, nor of the mutants."""
     lines = [
         line
-        for line in git("ls-tree", "-r", "HEAD").splitlines()
+        for line in git(ROOT, "ls-tree", "-r", "HEAD").splitlines()
         if "\tverification/mutants/" not in line and not line.endswith(".md")
     ]
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
 
 
-def result_of(worker, patch, programs, timeout):
-    """The result of one mutant, as stored."""
-    started = time.monotonic()
-    result = {"patch": patch.digest, "by": "", "program": ""}
+def result_of(worker, patch, timeout):
+    """(verdict, the test or the compiler's error) of one mutant."""
     try:
-        failure = worker.first_failure(patch, programs, timeout)
+        failure = worker.first_failure(patch, timeout)
     except OutOfTime as error:
-        result |= {"verdict": "no verdict", "by": str(error)}
-    else:
-        result["verdict"] = "equivalent" if patch.equivalent else "survived"
-        if failure:
-            # A test that hangs would also be noticed.
-            hangs = failure.kind == "timeout"
-            result["verdict"] = "killed" if hangs else failure.kind
-            result["by"] = failure.by + (" (timeout)" if hangs else "")
-            result["program"] = failure.program
-    return result | {"seconds": time.monotonic() - started}
-
-
-def work(worker, todo, options, tree, revision):
-    """Takes mutants from a queue until it is empty."""
-    programs = worker.programs()
-    seconds = outcomes.stored(outcomes.CLEAN)["seconds"]
-    while True:
-        try:
-            patch = todo.get_nowait()
-        except queue.Empty:
-            return
-        killers = outcomes.killers()
-        for program in programs:
-            program.seconds, program.kills = seconds[program.name], killers[program.name]
-        programs.sort(key=lambda program: program.cost())
-        result = result_of(worker, patch, programs, options.timeout)
-        result |= {"tree": tree, "revision": revision, "date": str(datetime.date.today())}
-        outcomes.store(patch.name, result)
-        told = f"{patch.name:<44} {result['seconds']:5.0f} s  {result['by']}"
-        print(f"{result['verdict']:<10} {told}", flush=True)
+        return "no verdict", str(error)
+    if not failure:
+        return "equivalent" if patch.equivalent else "survived", ""
+    # A test that hangs would also be noticed.
+    hangs = failure.kind == "timeout"
+    return "killed" if hangs else failure.kind, failure.by + (" (timeout)" if hangs else "")
 
 
 def is_finished(patch, tree):
     """Whether this patch has a verdict on this tree."""
     result = outcomes.stored(patch.name)
-    wanted = (patch.digest, tree)
-    if result is None or result["verdict"] in ("broken", "no verdict"):
+    if result is None or result["verdict"] not in ("killed", "survived", "equivalent"):
         return False
-    return (result["patch"], result["tree"]) == wanted
+    return (result["patch"], result["tree"]) == (patch.digest, tree)
 
 
 def chosen_patches(names):
-    """The patches whose names begin with one of the given names, or all. Raises InputError.
-
-    The name of the clean tree is not of a patch: alone, it asks for the clean runs only.
-    """
+    """The patches whose names begin with one of the given names, or all. Raises InputError."""
     patches = read_patches()
-    if not names:
-        return patches
-    names = [name for name in names if name != outcomes.CLEAN]
     for name in names:
         if not any(patch.name.startswith(name) for patch in patches):
             raise InputError(f"NAME: no mutant begins with '{name}' in verification/mutants")
-    return [patch for patch in patches if patch.name.startswith(tuple(names))]
+    return [patch for patch in patches if patch.name.startswith(tuple(names) or "")]
 
 
-def conclude(verdicts, stopped):
-    """Prints the number of mutants per verdict; returns the exit code."""
-    for verdict in sorted(set(verdicts)):
-        print(f"{verdicts.count(verdict):4} {verdict}")
-    if stopped or {"broken", "no verdict", "not run"} & set(verdicts):
-        return 3
-    return 1 if "survived" in verdicts else 0
+def run_patches(options, stop):
+    """Runs the patches of this folder; returns their verdicts. Raises InputError."""
+    patches = chosen_patches(options.names)
+    tree, revision = tree_digest(), git(ROOT, "rev-parse", "--short=12", "HEAD").strip()
+    todo = [] if options.table else [one for one in patches if not is_finished(one, tree)]
+    if todo:
+        with Worker(revision, stop, options.jobs) as worker:
+            for patch in todo:
+                started = time.monotonic()
+                verdict, by = result_of(worker, patch, options.timeout)
+                seconds = time.monotonic() - started
+                print(f"{verdict:<10} {patch.name:<44} {seconds:5.0f} s  {by}", flush=True)
+                result = {"patch": patch.digest, "tree": tree, "verdict": verdict, "by": by}
+                result |= {"seconds": seconds, "revision": revision}
+                outcomes.store(patch.name, result | {"date": str(datetime.date.today())})
+    rows = outcomes.write_table(read_patches(), revision)
+    names = {patch.name for patch in patches}
+    return [row[2] for row in rows if row[0] in names]
+
+
+def run_random(options, stop):
+    """Plants mistakes at random in the lines of a change; returns their verdicts."""
+    planted = plant(ROOT, options.since, options.random, options.seed)
+    if not planted:
+        raise InputError(f"--since {options.since}: no lines of C++ were added since")
+    verdicts = []
+    with tempfile.TemporaryDirectory() as folder, Worker("HEAD", stop, options.jobs) as worker:
+        for number, (mistake, text) in enumerate(planted.items(), start=1):
+            path = Path(folder) / f"{number:03}-{mistake.kind}.patch"
+            path.write_text(mistake.patch(text), encoding="utf-8")
+            verdict, by = result_of(worker, read_patch(path), options.timeout)
+            verdict = {"killed": "noticed", "broken": "does not compile"}.get(verdict, verdict)
+            verdicts.append(verdict)
+            lines = [f"- {line.strip()}" for line in mistake.before]
+            lines += [f"+ {line.strip()}" for line in mistake.after]
+            head = f"{mistake.file}:{mistake.line}, {mistake.kind}: {verdict}"
+            head += f" by {by}" if verdict == "noticed" else ""
+            print(head, *lines, sep="\n    ", flush=True)
+    noticed, survived = verdicts.count("noticed"), verdicts.count("survived")
+    if noticed + survived:
+        share = 100 * noticed / (noticed + survived)
+        print(f"noticed: {noticed} of {noticed + survived} that compile, {share:.0f} %")
+    return verdicts
 
 
 def run(options, stop):
     """Runs the mutants; returns the exit code. Raises InputError."""
-    patches = chosen_patches(options.names)
-    names = {patch.name for patch in patches}
-    tree, revision = tree_digest(), git("rev-parse", "--short=12", "HEAD").strip()
-    if options.table:
-        rows = outcomes.write_table(read_patches(), revision)
-        return conclude([row[2] for row in rows if row[0] in names], False)
-    todo = queue.Queue()
-    for patch in patches:
-        if not is_finished(patch, tree):
-            todo.put(patch)
-    errors = []
-
-    clean = CleanRuns(max(1, options.clean), tree, revision)
-
-    def one_worker():
-        try:
-            with Worker(revision, stop) as worker:
-                clean.work(worker)
-                while not clean.is_done():
-                    if stop.wait(0.2):
-                        return
-                clean.conclude()
-                work(worker, todo, options, tree, revision)
-        except Stopped:
-            pass
-        except Exception as error:  # the other workers end, and the error is reported
-            errors.append(error)
-            stop.set()
-
-    count = min(max(1, options.jobs), todo.qsize() + clean.missing())
-    threads = [threading.Thread(target=one_worker) for n in range(count)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    rows = outcomes.write_table(read_patches(), revision)
-    for error in errors:
-        print(f"error: {error}", file=sys.stderr)
-    if errors:
-        return 1
-    return conclude([row[2] for row in rows if row[0] in names], stop.is_set())
+    try:
+        verdicts = (run_random if options.random else run_patches)(options, stop)
+    except Stopped:
+        return 3
+    for verdict in sorted(set(verdicts)):
+        print(f"{verdicts.count(verdict):4} {verdict}")
+    if {"broken", "no verdict", "not run", "false alarm"} & set(verdicts):
+        return 3
+    return 1 if "survived" in verdicts else 0
 
 
-def main():
+def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
         prog="verification/mutants/run.py",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "names",
-        nargs="*",
-        metavar="NAME",
-        help="mutants, or how they begin: 017; 'clean': the clean tree, and no mutant by itself",
-    )
-    parser.add_argument("--jobs", type=int, default=1, help="copies side by side (default 1)")
-    parser.add_argument("--timeout", type=float, default=1800, help="s for each mutant (1800)")
-    parser.add_argument("--clean", type=int, default=1, help="runs of the clean tree first (1)")
-    parser.add_argument("--table", action="store_true", help="write RESULTS.md, and run nothing")
-    options = parser.parse_args()
+    add = parser.add_argument
+    add("names", nargs="*", metavar="NAME", help="mutants, or how their names begin: 017")
+    add("--random", type=int, default=0, metavar="N", help="plant N mistakes at random instead")
+    add("--seed", type=int, default=1, help="of --random (default 1)")
+    add("--since", default="HEAD~1", metavar="REV", help="of --random: what changed (HEAD~1)")
+    add("--jobs", type=int, default=1, help="compilers side by side (default 1)")
+    add("--timeout", type=float, default=1800, help="s of tests for each mutant (1800)")
+    add("--table", action="store_true", help="write RESULTS.md, and run nothing")
+    options = parser.parse_args(arguments)
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())

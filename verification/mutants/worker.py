@@ -1,5 +1,6 @@
-"""A copy of the tree with its own build folder, in which mutants are built and tested."""
+"""A copy of HEAD with its own build folder, in which mutants are built and tested."""
 
+import collections
 import contextlib
 import fcntl
 import os
@@ -10,23 +11,21 @@ import signal
 import subprocess
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from affected import reached
 from common.program import ROOT
 
 PRESET = "quick"
 MEMORY = 8 << 30  # bytes that a test program may use: a mistake may allocate without end
-# Sources that compile slowly have large object files: seconds per file, and per megabyte.
-SECONDS_TO_COMPILE = (3, 5)
-SLOWER = 20  # a program that takes this many times longer than on the clean tree hangs
-SHORTEST_LIMIT = 120  # s
+HANGS = 900  # s after which a program of tests is taken to hang
 # Folders of what is compiled into the program.
 COMPILED = ("solver", "suite", "app")
 # Folders of Python tests, with the folders whose modules they use and, where they run it, those of
 # the program.
 PYTHON_FOLDERS = {
-    "bench": ("bench", "common", "exchange", "reference", *COMPILED),
+    "bench": ("bench", "common", "exchange", "reference", "results", *COMPILED),
     "common": ("common",),
     "exchange": ("common", "exchange", *COMPILED),
     "packaging": ("packaging",),
@@ -48,57 +47,53 @@ class OutOfTime(Exception):
 
 @dataclass(frozen=True)
 class Failure:
-    """Where a tree fails. kind: 'killed', 'timeout' or 'broken' (it does not compile).
+    """Where a tree fails. kind: 'killed', 'timeout', 'broken' (it does not compile), 'false alarm'.
 
-    by: the test, or the compiler's first error. program: what it belongs to.
+    by: the test, or the compiler's first error. program: the Program it belongs to.
     """
 
     kind: str
     by: str
-    program: str
+    program: object
 
 
-@dataclass
+@dataclass(frozen=True)
 class Program:
     """Something that tests: a program of GoogleTest, or a folder of Python tests.
 
-    linked: needs the library. size: of its object file, bytes. seconds: on the clean tree.
-    kills: how many mutants it has killed so far.
+    linked: needs the library. size: of its source, bytes.
     """
 
     name: str
     is_python: bool
     linked: bool
     size: int = 0
-    seconds: float = 0.0
-    kills: int = 0
-
-    def cost(self):
-        """Sorts kernels before what needs the library, then by what a kill costs: about the
-        seconds to compile and to run over the mutants that are killed by it."""
-        any_file, megabyte = SECONDS_TO_COMPILE
-        compiled = any_file + megabyte * self.size / 2**20
-        return (self.is_python, self.linked, (compiled + self.seconds) / (1 + self.kills))
 
 
 def programs_of(tree):
-    """All of them, in the order of the files that list them."""
-    text = (tree / "verification" / "CMakeLists.txt").read_text(encoding="utf-8")
+    """All of them: those of kernels, then what needs the library, small sources first."""
+    folder = tree / "verification"
+    text = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
     programs = []
     # A library, the target whose precompiled headers are shared, and the programs.
     for library, names in re.findall(r"^add_tests\((\w+) \w+\n([^)]*)\)", text, re.MULTILINE):
-        programs += [Program(n, False, library != "sandglass_options") for n in names.split()]
-    return programs + [Program(folder, True, True) for folder in PYTHON_FOLDERS]
+        for name in names.split():
+            size = (folder / f"{name}.cpp").stat().st_size
+            programs.append(Program(name, False, library != "sandglass_options", size))
+    programs += [Program(folder, True, True) for folder in PYTHON_FOLDERS]
+    return sorted(programs, key=lambda one: (one.is_python, one.linked, one.size))
 
 
 class Worker:
     """Use as a context manager: the copy is gone afterwards, and what ran in it has ended.
 
     revision: of git, which is copied. stop: threading.Event that ends everything with Stopped.
+    jobs: of compilers side by side.
     """
 
-    def __init__(self, revision, stop):
-        self._revision, self._stop = revision, stop
+    def __init__(self, revision, stop, jobs=1):
+        self._revision, self._stop, self._jobs = revision, stop, jobs
+        self._kills = collections.Counter()
         self.folder, self._lock = _free_folder()
         self.tree = self.folder / "tree"
         self.build = self.tree / "build" / PRESET
@@ -118,7 +113,6 @@ class Worker:
             self._run(["tar", "-xf", archive, "-C", self.tree])
             # A precompiled header would outlive its mutant, and make each one compile everything.
             self._run(["cmake", "--preset", PRESET, "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"])
-            self._run(["ninja", "-C", self.build, "-j1"])
         except BaseException:
             self.__exit__()
             raise
@@ -128,89 +122,92 @@ class Worker:
         shutil.rmtree(self.folder, ignore_errors=True)
         self._lock.close()
 
-    def programs(self):
-        """The test programs here, with the sizes of their objects."""
-        programs = programs_of(self.tree)
-        for program in programs:
-            if not program.is_python:
-                objects = self.build / f"verification/CMakeFiles/{program.name}.dir"
-                program.size = (objects / f"{program.name}.cpp.o").stat().st_size
-        return programs
+    def first_failure(self, patch, seconds):
+        """Applies a Patch, then builds and runs tests, which take at most so many seconds in all.
 
-    def failures(self, program):
-        """The names of all tests of a program that fail, and the seconds it took."""
-        started = time.monotonic()
-        status, text = self._run(self._command(program), check=False)
-        names = _failed_names(text)
-        if status and not names:
-            names = [f"{program.name}: exit code {status}"]
-        return names, time.monotonic() - started
-
-    def first_failure(self, patch, programs, seconds):
-        """Applies a Patch, builds and tests program after program for at most so many seconds.
-
-        Returns the first Failure or None. What the patch does not touch is not run: it is what it
-        was. Raises OutOfTime. The tree is clean again afterwards.
+        Returns the first Failure or None. Programs that noticed most of the mutants before come
+        first; what the patch cannot change is not run. A test that fails in the tree without the
+        patch as well is a 'false alarm'. Raises OutOfTime. The tree is clean again afterwards.
         """
-        deadline = time.monotonic() + seconds
-        changed = {name.partition("/")[0] for name in patch.files}
+        programs = [one for one in programs_of(self.tree) if self._may_change(one, patch)]
+        programs.sort(key=lambda one: -self._kills[one.name])
         with self._applied(patch) as since:
-            for program in programs:
-                if not self._may_change(program, changed):
-                    continue
-                left = deadline - time.monotonic()
-                command = ["ninja", "-C", self.build, "-j1", self._target(program)]
-                status, text = self._run(command, limit=left, check=False)
-                if status:
-                    error = re.search(r"^.*error: .*$", text, re.MULTILINE)
-                    return Failure("broken", error[0] if error else text[-300:], program.name)
-                scripts = changed & set(PYTHON_FOLDERS.get(program.name, ())) - set(COMPILED)
-                if not scripts and self._binary(program).stat().st_mtime < since:
-                    continue
-                found = self._test(program, deadline - time.monotonic())
-                if found:
-                    return found
+            failure = self._failure(patch, programs, since, seconds)
+        if failure and failure.kind != "broken":
+            self._kills[failure.program.name] += 1
+            if not self._passes(failure):
+                return replace(failure, kind="false alarm")
+        return failure
+
+    def _failure(self, patch, programs, since, seconds):
+        scripts = {name.partition("/")[0] for name in patch.files} - set(COMPILED)
+        for program in programs:
+            status, text = self._make(program)
+            if status:
+                error = re.search(r"^.*error: .*$", text, re.MULTILINE)
+                return Failure("broken", error[0] if error else text[-300:], program)
+            read = scripts & set(PYTHON_FOLDERS.get(program.name, ()))
+            if not read and self._binary(program).stat().st_mtime < since:
+                continue
+            started = time.monotonic()
+            found = self._test(program, seconds)
+            if found:
+                return found
+            seconds -= time.monotonic() - started
         return None
 
-    @staticmethod
-    def _may_change(program, changed):
-        """Whether a patch of these folders can change what a program does."""
+    def _may_change(self, program, patch):
+        """Whether a patch can change what a program does."""
+        if not program.is_python and not program.linked:
+            source = f"verification/{program.name}.cpp"
+            return not {source, *reached(self.tree, source)}.isdisjoint(patch.files)
         sources = PYTHON_FOLDERS.get(program.name, (*COMPILED, "verification"))
-        return not changed.isdisjoint(sources)
+        return any(name.partition("/")[0] in sources for name in patch.files)
 
-    @staticmethod
-    def _target(program):
-        return "sandglass_cli" if program.is_python else program.name
+    def _make(self, program):
+        target = "sandglass_cli" if program.is_python else program.name
+        command = ["ninja", "-C", self.build, f"-j{self._jobs}", target]
+        return self._run(command, check=False)
+
+    def _passes(self, failure):
+        """Whether the test of a Failure passes in the tree as it is."""
+        status, _ = self._make(failure.program)
+        try:
+            return (
+                not status
+                and not self._run(
+                    self._command(failure.program, failure.by), limit=HANGS, check=False
+                )[0]
+            )
+        except OutOfTime:
+            return False
 
     def _binary(self, program):
         return self.cli if program.is_python else self.build / "verification" / program.name
 
     def _test(self, program, left):
         """Runs a program for at most `left` seconds until its first failure, which is returned."""
-        limit = max(SHORTEST_LIMIT, SLOWER * program.seconds)
-        output = self.folder / "output.txt"
         try:
-            command = self._command(program, first_only=True)
-            status, text = self._run(command, limit=min(limit, left), check=False)
+            status, text = self._run(self._command(program), limit=min(HANGS, left), check=False)
         except OutOfTime:
-            if left < limit:
+            if left < HANGS:
                 raise
-            return Failure(
-                "timeout", _running(output.read_text(errors="replace"), program), program.name
-            )
+            text = (self.folder / "output.txt").read_text(errors="replace")
+            return Failure("timeout", _running(text, program), program)
         if not status:
             return None
         names = _failed_names(text)
-        return Failure("killed", names[0] if names else _running(text, program), program.name)
+        return Failure("killed", names[0] if names else _running(text, program), program)
 
-    def _command(self, program, first_only=False):
+    def _command(self, program, test=""):
+        """Of all tests of a program until one fails, or of one that failed."""
         if program.is_python:
             # Whether patches apply is no question to a tree with one of them.
-            command = [PYTHON, "-m", "pytest", "-q", "-rfE", "-p", "no:cacheprovider"]
+            command = [PYTHON, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
             command += [f"--ignore={self.tree}/verification/test_mutants.py"]
-            return command + ["-x"] * first_only + [self.tree / program.name]
-        path = self.build / "verification" / program.name
-        return [path, "--gtest_brief=0"] + ["--gtest_break_on_failure"] * first_only
+            return command + [self.tree / (test.partition("[")[0] or program.name)]
+        chosen = [f"--gtest_filter={test}"] if test not in ("", program.name) else []
+        return [self._binary(program), "--gtest_brief=0", "--gtest_break_on_failure", *chosen]
 
     @contextlib.contextmanager
     def _applied(self, patch):

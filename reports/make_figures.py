@@ -1,0 +1,67 @@
+"""Draws static figures from the files of other commands, each by what is in it.
+
+Failure maps of `sandglass stability --json`; error against cost of `sandglass choose --all --json`,
+whose files are merged into one figure, as other tolerances try the adaptive method at other
+accuracies; growth.json of `bench/growth.py`; refinement.json of `bench/refinement.py`.
+
+Usage: /usr/bin/python3 reports/make_figures.py FILE... [-o FOLDER]
+Exit codes: 0 done, 2 an input is missing or broken.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+if __name__ == "__main__":
+    sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
+
+from common.command import exit_code
+from common.errors import InputError
+from common.files import read_json, writing
+from sandglass_report.curves import curve_plate, read_costs
+from sandglass_report.growth import growth_plate, read_growth
+from sandglass_report.maps import map_plates, read_maps
+from sandglass_report.plates import save_plate
+from sandglass_report.refinement import read_refinement, refinement_plate
+
+# A key of a file, or the name of one that has records -> function of a list of such files that
+# returns plates.
+PLATES = {
+    "maps": lambda files: [plate for file in files for plate in map_plates(read_maps(file))],
+    "rungs": lambda files: [curve_plate(read_costs(files))],
+    "growth": lambda files: [growth_plate(read_growth(file)) for file in files],
+    "refinement": lambda files: [refinement_plate(read_refinement(file)) for file in files],
+}
+
+
+def kind_of(file):
+    """The key of PLATES for a file. Raises InputError."""
+    for kind in PLATES:
+        if kind in read_json(file) or kind == file.stem:
+            return kind
+    raise InputError(f"{file}: must have maps or rungs, or be growth.json or refinement.json")
+
+
+def make(options):
+    """Saves the plates and prints their paths. Raises InputError."""
+    kinds = {}
+    for file in options.files:
+        kinds.setdefault(kind_of(file), []).append(file)
+    plates = [plate for kind, files in kinds.items() for plate in PLATES[kind](files)]
+    with writing(options.output):
+        options.output.mkdir(parents=True, exist_ok=True)
+        for plate in plates:
+            print(*save_plate(plate, options.output), sep="\n")
+
+
+def main(arguments=None):
+    """The command line. Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    add = parser.add_argument
+    add("files", nargs="+", type=Path, help="of stability, choose --all, growth or refinement")
+    add("-o", "--output", type=Path, default="reports/figures", help="folder of the figures")
+    return exit_code(make, parser.parse_args(arguments))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
