@@ -4,7 +4,6 @@
 
 #include "material/laws.hpp"
 #include "material/small_strain.hpp"
-#include "material/stiffening.hpp"
 #include "support/current_tangent.hpp"
 #include "support/derivatives.hpp"
 #include "support/eigenvalues.hpp"
@@ -51,35 +50,6 @@ TYPED_TEST(LawTest, rest_has_no_energy_and_no_stress) {
   EXPECT_EQ(largest_entry(law.piola(Tensor<double>{})), 0.0);
   EXPECT_EQ(law.pressure(0.0), 0.0);
   EXPECT_EQ(law.volumetric_energy(0.0), 0.0);
-}
-
-/// A third of the mean second derivative of the isochoric energy over 2 mu, here by differences of the energy
-/// along changes of shape in a rotated frame: a trace does not depend on it. Differences of the stress and of
-/// the energy err by some 1e-5 of their sums.
-TYPED_TEST(LawTest, stiffening_is_the_mean_curvature_of_the_energy) {
-  if (!TypeParam::splits_volume) return;
-  const double s = std::sqrt(0.5), t = std::sqrt(1.0 / 6.0), step = 1e-4;
-  const std::vector<Tensor<double>> changes{{{s, 0, 0, 0, -s, 0, 0, 0, 0}},
-                                            {{t, 0, 0, 0, t, 0, 0, 0, -2 * t}},
-                                            {{0, s, 0, s, 0, 0, 0, 0, 0}},
-                                            {{0, 0, s, 0, 0, 0, s, 0, 0}},
-                                            {{0, 0, 0, 0, 0, s, 0, s, 0}}};
-  for (int n = 0; n < this->samples; ++n) {
-    const auto law = this->law(n);
-    const CalledLaw called(law);
-    EXPECT_EQ(stiffening(called, Tensor<double>{}, nullptr), 1.0);
-    const auto H = this->large_gradient(), F = identity<double>() + H;
-    const Tensor<double> R = this->random.rotation();
-    double sum = 0.0;
-    for (const auto& change : changes) {
-      const Tensor<double> DF = R * change * transpose(R) * F;
-      sum += (law.isochoric_energy(H + step * DF) + law.isochoric_energy(H - step * DF) -
-              2.0 * law.isochoric_energy(H)) /
-             (step * step);
-    }
-    const double expected = std::max(1.0, sum / 30.0 / law.shear_modulus());
-    EXPECT_NEAR(stiffening(called, H, nullptr), expected, 1e-4 * expected) << n;
-  }
 }
 
 TYPED_TEST(LawTest, stress_is_the_derivative_of_the_energy) {
