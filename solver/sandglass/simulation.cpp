@@ -115,21 +115,12 @@ class Simulation<Real>::Parts {
       constraint.path = {{to_[k]}};
       displacements[constraint.node][at(constraint.component)] = to_[k];
     }
-    scale_load(present.description, factor_to_);
     present.description.rotations.clear();
     present.description.displacements.clear();
     for (const auto& [node, d] : displacements) present.description.displacements.push_back({"driven", d});
-    const auto factor = [&](std::size_t curve) {
-      return present.curves[curve].at(leapfrog_.time(), factor_to_);
-    };
-    for (auto& load : present.loads) {
-      for (double& f : load.force) f *= factor(load.curve);
-      load.curve = 0;
-    }
-    for (auto& pressure : present.pressures) {
-      pressure.pressure *= factor(pressure.curve);
-      pressure.curve = 0;
-    }
+    std::vector<double> factors;
+    for (const LoadCurve& curve : present.curves) factors.push_back(curve.at(leapfrog_.time(), factor_to_));
+    for (auto& force : present.forces) force = force->held_at(factors);
     return present;
   }
 

@@ -1,54 +1,34 @@
 #include "solve/loads.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace sandglass {
 
-namespace {
-
-double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-}  // namespace
-
 template <class Real>
 Loads<Real>::Loads(const Scene& scene, const Layout& layout)
-    : curves_(scene.curves), ranks_(layout.team.ranks) {
+    : curves_(scene.curves),
+      ranks_(layout.team.ranks),
+      all_dead_(first_not_dead(scene.forces) == nullptr),
+      factors_(factors_at(0.0, 0.0)) {
   std::vector<int> nodes;
-  for (const auto& load : scene.loads) nodes.push_back(load.node);
-  for (const auto& pressure : scene.pressures) {
-    nodes.insert(nodes.end(), pressure.face.begin(), pressure.face.end());
-  }
-  for (const auto& support : scene.supports) {
-    nodes.insert(nodes.end(), support.face.begin(), support.face.end());
-  }
+  for (const auto& force : scene.forces)
+    nodes.insert(nodes.end(), force->nodes().begin(), force->nodes().end());
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const auto at = [&](int node) {
-    return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-  };
   for (const int node : nodes) {
-    rows_.push_back(static_cast<std::size_t>(layout.row_of_node[static_cast<std::size_t>(node)]));
+    rows_.push_back(at(layout.row_of_node[at(node)]));
     owned_.push_back(layout.owns(node));
   }
-  for (const auto& load : scene.loads) dead_.push_back({at(load.node), load.curve, load.force});
-  const auto all_at = [&](const Quadrilateral& face) {
-    return std::array{at(face[0]), at(face[1]), at(face[2]), at(face[3])};
-  };
-  const NodalField& points = scene.mesh.points;
-  for (const auto& [face, pressure, curve] : scene.pressures) {
-    faces_.push_back({all_at(face), corners_of(points, face), pressure, curve});
+  for (const auto& force : scene.forces) {
+    Placed& placed = placed_.emplace_back(Placed{force, {}});
+    for (const int node : force->nodes()) {
+      const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
+      placed.places.push_back(static_cast<std::size_t>(found - nodes.begin()));
+    }
   }
-  for (const auto& [face, stiffness, damping, only_normal] : scene.supports) {
-    supports_.push_back(
-        {all_at(face), gauss_points_of(corners_of(points, face)), stiffness, damping, only_normal});
-  }
-  forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
+  u_ = increment_ = forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
   work_.resize(rows_.size());
-  factors_ = factors_at(0.0, 0.0);
 }
 
 template <class Real>
@@ -64,72 +44,28 @@ void Loads<Real>::set(double time, double load_factor) {
 }
 
 template <class Real>
-std::array<Vector, 4> Loads<Real>::corners(const Rows<Real>& u, const Face& face) const {
-  std::array<Vector, 4> x = face.corners;
-  for (std::size_t I = 0; I < 4; ++I) {
-    const Vector moved = displacement(u, face.at[I]);
-    for (std::size_t i = 0; i < 3; ++i) x[I][i] += moved[i];
-  }
-  return x;
-}
-
-template <class Real>
-template <class Add>
-void Loads<Real>::for_each_load(const std::vector<double>& factors, const Rows<Real>& u,
-                                const Add& add) const {
-  for (const auto& [at, curve, force] : dead_) {
-    const double factor = factors[curve];
-    add(at, Vector{factor * force[0], factor * force[1], factor * force[2]});
-  }
-  for (const Face& face : faces_) {
-    const double p = factors[face.curve] * face.pressure;
-    if (p == 0.0) continue;
-    const auto forces = pressure_forces(corners(u, face));
-    for (std::size_t I = 0; I < 4; ++I) {
-      add(face.at[I], Vector{p * forces[I][0], p * forces[I][1], p * forces[I][2]});
-    }
-  }
-}
-
-template <class Real>
-template <class Use>
-void Loads<Real>::for_each_point(const Support& support, const Rows<Real>& field, const Use& use) const {
-  for (const FacePoint& point : support.points) {
-    Vector t{};
-    for (std::size_t I = 0; I < 4; ++I) {
-      const Vector v = displacement(field, support.at[I]);
-      for (std::size_t i = 0; i < 3; ++i) t[i] += point.N[I] * point.area * v[i];
-    }
-    if (support.only_normal) {
-      const auto& n = point.normal.entries;
-      const double along = (n[0] * t[0] + n[1] * t[1] + n[2] * t[2]) / (point.area * point.area);
-      t = {along * n[0], along * n[1], along * n[2]};
-    }
-    use(point.N, t);
+void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
   }
 }
 
 template <class Real>
 void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   if (rows_.empty()) return;
+  if (!all_dead_) {
+    take(state.u, u_);
+    take(state.increment, increment_);
+  }
   std::fill(forces_.begin(), forces_.end(), Row<double>{});
-  for_each_load(factors_, state.u, [&](std::size_t at, const Vector& f) {
-    for (std::size_t i = 0; i < 3; ++i) forces_[at][i] += f[i];
-  });
-  for (const Support& support : supports_) {
-    const auto resist = [&](double factor, const Rows<Real>& field) {
-      for_each_point(support, field, [&](const std::array<double, 4>& N, const Vector& t) {
-        for (std::size_t I = 0; I < 4; ++I) {
-          for (std::size_t i = 0; i < 3; ++i) forces_[support.at[I]][i] -= factor * N[I] * t[i];
-        }
-      });
-    };
-    resist(support.stiffness, state.u);
-    // The velocity is that of half a step before; without time it is zero.
-    if (support.damping > 0.0) resist(support.damping / state.step, state.increment);
+  for (const Placed& p : placed_) {
+    p.force->add_forces(factors_,
+                        {p.among(std::as_const(u_).data()), p.among(std::as_const(increment_).data()),
+                         static_cast<double>(state.step)},
+                        p.among(forces_.data()));
   }
   // Dead forces are known everywhere, the others where the rank knows the displacements.
-  if (!faces_.empty() || !supports_.empty()) gather({numbers_of(forces_), 4 * rows_.size()});
+  if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
   square_ = 0.0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -143,31 +79,26 @@ template <class Real>
 Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Real>& u) const {
   std::vector<double> changes = factors_at(time, load_factor);
   for (std::size_t c = 0; c < changes.size(); ++c) changes[c] -= factors_[c];
+  Rows<double> there(rows_.size()), sums(rows_.size());
+  take(u, there);
+  for (const Placed& p : placed_) {
+    if (!p.force->traits().drives) continue;
+    const auto moved = p.among(std::as_const(there).data());
+    p.force->add_forces(changes, {moved, moved, 0.0}, p.among(sums.data()));
+  }
   Rows<Real> change(u.size());
-  for_each_load(changes, u, [&](std::size_t at, const Vector& f) {
-    for (std::size_t i = 0; i < 3; ++i) change[rows_[at]][i] += static_cast<Real>(f[i]);
-  });
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) change[rows_[k]][i] = static_cast<Real>(sums[k][i]);
+  }
   return change;
 }
 
 template <class Real>
 double Loads<Real>::potential(const Rows<Real>& u) const {
+  Rows<double> there(rows_.size());
+  take(u, there);
   double sum = 0.0;
-  for (const auto& [at, curve, force] : dead_) sum -= factors_[curve] * dot(force, displacement(u, at));
-  // The volume below a face is a third of the integral of x . n da.
-  for (const Face& face : faces_) {
-    const auto x = corners(u, face);
-    const auto forces = pressure_forces(x);
-    for (std::size_t I = 0; I < 4; ++I)
-      sum -= factors_[face.curve] * face.pressure / 3.0 * dot(x[I], forces[I]);
-  }
-  for (const Support& support : supports_) {
-    for_each_point(support, u, [&](const std::array<double, 4>& N, const Vector& t) {
-      for (std::size_t I = 0; I < 4; ++I) {
-        sum += 0.5 * support.stiffness * N[I] * dot(displacement(u, support.at[I]), t);
-      }
-    });
-  }
+  for (const Placed& p : placed_) p.force->add_potential(factors_, p.among(std::as_const(there).data()), sum);
   return sum;
 }
 
@@ -197,10 +128,10 @@ double Loads<Real>::work() const {
 template <class Real>
 void Loads<Real>::add_work(const Rows<Real>& u) {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const Vector now = displacement(u, k);
     for (std::size_t i = 0; i < 3; ++i) {
-      work_[k] += 0.5 * (forces_[k][i] + forces_before_[k][i]) * (now[i] - u_before_[k][i]);
-      u_before_[k][i] = now[i];
+      const auto now = static_cast<double>(u[rows_[k]][i]);
+      work_[k] += 0.5 * (forces_[k][i] + forces_before_[k][i]) * (now - u_before_[k][i]);
+      u_before_[k][i] = now;
     }
   }
   forces_before_ = forces_;
