@@ -12,7 +12,7 @@ namespace {
 /// A key and all that is said of it, in columns.
 std::string key_line(const std::string& key, std::string_view unit, const std::string& allowed,
                      const std::string& fallback, std::string_view meaning) {
-  return fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", key, fmt::format("[{}]", unit), allowed, fallback,
+  return fmt::format("  {:<28} {:<8} {:<12} {:<16} {}\n", key, fmt::format("[{}]", unit), allowed, fallback,
                      meaning);
 }
 

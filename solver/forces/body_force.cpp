@@ -4,20 +4,6 @@
 
 namespace sandglass {
 
-BodyForce::BodyForce(std::vector<int> nodes, const ForceTraits& traits)
-    : nodes_(std::move(nodes)), traits_(traits) {
-  std::sort(nodes_.begin(), nodes_.end());
-  nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
-}
-
-std::size_t BodyForce::place_of(int node) const {
-  return static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), node) - nodes_.begin());
-}
-
-std::array<std::size_t, 4> BodyForce::places_of(const Quadrilateral& face) const {
-  return {place_of(face[0]), place_of(face[1]), place_of(face[2]), place_of(face[3])};
-}
-
 const BodyForce* first_not_dead(const BodyForces& forces) {
   for (const auto& force : forces) {
     if (force->dead_loads().empty()) return force.get();

@@ -13,8 +13,7 @@ void DeadForce::scale(double factor) {
 }
 
 void DeadForce::resolve(ForceResolver& resolver) const {
-  resolver.size_of_dead.force += length(total);
-  resolver.size_of_dead.moment += length(moment);
+  resolver.sizes_of_dead.push_back({length(total), length(moment)});
   if (on == Carrier::nodes) {
     const auto& nodes = resolver.nodes(name, set);
     const std::size_t number = resolver.number_of(curve);

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "forces/body_force.hpp"
+#include "forces/dead_loads.hpp"
 #include "forces/load_curve.hpp"
 
 namespace sandglass {
@@ -21,7 +21,7 @@ struct ForceResolver {
   std::vector<LoadCurve> curves = {LoadCurve{}};            ///< the first is that of the case
   BodyForces forces = {};                                   ///< those that are no dead loads
   std::map<std::pair<std::size_t, int>, Vector> dead = {};  ///< of curve and node, N
-  LoadSize size_of_dead = {};
+  std::vector<LoadSize> sizes_of_dead = {};
 
   /// The nodes of the set that a table names. Throws InputError if there is no such set or it is empty.
   const std::vector<int>& nodes(std::string_view table, const std::string& set) const;

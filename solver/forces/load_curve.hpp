@@ -19,6 +19,7 @@ struct LoadCurve {
   std::vector<double> times = {};  ///< s, increasing
   std::vector<double> factors = {};
   Formula formula = {};
+  double share = 1.0;  ///< of the load factor of the case that it follows
 
   static constexpr auto parameters() {
     using C = LoadCurve;
@@ -49,24 +50,25 @@ struct LoadCurve {
   }
 
   bool operator==(const LoadCurve& other) const {
-    return times == other.times && factors == other.factors && formula.text == other.formula.text;
+    return times == other.times && factors == other.factors && formula.text == other.formula.text &&
+           share == other.share;
   }
 
   /// The factor of the load, where `load_factor` is that of the case.
   double at(double time, double load_factor) const {
     if (formula.evaluate) return formula.evaluate(time);
-    if (times.empty()) return load_factor;
+    if (times.empty()) return share * load_factor;
     const auto above = std::upper_bound(times.begin(), times.end(), time);
     if (above == times.begin()) return factors.front();
     if (above == times.end()) return factors.back();
     const auto n = static_cast<std::size_t>(above - times.begin());
-    const double share = (time - times[n - 1]) / (times[n] - times[n - 1]);
-    return factors[n - 1] + share * (factors[n] - factors[n - 1]);
+    const double part = (time - times[n - 1]) / (times[n] - times[n - 1]);
+    return factors[n - 1] + part * (factors[n] - factors[n - 1]);
   }
 
   /// The largest absolute value; of a formula that of 1001 times in equal distances from 0 to `end`.
   double largest(double end) const {
-    if (!formula.evaluate && times.empty()) return 1.0;
+    if (!formula.evaluate && times.empty()) return std::abs(share);
     double most = 0.0;
     for (int k = 0; formula.evaluate && k <= 1000; ++k)
       most = std::max(most, std::abs(formula.evaluate(end * k / 1000)));

@@ -15,28 +15,23 @@ class FacePressures final : public BodyForce {
         faces_(std::move(faces)),
         value_(value),
         curve_(curve) {
-    for (const Quadrilateral& face : faces_) {
-      places_.push_back(places_of(face));
-      corners_.push_back(corners_of(points, face));
-    }
+    for (const Quadrilateral& face : faces_) corners_.push_back(corners_of(points, face));
   }
 
-  void add_forces(std::span<const double> factors, const NodalMotion& motion,
-                  AtNodes<Row<double>> forces) const override {
+  void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const override {
     const double p = factors[curve_] * value_;
     if (p == 0.0) return;
     for (std::size_t k = 0; k < faces_.size(); ++k) {
       const auto unit = pressure_forces(corners(k, motion.u));
       for (std::size_t I = 0; I < 4; ++I) {
-        for (std::size_t i = 0; i < 3; ++i) forces[places_[k][I]][i] += p * unit[I][i];
+        for (std::size_t i = 0; i < 3; ++i) forces[faces_[k][I]][i] += p * unit[I][i];
       }
     }
   }
 
   /// Where the edges of the faces are held or lie in planes of symmetry through the origin: the volume below
   /// a face is a third of the integral of x . n da.
-  void add_potential(std::span<const double> factors, AtNodes<const Row<double>> u,
-                     double& sum) const override {
+  void add_potential(Factors factors, NodalRows u, double& sum) const override {
     for (std::size_t k = 0; k < faces_.size(); ++k) {
       const auto x = corners(k, u);
       const auto forces = pressure_forces(x);
@@ -50,8 +45,8 @@ class FacePressures final : public BodyForce {
   /// A pressure p on a face with edges along xi and eta has the tangent p times the integral of N_I (dN_J/dxi
   /// x dx/deta - ...), whose norm is at most p times half the sum of two edges, as those of the integrals of
   /// N_I dN_J/dxi are 1 and |dx/deta| is at most half the longer edge.
-  void add_rates(std::span<const double> largest, std::span<const double> masses,
-                 std::span<LoadRates> rates) const override {
+  void add_rates(Factors largest, const std::vector<double>& masses,
+                 std::vector<LoadRates>& rates) const override {
     const double most = std::abs(value_) * largest[curve_];
     for (std::size_t k = 0; k < faces_.size(); ++k) {
       const auto edge = [&](std::size_t a, std::size_t b) {
@@ -65,9 +60,9 @@ class FacePressures final : public BodyForce {
 
   void add_stiffness(AtNodes<Row<float>> /*diagonal*/) const override {}
 
-  void add_size(LoadSize& size) const override {
+  void add_size(double /*arm*/, double& sum) const override {
     for (const auto& corners : corners_) {
-      for (const Vector& force : pressure_forces(corners)) size.force += std::abs(value_) * length(force);
+      for (const Vector& force : pressure_forces(corners)) sum += std::abs(value_) * length(force);
     }
   }
 
@@ -79,25 +74,17 @@ class FacePressures final : public BodyForce {
     return std::make_shared<FacePressures>(part.mesh.points, std::move(faces), value_, curve_);
   }
 
-  std::shared_ptr<const BodyForce> held_at(std::span<const double> factors) const override {
-    auto held = std::make_shared<FacePressures>(*this);
-    held->value_ *= factors[curve_];
-    held->curve_ = 0;
-    return held;
-  }
-
  private:
   /// The corners (m) of the k-th face where it is now.
-  std::array<Vector, 4> corners(std::size_t k, AtNodes<const Row<double>> u) const {
+  std::array<Vector, 4> corners(std::size_t k, NodalRows u) const {
     std::array<Vector, 4> x = corners_[k];
     for (std::size_t I = 0; I < 4; ++I) {
-      for (std::size_t i = 0; i < 3; ++i) x[I][i] += u[places_[k][I]][i];
+      for (std::size_t i = 0; i < 3; ++i) x[I][i] += u[faces_[k][I]][i];
     }
     return x;
   }
 
   std::vector<Quadrilateral> faces_;
-  std::vector<std::array<std::size_t, 4>> places_;
   std::vector<std::array<Vector, 4>> corners_;  // undeformed, m
   double value_;                                // at the factor one, Pa
   std::size_t curve_;

@@ -12,19 +12,16 @@ class FaceSupports final : public BodyForce {
       : BodyForce(nodes_of(faces), {Support::name, false, support.damping > 0.0, ""}),
         faces_(std::move(faces)),
         support_(support) {
-    for (const Quadrilateral& face : faces_) {
-      places_.push_back(places_of(face));
-      points_.push_back(gauss_points_of(corners_of(points, face)));
-    }
+    for (const Quadrilateral& face : faces_) points_.push_back(gauss_points_of(corners_of(points, face)));
   }
 
-  void add_forces(std::span<const double> /*factors*/, const NodalMotion& motion,
+  void add_forces(Factors /*factors*/, const NodalMotion& motion,
                   AtNodes<Row<double>> forces) const override {
     for (std::size_t k = 0; k < faces_.size(); ++k) {
-      const auto resist = [&](double factor, AtNodes<const Row<double>> field) {
+      const auto resist = [&](double factor, NodalRows field) {
         for_each_point(k, field, [&](const std::array<double, 4>& N, const Vector& t) {
           for (std::size_t I = 0; I < 4; ++I) {
-            for (std::size_t i = 0; i < 3; ++i) forces[places_[k][I]][i] -= factor * N[I] * t[i];
+            for (std::size_t i = 0; i < 3; ++i) forces[faces_[k][I]][i] -= factor * N[I] * t[i];
           }
         });
       };
@@ -34,12 +31,11 @@ class FaceSupports final : public BodyForce {
     }
   }
 
-  void add_potential(std::span<const double> /*factors*/, AtNodes<const Row<double>> u,
-                     double& sum) const override {
+  void add_potential(Factors /*factors*/, NodalRows u, double& sum) const override {
     for (std::size_t k = 0; k < faces_.size(); ++k) {
       for_each_point(k, u, [&](const std::array<double, 4>& N, const Vector& t) {
         for (std::size_t I = 0; I < 4; ++I) {
-          const Row<double>& moved = u[places_[k][I]];
+          const Row<double>& moved = u[faces_[k][I]];
           sum += 0.5 * support_.stiffness * N[I] * (moved[0] * t[0] + moved[1] * t[1] + moved[2] * t[2]);
         }
       });
@@ -47,8 +43,8 @@ class FaceSupports final : public BodyForce {
   }
 
   /// As if each node had its share of the area for itself.
-  void add_rates(std::span<const double> /*largest*/, std::span<const double> masses,
-                 std::span<LoadRates> rates) const override {
+  void add_rates(Factors /*largest*/, const std::vector<double>& masses,
+                 std::vector<LoadRates>& rates) const override {
     for_each_share([&](std::size_t k, std::size_t I, const FacePoint& point) {
       const std::size_t n = at(faces_[k][I]);
       rates[n].square += support_.stiffness * point.N[I] * point.area / masses[n];
@@ -61,13 +57,12 @@ class FaceSupports final : public BodyForce {
     for_each_share([&](std::size_t k, std::size_t I, const FacePoint& point) {
       for (std::size_t i = 0; i < 3; ++i) {
         const double n = point.normal.entries[i] / point.area, share = support_.only_normal ? n * n : 1.0;
-        diagonal[places_[k][I]][i] +=
-            static_cast<float>(support_.stiffness * share * point.N[I] * point.area);
+        diagonal[faces_[k][I]][i] += static_cast<float>(support_.stiffness * share * point.N[I] * point.area);
       }
     });
   }
 
-  void add_size(LoadSize& /*size*/) const override {}
+  void add_size(double /*arm*/, double& /*sum*/) const override {}
   std::span<const NodalLoad> dead_loads() const override { return {}; }
 
   std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override {
@@ -76,19 +71,15 @@ class FaceSupports final : public BodyForce {
     return std::make_shared<FaceSupports>(part.mesh.points, std::move(faces), support_);
   }
 
-  std::shared_ptr<const BodyForce> held_at(std::span<const double> /*factors*/) const override {
-    return std::make_shared<FaceSupports>(*this);
-  }
-
  private:
   /// Calls use(N, t) for the Gauss points of the k-th face with their shape functions and what resists the
   /// vector `field`, such as u (m), times the area: its normal part or all of it.
   template <class Use>
-  void for_each_point(std::size_t k, AtNodes<const Row<double>> field, const Use& use) const {
+  void for_each_point(std::size_t k, NodalRows field, const Use& use) const {
     for (const FacePoint& point : points_[k]) {
       Vector t{};
       for (std::size_t I = 0; I < 4; ++I) {
-        for (std::size_t i = 0; i < 3; ++i) t[i] += point.N[I] * point.area * field[places_[k][I]][i];
+        for (std::size_t i = 0; i < 3; ++i) t[i] += point.N[I] * point.area * field[faces_[k][I]][i];
       }
       if (support_.only_normal) {
         const auto& n = point.normal.entries;
@@ -110,7 +101,6 @@ class FaceSupports final : public BodyForce {
   }
 
   std::vector<Quadrilateral> faces_;
-  std::vector<std::array<std::size_t, 4>> places_;
   std::vector<std::array<FacePoint, 4>> points_;  // undeformed
   Support support_;
 };

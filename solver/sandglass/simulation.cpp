@@ -118,9 +118,7 @@ class Simulation<Real>::Parts {
     present.description.rotations.clear();
     present.description.displacements.clear();
     for (const auto& [node, d] : displacements) present.description.displacements.push_back({"driven", d});
-    std::vector<double> factors;
-    for (const LoadCurve& curve : present.curves) factors.push_back(curve.at(leapfrog_.time(), factor_to_));
-    for (auto& force : present.forces) force = force->held_at(factors);
+    for (LoadCurve& curve : present.curves) curve = {.share = curve.at(leapfrog_.time(), factor_to_)};
     return present;
   }
 

@@ -39,10 +39,11 @@ inline double first_load(const Model& model) {
   const double l = span(scene.mesh.points);
   const std::vector<double> moduli = shear_moduli(scene.materials);
   const double mu = *std::min_element(moduli.begin(), moduli.end());
-  LoadSize size;
-  for (const auto& force : scene.forces) force->add_size(size);
-  const double F = size.force + size.moment / l;
-  const double turn = F * l * l * 6.0 / (mu * h * h * h * h);
+  double F = 0.0;
+  for (const auto& force : scene.forces) force->add_size(l, F);
+  double share = 1.0;  // of the case's load
+  for (const LoadCurve& curve : scene.curves) share = std::max(share, std::abs(curve.share));
+  const double turn = share * F * l * l * 6.0 / (mu * h * h * h * h);
   return std::min({1.0, 0.01 * h / fastest_imposed(scene), 0.01 / turn});
 }
 

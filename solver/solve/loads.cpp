@@ -8,24 +8,19 @@ namespace sandglass {
 template <class Real>
 Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     : curves_(scene.curves),
+      forces_of_scene_(scene.forces),
       ranks_(layout.team.ranks),
+      place_of_node_(scene.mesh.points.size(), -1),
       all_dead_(first_not_dead(scene.forces) == nullptr),
       factors_(factors_at(0.0, 0.0)) {
-  std::vector<int> nodes;
-  for (const auto& force : scene.forces)
-    nodes.insert(nodes.end(), force->nodes().begin(), force->nodes().end());
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  for (const int node : nodes) {
-    rows_.push_back(at(layout.row_of_node[at(node)]));
-    owned_.push_back(layout.owns(node));
-  }
   for (const auto& force : scene.forces) {
-    Placed& placed = placed_.emplace_back(Placed{force, {}});
-    for (const int node : force->nodes()) {
-      const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
-      placed.places.push_back(static_cast<std::size_t>(found - nodes.begin()));
-    }
+    for (const int node : force->nodes()) place_of_node_[at(node)] = 0;
+  }
+  for (std::size_t n = 0; n < place_of_node_.size(); ++n) {
+    if (place_of_node_[n] < 0) continue;
+    place_of_node_[n] = static_cast<int>(rows_.size());
+    rows_.push_back(at(layout.row_of_node[n]));
+    owned_.push_back(layout.owns(static_cast<int>(n)));
   }
   u_ = increment_ = forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
   work_.resize(rows_.size());
@@ -44,6 +39,13 @@ void Loads<Real>::set(double time, double load_factor) {
 }
 
 template <class Real>
+Rows<double> Loads<Real>::loaded(const Rows<Real>& all) const {
+  Rows<double> rows(rows_.size());
+  take(all, rows);
+  return rows;
+}
+
+template <class Real>
 void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
@@ -58,12 +60,9 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
     take(state.increment, increment_);
   }
   std::fill(forces_.begin(), forces_.end(), Row<double>{});
-  for (const Placed& p : placed_) {
-    p.force->add_forces(factors_,
-                        {p.among(std::as_const(u_).data()), p.among(std::as_const(increment_).data()),
-                         static_cast<double>(state.step)},
-                        p.among(forces_.data()));
-  }
+  const Rows<double>&u = u_, &increment = increment_;
+  const NodalMotion motion{by_node(u.data()), by_node(increment.data()), static_cast<double>(state.step)};
+  for (const auto& one : forces_of_scene_) one->add_forces(factors_, motion, by_node(forces_.data()));
   // Dead forces are known everywhere, the others where the rank knows the displacements.
   if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
   square_ = 0.0;
@@ -79,12 +78,11 @@ template <class Real>
 Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Real>& u) const {
   std::vector<double> changes = factors_at(time, load_factor);
   for (std::size_t c = 0; c < changes.size(); ++c) changes[c] -= factors_[c];
-  Rows<double> there(rows_.size()), sums(rows_.size());
-  take(u, there);
-  for (const Placed& p : placed_) {
-    if (!p.force->traits().drives) continue;
-    const auto moved = p.among(std::as_const(there).data());
-    p.force->add_forces(changes, {moved, moved, 0.0}, p.among(sums.data()));
+  const Rows<double> there = loaded(u);
+  const NodalMotion motion{by_node(there.data()), by_node(there.data()), 0.0};
+  Rows<double> sums(rows_.size());
+  for (const auto& force : forces_of_scene_) {
+    if (force->traits().drives) force->add_forces(changes, motion, by_node(sums.data()));
   }
   Rows<Real> change(u.size());
   for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -95,10 +93,9 @@ Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Re
 
 template <class Real>
 double Loads<Real>::potential(const Rows<Real>& u) const {
-  Rows<double> there(rows_.size());
-  take(u, there);
+  const Rows<double> there = loaded(u);
   double sum = 0.0;
-  for (const Placed& p : placed_) p.force->add_potential(factors_, p.among(std::as_const(there).data()), sum);
+  for (const auto& force : forces_of_scene_) force->add_potential(factors_, by_node(there.data()), sum);
   return sum;
 }
 

@@ -47,19 +47,15 @@ class Loads {
   }
 
  private:
-  /// A force, and the places of its nodes among the loaded rows.
-  struct Placed {
-    std::shared_ptr<const BodyForce> force;
-    std::vector<std::size_t> places;
-
-    template <class T>
-    AtNodes<T> among(T* values) const {
-      return {values, places};
-    }
-  };
+  /// Loaded rows by nodes.
+  template <class T>
+  AtNodes<T> by_node(T* loaded) const {
+    return {loaded, place_of_node_};
+  }
 
   /// Sets the values of loaded rows to those of all rows.
   void take(const Rows<Real>& all, Rows<double>& loaded) const;
+  Rows<double> loaded(const Rows<Real>& all) const;
 
   std::vector<double> factors_at(double time, double load_factor) const;
 
@@ -67,14 +63,15 @@ class Loads {
   void gather(std::span<double> values) const;
 
   const std::vector<LoadCurve>& curves_;
+  const BodyForces& forces_of_scene_;
   std::vector<std::size_t> rows_;  // that carry loads
   std::vector<bool> owned_;        // by this rank, of these
   std::shared_ptr<const Ranks> ranks_;
-  std::vector<Placed> placed_;
-  bool all_dead_;                // the motion of the body changes none
-  std::vector<double> factors_;  // of curves
-  Rows<double> u_, increment_;   // m, of loaded rows; zero where all are dead
-  Rows<double> forces_;          // N, of loaded rows
+  std::vector<int> place_of_node_;  // among the loaded rows; -1 for others
+  bool all_dead_;                   // the motion of the body changes none
+  std::vector<double> factors_;     // of curves
+  Rows<double> u_, increment_;      // m, of loaded rows; zero where all are dead
+  Rows<double> forces_;             // N, of loaded rows
   Rows<double> forces_before_, u_before_;
   std::vector<double> work_;  // J, of loaded rows
   double square_ = 0.0;

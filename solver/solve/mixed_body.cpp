@@ -62,11 +62,7 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
 /// What forces add to the diagonal of the stiffness, N/m; empty where none adds any.
 Rows<float> stiffness_of_forces(const Scene& scene, const Layout& layout) {
   Rows<float> stiffness(layout.rows());
-  for (const auto& force : scene.forces) {
-    std::vector<std::size_t> rows;
-    for (const int node : force->nodes()) rows.push_back(at(layout.row_of_node[at(node)]));
-    force->add_stiffness({stiffness.data(), rows});
-  }
+  for (const auto& force : scene.forces) force->add_stiffness({stiffness.data(), layout.row_of_node});
   const auto is_zero = [](const Row<float>& row) { return row.x == Row<float>{}.x; };
   return std::ranges::all_of(stiffness, is_zero) ? Rows<float>{} : stiffness;
 }
