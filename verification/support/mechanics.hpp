@@ -72,7 +72,7 @@ inline Verdict reciprocity(const Problem& given, const Answer& /*own*/, RandomGe
   const auto loaded = [&](const char* set) {
     d.forces.of<DeadForce>() = {{.set = set, .on = DeadForce::Carrier::nodes}};
     for (double& f : d.forces.of<DeadForce>().front().total) f = force * random.uniform(-1.0, 1.0);
-    return std::pair{problem.scene().loads, answer_of(problem)};
+    return std::pair{dead_loads(problem.scene().forces), answer_of(problem)};
   };
   const auto [f, u] = loaded("side");
   const auto [g, w] = loaded("moved");
