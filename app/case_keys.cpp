@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "io/formula.hpp"
 #include "mesh/generators.hpp"
 #include "problem/case.hpp"
 
@@ -11,10 +10,10 @@ namespace sandglass {
 namespace {
 
 /// A key and all that is said of it, in columns.
-std::string key_line(const std::string& key, std::string_view unit, const Range& range,
+std::string key_line(const std::string& key, std::string_view unit, const std::string& allowed,
                      const std::string& fallback, std::string_view meaning) {
-  return fmt::format("  {:<28} {:<6} {:<12} {:<16} {}\n", key, fmt::format("[{}]", unit), range.text(),
-                     fallback, meaning);
+  return fmt::format("  {:<28} {:<8} {:<12} {:<16} {}\n", key, fmt::format("[{}]", unit), allowed, fallback,
+                     meaning);
 }
 
 /// Lines about the parameters of one aggregate, for people.
@@ -24,14 +23,27 @@ std::string described(const std::string& table) {
   std::string text;
   std::apply(
       [&](const auto&... p) {
-        const auto line = [&](const auto& parameter) {
-          using Value = std::remove_cvref_t<decltype(defaults.*(parameter.member))>;
-          std::string fallback = "required";
-          if constexpr (std::is_arithmetic_v<Value>) {
-            if (!parameter.required) fallback = fmt::format("default {}", defaults.*(parameter.member));
+        const auto line = [&]<class Value>(const Parameter<Aggregate, Value>& parameter) {
+          const Value& standard = defaults.*(parameter.member);
+          if constexpr (requires { Value::parameters(); }) {
+            text += described<Value>(table);
+          } else {
+            std::string fallback = parameter.required ? "required" : "optional",
+                        allowed = parameter.range.text();
+            if constexpr (std::is_arithmetic_v<Value>) {
+              if (!parameter.required) fallback = fmt::format("default {}", standard);
+            }
+            if constexpr (std::is_enum_v<Value>) {
+              allowed = fmt::to_string(fmt::join(words_of(standard), ", "));
+              fallback = fmt::format("default {}", words_of(standard)[static_cast<std::size_t>(standard)]);
+            } else if constexpr (std::is_same_v<Value, bool>) {
+              allowed = "true, false";
+            } else if constexpr (std::is_same_v<Value, std::string> || std::is_same_v<Value, Formula>) {
+              allowed = "a text";
+            }
+            text += key_line(fmt::format("{}.{}", table, parameter.name), parameter.unit, allowed, fallback,
+                             parameter.meaning);
           }
-          text += key_line(fmt::format("{}.{}", table, parameter.name), parameter.unit, parameter.range,
-                           fallback, parameter.meaning);
         };
         (line(p), ...);
       },
@@ -81,7 +93,7 @@ constexpr std::string_view several_materials = R"(
   the conditions of [sets]; a mesh from a file brings its physical volumes, ELSETs or cell arrays by their names
 )";
 
-constexpr std::string_view sets_and_loads = R"(
+constexpr std::string_view sets_and_motions = R"(
 [sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = "z",
   center = [x, y], semi_axes = [a, b] }, ellipsoid = { center = [x, y, z], semi_axes = [a, b, c] } }
   all conditions must hold; lengths in m; inf and -inf are allowed
@@ -97,16 +109,6 @@ constexpr std::string_view sets_and_loads = R"(
 [[rotation]] set = NAME, axis = "x", "y", "z" or [x, y, z], angle in degrees, by the right-hand rule:
   the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis
   (default: the mean of the set's nodes), displacement = [x, y, z] in m, added (default: none)
-[[force]] set = NAME, total = [x, y, z] in N, moment = [x, y, z] in N m about the middle of the faces:
-  a dead load on the boundary faces within the set; on = "nodes" (default: "faces"): each node of the set has
-  an equal share of the total, without a moment
-[[pressure]] set = NAME, value in Pa: pushes on the boundary faces within the set, and follows them
-[[gravity]] value = [x, y, z] in m/s^2: the weight of the body
-[[support]] set = NAME, stiffness in Pa/m, damping in Pa s/m, only_normal (default: false): springs and
-  dashpots per area between the boundary faces within the set and where they were
-  force, pressure and gravity: times = [t, ...] in s, increasing, and factors = [f, ...], linear in between, or
-  formula = "sin(2*pi*t) * t", a factor of the time t in s, instead of the loading curve of the case; in a
-  quasi-static answer time is the share of the load, 0 to 1
 [[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in rad/s about
   the set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the set,
   value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several add up
@@ -123,10 +125,15 @@ std::string describe_case_keys() {
   text += described_list(Generators{}, "mesh", "generator");
   text += mesh_file;
   text += described_list(Laws{}, "material", "law");
-  text += key_line("material.density", "kg/m^3", Range::positive(), "required", "mass density at rest");
+  text +=
+      key_line("material.density", "kg/m^3", Range::positive().text(), "required", "mass density at rest");
   text += parts_of_a_material;
   text += several_materials;
-  text += sets_and_loads;
+  text += sets_and_motions;
+  for_each_type(Forces{}, [&]<class Force>() {
+    text += fmt::format("\n[[{}]]: {}\n{}", Force::name, Force::summary,
+                        described<Force>(std::string(Force::name)));
+  });
   text += fmt::format("\nformula: {}\n", formula_language());
   text += "\n[relaxation]: how a quasi-static answer is found\n";
   text += described<RelaxationSettings>("relaxation");

@@ -23,14 +23,13 @@ void require_expressible(const Scene& scene) {
   const auto refuse = [&](std::string_view what) {
     throw InputError(fmt::format("{}: {}", description.file.string(), what));
   };
-  if (!(scene.pressures.empty() && scene.supports.empty())) {
-    refuse("a deck cannot hold pressures and supports; allowed are forces and gravity");
-  }
+  if (const BodyForce* other = first_not_dead(scene.forces))
+    refuse(fmt::format("a deck cannot hold a {}; allowed are dead loads", other->traits().name));
   if (!scene.ties.empty()) refuse("a deck cannot hold hanging nodes, which refinement and ties make");
   if (description.quasi_static) return;
   if (!scene.initial_velocities.empty()) refuse("a deck cannot hold initial velocities");
   if (!description.rotations.empty()) refuse("a deck cannot hold rotations of a dynamic case");
-  for (const auto& load : scene.loads) {
+  for (const auto& load : dead_loads(scene.forces)) {
     if (load.curve != 0) refuse("a deck cannot hold load curves of a dynamic case");
   }
 }
@@ -46,7 +45,7 @@ void write_conditions(const Scene& scene, Hdf5File& file) {
                    {static_cast<double>(constraint.node), static_cast<double>(constraint.component),
                     final_value(scene, constraint)});
   }
-  for (const auto& [node, force, curve] : scene.loads) {
+  for (const auto& [node, force, curve] : dead_loads(scene.forces)) {
     const double factor = scene.curves[curve].at(1.0, 1.0);
     forces.insert(forces.end(),
                   {static_cast<double>(node), factor * force[0], factor * force[1], factor * force[2]});

@@ -65,9 +65,9 @@ std::optional<double> automatic_kappa(const Model& model) {
 bool dissipates(const Model& model) {
   const Scene& scene = model.scene();
   const auto remembers = [](const Material& material) { return is_viscoelastic(material.law); };
-  const auto damps = [](const FaceSupport& support) { return support.damping > 0.0; };
+  const auto damps = [](const auto& force) { return force->traits().dissipates; };
   return std::any_of(scene.materials.list.begin(), scene.materials.list.end(), remembers) ||
-         std::any_of(scene.supports.begin(), scene.supports.end(), damps) ||
+         std::any_of(scene.forces.begin(), scene.forces.end(), damps) ||
          method_named(model.choice().method).damps_only;
 }
 

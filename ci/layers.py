@@ -14,6 +14,7 @@ TARGETS = {
         "math",
         "material",
         "mesh",
+        "forces",
         "element",
         "assembly",
         "multigrid",

@@ -1,4 +1,4 @@
-"""Formulas of the time in loading curves: the language of solver/io/formula.cpp, read by Python."""
+"""Formulas of the time in loading curves: the language of solver/forces/formula.cpp in Python."""
 
 import ast
 import math

@@ -351,7 +351,7 @@ TEST(Adaptive, forces_alone_wake_elements_too) {
   Scene scene = pressed_block(0.0);
   Case description = scene.description;
   description.displacements.pop_back();
-  description.forces = {{"pressed", {0.0, 0.0, -0.25}, {}}};
+  description.forces.of<DeadForce>() = {{"pressed", {0.0, 0.0, -0.25}, {}}};
   scene = make_scene(description, scene.mesh, scene.sets);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
   const double unit = displacement_unit(scene, exact);
@@ -368,7 +368,7 @@ TEST(Adaptive, errors_that_add_up_count_as_a_whole) {
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
                       {"side", nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0; })}};
   description.displacements = {{"foot", {}}};
-  description.pressures = {{"side", 3.0}};
+  description.forces.of<Pressure>() = {{"side", 3.0}};
   const Scene scene = make_scene(description, mesh, sets);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
   const double unit = displacement_unit(scene, exact);

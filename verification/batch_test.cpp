@@ -236,7 +236,8 @@ TEST(Batch, what_it_does_not_support_is_refused) {
             std::string::npos);
   EXPECT_NE(with("subcycles = 4\n").find("subcycles = 1"), std::string::npos);
   EXPECT_NE(with("body_frequency = 1\n").find("body_frequency = 0"), std::string::npos);
-  EXPECT_NE(with("[[pressure]]\nset = \"side\"\nvalue = 1.0\n").find("[[force]] only"), std::string::npos);
+  EXPECT_NE(with("[[pressure]]\nset = \"side\"\nvalue = 1.0\n").find("remove [[pressure]]"),
+            std::string::npos);
   Batch<double> batch(block(false), text_of(1.0), 3);
   EXPECT_EQ(input_error([&] { batch.impose(3, 1.0); }), "body = 3 must be below 3");
   EXPECT_EQ(input_error([&] { batch.displacement(0, 45); }), "node = 45 must be below 45");

@@ -38,7 +38,10 @@ class SlenderScene {
     description.displacements = {{"foot", {}}};
     if (is_arch_) description.displacements.push_back({"end", {}});
     if (guided_) description.displacements.push_back({"head", {}, {true, true, false}});
-    description.forces = {{.set = "head", .total = force_, .on_nodes = is_arch_}};
+    description.forces.of<DeadForce>() = {
+        {.set = "head",
+         .total = force_,
+         .on = is_arch_ ? DeadForce::Carrier::nodes : DeadForce::Carrier::faces}};
     if (times > 0.0) {
       const double frequency =
           3.5 * thickness_ * std::sqrt(law_.young_modulus / (12.0 * density)) / (length_ * length_);

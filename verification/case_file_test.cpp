@@ -197,6 +197,56 @@ TEST(CaseFile, hash_follows_what_decides_the_answer_and_nothing_else) {
             once);
 }
 
+/// Another value of a declared parameter.
+template <class Value>
+void change(Value& value) {
+  if constexpr (std::is_same_v<Value, std::string>) {
+    value += "x";
+  } else if constexpr (std::is_same_v<Value, Formula>) {
+    value = Formula("t");
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    value = !value;
+  } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
+    value = static_cast<Value>(static_cast<int>(value) + 1);
+  } else {
+    value.back() += 1.0;
+  }
+}
+
+/// Whatever is declared of a force, and of its curve, decides the answer of a motion.
+TEST(CaseFile, hash_follows_every_declared_field_of_every_force) {
+  Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});
+  description.quasi_static = false;
+  for_each_type(Forces{}, [&]<class Force>() {
+    Force force;
+    if constexpr (requires { force.curve; }) force.curve = {.times = {0.0, 1.0}, .factors = {0.0, 1.0}};
+    const auto hash = [&](const Force& one) {
+      Case with_force = description;
+      with_force.forces.of<Force>() = {one};
+      return case_hash(with_force);
+    };
+    const auto expect_change = [&](std::string_view name, const auto& changed) {
+      EXPECT_NE(hash(changed), hash(force)) << Force::name << "." << name;
+    };
+    const auto check = [&]<class Value>(const Parameter<Force, Value>& parameter) {
+      Force changed = force;
+      Value& value = changed.*(parameter.member);
+      if constexpr (requires { Value::parameters(); }) {
+        const auto check_part = [&](const auto& part) {
+          changed = force;
+          change(value.*(part.member));
+          expect_change(part.name, changed);
+        };
+        std::apply([&](const auto&... part) { (check_part(part), ...); }, Value::parameters());
+      } else {
+        change(value);
+        expect_change(parameter.name, changed);
+      }
+    };
+    std::apply([&](const auto&... parameter) { (check(parameter), ...); }, Force::parameters());
+  });
+}
+
 const std::string published =
     "[[published]]\nset = \"top\"\ncomponent = \"x\"\nvalue = 1.0\nsource = \"a\"\n";
 const std::string program = "[[published.programs]]\nprogram = \"b\"\nsource = \"c\"\n";

@@ -23,7 +23,7 @@ Scene loaded_block(const AnyLaw& law, bool quasi_static) {
                       {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })},
                       {"side", nodes_where(mesh.points, [](const Vector& X) { return X[0] > 0.09; })}};
   description.displacements = {{"foot", {}}, {"head", {0.02, 0.0, 0.01}}};
-  description.forces = {{"side", {0.1, 0.2, 0.0}, {}}};
+  description.forces.of<DeadForce>() = {{"side", {0.1, 0.2, 0.0}, {}}};
   description.relaxation.levels = 4;
   description.relaxation.tolerance = 1e-6;
   description.relaxation.max_steps = 600;  // runs that come to rest need fewer
@@ -127,7 +127,7 @@ TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
 TEST(Checkpoint, goes_on_after_levels_that_failed) {
   Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
   scene.description.displacements[1].value = {0.0, 0.0, -0.17};
-  scene.description.forces.clear();
+  scene.description.forces.of<DeadForce>().clear();
   scene.description.relaxation.levels = 1;
   scene.description.relaxation.max_steps = 2000;
   scene = make_scene(scene.description, scene.mesh, scene.sets);

@@ -132,6 +132,37 @@ TEST_F(MethodTableTest, goes_with_a_coarser_mesh) {
   }
 }
 
+/// A set that one table alone names is still there on a coarser mesh, whichever table it is; a set that no
+/// table names may have no node there.
+TEST_F(MethodTableTest, keeps_every_set_that_a_table_names_on_coarser_meshes) {
+  std::map<std::string, std::string> tables{
+      {"refine", "[[refine]]\naround = \"lone\"\n"},
+      {"tie", "[[tie]]\nset = \"lone\"\nelements = \"lower\"\n"},
+      {"displacement", "[[displacement]]\nset = \"lone\"\nvalue = [0.0, 0.0, 0.0]\ncomponents = \"x\"\n"},
+      {"rotation", "[[rotation]]\nset = \"lone\"\naxis = \"z\"\nangle = 0.0\n"},
+  };
+  for_each_type(Forces{}, [&]<class Force>() {
+    if (!requires(Force force) { force.set; }) return;
+    const std::string name(Force::name);
+    tables[name] = "[[" + name + "]]\nset = \"lone\"\nvalue = 1.0\n";
+  });
+  tables["force"] = "[[force]]\nset = \"lone\"\ntotal = [0.1, 0.0, 0.0]\n";
+  tables["support"] = "[[support]]\nset = \"lone\"\nstiffness = 1e3\n";
+  for (const auto& [name, table] : tables) {
+    // Its nodes are in the middle of the lower end and the corners of no element that they are tied to.
+    Case original = read("[element_sets]\nlower = { z = [0.0, 0.1] }\n" + table);
+    original.sets.push_back({.name = "lone", .surface = true});
+    original.sets.back().within[2] = Interval{0.0, 0.0};
+    const auto coarser = coarser_meshes(std::get<AnyGenerator>(original.mesh));
+    ASSERT_FALSE(coarser.empty());
+    for (const auto& mesh : coarser) {
+      const Scene scene = scene_on(mesh, original);
+      EXPECT_TRUE(scene.sets.contains("lone")) << name;
+      EXPECT_FALSE(scene.sets.contains("edge")) << name;
+    }
+  }
+}
+
 /// Longer steps are written; softer moduli make it another case, whose references are not its own.
 TEST_F(MethodTableTest, goes_with_longer_steps) {
   const Case plain = read_case_file(fs::path(SANDGLASS_SOURCE) / "cases" / "plucked-beam.toml");

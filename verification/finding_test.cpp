@@ -135,7 +135,7 @@ TEST(Symptoms, show_locking_under_loads) {
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0; })},
                       {"head", nodes_where(mesh.points, [](const Vector& X) { return X[0] > 0.99; })}};
   description.displacements = {{"foot", {}}};
-  description.forces = {{"head", {0.0, 0.0, 0.12}, {}}};
+  description.forces.of<DeadForce>() = {{"head", {0.0, 0.0, 0.12}, {}}};
   const Scene scene = make_scene(description, mesh, sets);
   const auto relaxed = [&](const char* method) {
     Observer silent;

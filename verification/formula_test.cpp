@@ -1,6 +1,6 @@
 /// Loads that follow formulas of the time. Python reads the same list of formulas.
 
-#include "io/formula.hpp"
+#include "forces/formula.hpp"
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,9 @@ TEST(Formula, what_is_wrong_is_named_with_its_position) {
 
 TEST(Formula, is_a_curve_like_a_table) {
   const TemporaryFolder folder;
-  const auto curve = [&](const std::string& keys) { return hanging(folder, keys).gravity[0].curve; };
+  const auto curve = [&](const std::string& keys) {
+    return hanging(folder, keys).forces.of<Gravity>()[0].curve;
+  };
   const LoadCurve formula = curve("formula = \"1 - 3*min(t, 0.5)\"\n");
   const LoadCurve table = curve("times = [0.0, 0.5]\nfactors = [1.0, -0.5]\n");
   for (const double t : {0.0, 0.1, 0.5, 2.0}) EXPECT_DOUBLE_EQ(formula.at(t, 0.3), table.at(t, 0.3)) << t;
@@ -94,7 +96,7 @@ TEST(Formula, shakes_a_free_body) {
   const double g = 9.81, w = 40.0, h = 1e-3;
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});
   description.quasi_static = false;
-  description.gravity = {{{0.0, 0.0, -g}, {.formula = "cos(40*t)", .evaluate = parse_formula("cos(40*t)")}}};
+  description.forces.of<Gravity>() = {{{0.0, 0.0, -g}, {.formula = Formula("cos(40*t)")}}};
   description.dynamics = {.duration = 0.1, .time_step = h};
   Recorder recorder;
   const Scene scene = make_scene(description, box({0.1, 0.1, 0.2}, {2, 2, 4}), {});

@@ -123,7 +123,7 @@ Scene pulled_bar(const AnyLaw& law, double force) {
     held.components[i] = true;
     description.displacements.push_back(held);
   }
-  description.forces = {{"end", {0.0, 0.0, force}, {}}};
+  description.forces.of<DeadForce>() = {{"end", {0.0, 0.0, force}, {}}};
   return make_scene(description, mesh, sets);
 }
 
@@ -185,7 +185,7 @@ TYPED_TEST(LoadTest, work_is_stored_in_the_small) {
   Recorder recorder;
   const Relaxation answer = relax(Model(scene, this->method()), recorder);
   double path = 0.0;
-  for (const auto& load : scene.loads) path += load.force[2] * answer.u[index(load.node)][2];
+  for (const auto& load : dead_loads(scene.forces)) path += load.force[2] * answer.u[index(load.node)][2];
   EXPECT_NEAR(recorder.rows.back().external_work / (0.5 * path), 1.0, 1e-12);
   // Half a force of 1e-7 E is off by that share; the residual of 1e-8 by its own.
   EXPECT_NEAR(total_energy(recorder.rows.back()) / (0.5 * path), 1.0, 1e-6);
@@ -226,7 +226,7 @@ TEST(Load, force_gives_a_free_body_its_momentum) {
   const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});
   const NodeSets sets{{"top", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.1; })}};
   const Vector F{0.2, -0.1, 0.4};
-  description.forces = {{"top", F, {}}};
+  description.forces.of<DeadForce>() = {{"top", F, {}}};
   const Scene scene = make_scene(description, mesh, sets);
   const Model model(scene, {"tl-full", {}});
   Observer silent;
@@ -245,9 +245,9 @@ TEST(Load, reactions_carry_all_loads) {
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
                       {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.2; })}};
   description.displacements = {{"foot", {}}};
-  description.forces = {{"foot", {0.0, 3.0, 0.0}, {}}, {"head", {0.0, 0.01, 0.02}, {}}};
+  description.forces.of<DeadForce>() = {{"foot", {0.0, 3.0, 0.0}, {}}, {"head", {0.0, 0.01, 0.02}, {}}};
   const Scene scene = make_scene(description, mesh, sets);
-  expect_near(sum_of(scene.loads), {0.0, 3.01, 0.02}, 1e-15);
+  expect_near(sum_of(dead_loads(scene.forces)), {0.0, 3.01, 0.02}, 1e-15);
   const Model model(scene, {"tl-perturbation", {}});
   Observer silent;
   const Relaxation answer = relax(model, silent);
@@ -266,11 +266,11 @@ TEST(Load, reactions_carry_all_loads) {
 
 /// Forces on sets that share faces add up, to a few roundings.
 TEST(Load, forces_on_one_node_add_up) {
-  const auto pulled = [](const std::vector<ImposedForce>& forces) {
+  const auto pulled = [](const std::vector<DeadForce>& forces) {
     Scene scene = pulled_bar(sample_law<NeoHookean>(0.3), 0.0);
     Case description = scene.description;
-    description.forces = forces;
-    return make_scene(description, scene.mesh, scene.sets).loads;
+    description.forces.of<DeadForce>() = forces;
+    return dead_loads(make_scene(description, scene.mesh, scene.sets).forces);
   };
   const auto both = pulled({{"end", {0.1, 0.0, 0.4}, {}}, {"end", {0.2, -0.3, 0.0}, {0.0, 0.05, 0.0}}});
   const auto once = pulled({{"end", {0.3, -0.3, 0.4}, {0.0, 0.05, 0.0}}});
@@ -299,8 +299,9 @@ TEST(Load, force_on_nodes_is_shared_equally) {
   const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});
   const NodeSets sets{
       {"edge", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.1 && X[0] == 0.0; })}};
-  description.forces = {{.set = "edge", .total = {0.3, 0.0, -0.6}, .on_nodes = true}};
-  const auto loads = make_scene(description, mesh, sets).loads;
+  description.forces.of<DeadForce>() = {
+      {.set = "edge", .total = {0.3, 0.0, -0.6}, .on = DeadForce::Carrier::nodes}};
+  const auto loads = dead_loads(make_scene(description, mesh, sets).forces);
   ASSERT_EQ(loads.size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(loads[k].node, sets.at("edge")[k]);
@@ -311,13 +312,13 @@ TEST(Load, force_on_nodes_is_shared_equally) {
 TEST(Load, set_without_faces_is_refused) {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});
-  description.forces = {{"edge", {1.0, 0.0, 0.0}, {}}};
+  description.forces.of<DeadForce>() = {{"edge", {1.0, 0.0, 0.0}, {}}};
   const NodeSets sets{
       {"edge", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.1 && X[0] == 0.0; })}};
   const std::string text = input_error([&] { make_scene(description, mesh, sets); });
   EXPECT_TRUE(
       contains(text, "made-in-a-test.toml: force.set = 'edge' has no boundary face among its 3 nodes"));
-  description.forces = {{"egde", {1.0, 0.0, 0.0}, {}}};
+  description.forces.of<DeadForce>() = {{"egde", {1.0, 0.0, 0.0}, {}}};
   EXPECT_TRUE(contains(input_error([&] { make_scene(description, mesh, sets); }), "did you mean 'edge'?"));
 }
 

@@ -56,7 +56,7 @@ class ManufacturedTest : public ::testing::Test {
     impose_field(
         held, mesh.points, [&](const Vector& X) { return solution.displacement(X); }, description, sets);
     Scene scene = make_scene(description, mesh, sets);
-    scene.loads = manufactured_loads(mesh, solution);
+    scene.forces = {std::make_shared<DeadLoads>(manufactured_loads(mesh, solution))};
     Observer silent;
     const MethodChoice choice{.method = std::string(Method::name), .accuracy = accuracy};
     const Relaxation answer = relax(Model(scene, choice), silent);

@@ -156,7 +156,7 @@ TEST(Multigrid, slender_beams_take_no_more_than_others) {
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
                       {"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.399; })}};
   description.displacements = {{"foot", {}}};
-  description.forces = {{"head", {1e-6, 0.0, 0.0}, {}}};
+  description.forces.of<DeadForce>() = {{"head", {1e-6, 0.0, 0.0}, {}}};
   Observer silent;
   const Relaxation found = relax(Model(make_scene(description, mesh, sets), {"tl-mean-dilatation"}), silent);
   EXPECT_TRUE(found.converged);

@@ -23,7 +23,7 @@ long evaluations_to_rest(long seed, long number) {
   std::vector<double> u;
   for (const Vector& row : found.u) u.insert(u.end(), row.begin(), row.end());
   std::vector<double> forces = balance.forces(u), loads(forces.size());
-  for (const auto& [node, load, curve] : scene.loads) {
+  for (const auto& [node, load, curve] : dead_loads(scene.forces)) {
     for (std::size_t i = 0; i < 3; ++i) loads[3 * index(node) + i] = load[i];
   }
   double all = 0.0, carried = 0.0, free = 0.0;
@@ -81,7 +81,7 @@ Scene random_inflation(long seed, long number) {
   Case description = plain_case(law);
   description.displacements = {{"rim", {}}};
   const double thick = cup.thickness / radius;
-  description.pressures = {{"inside", thick * C * std::pow(10.0, random.uniform(-1.0, 0.3))}};
+  description.forces.of<Pressure>() = {{"inside", thick * C * std::pow(10.0, random.uniform(-1.0, 0.3))}};
   NodeSets sets;
   sets["rim"] = nodes_where(mesh.points, [&](const Vector& X) { return X[2] > cup.rim - 1e-9; });
   sets["inside"] = select_nodes(mesh, boundary_nodes(mesh),

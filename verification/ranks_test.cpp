@@ -21,7 +21,7 @@ namespace {
 /// A block between two plates under a pressure from one side.
 Scene block(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elements) {
   Case description = plain_case(law);
-  description.pressures = {{.set = "side", .value = 50.0}};
+  description.forces.of<Pressure>() = {{.set = "side", .value = 50.0}};
   description.relaxation.max_steps = 12;
   return block_between_plates(std::move(description), quasi_static, elements);
 }
@@ -52,7 +52,7 @@ TYPED_TEST_SUITE(RanksTest, MethodTypes, EntryName);
 
 TYPED_TEST(RanksTest, relaxation) {
   Scene scene = block(sample_law<NeoHookean>(0.45), true, {4, 4, 18});
-  if (is_condensed<TypeParam>) scene.pressures.clear();
+  if (is_condensed<TypeParam>) scene.forces.clear();
   expect_same_bits(scene, this->name, 2);
 }
 
@@ -130,7 +130,7 @@ TEST(Ranks, sum_over_chunks_in_one_order) {
 /// ranks.
 TEST(Ranks, a_step_takes_one_exchange) {
   Scene scene = block(sample_law<NeoHookean>(0.45), false, {8, 8, 192});
-  scene.pressures.clear();
+  scene.forces.clear();
   scene.description.dynamics.check_interval = 1000000;
   scene.description.dynamics.frames = 1;
   const auto traffic_of = [&](double duration) {

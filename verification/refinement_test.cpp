@@ -341,7 +341,7 @@ TYPED_TEST(RefinedBodyTest, converges_with_second_order) {
       impose_field(
           held, mesh.points, [&](const Vector& X) { return solution.displacement(X); }, description, sets);
       Scene scene = scene_on(refined, description, sets);
-      scene.loads = manufactured_loads(mesh, solution);
+      scene.forces = {std::make_shared<DeadLoads>(manufactured_loads(mesh, solution))};
       Observer silent;
       const Relaxation answer = relax(Model(scene, this->method()), silent);
       EXPECT_TRUE(answer.converged) << outcome(answer, Precision::double_precision);

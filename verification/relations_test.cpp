@@ -209,9 +209,9 @@ Verdict batch(const Problem& given, const Answer& /*own*/, RandomGeometry& rando
   }
   Case& d = problem.description;
   d.refinements.clear();
-  d.pressures.clear();
-  d.gravity.clear();
-  d.supports.clear();
+  d.forces.of<Pressure>().clear();
+  d.forces.of<Gravity>().clear();
+  d.forces.of<Support>().clear();
   for (CaseMaterial& material : d.materials) {
     if (is_viscoelastic(material.law) || has_fibres(material.law)) material = {{sample_law<Yeoh>(0.45), 1e3}};
   }

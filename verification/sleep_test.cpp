@@ -204,7 +204,7 @@ TEST(Sleep, wakes_where_a_force_pushes) {
   Touched touched({48, 48, 3}, 0.5e-3);
   Case pushed = touched.scene.description;
   pushed.displacements.pop_back();
-  pushed.forces = {{"touched", {0, 0, -0.002}}};
+  pushed.forces.of<DeadForce>() = {{"touched", {0, 0, -0.002}}};
   const Scene scene = make_scene(pushed, touched.scene.mesh, touched.scene.sets);
   Observer nobody;
   const MethodChoice choice{.method = "tl-perturbation"};

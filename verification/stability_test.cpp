@@ -36,7 +36,7 @@ Case free_cube() {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
   description.mesh = BoxMesh{{0.1, 0.1, 0.1}, {1, 1, 1}};
   description.sets = {plane("top", 2, 0.1)};
-  description.forces = {{"top", {0.0, 0.0, 0.1}}};
+  description.forces.of<DeadForce>() = {{"top", {0.0, 0.0, 0.1}}};
   return description;
 }
 

@@ -200,7 +200,7 @@ TEST(Reactions, of_a_uniaxial_stretch_are_stress_times_area) {
 /// At rest, reactions hold what is loaded: they sum to minus the loads, of nodes and of pressures.
 TEST(Reactions, sum_to_minus_the_loads) {
   Case description = plain_case(sample_law<NeoHookean>(0.45));
-  description.forces = {{.set = "side", .total = {0.02, 0.3, 0.1}}};
+  description.forces.of<DeadForce>() = {{.set = "side", .total = {0.02, 0.3, 0.1}}};
   description.relaxation.tolerance = 1e-10;
   const Scene scene = block_between_plates(description, true, {2, 2, 8});
   for (const char* method : {"tl-perturbation", "tl-adaptive", "t4-anp", "linear-condensed"}) {

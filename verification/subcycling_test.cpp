@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "io/case_file.hpp"
@@ -377,7 +378,18 @@ TEST(Subcycling, refuses_what_depends_on_more_than_displacements) {
   for (const char* method : {"ul-perturbation", "ul-viscous", "tl-adaptive", "t4-anp"})
     EXPECT_NE(refusal(scene_on(refined, description), method).find(method), std::string::npos) << method;
   Scene scene = scene_on(refined, description);
-  for (const Quadrilateral& face : refined.boundary()) scene.pressures.push_back({face, 1.0, 0});
+  std::vector<int> all(scene.mesh.points.size());
+  std::iota(all.begin(), all.end(), 0);
+  const NodeSets sets{{"all", all}};
+  const std::vector<double> masses(all.size(), 1.0);
+  ForceResolver resolver{.file = "",
+                         .points = scene.mesh.points,
+                         .boundary = scene.boundary,
+                         .sets = sets,
+                         .element_masses = masses,
+                         .masses = masses};
+  Pressure{"all", 1.0}.resolve(resolver);
+  scene.forces = resolver.all();
   EXPECT_NE(refusal(scene, "tl-perturbation").find("pressure acts on node"), std::string::npos);
   description.materials.front().law = Viscoelastic<NeoHookean>{soft};
   EXPECT_NE(refusal(scene_on(refined, description), "tl-perturbation").find("subcycles"), std::string::npos);

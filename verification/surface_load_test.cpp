@@ -87,10 +87,10 @@ TEST(Loads, derive_from_their_potential) {
                       {"left", plane(mesh.points, 0, 0.0)},
                       {"top", plane(mesh.points, 2, 1.5)}};
   description.displacements = {{"left", {}}};
-  description.forces = {{"top", {1.0, 2.0, 3.0}, {0.1, 0.0, 0.5}}};
-  description.gravity = {{{0.0, -9.81e-3, 0.0}}};
-  description.pressures = {{"all", 7.0}};
-  description.supports = {{"top", 5.0, 0.0, true}, {"left", 3.0, 0.0, false}};
+  description.forces.of<DeadForce>() = {{"top", {1.0, 2.0, 3.0}, {0.1, 0.0, 0.5}}};
+  description.forces.of<Gravity>() = {{{0.0, -9.81e-3, 0.0}}};
+  description.forces.of<Pressure>() = {{"all", 7.0}};
+  description.forces.of<Support>() = {{"top", 5.0, 0.0, true}, {"left", 3.0, 0.0, false}};
   const Scene scene = make_scene(description, mesh, sets);
   const Model model(scene, {"tl-perturbation"});
   const auto& elements = *std::get<0>(model.internal_force());
@@ -142,7 +142,7 @@ TYPED_TEST(PressedTest, a_body_under_pressure_shrinks_uniformly) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = "far " + std::to_string(axis);
     sets[name] = plane(mesh.points, axis, size[axis]);
-    description.pressures.push_back({name, p});
+    description.forces.of<Pressure>().push_back({name, p});
   }
   const Scene scene = make_scene(description, mesh, sets);
   const double stretch = std::cbrt(1.0 - p / law.bulk_modulus());
@@ -204,7 +204,7 @@ TEST(Pressure, inflates_a_ball_as_theory_says) {
     NodeSets sets{
         {"inside", nodes_where(mesh.points, [&](const Vector& X) { return length(X) < 1.0 + 1e-6; })}};
     add_symmetry(mesh.points, description, sets);
-    description.pressures = {{"inside", p}};
+    description.forces.of<Pressure>() = {{"inside", p}};
     const NodalField u = answer(make_scene(description, mesh, sets), {"tl-mean-dilatation"});
     double error = 0.0;
     for (const int node : sets["inside"]) {
@@ -225,7 +225,7 @@ TEST(Gravity, presses_a_column_together) {
   NodeSets sets{{"all", nodes_where(mesh.points, [](const Vector&) { return true; })},
                 {"foot", plane(mesh.points, 2, 0.0)}};
   description.displacements = {{"all", {}, {true, true, false}}, {"foot", {}, {false, false, true}}};
-  description.gravity = {{{0.0, 0.0, -g}}};
+  description.forces.of<Gravity>() = {{{0.0, 0.0, -g}}};
   NodalField exact;
   const double modulus = lame_lambda(law) + 2.0 * law.shear_modulus();
   for (const Vector& X : mesh.points) {
@@ -246,7 +246,7 @@ TEST(Gravity, lets_a_body_fall) {
   }
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});
   description.quasi_static = false;
-  description.gravity = {{{0.0, 3.0, -9.81}, {{0.0}, {1.0}}}};
+  description.forces.of<Gravity>() = {{{0.0, 3.0, -9.81}, {{0.0}, {1.0}}}};
   description.dynamics = {.duration = 0.2};
   Recorder recorder;
   const Motion motion = integrate(Model(make_scene(description, mesh, {}), {"tl-mean-dilatation"}), recorder);
@@ -267,16 +267,16 @@ TYPED_TEST(PressedTest, springs_carry_the_weight) {
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
   NodeSets sets{{"foot", plane(mesh.points, 2, 0.0)}};
   const double k = 1e6;
-  description.supports = {{"foot", k, 0.0, false}};
-  description.gravity = {{{1.0, 0.5, -9.81}}};
+  description.forces.of<Support>() = {{"foot", k, 0.0, false}};
+  description.forces.of<Gravity>() = {{{1.0, 0.5, -9.81}}};
   const Scene scene = make_scene(description, mesh, sets);
   const NodalField u = answer(scene, choice);
   Vector sum{};
-  for (const auto& support : scene.supports) {
-    for (const auto& point : gauss_points_of(corners_of(mesh.points, support.face))) {
+  for (const Quadrilateral& face : faces_within(scene.boundary, sets.at("foot"))) {
+    for (const auto& point : gauss_points_of(corners_of(mesh.points, face))) {
       for (std::size_t I = 0; I < 4; ++I) {
         for (std::size_t i = 0; i < 3; ++i) {
-          sum[i] += k * point.N[I] * point.area * u[index(support.face[I])][i];
+          sum[i] += k * point.N[I] * point.area * u[index(face[I])][i];
         }
       }
     }
@@ -298,9 +298,11 @@ TEST(Loads, work_balances_the_energies_of_a_motion) {
                   {"head", plane(mesh.points, 2, 0.2)},
                   {"side", plane(mesh.points, 0, 0.0)}};
     description.quasi_static = false;
-    description.supports = {{"foot", stiffness, damping, false}, {"side", 0.1 * stiffness, damping, true}};
-    description.pressures = {{"side", 60.0, {{0.0, 0.03, 0.1}, {0.0, 1.0, -0.5}}}, {"head", 40.0}};
-    description.gravity = {{{0.0, 0.0, -2.0}, {{0.0, 0.05}, {0.0, 1.0}}}};
+    description.forces.of<Support>() = {{"foot", stiffness, damping, false},
+                                        {"side", 0.1 * stiffness, damping, true}};
+    description.forces.of<Pressure>() = {{"side", 60.0, {{0.0, 0.03, 0.1}, {0.0, 1.0, -0.5}}},
+                                         {"head", 40.0}};
+    description.forces.of<Gravity>() = {{{0.0, 0.0, -2.0}, {{0.0, 0.05}, {0.0, 1.0}}}};
     description.dynamics = {.duration = 0.15, .step_fraction = fraction};
     Recorder recorder;
     integrate(Model(make_scene(description, mesh, sets), {"tl-mean-dilatation"}), recorder);
@@ -335,9 +337,9 @@ TEST(LoadCurve, a_quasi_static_answer_is_that_of_its_end) {
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
   const NodeSets sets{{"foot", plane(mesh.points, 2, 0.0)}, {"head", plane(mesh.points, 2, 0.2)}};
   description.displacements = {{"foot", {}}};
-  description.pressures = {{"head", 100.0, {{0.0, 0.5, 1.0}, {0.0, 2.0, 0.7}}}};
+  description.forces.of<Pressure>() = {{"head", 100.0, {{0.0, 0.5, 1.0}, {0.0, 2.0, 0.7}}}};
   const NodalField with_curve = answer(make_scene(description, mesh, sets), {"tl-perturbation"});
-  description.pressures = {{"head", 70.0}};
+  description.forces.of<Pressure>() = {{"head", 70.0}};
   const NodalField plain = answer(make_scene(description, mesh, sets), {"tl-perturbation"});
   EXPECT_LT(largest_distance(with_curve, plain), 1e-6 * largest_distance(plain, NodalField(plain.size())));
 }

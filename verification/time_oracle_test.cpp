@@ -53,7 +53,7 @@ Scene shaken_block(const NeoHookean& law, double damping, double size) {
     for (auto& x : X) x += random.uniform(-0.006, 0.006);
   }
   description.displacements = {{"foot", {}}, {"head", {0.02 * size, 0.0, 0.01 * size}}};
-  description.forces = {{"side", {0.0, 2.0 * size, 0.0}}};
+  description.forces.of<DeadForce>() = {{"side", {0.0, 2.0 * size, 0.0}}};
   description.velocities = {
       {.value = {0.1 * size, 0.2 * size, -0.1 * size}, .spin = {2.0 * size, 0.0, 5.0 * size}}};
   description.dynamics.damping = damping;

@@ -64,10 +64,10 @@ TEST(Variants, every_combination_is_a_case_with_its_own_keys) {
   EXPECT_EQ(std::get<NeoHookean>(cases[4].materials.front().law).poisson_ratio, 0.45);
   EXPECT_EQ(std::get<NeoHookean>(cases[4].materials.front().law).young_modulus, 3000.0);  // tables are merged
   EXPECT_EQ(cases[4].displacements.size(), 2U);
-  EXPECT_TRUE(cases[4].forces.empty());
+  EXPECT_TRUE(cases[4].forces.of<DeadForce>().empty());
   EXPECT_EQ(std::get<NeoHookean>(cases[5].materials.front().law).young_modulus, 1000.0);
   EXPECT_EQ(cases[5].displacements.size(), 1U);  // lists are replaced
-  EXPECT_EQ(cases[5].forces.size(), 1U);
+  EXPECT_EQ(cases[5].forces.of<DeadForce>().size(), 1U);
   EXPECT_EQ(read_comparison(cases[5]).golden.filename(), "bar-2-pushed.h5");
   EXPECT_EQ(read_scene(cases[0]).mesh.cells.size(), 1U);
   EXPECT_EQ(read_scene(cases[5]).mesh.cells.size(), 24U);

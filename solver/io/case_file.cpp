@@ -9,7 +9,6 @@
 #include "io/case_materials.hpp"
 #include "io/case_variants.hpp"
 #include "io/foreign_file.hpp"
-#include "io/formula.hpp"
 #include "io/mesh_file.hpp"
 #include "io/table_reader.hpp"
 
@@ -114,41 +113,6 @@ ImposedRotation read_rotation(TableReader table) {
   return turned;
 }
 
-/// The curve of a load: its key formula, or times and factors.
-LoadCurve read_curve(TableReader& table) {
-  const auto formula = table.optional<std::string>("formula");
-  const auto times = table.optional<std::vector<double>>("times", Range::at_least(0.0));
-  const auto factors = table.optional<std::vector<double>>("factors", Range::any());
-  if (formula) {
-    if (times || factors)
-      table.fail("formula", "was given with times or factors; a load has a formula or a table, not both");
-    try {
-      return {.formula = *formula, .evaluate = parse_formula(*formula)};
-    } catch (const InputError& error) {
-      table.fail("formula", fmt::format("= '{}': {}", *formula, error.what()));
-    }
-  }
-  if (!times && !factors) return {};
-  if (!times || !factors || times->empty() || times->size() != factors->size()) {
-    table.fail(times ? "times" : "factors", "needs both times and factors, equally many");
-  }
-  for (std::size_t k = 1; k < times->size(); ++k) {
-    if (!((*times)[k] > (*times)[k - 1])) {
-      table.fail("times", fmt::format("= ..., {}, {}, ... must increase", (*times)[k - 1], (*times)[k]));
-    }
-  }
-  return {.times = *times, .factors = *factors};
-}
-
-ImposedPressure read_pressure(TableReader table) {
-  ImposedPressure pressure;
-  pressure.set = table.required<std::string>("set");
-  pressure.value = table.required<double>("value", Range::any());
-  pressure.curve = read_curve(table);
-  table.finish();
-  return pressure;
-}
-
 Refinement read_refinement(TableReader table) {
   Refinement refinement;
   const auto around = table.optional<std::string>("around"),
@@ -179,43 +143,6 @@ NodeTie read_tie(TableReader table) {
   NodeTie tie{table.required<std::string>("set"), table.required<std::string>("elements")};
   table.finish();
   return tie;
-}
-
-Gravity read_gravity(TableReader table) {
-  Gravity gravity;
-  gravity.value = table.required<Vector>("value", Range::any());
-  gravity.curve = read_curve(table);
-  table.finish();
-  return gravity;
-}
-
-Support read_support(TableReader table) {
-  Support support;
-  support.set = table.required<std::string>("set");
-  support.stiffness = table.optional<double>("stiffness", Range::at_least(0.0)).value_or(0.0);
-  support.damping = table.optional<double>("damping", Range::at_least(0.0)).value_or(0.0);
-  if (!(support.stiffness > 0.0 || support.damping > 0.0)) {
-    table.fail("stiffness", "or damping must be given and positive, or both");
-  }
-  support.only_normal = table.optional<bool>("only_normal").value_or(false);
-  table.finish();
-  return support;
-}
-
-ImposedForce read_force(TableReader table) {
-  ImposedForce force;
-  force.set = table.required<std::string>("set");
-  const auto total = table.optional<Vector>("total", Range::any());
-  const auto moment = table.optional<Vector>("moment", Range::any());
-  if (!total && !moment) table.fail("total", "or moment must be given, or both");
-  force.total = total.value_or(Vector{});
-  force.moment = moment.value_or(Vector{});
-  force.on_nodes =
-      table.optional<std::string>("on") && table.required_choice("on", {"faces", "nodes"}) == "nodes";
-  if (force.on_nodes && moment) table.fail("moment", "acts on faces: it cannot be on = 'nodes'");
-  force.curve = read_curve(table);
-  table.finish();
-  return force;
 }
 
 InitialVelocity read_velocity(TableReader table) {
@@ -311,10 +238,12 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   for (const auto& table : reader.tables("displacement"))
     description.displacements.push_back(read_displacement(table));
   for (const auto& table : reader.tables("rotation")) description.rotations.push_back(read_rotation(table));
-  for (const auto& table : reader.tables("force")) description.forces.push_back(read_force(table));
-  for (const auto& table : reader.tables("pressure")) description.pressures.push_back(read_pressure(table));
-  for (const auto& table : reader.tables("gravity")) description.gravity.push_back(read_gravity(table));
-  for (const auto& table : reader.tables("support")) description.supports.push_back(read_support(table));
+  for_each_type(Forces{}, [&]<class Force>() {
+    for (TableReader& table : reader.tables(std::string(Force::name))) {
+      table.parameters(description.forces.of<Force>().emplace_back());
+      table.finish();
+    }
+  });
   if (auto relaxation = reader.table("relaxation")) {
     relaxation->parameters(description.relaxation);
     relaxation->finish();
@@ -329,10 +258,9 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   if (auto method = reader.table("method")) description.method = read_method(*method);
   for (const auto& name : tables_not_read) reader.leave(name);
   reader.finish();
-  const bool supported = std::any_of(description.supports.begin(), description.supports.end(),
-                                     [](const Support& support) { return support.stiffness > 0.0; });
-  if (description.quasi_static && description.displacements.empty() && description.rotations.empty() &&
-      !supported) {
+  bool held = !(description.displacements.empty() && description.rotations.empty());
+  description.forces.for_each([&](const auto& force) { held = held || force.holds(); });
+  if (description.quasi_static && !held) {
     reader.fail(
         "displacement",
         "is missing; a quasi-static case needs at least one [[displacement]], [[rotation]] or [[support]]");

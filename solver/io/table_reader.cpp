@@ -4,7 +4,6 @@
 #include <limits>
 #include <sstream>
 
-#include "base/error.hpp"
 #include "base/names.hpp"
 #include "io/toml_text.hpp"
 
@@ -74,6 +73,14 @@ void TableReader::fail_missing(const std::string& key) const {
     }
   }
   fail(key, "is missing; this key must be given");
+}
+
+void TableReader::require_one_of(const std::vector<std::string_view>& keys) const {
+  const auto is_given = [&](std::string_view key) { return table_.contains(key); };
+  if (std::any_of(keys.begin(), keys.end(), is_given)) return;
+  fail(std::string(keys.front()),
+       fmt::format("or {} must be given, or {}", fmt::join(keys.begin() + 1, keys.end(), ", "),
+                   keys.size() > 2 ? "several" : "both"));
 }
 
 void TableReader::fail_type(const std::string& key, const toml::node& node, std::string_view expected) const {

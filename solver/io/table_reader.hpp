@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -9,8 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/parameter.hpp"
 #include "base/type_list.hpp"
+#include "forces/formula.hpp"
 #include "io/toml.hpp"
 
 namespace sandglass {
@@ -84,10 +87,12 @@ class TableReader {
   }
 
   /// Reads all declared parameters of an aggregate, each within its range, and asks the aggregate whether a
-  /// rule between them is broken.
+  /// rule between them is broken. Of a parameter that is an aggregate itself the keys are in this table.
   template <class Aggregate>
   void parameters(Aggregate& aggregate) {
     std::apply([&](const auto&... parameter) { (read(aggregate, parameter), ...); }, Aggregate::parameters());
+    if constexpr (requires { Aggregate::one_of; })
+      require_one_of({Aggregate::one_of.begin(), Aggregate::one_of.end()});
     if constexpr (requires { aggregate.broken_rule(); }) {
       if (const auto broken = aggregate.broken_rule()) fail(broken->parameter, broken->message);
     }
@@ -104,6 +109,7 @@ class TableReader {
 
  private:
   const toml::node* find(const std::string& key);
+  void require_one_of(const std::vector<std::string_view>& keys) const;
   [[noreturn]] void fail_missing(const std::string& key) const;
   [[noreturn]] void fail_type(const std::string& key, const toml::node& node,
                               std::string_view expected) const;
@@ -122,10 +128,26 @@ class TableReader {
   template <class Aggregate, class Value>
   void read(Aggregate& aggregate, const Parameter<Aggregate, Value>& parameter) {
     const std::string key(parameter.name);
-    if (parameter.required) {
-      aggregate.*(parameter.member) = required<Value>(key, parameter.range);
-    } else if (const auto value = optional<Value>(key, parameter.range)) {
-      aggregate.*(parameter.member) = *value;
+    Value& value = aggregate.*(parameter.member);
+    if constexpr (requires { Value::parameters(); }) {
+      parameters(value);
+    } else if constexpr (std::is_enum_v<Value>) {
+      if (!parameter.required && !optional<std::string>(key)) return;
+      const auto words = words_of(value);
+      const std::string word = required_choice(key, {words.begin(), words.end()});
+      value = static_cast<Value>(std::find(words.begin(), words.end(), word) - words.begin());
+    } else if constexpr (std::is_same_v<Value, Formula>) {
+      const auto text = optional<std::string>(key);
+      if (!text) return;
+      try {
+        value = Formula(*text);
+      } catch (const InputError& error) {
+        fail(key, fmt::format("= '{}': {}", *text, error.what()));
+      }
+    } else if (auto given = parameter.required ? required<Value>(key) : optional<Value>(key)) {
+      if constexpr (!std::is_same_v<Value, bool> && !std::is_same_v<Value, std::string>)
+        require_in_range(key, *given, parameter.range);
+      value = std::move(*given);
     }
   }
 

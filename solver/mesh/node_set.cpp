@@ -1,5 +1,10 @@
 #include "mesh/node_set.hpp"
 
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/names.hpp"
+
 namespace sandglass {
 
 namespace {
@@ -31,6 +36,25 @@ bool selects(const NodeSetRule& rule, const Vector& point, double tolerance) {
          (!rule.ellipsoid || inside(*rule.ellipsoid, point, tolerance));
 }
 
+/// The set of that name; `member` is "a node" or "an element", `origins` is where its sets come from.
+const std::vector<int>& named_set(const std::map<std::string, std::vector<int>>& sets,
+                                  const std::string& file, const std::string& key, const std::string& name,
+                                  const std::string& member, const std::string& origins) {
+  const std::string place = fmt::format("{}: {} = '{}'", file, key, name);
+  const auto found = sets.find(name);
+  if (found == sets.end()) {
+    const auto known = names_in(sets);
+    throw InputError(
+        fmt::format("{} is not {} set of this case{}", place, member,
+                    known.empty() ? ", which has none: " + origins : "; " + suggestion(name, known)));
+  }
+  if (found->second.empty()) {
+    throw InputError(fmt::format("{} has no {} in the mesh; a set needs at least one", place,
+                                 member.substr(member.find(' ') + 1)));
+  }
+  return found->second;
+}
+
 }  // namespace
 
 std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary,
@@ -52,6 +76,20 @@ std::vector<int> select_elements(const Mesh& mesh, const NodeSetRule& rule) {
       elements.push_back(static_cast<int>(e));
   }
   return elements;
+}
+
+const std::vector<int>& named_node_set(const NodeSets& sets, const std::string& file, const std::string& key,
+                                       const std::string& name) {
+  return named_set(sets, file, key, name, "a node",
+                   "[sets] gives rules for them, a mesh from a file brings its physical groups (Gmsh), NSETs "
+                   "(Abaqus) or point arrays (VTK)");
+}
+
+const std::vector<int>& named_element_set(const ElementSets& sets, const std::string& file,
+                                          const std::string& key, const std::string& name) {
+  return named_set(sets, file, key, name, "an element",
+                   "[element_sets] gives rules for them, a mesh from a file brings its physical volumes "
+                   "(Gmsh), ELSETs (Abaqus) or cell arrays (VTK)");
 }
 
 }  // namespace sandglass

@@ -45,4 +45,11 @@ std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boun
 /// sorted.
 std::vector<int> select_elements(const Mesh& mesh, const NodeSetRule& rule);
 
+/// The nodes, or elements, of a set that `key` of a case file names. Throws InputError that names the file
+/// and the key if there is no such set, or if it is empty.
+const std::vector<int>& named_node_set(const NodeSets& sets, const std::string& file, const std::string& key,
+                                       const std::string& name);
+const std::vector<int>& named_element_set(const ElementSets& sets, const std::string& file,
+                                          const std::string& key, const std::string& name);
+
 }  // namespace sandglass

@@ -56,8 +56,31 @@ std::string described(const FibreRule& rule) {
 }
 
 std::string described(const LoadCurve& curve) {
-  if (!curve.formula.empty()) return fmt::format("curve({})", curve.formula);
+  if (!curve.formula.text.empty()) return fmt::format("curve({})", curve.formula.text);
   return curve.times.empty() ? "" : fmt::format("curve({}:{})", curve.times, curve.factors);
+}
+
+/// "name(value:value)" of the parameters of a force that decide an answer at rest, or of those that decide a
+/// motion beside them; then its curve, and words that are not the default.
+template <class Force>
+std::string described(const Force& force, bool in_motion) {
+  std::vector<std::string> values;
+  std::string others;
+  const auto add = [&]<class Value>(const Parameter<Force, Value>& parameter) {
+    const Value& value = force.*(parameter.member);
+    if ((parameter.name == Force::only_in_motion) != in_motion) return;
+    if constexpr (std::is_same_v<Value, LoadCurve>) {
+      others += described(value);
+    } else if constexpr (std::is_enum_v<Value>) {
+      if (value != Force{}.*(parameter.member))
+        others += fmt::format("{} {}", parameter.name, words_of(value)[static_cast<std::size_t>(value)]);
+    } else {
+      values.push_back(fmt::format("{}", value));
+    }
+  };
+  std::apply([&](const auto&... parameter) { (add(parameter), ...); }, Force::parameters());
+  if (values.empty()) return "";
+  return fmt::format("{}({}){}", Force::name, fmt::join(values, ":"), others);
 }
 
 /// What decides a motion beside what decides the answer at rest: inertia, damping, times, the start.
@@ -65,7 +88,7 @@ std::string described_motion(const Case& description) {
   const DynamicsSettings& settings = description.dynamics;
   std::string text = fmt::format("motion({}:{}:{})", settings.duration, settings.ramp_time, settings.damping);
   for (const auto& material : description.materials) text += fmt::format("density({})", material.density);
-  for (const auto& support : description.supports) text += fmt::format("dashpot({})", support.damping);
+  description.forces.for_each([&](const auto& force) { text += described(force, true); });
   for (const auto& start : description.velocities) {
     text += fmt::format("velocity({}:{}:{}:{})", start.set.value_or("-"), start.value, start.half_waves,
                         start.spin);
@@ -102,22 +125,31 @@ std::string case_hash(const Case& description) {
     text += turned.center ? fmt::format("{}", *turned.center) : "-";
     text += fmt::format(":{})", turned.displacement);
   }
-  for (const auto& force : description.forces) {
-    text += fmt::format("force({}:{}:{})", force.set, force.total, force.moment) + described(force.curve);
-    if (force.on_nodes) text += "on nodes";
-  }
-  for (const auto& pressure : description.pressures) {
-    text += fmt::format("pressure({}:{})", pressure.set, pressure.value) + described(pressure.curve);
-  }
-  for (const auto& gravity : description.gravity) {
-    text += fmt::format("gravity({})", gravity.value) + described(gravity.curve);
-    for (const auto& material : description.materials) text += fmt::format("density({})", material.density);
-  }
-  for (const auto& support : description.supports) {
-    text += fmt::format("support({}:{}:{})", support.set, support.stiffness, support.only_normal);
-  }
+  description.forces.for_each([&]<class Force>(const Force& force) {
+    text += described(force, false);
+    for (const auto& material : description.materials)
+      text += Force::by_mass ? fmt::format("density({})", material.density) : "";
+  });
   if (!description.quasi_static) text += described_motion(description);
   return hash_of(text);
+}
+
+std::set<std::string> used_node_sets(const Case& description) {
+  std::set<std::string> names;
+  const auto add = [&](const auto&... name) { (names.insert(name), ...); };
+  for (const auto& refinement : description.refinements) add(refinement.around);
+  for (const auto& tie : description.ties) add(tie.set);
+  for (const auto& imposed : description.displacements) add(imposed.set);
+  for (const auto& turned : description.rotations) add(turned.set);
+  description.forces.for_each([&]<class Force>(const Force& force) {
+    const auto add_text = [&]<class Value>(const Parameter<Force, Value>& parameter) {
+      if constexpr (std::is_same_v<Value, std::string>) add(force.*(parameter.member));
+    };
+    std::apply([&](const auto&... parameter) { (add_text(parameter), ...); }, Force::parameters());
+  });
+  for (const auto& start : description.velocities) add(start.set.value_or(""));
+  names.erase("");
+  return names;
 }
 
 void scale_load(Case& description, double factor) {
@@ -128,14 +160,7 @@ void scale_load(Case& description, double factor) {
     rotation.angle *= factor;
     for (double& d : rotation.displacement) d *= factor;
   }
-  for (auto& force : description.forces) {
-    for (double& f : force.total) f *= factor;
-    for (double& m : force.moment) m *= factor;
-  }
-  for (auto& pressure : description.pressures) pressure.value *= factor;
-  for (auto& gravity : description.gravity) {
-    for (double& g : gravity.value) g *= factor;
-  }
+  description.forces.for_each([&](auto& force) { force.scale(factor); });
   for (auto& start : description.velocities) {
     for (double& v : start.value) v *= factor;
     for (double& w : start.spin) w *= factor;

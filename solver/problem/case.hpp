@@ -2,17 +2,18 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "assembly/internal_force.hpp"
 #include "element/hourglass_settings.hpp"
+#include "forces/forces.hpp"
 #include "material/materials.hpp"
 #include "mesh/generators.hpp"
 #include "mesh/node_set.hpp"
 #include "problem/fibres.hpp"
-#include "problem/load_curve.hpp"
 #include "problem/settings.hpp"
 
 namespace sandglass {
@@ -62,38 +63,6 @@ struct ImposedRotation {
   Vector displacement{};         ///< final displacement in addition to the rotation, m
 };
 
-/// A dead load on the boundary faces within a node set, or on its nodes.
-struct ImposedForce {
-  std::string set;
-  Vector total{};         ///< sum at the factor one, N
-  Vector moment{};        ///< moment about the centroid of the faces, N m
-  bool on_nodes = false;  ///< each node has an equal share of the total; else it is spread over the faces
-  LoadCurve curve = {};
-};
-
-/// A pressure on the boundary faces within a node set: it pushes on them and follows them as they turn and
-/// stretch.
-struct ImposedPressure {
-  std::string set;
-  double value = 0.0;  ///< at the factor one, Pa
-  LoadCurve curve = {};
-};
-
-/// The weight of the body.
-struct Gravity {
-  Vector value{};  ///< acceleration at the factor one, m/s^2
-  LoadCurve curve = {};
-};
-
-/// Springs and dashpots between the boundary faces within a node set and the undeformed place (Robin's
-/// condition).
-struct Support {
-  std::string set;
-  double stiffness = 0.0;    ///< Pa/m, per area
-  double damping = 0.0;      ///< Pa s/m, per area; plays no part in a quasi-static answer
-  bool only_normal = false;  ///< they resist motion along the normal of the undeformed face alone
-};
-
 /// Velocities in which nodes start; what several say of one node adds up.
 struct InitialVelocity {
   std::optional<std::string> set = {};  ///< none: the whole body
@@ -119,23 +88,22 @@ struct Case {
   std::vector<NodeTie> ties;
   std::vector<ImposedDisplacement> displacements;
   std::vector<ImposedRotation> rotations;
-  std::vector<ImposedForce> forces;
-  std::vector<ImposedPressure> pressures;
-  std::vector<Gravity> gravity;
-  std::vector<Support> supports;
+  ForceTables<Forces> forces;
   std::vector<InitialVelocity> velocities;
   RelaxationSettings relaxation;
   DynamicsSettings dynamics;
   std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
 };
 
-/// A hash of what decides the answer: mesh recipe, laws, sets, imposed displacements, rotations and loads; in
-/// motion also density, damping, duration, ramp time and initial velocities. Method, other settings and words
-/// do not enter.
+/// A hash of what decides the answer: mesh recipe, laws, sets, imposed displacements, rotations and forces;
+/// in motion also density, damping, duration, ramp time and initial velocities. Method, other settings and
+/// words do not enter.
 std::string case_hash(const Case& description);
 
-/// Multiplies imposed displacements, angles, forces, moments, pressures, gravity and initial velocities by
-/// `factor`.
+/// The names of the node sets on which its tables act, or which they refine around or tie.
+std::set<std::string> used_node_sets(const Case& description);
+
+/// Multiplies imposed displacements, angles, forces and initial velocities by `factor`.
 void scale_load(Case& description, double factor);
 
 }  // namespace sandglass

@@ -9,42 +9,16 @@ namespace sandglass {
 
 namespace {
 
-/// At each node stiffness and damping over the mass; of an element the largest of its nodes. Springs are at
-/// most as stiff as if each node had its share of the area for itself.
-///
-/// A pressure p on a face with edges along xi and eta has the tangent p times the integral of N_I (dN_J/dxi x
-/// dx/deta - ...), whose norm is at most p times half the sum of two edges, as those of the integrals of N_I
-/// dN_J/dxi are 1 and |dx/deta| is at most half the longer edge.
-std::vector<Model::LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& element_masses) {
-  if (scene.pressures.empty() && scene.supports.empty()) return {};
+/// Of each element the largest of its nodes.
+std::vector<LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& element_masses) {
+  if (first_not_dead(scene.forces) == nullptr) return {};
   const std::vector<double> masses = lumped_masses(scene.mesh, element_masses);
-  std::vector<Model::LoadRates> at_nodes(masses.size());
   const double end = scene.description.quasi_static ? 1.0 : scene.description.dynamics.duration;
-  for (const FacePressure& pressure : scene.pressures) {
-    const Quadrilateral& face = pressure.face;
-    const double most = std::abs(pressure.pressure) * scene.curves[pressure.curve].largest(end);
-    double edges = 0.0;
-    for (std::size_t I = 0; I < 2; ++I) {
-      const auto edge = [&](std::size_t a, std::size_t b) {
-        return distance(scene.mesh.points[at(face[a])], scene.mesh.points[at(face[b])]);
-      };
-      edges += std::max(edge(I, I + 1), edge(I + 2, (I + 3) % 4));
-    }
-    for (const int node : face) {
-      const auto n = at(node);
-      at_nodes[n].square += 0.5 * edges * most / masses[n];
-    }
-  }
-  for (const auto& support : scene.supports) {
-    for (const auto& point : gauss_points_of(corners_of(scene.mesh.points, support.face))) {
-      for (std::size_t I = 0; I < 4; ++I) {
-        const auto n = at(support.face[I]);
-        at_nodes[n].square += support.stiffness * point.N[I] * point.area / masses[n];
-        at_nodes[n].damping += support.damping * point.N[I] * point.area / masses[n];
-      }
-    }
-  }
-  std::vector<Model::LoadRates> rates(scene.mesh.cells.size());
+  std::vector<double> largest;
+  for (const LoadCurve& curve : scene.curves) largest.push_back(curve.largest(end));
+  std::vector<LoadRates> at_nodes(masses.size());
+  for (const auto& force : scene.forces) force->add_rates(largest, masses, at_nodes);
+  std::vector<LoadRates> rates(scene.mesh.cells.size());
   for (std::size_t e = 0; e < rates.size(); ++e) {
     for (const int node : scene.mesh.cells[e]) {
       const auto& [square, damping] = at_nodes[at(node)];

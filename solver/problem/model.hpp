@@ -22,13 +22,7 @@ class Model {
   /// Mass of each element, kg.
   const std::vector<double>& element_masses() const { return element_masses_; }
 
-  /// Upper bounds of what loads add to the frequencies of an element.
-  struct LoadRates {
-    double square = 0.0;   ///< of the frequency, by springs and pressures, 1/s^2
-    double damping = 0.0;  ///< by dashpots, 1/s
-  };
-
-  /// Of each element; empty if no load adds any.
+  /// What forces add to the frequencies of each element; empty if none adds any.
   const std::vector<LoadRates>& load_rates() const { return load_rates_; }
 
  private:

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "base/names.hpp"
 #include "mesh/hash.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/quality.hpp"
@@ -139,66 +138,6 @@ double largest_length(const Scene& scene, const Turning& turning) {
   return largest;
 }
 
-/// The boundary faces within the set that a load names. Throws InputError if there are none.
-std::vector<Quadrilateral> loaded_faces(const Scene& scene, const std::string& key, const std::string& name) {
-  const auto& nodes = node_set(scene, key, name);
-  auto faces = faces_within(scene.boundary, nodes);
-  if (faces.empty()) {
-    throw InputError(fmt::format(
-        "{}: {} = '{}' has no boundary face among its {} nodes; a {} acts on faces of the boundary "
-        "whose four nodes all lie in its set",
-        scene.description.file.string(), key, name, nodes.size(), key.substr(0, key.find('.'))));
-  }
-  return faces;
-}
-
-/// The number of a curve among those of a scene, to which it is added if it is new.
-std::size_t number_of(const LoadCurve& curve, std::vector<LoadCurve>& curves) {
-  const auto known = std::find(curves.begin(), curves.end(), curve);
-  const auto number = static_cast<std::size_t>(known - curves.begin());
-  if (known == curves.end()) curves.push_back(curve);
-  return number;
-}
-
-/// Sets the dead loads, the sums of all imposed forces and weights at each node, pressures and supports.
-void make_loads(Scene& scene) {
-  const Case& description = scene.description;
-  std::map<std::pair<std::size_t, int>, Vector> sums;
-  const auto add = [&](std::size_t curve, int node, const Vector& force, double factor) {
-    Vector& sum = sums[{curve, node}];
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += factor * force[i];
-  };
-  for (const auto& [name, total, moment, on_nodes, curve] : description.forces) {
-    if (on_nodes) {
-      const auto& nodes = node_set(scene, "force.set", name);
-      for (const int node : nodes)
-        add(number_of(curve, scene.curves), node, total, 1.0 / static_cast<double>(nodes.size()));
-      continue;
-    }
-    const auto faces = loaded_faces(scene, "force.set", name);
-    const std::size_t number = number_of(curve, scene.curves);
-    for (const auto& load : consistent_loads(scene.mesh.points, faces, total, moment))
-      add(number, load.node, load.force, 1.0);
-  }
-  if (!description.gravity.empty()) {
-    const auto masses = lumped_masses(scene.mesh, element_masses(scene.mesh, scene.materials));
-    for (const auto& [g, curve] : description.gravity) {
-      const std::size_t number = number_of(curve, scene.curves);
-      for (std::size_t n = 0; n < masses.size(); ++n) add(number, static_cast<int>(n), g, masses[n]);
-    }
-  }
-  for (const auto& [key, force] : sums) scene.loads.push_back({key.second, force, key.first});
-  for (const auto& [name, value, curve] : description.pressures) {
-    const std::size_t number = number_of(curve, scene.curves);
-    for (const auto& face : loaded_faces(scene, "pressure.set", name))
-      scene.pressures.push_back({face, value, number});
-  }
-  for (const auto& [name, stiffness, damping, only_normal] : description.supports) {
-    for (const auto& face : loaded_faces(scene, "support.set", name))
-      scene.supports.push_back({face, stiffness, damping, only_normal});
-  }
-}
-
 /// Adds to `sums` what an initial velocity gives to its nodes at X (m): its value, as a wave where there is
 /// one, and spin x (X - centre of mass), m/s.
 void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::vector<int>& nodes,
@@ -235,10 +174,22 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
   }
 }
 
-/// The sum of all initial velocities at each node; empty where a case has none.
-NodalField make_initial_velocities(const Scene& scene) {
+/// Resolves the forces of the case, whose curves become those of the scene.
+void make_forces(Scene& scene, const std::vector<double>& element_masses, const std::vector<double>& masses) {
+  ForceResolver resolver{.file = scene.description.file.string(),
+                         .points = scene.mesh.points,
+                         .boundary = scene.boundary,
+                         .sets = scene.sets,
+                         .element_masses = element_masses,
+                         .masses = masses};
+  scene.description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
+  scene.forces = resolver.all();
+  scene.curves = std::move(resolver.curves);
+}
+
+/// The sum of all initial velocities at each node, from their masses (kg); empty where a case has none.
+NodalField make_initial_velocities(const Scene& scene, const std::vector<double>& masses) {
   if (scene.description.velocities.empty()) return {};
-  const auto masses = lumped_masses(scene.mesh, element_masses(scene.mesh, scene.materials));
   std::vector<int> body(masses.size());
   std::iota(body.begin(), body.end(), 0);
   NodalField sums(masses.size());
@@ -249,37 +200,14 @@ NodalField make_initial_velocities(const Scene& scene) {
   return sums;
 }
 
-/// The set of that name; `member` is "a node" or "an element", `origins` is where its sets come from.
-const std::vector<int>& named_set(const Scene& scene, const std::map<std::string, std::vector<int>>& sets,
-                                  const std::string& key, const std::string& name, const std::string& member,
-                                  const std::string& origins) {
-  const std::string place = fmt::format("{}: {} = '{}'", scene.description.file.string(), key, name);
-  const auto found = sets.find(name);
-  if (found == sets.end()) {
-    const auto known = names_in(sets);
-    throw InputError(
-        fmt::format("{} is not {} set of this case{}", place, member,
-                    known.empty() ? ", which has none: " + origins : "; " + suggestion(name, known)));
-  }
-  if (found->second.empty()) {
-    throw InputError(fmt::format("{} has no {} in the mesh; a set needs at least one", place,
-                                 member.substr(member.find(' ') + 1)));
-  }
-  return found->second;
-}
-
 }  // namespace
 
 const std::vector<int>& node_set(const Scene& scene, const std::string& key, const std::string& name) {
-  return named_set(scene, scene.sets, key, name, "a node",
-                   "[sets] gives rules for them, a mesh from a file brings its physical groups (Gmsh), NSETs "
-                   "(Abaqus) or point arrays (VTK)");
+  return named_node_set(scene.sets, scene.description.file.string(), key, name);
 }
 
 const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name) {
-  return named_set(scene, scene.element_sets, key, name, "an element",
-                   "[element_sets] gives rules for them, a mesh from a file brings its physical volumes "
-                   "(Gmsh), ELSETs (Abaqus) or cell arrays (VTK)");
+  return named_element_set(scene.element_sets, scene.description.file.string(), key, name);
 }
 
 Mesh generate_mesh(const AnyGenerator& generator) {
@@ -291,8 +219,7 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
               .mesh = std::move(mesh),
               .sets = std::move(sets_of_file),
               .element_sets = std::move(element_sets_of_file),
-              .angles = {0.0},
-              .curves = {LoadCurve{}}};
+              .angles = {0.0}};
   const std::string file = scene.description.file.string();
   try {
     require_positive_jacobians(scene.mesh);
@@ -317,8 +244,10 @@ Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file, ElementSets
   refine(scene);
   make_constraints(scene);
   tie(scene);
-  make_loads(scene);
-  scene.initial_velocities = make_initial_velocities(scene);
+  const auto of_elements = element_masses(scene.mesh, scene.materials);
+  const auto masses = lumped_masses(scene.mesh, of_elements);
+  make_forces(scene, of_elements, masses);
+  scene.initial_velocities = make_initial_velocities(scene, masses);
   scene.case_hash = case_hash(scene.description);
   scene.mesh_hash = mesh_hash(scene.mesh, scene.sets, scene.materials.of_element);
   return scene;

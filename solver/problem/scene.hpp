@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "mesh/face_load.hpp"
 #include "mesh/refinement.hpp"
 #include "problem/case.hpp"
 #include "problem/imposed_path.hpp"
@@ -17,21 +16,6 @@ struct Constraint {
   int node;
   int component;
   ImposedPath path;
-};
-
-/// A pressure on a face, which follows it.
-struct FacePressure {
-  Quadrilateral face;
-  double pressure;  ///< at the factor one, Pa
-  std::size_t curve;
-};
-
-/// Springs and dashpots on a face.
-struct FaceSupport {
-  Quadrilateral face;
-  double stiffness;  ///< Pa/m
-  double damping;    ///< Pa s/m
-  bool only_normal;
 };
 
 /// The mesh of a case with its sets and materials; shared by all methods.
@@ -47,17 +31,15 @@ struct Scene {
   std::vector<Constraint> constraints = {};                     ///< sorted by node, then component
   std::map<std::string, std::vector<std::size_t>> driven = {};  ///< sets that the case drives -> constraints
   std::vector<double> angles = {};     ///< rad, of paths; the first is zero, for those that do not turn
-  std::vector<LoadCurve> curves = {};  ///< of loads; the first is that of the case
-  std::vector<NodalLoad> loads = {};   ///< dead forces at the factor one, sorted by curve and node
-  std::vector<FacePressure> pressures = {};
-  std::vector<FaceSupport> supports = {};
+  std::vector<LoadCurve> curves = {};  ///< of forces; the first is that of the case
+  BodyForces forces = {};
   NodalField initial_velocities = {};  ///< m/s; empty: at rest. Imposed components do not obey them
   std::string case_hash = {};
   std::string mesh_hash = {};
 };
 
 /// Sets by their rules, materials of the elements, constraints from the imposed displacements and rotations,
-/// loads from the imposed forces, initial velocities. Throws InputError for an inverted element, an empty
+/// forces, initial velocities. Throws InputError for an inverted element, an empty
 /// set, an element that has no material or two, a node to which two different paths are imposed, a load on a
 /// set without boundary faces, and a wave along an axis on which its set has no extent.
 Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {},

@@ -26,8 +26,8 @@ void require_supported(const Scene& scene) {
   };
   const bool remembers = std::ranges::any_of(scene.materials.list, is_viscoelastic, &Material::law);
   refuse_if(remembers || !scene.materials.axes.empty(), "a batch takes isotropic elastic laws; choose one");
-  refuse_if(!scene.pressures.empty() || !scene.supports.empty(),
-            "a batch takes [[force]] only; remove pressures and supports");
+  if (const BodyForce* other = first_not_dead(scene.forces))
+    refuse_if(true, fmt::format("a batch takes dead loads only; remove [[{}]]", other->traits().name));
   refuse_if(!scene.ties.empty(), "a batch takes no ties; choose a mesh without them");
   refuse_if(scene.description.dynamics.subcycles > 1 || scene.description.dynamics.body_frequency > 0,
             "a batch takes the step of its stiffest element; set subcycles = 1 and body_frequency = 0");
@@ -219,12 +219,14 @@ class Batch<Real>::Parts {
   void evaluate_forces(Side& pack, const Step& step) const {
     elements_->evaluate(pack.u, pack.force);
     const Number factor = Number(step.share) * pack.factor_to + Number(1.0 - step.share) * pack.factor_from;
-    for (const NodalLoad& load : scene().loads) {
-      const auto& [constant, slope] = step.curves[load.curve];
-      const Number share = (Number(constant) + Number(slope) * factor) / pack.stiffness;
-      for (std::size_t i = 0; i < 3; ++i) {
-        Number& force = pack.force[at(static_cast<std::size_t>(load.node), i)];
-        force = force - share * Number(load.force[i]);
+    for (const auto& dead : scene().forces) {
+      for (const NodalLoad& load : dead->dead_loads()) {
+        const auto& [constant, slope] = step.curves[load.curve];
+        const Number share = (Number(constant) + Number(slope) * factor) / pack.stiffness;
+        for (std::size_t i = 0; i < 3; ++i) {
+          Number& force = pack.force[at(static_cast<std::size_t>(load.node), i)];
+          force = force - share * Number(load.force[i]);
+        }
       }
     }
   }

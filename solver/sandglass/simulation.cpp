@@ -115,21 +115,10 @@ class Simulation<Real>::Parts {
       constraint.path = {{to_[k]}};
       displacements[constraint.node][at(constraint.component)] = to_[k];
     }
-    scale_load(present.description, factor_to_);
     present.description.rotations.clear();
     present.description.displacements.clear();
     for (const auto& [node, d] : displacements) present.description.displacements.push_back({"driven", d});
-    const auto factor = [&](std::size_t curve) {
-      return present.curves[curve].at(leapfrog_.time(), factor_to_);
-    };
-    for (auto& load : present.loads) {
-      for (double& f : load.force) f *= factor(load.curve);
-      load.curve = 0;
-    }
-    for (auto& pressure : present.pressures) {
-      pressure.pressure *= factor(pressure.curve);
-      pressure.curve = 0;
-    }
+    for (LoadCurve& curve : present.curves) curve = {.share = curve.at(leapfrog_.time(), factor_to_)};
     return present;
   }
 

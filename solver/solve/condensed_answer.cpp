@@ -35,11 +35,11 @@ NodalField forces_of_rotations(const Model& model, const Handles& handles) {
 template <class Real>
 Rows<Real> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
-  if (!(scene.pressures.empty() && scene.supports.empty())) {
+  if (const BodyForce* other = first_not_dead(scene.forces)) {
     throw ComputationError(
-        fmt::format("method '{}' superposes answers to displacements and dead forces, to which pressures and "
-                    "supports do not belong; choose another method",
-                    model.choice().method));
+        fmt::format("method '{}' superposes answers to displacements and dead loads, to which a {} does not "
+                    "belong; choose another method",
+                    model.choice().method, other->traits().name));
   }
   if (!scene.ties.empty()) {
     throw ComputationError(fmt::format("method '{}' does not know refined meshes; choose another method",
@@ -47,9 +47,10 @@ Rows<Real> superposed(const Model& model, const Layout& layout) {
   }
   const Handles handles = handles_of_sets(scene);
   std::vector<NodalField> loads;
-  if (!scene.loads.empty() || !scene.description.rotations.empty()) {
+  const std::vector<NodalLoad> dead = dead_loads(scene.forces);
+  if (!dead.empty() || !scene.description.rotations.empty()) {
     loads.push_back(forces_of_rotations(model, handles));
-    for (const auto& [node, force, curve] : scene.loads) {
+    for (const auto& [node, force, curve] : dead) {
       const double factor = scene.curves[curve].at(1.0, 1.0);
       for (std::size_t i = 0; i < 3; ++i) loads[0][at(node)][i] += factor * force[i];
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "element/one_point.hpp"
@@ -28,7 +27,7 @@ inline double span(const NodalField& points) {
 /// A load factor so small that no element inverts wherever the load acts. Driven nodes move by at most a
 /// hundredth of the smallest element's size h; and a cantilever as long as the mesh and as thick as that
 /// element, with the smallest shear modulus for E, would rotate by about a hundredth under the sum F of the
-/// imposed forces, by F l^2 / (2 E I) with I = h^4 / 12, where moments count as forces at the end of l.
+/// forces, by F l^2 / (2 E I) with I = h^4 / 12, where moments count as forces at the end of l.
 inline double first_load(const Model& model) {
   const Scene& scene = model.scene();
   double smallest = INFINITY;  // volume
@@ -41,16 +40,10 @@ inline double first_load(const Model& model) {
   const std::vector<double> moduli = shear_moduli(scene.materials);
   const double mu = *std::min_element(moduli.begin(), moduli.end());
   double F = 0.0;
-  for (const auto& force : scene.description.forces) F += length(force.total) + length(force.moment) / l;
-  for (const auto& gravity : scene.description.gravity) {
-    const auto& masses = model.element_masses();
-    F += length(gravity.value) * std::accumulate(masses.begin(), masses.end(), 0.0);
-  }
-  for (const auto& pressure : scene.pressures) {
-    const auto corners = corners_of(scene.mesh.points, pressure.face);
-    for (const Vector& force : pressure_forces(corners)) F += std::abs(pressure.pressure) * length(force);
-  }
-  const double turn = F * l * l * 6.0 / (mu * h * h * h * h);
+  for (const auto& force : scene.forces) force->add_size(l, F);
+  double share = 1.0;  // of the case's load
+  for (const LoadCurve& curve : scene.curves) share = std::max(share, std::abs(curve.share));
+  const double turn = share * F * l * l * 6.0 / (mu * h * h * h * h);
   return std::min({1.0, 0.01 * h / fastest_imposed(scene), 0.01 / turn});
 }
 

@@ -1,54 +1,29 @@
 #include "solve/loads.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace sandglass {
 
-namespace {
-
-double dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-}  // namespace
-
 template <class Real>
 Loads<Real>::Loads(const Scene& scene, const Layout& layout)
-    : curves_(scene.curves), ranks_(layout.team.ranks) {
-  std::vector<int> nodes;
-  for (const auto& load : scene.loads) nodes.push_back(load.node);
-  for (const auto& pressure : scene.pressures) {
-    nodes.insert(nodes.end(), pressure.face.begin(), pressure.face.end());
+    : curves_(scene.curves),
+      forces_of_scene_(scene.forces),
+      ranks_(layout.team.ranks),
+      place_of_node_(scene.mesh.points.size(), -1),
+      all_dead_(first_not_dead(scene.forces) == nullptr),
+      factors_(factors_at(0.0, 0.0)) {
+  for (const auto& force : scene.forces) {
+    for (const int node : force->nodes()) place_of_node_[at(node)] = 0;
   }
-  for (const auto& support : scene.supports) {
-    nodes.insert(nodes.end(), support.face.begin(), support.face.end());
+  for (std::size_t n = 0; n < place_of_node_.size(); ++n) {
+    if (place_of_node_[n] < 0) continue;
+    place_of_node_[n] = static_cast<int>(rows_.size());
+    rows_.push_back(at(layout.row_of_node[n]));
+    owned_.push_back(layout.owns(static_cast<int>(n)));
   }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const auto at = [&](int node) {
-    return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-  };
-  for (const int node : nodes) {
-    rows_.push_back(static_cast<std::size_t>(layout.row_of_node[static_cast<std::size_t>(node)]));
-    owned_.push_back(layout.owns(node));
-  }
-  for (const auto& load : scene.loads) dead_.push_back({at(load.node), load.curve, load.force});
-  const auto all_at = [&](const Quadrilateral& face) {
-    return std::array{at(face[0]), at(face[1]), at(face[2]), at(face[3])};
-  };
-  const NodalField& points = scene.mesh.points;
-  for (const auto& [face, pressure, curve] : scene.pressures) {
-    faces_.push_back({all_at(face), corners_of(points, face), pressure, curve});
-  }
-  for (const auto& [face, stiffness, damping, only_normal] : scene.supports) {
-    supports_.push_back(
-        {all_at(face), gauss_points_of(corners_of(points, face)), stiffness, damping, only_normal});
-  }
-  forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
+  u_ = increment_ = forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
   work_.resize(rows_.size());
-  factors_ = factors_at(0.0, 0.0);
 }
 
 template <class Real>
@@ -64,72 +39,32 @@ void Loads<Real>::set(double time, double load_factor) {
 }
 
 template <class Real>
-std::array<Vector, 4> Loads<Real>::corners(const Rows<Real>& u, const Face& face) const {
-  std::array<Vector, 4> x = face.corners;
-  for (std::size_t I = 0; I < 4; ++I) {
-    const Vector moved = displacement(u, face.at[I]);
-    for (std::size_t i = 0; i < 3; ++i) x[I][i] += moved[i];
-  }
-  return x;
+Rows<double> Loads<Real>::loaded(const Rows<Real>& all) const {
+  Rows<double> rows(rows_.size());
+  take(all, rows);
+  return rows;
 }
 
 template <class Real>
-template <class Add>
-void Loads<Real>::for_each_load(const std::vector<double>& factors, const Rows<Real>& u,
-                                const Add& add) const {
-  for (const auto& [at, curve, force] : dead_) {
-    const double factor = factors[curve];
-    add(at, Vector{factor * force[0], factor * force[1], factor * force[2]});
-  }
-  for (const Face& face : faces_) {
-    const double p = factors[face.curve] * face.pressure;
-    if (p == 0.0) continue;
-    const auto forces = pressure_forces(corners(u, face));
-    for (std::size_t I = 0; I < 4; ++I) {
-      add(face.at[I], Vector{p * forces[I][0], p * forces[I][1], p * forces[I][2]});
-    }
-  }
-}
-
-template <class Real>
-template <class Use>
-void Loads<Real>::for_each_point(const Support& support, const Rows<Real>& field, const Use& use) const {
-  for (const FacePoint& point : support.points) {
-    Vector t{};
-    for (std::size_t I = 0; I < 4; ++I) {
-      const Vector v = displacement(field, support.at[I]);
-      for (std::size_t i = 0; i < 3; ++i) t[i] += point.N[I] * point.area * v[i];
-    }
-    if (support.only_normal) {
-      const auto& n = point.normal.entries;
-      const double along = (n[0] * t[0] + n[1] * t[1] + n[2] * t[2]) / (point.area * point.area);
-      t = {along * n[0], along * n[1], along * n[2]};
-    }
-    use(point.N, t);
+void Loads<Real>::take(const Rows<Real>& all, Rows<double>& loaded) const {
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) loaded[k][i] = static_cast<double>(all[rows_[k]][i]);
   }
 }
 
 template <class Real>
 void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   if (rows_.empty()) return;
-  std::fill(forces_.begin(), forces_.end(), Row<double>{});
-  for_each_load(factors_, state.u, [&](std::size_t at, const Vector& f) {
-    for (std::size_t i = 0; i < 3; ++i) forces_[at][i] += f[i];
-  });
-  for (const Support& support : supports_) {
-    const auto resist = [&](double factor, const Rows<Real>& field) {
-      for_each_point(support, field, [&](const std::array<double, 4>& N, const Vector& t) {
-        for (std::size_t I = 0; I < 4; ++I) {
-          for (std::size_t i = 0; i < 3; ++i) forces_[support.at[I]][i] -= factor * N[I] * t[i];
-        }
-      });
-    };
-    resist(support.stiffness, state.u);
-    // The velocity is that of half a step before; without time it is zero.
-    if (support.damping > 0.0) resist(support.damping / state.step, state.increment);
+  if (!all_dead_) {
+    take(state.u, u_);
+    take(state.increment, increment_);
   }
+  std::fill(forces_.begin(), forces_.end(), Row<double>{});
+  const Rows<double>&u = u_, &increment = increment_;
+  const NodalMotion motion{by_node(u.data()), by_node(increment.data()), static_cast<double>(state.step)};
+  for (const auto& one : forces_of_scene_) one->add_forces(factors_, motion, by_node(forces_.data()));
   // Dead forces are known everywhere, the others where the rank knows the displacements.
-  if (!faces_.empty() || !supports_.empty()) gather({numbers_of(forces_), 4 * rows_.size()});
+  if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
   square_ = 0.0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -143,31 +78,24 @@ template <class Real>
 Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Real>& u) const {
   std::vector<double> changes = factors_at(time, load_factor);
   for (std::size_t c = 0; c < changes.size(); ++c) changes[c] -= factors_[c];
+  const Rows<double> there = loaded(u);
+  const NodalMotion motion{by_node(there.data()), by_node(there.data()), 0.0};
+  Rows<double> sums(rows_.size());
+  for (const auto& force : forces_of_scene_) {
+    if (force->traits().drives) force->add_forces(changes, motion, by_node(sums.data()));
+  }
   Rows<Real> change(u.size());
-  for_each_load(changes, u, [&](std::size_t at, const Vector& f) {
-    for (std::size_t i = 0; i < 3; ++i) change[rows_[at]][i] += static_cast<Real>(f[i]);
-  });
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) change[rows_[k]][i] = static_cast<Real>(sums[k][i]);
+  }
   return change;
 }
 
 template <class Real>
 double Loads<Real>::potential(const Rows<Real>& u) const {
+  const Rows<double> there = loaded(u);
   double sum = 0.0;
-  for (const auto& [at, curve, force] : dead_) sum -= factors_[curve] * dot(force, displacement(u, at));
-  // The volume below a face is a third of the integral of x . n da.
-  for (const Face& face : faces_) {
-    const auto x = corners(u, face);
-    const auto forces = pressure_forces(x);
-    for (std::size_t I = 0; I < 4; ++I)
-      sum -= factors_[face.curve] * face.pressure / 3.0 * dot(x[I], forces[I]);
-  }
-  for (const Support& support : supports_) {
-    for_each_point(support, u, [&](const std::array<double, 4>& N, const Vector& t) {
-      for (std::size_t I = 0; I < 4; ++I) {
-        sum += 0.5 * support.stiffness * N[I] * dot(displacement(u, support.at[I]), t);
-      }
-    });
-  }
+  for (const auto& force : forces_of_scene_) force->add_potential(factors_, by_node(there.data()), sum);
   return sum;
 }
 
@@ -197,10 +125,10 @@ double Loads<Real>::work() const {
 template <class Real>
 void Loads<Real>::add_work(const Rows<Real>& u) {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const Vector now = displacement(u, k);
     for (std::size_t i = 0; i < 3; ++i) {
-      work_[k] += 0.5 * (forces_[k][i] + forces_before_[k][i]) * (now[i] - u_before_[k][i]);
-      u_before_[k][i] = now[i];
+      const auto now = static_cast<double>(u[rows_[k]][i]);
+      work_[k] += 0.5 * (forces_[k][i] + forces_before_[k][i]) * (now - u_before_[k][i]);
+      u_before_[k][i] = now;
     }
   }
   forces_before_ = forces_;

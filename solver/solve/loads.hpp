@@ -5,8 +5,7 @@
 
 namespace sandglass {
 
-/// The loads of a scene on the rows of a body: dead forces, pressures that follow their faces, springs and
-/// dashpots.
+/// The forces of a scene on the rows of a body.
 template <class Real>
 class Loads {
  public:
@@ -24,9 +23,8 @@ class Loads {
   /// The change of the loads (N) to another time and load factor, by row, in the configuration u (m).
   Rows<Real> change_to(double time, double load_factor, const Rows<Real>& u) const;
 
-  /// The energy (J) of which the loads are minus the derivative, at displacements u (m): of dead forces and
-  /// springs, and of pressures where the edges of their faces are held or lie in planes of symmetry through
-  /// the origin.
+  /// The energy (J) of which the loads are minus the derivative, at displacements u (m); see
+  /// BodyForce::add_potential.
   double potential(const Rows<Real>& u) const;
 
   /// Adds the work of the loads since the last call, from the mean of the forces of both states.
@@ -49,39 +47,15 @@ class Loads {
   }
 
  private:
-  struct Dead {
-    std::size_t at;  // index of a loaded row
-    std::size_t curve;
-    Vector force;  // at the factor one, N
-  };
-  struct Face {
-    std::array<std::size_t, 4> at;
-    std::array<Vector, 4> corners;  // undeformed, m
-    double pressure;                // at the factor one, Pa
-    std::size_t curve;
-  };
-  struct Support {
-    std::array<std::size_t, 4> at;
-    std::array<FacePoint, 4> points;  // undeformed
-    double stiffness;                 // Pa/m
-    double damping;                   // Pa s/m
-    bool only_normal;
-  };
-
-  Vector displacement(const Rows<Real>& u, std::size_t at) const {
-    const Row<Real>& row = u[rows_[at]];
-    return {static_cast<double>(row[0]), static_cast<double>(row[1]), static_cast<double>(row[2])};
+  /// Loaded rows by nodes.
+  template <class T>
+  AtNodes<T> by_node(T* loaded) const {
+    return {loaded, place_of_node_};
   }
-  std::array<Vector, 4> corners(const Rows<Real>& u, const Face& face) const;
 
-  /// Calls use(N, t) for the Gauss points of a support with their shape functions and what resists the vector
-  /// `field`, such as u (m), times the area: its normal part or all of it.
-  template <class Use>
-  void for_each_point(const Support& support, const Rows<Real>& field, const Use& use) const;
-
-  /// Calls add(at, force) for the dead forces and the pressures with these factors of their curves.
-  template <class Add>
-  void for_each_load(const std::vector<double>& factors, const Rows<Real>& u, const Add& add) const;
+  /// Sets the values of loaded rows to those of all rows.
+  void take(const Rows<Real>& all, Rows<double>& loaded) const;
+  Rows<double> loaded(const Rows<Real>& all) const;
 
   std::vector<double> factors_at(double time, double load_factor) const;
 
@@ -89,14 +63,15 @@ class Loads {
   void gather(std::span<double> values) const;
 
   const std::vector<LoadCurve>& curves_;
+  const BodyForces& forces_of_scene_;
   std::vector<std::size_t> rows_;  // that carry loads
   std::vector<bool> owned_;        // by this rank, of these
   std::shared_ptr<const Ranks> ranks_;
-  std::vector<Dead> dead_;
-  std::vector<Face> faces_;
-  std::vector<Support> supports_;
-  std::vector<double> factors_;  // of curves
-  Rows<double> forces_;          // N, of loaded rows
+  std::vector<int> place_of_node_;  // among the loaded rows; -1 for others
+  bool all_dead_;                   // the motion of the body changes none
+  std::vector<double> factors_;     // of curves
+  Rows<double> u_, increment_;      // m, of loaded rows; zero where all are dead
+  Rows<double> forces_;             // N, of loaded rows
   Rows<double> forces_before_, u_before_;
   std::vector<double> work_;  // J, of loaded rows
   double square_ = 0.0;

@@ -59,22 +59,12 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
                      [&](const Material& material) { return std::visit(moduli, material.law); });
 }
 
-/// What holds the rows of a scene with springs, each node with its share of the area, N/m; empty without.
-Rows<float> springs_of(const Scene& scene, const Layout& layout) {
-  if (scene.supports.empty()) return {};
-  Rows<float> springs(layout.rows());
-  for (const auto& support : scene.supports) {
-    for (const auto& point : gauss_points_of(corners_of(scene.mesh.points, support.face))) {
-      for (std::size_t I = 0; I < 4; ++I) {
-        const int row = layout.row_of_node[at(support.face[I])];
-        for (std::size_t i = 0; i < 3; ++i) {
-          const double n = point.normal.entries[i] / point.area, share = support.only_normal ? n * n : 1.0;
-          springs[at(row)][i] += static_cast<float>(support.stiffness * share * point.N[I] * point.area);
-        }
-      }
-    }
-  }
-  return springs;
+/// What forces add to the diagonal of the stiffness, N/m; empty where none adds any.
+Rows<float> stiffness_of_forces(const Scene& scene, const Layout& layout) {
+  Rows<float> stiffness(layout.rows());
+  for (const auto& force : scene.forces) force->add_stiffness({stiffness.data(), layout.row_of_node});
+  const auto is_zero = [](const Row<float>& row) { return row.x == Row<float>{}.x; };
+  return std::ranges::all_of(stiffness, is_zero) ? Rows<float>{} : stiffness;
 }
 
 }  // namespace
@@ -90,7 +80,7 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       pressure_varies_(method_named(model.choice().method).pressure_varies),
       free_(body_.on_free_components(std::vector<double>(elements.layout().nodes, 1.0))),
       multigrid_(model.scene().mesh, model.scene().ties, model.scene().coarser, elements.layout(),
-                 rounded_rows<float>(free_), springs_of(model.scene(), elements.layout())),
+                 rounded_rows<float>(free_), stiffness_of_forces(model.scene(), elements.layout())),
       linearized_at_(free_.size()),
       p_(model.scene().mesh.cells.size()),
       defect_(p_.size()),

@@ -193,7 +193,8 @@ class Search {
   /// Why the tangent does not decide whether an equilibrium is stable; empty if it does.
   std::string no_potential() const {
     if (elements_.needs_increment()) return "forces depend on the path";
-    if (!model_.scene().pressures.empty()) return "pressures follow their faces";
+    for (const auto& force : model_.scene().forces)
+      if (!force->traits().no_potential.empty()) return std::string(force->traits().no_potential);
     if (without_stiffness(model_)) return "hourglass modes are not resisted";
     if (method_named(model_.choice().method).is_linear) return "";
     // Softest motions are sought with less resistance to volume changes, which such a law does not separate:

@@ -22,7 +22,7 @@ namespace {
 // is left for the changes under the full load.
 constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
 
-/// The nodes with an imposed displacement or a force.
+/// The nodes that an imposed displacement or a force drives.
 std::vector<int> pushed_nodes(const Scene& scene) {
   std::vector<int> nodes;
   for (const auto& constraint : scene.constraints) {
@@ -31,9 +31,8 @@ std::vector<int> pushed_nodes(const Scene& scene) {
       nodes.push_back(constraint.node);
     }
   }
-  for (const auto& load : scene.loads) nodes.push_back(load.node);
-  for (const auto& pressure : scene.pressures) {
-    nodes.insert(nodes.end(), pressure.face.begin(), pressure.face.end());
+  for (const auto& force : scene.forces) {
+    if (force->traits().drives) nodes.insert(nodes.end(), force->nodes().begin(), force->nodes().end());
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -72,21 +71,8 @@ Scene scene_of(const Scene& whole, const MeshPart& part) {
     for_each_constraint(scene.constraints, nodes,
                         [&](std::size_t k, std::size_t /*n*/) { scene.driven[set.first].push_back(k); });
   }
-  for (const auto& load : whole.loads) {
-    const int node = part.part_of[at(load.node)];
-    if (node >= 0) scene.loads.push_back({node, load.force, load.curve});
-  }
-  const auto in_part = [&](Quadrilateral face) {
-    for (int& node : face) node = part.part_of[at(node)];
-    return *std::min_element(face.begin(), face.end()) >= 0 ? std::optional(face) : std::nullopt;
-  };
-  for (const auto& pressure : whole.pressures) {
-    const auto face = in_part(pressure.face);
-    if (face) scene.pressures.push_back({*face, pressure.pressure, pressure.curve});
-  }
-  for (const auto& support : whole.supports) {
-    const auto face = in_part(support.face);
-    if (face) scene.supports.push_back({*face, support.stiffness, support.damping, support.only_normal});
+  for (const auto& force : whole.forces) {
+    if (auto restricted = force->restricted_to(part)) scene.forces.push_back(std::move(restricted));
   }
   return scene;
 }

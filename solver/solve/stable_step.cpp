@@ -12,7 +12,7 @@ namespace sandglass {
 
 namespace {
 
-double step_of(double square, const Model::LoadRates& rates) {
+double step_of(double square, const LoadRates& rates) {
   const auto& [added, a] = rates;
   const double sum = square + added;
   return a == 0.0 ? 2.0 / std::sqrt(sum) : (std::sqrt(a * a + 4.0 * sum) - a) / sum;
@@ -20,7 +20,7 @@ double step_of(double square, const Model::LoadRates& rates) {
 
 double step_of(const Model& model, std::size_t element, double stiffness) {
   const double square = stiffness / (model.element_masses()[element] / 8.0);
-  return step_of(square, model.load_rates().empty() ? Model::LoadRates{} : model.load_rates()[element]);
+  return step_of(square, model.load_rates().empty() ? LoadRates{} : model.load_rates()[element]);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ void require_worthwhile(const StableStep& stable, double undeformed_step, double
 }
 
 double stable_step_of(const Model& model, double square) {
-  Model::LoadRates most;
+  LoadRates most;
   for (const auto& [added, damping] : model.load_rates()) {
     most.square = std::max(most.square, added);
     most.damping = std::max(most.damping, damping);

@@ -110,19 +110,18 @@ void require_bare_elements(const MethodChoice& choice, bool needs_increment, boo
   if (has_history) refuse("and this law, elements remember steps, or share averages over nodes");
 }
 
-/// Pressures and supports are evaluated once in a step, which is too long for light nodes.
+/// Forces that follow the body are evaluated once in a step, which is too long for light nodes.
 void require_bare_faces(const Scene& scene, const FreeNodes& free, const std::vector<bool>& is_small) {
-  const auto require = [&](const Quadrilateral& face, const char* what) {
-    free.for_each(face, [&](int n) {
+  for (const auto& force : scene.forces) {
+    if (!force->dead_loads().empty()) continue;
+    free.for_each(force->nodes(), [&](int n) {
       if (!is_small[at(n)]) return;
       throw InputError(
           fmt::format("dynamics.subcycles: a {} acts on node {}, which belongs to small elements; "
                       "allowed: 1, or a mesh that is refined elsewhere",
-                      what, n));
+                      force->traits().name, n));
     });
-  };
-  for (const FacePressure& pressure : scene.pressures) require(pressure.face, "pressure");
-  for (const FaceSupport& support : scene.supports) require(support.face, "support");
+  }
 }
 
 }  // namespace

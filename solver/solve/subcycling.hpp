@@ -29,8 +29,8 @@ class Subcycling {
   /// Chooses small elements by the stable steps of the undeformed ones, so that a second takes the least
   /// work, or as a fixed step of the case demands; none if nothing is gained by it. `elements` are those of
   /// the model, `inverse_masses` (1/kg) are zero where nodes do not move freely. Throws InputError for
-  /// elements whose forces depend on more than the displacements of their nodes, and for pressures and
-  /// supports at small elements.
+  /// elements whose forces depend on more than the displacements of their nodes, and for forces at small
+  /// elements that are no dead loads.
   Subcycling(const Model& model, const InternalForce<Real>& elements, const Rows<Real>& inverse_masses);
 
   /// Chooses the number of small steps for elements with these stable steps (s): the one that takes the least

@@ -25,8 +25,8 @@ constexpr double most_steps = 100.0;
 /// The curve of a load over the share of a motion, in its time.
 LoadCurve stretched(LoadCurve curve, double duration) {
   for (double& time : curve.times) time *= duration;
-  if (curve.evaluate) {
-    curve.evaluate = [evaluate = std::move(curve.evaluate), duration](double time) {
+  if (curve.formula.evaluate) {
+    curve.formula.evaluate = [evaluate = std::move(curve.formula.evaluate), duration](double time) {
       return evaluate(time / duration);
     };
   }

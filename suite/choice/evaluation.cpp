@@ -209,16 +209,8 @@ Displacements interpolate(const Mesh& mesh, const Displacements& history, const 
 }
 
 Scene scene_on(const AnyGenerator& mesh, Case description) {
-  const auto used = [&](const NodeSetRule& rule) {
-    const auto is = [&](const auto& imposed) { return imposed.set == rule.name; };
-    return std::any_of(description.displacements.begin(), description.displacements.end(), is) ||
-           std::any_of(description.rotations.begin(), description.rotations.end(), is) ||
-           std::any_of(description.forces.begin(), description.forces.end(), is) ||
-           std::any_of(description.pressures.begin(), description.pressures.end(), is) ||
-           std::any_of(description.supports.begin(), description.supports.end(), is) ||
-           std::any_of(description.velocities.begin(), description.velocities.end(), is);
-  };
-  std::erase_if(description.sets, [&](const NodeSetRule& rule) { return !used(rule); });
+  const auto used = used_node_sets(description);
+  std::erase_if(description.sets, [&](const NodeSetRule& rule) { return !used.contains(rule.name); });
   description.mesh = mesh;
   return make_scene(std::move(description), generate_mesh(mesh));
 }

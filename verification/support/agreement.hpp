@@ -27,7 +27,8 @@ inline bool is_conservative(const Problem& problem) {
   const auto damps = [](const Support& support) { return support.damping > 0.0; };
   if (problem.method().damps_only || problem.method().adapts()) return false;
   if (std::ranges::any_of(d.materials, remembers) || follows_a_path(problem)) return false;
-  return problem.at_rest() || (d.dynamics.damping == 0.0 && std::ranges::none_of(d.supports, damps));
+  return problem.at_rest() ||
+         (d.dynamics.damping == 0.0 && std::ranges::none_of(d.forces.of<Support>(), damps));
 }
 
 /// Whether a method, or one of its levels, has points in alternate corners: which ones, mirrors and turned

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "forces/dead_loads.hpp"
 #include "mesh/hexahedron.hpp"
 #include "support/derivatives.hpp"
 #include "support/exact_stress.hpp"

@@ -64,15 +64,15 @@ inline Verdict reciprocity(const Problem& given, const Answer& /*own*/, RandomGe
   if (!problem.at_rest() || is_loose(problem) || !is_conservative(problem)) return {};
   if (slackens_somewhere(problem)) return {};  // its stiffness is not one
   d.rotations.clear();
-  d.pressures.clear();
-  d.gravity.clear();
+  d.forces.of<Pressure>().clear();
+  d.forces.of<Gravity>().clear();
   d.displacements = {{"held", {}}};
   d.relaxation.tolerance = 1e-10;
   const double force = 1e-9 * 3000.0 * std::pow(diagonal(problem.mesh.points), 2);
   const auto loaded = [&](const char* set) {
-    d.forces = {{.set = set, .on_nodes = true}};
-    for (double& f : d.forces.front().total) f = force * random.uniform(-1.0, 1.0);
-    return std::pair{problem.scene().loads, answer_of(problem)};
+    d.forces.of<DeadForce>() = {{.set = set, .on = DeadForce::Carrier::nodes}};
+    for (double& f : d.forces.of<DeadForce>().front().total) f = force * random.uniform(-1.0, 1.0);
+    return std::pair{dead_loads(problem.scene().forces), answer_of(problem)};
   };
   const auto [f, u] = loaded("side");
   const auto [g, w] = loaded("moved");
@@ -94,11 +94,11 @@ inline Verdict reciprocity(const Problem& given, const Answer& /*own*/, RandomGe
 /// others.
 inline Verdict superposition(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
   const Case& d = problem.description;
-  if (!problem.method().is_linear || !d.rotations.empty() || !d.pressures.empty()) return {};
+  if (!problem.method().is_linear || !d.rotations.empty() || !d.forces.of<Pressure>().empty()) return {};
   Problem first = problem, second = problem;
-  first.description.gravity.clear();
+  first.description.forces.of<Gravity>().clear();
   first.description.velocities.clear();
-  second.description.forces.clear();
+  second.description.forces.of<DeadForce>().clear();
   for (auto& imposed : second.description.displacements) imposed.value = {};
   Answer sum = answer_of(first);
   const Answer other = answer_of(second);

@@ -44,9 +44,9 @@ inline bool slackens_somewhere(const Problem& problem) {
 /// Calls use(curve) for every load.
 template <class Use>
 void for_each_curve(Case& description, const Use& use) {
-  for (auto& load : description.forces) use(load.curve);
-  for (auto& load : description.pressures) use(load.curve);
-  for (auto& load : description.gravity) use(load.curve);
+  description.forces.for_each([&](auto& force) {
+    if constexpr (requires { force.curve; }) use(force.curve);
+  });
 }
 
 /// Multiplies all numbers.

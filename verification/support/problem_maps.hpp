@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "io/formula.hpp"
+#include "forces/formula.hpp"
 #include "support/orderings.hpp"
 #include "support/problem.hpp"
 #include "support/random_hexahedra.hpp"
@@ -66,11 +66,11 @@ inline Mapped placed(Problem problem, const Tensor<double>& Q, const Vector& shi
     if (turned.center) place(*turned.center);
     polar(turned.displacement);
   }
-  for (auto& force : d.forces) {
+  for (auto& force : d.forces.of<DeadForce>()) {
     polar(force.total);
     axial(force.moment);
   }
-  for (auto& gravity : d.gravity) polar(gravity.value);
+  for (auto& gravity : d.forces.of<Gravity>()) polar(gravity.value);
   for (auto& start : d.velocities) {
     polar(start.value);
     axial(start.spin);
@@ -161,13 +161,13 @@ inline Mapped in_other_units(Problem problem, double L, double T, double M) {
     multiply(turned.displacement, L);
     if (turned.center) multiply(*turned.center, L);
   }
-  for (auto& load : d.forces) {
+  for (auto& load : d.forces.of<DeadForce>()) {
     multiply(load.total, force);
     multiply(load.moment, force * L);
   }
-  for (auto& load : d.pressures) load.value *= stress;
-  for (auto& load : d.gravity) multiply(load.value, L / T / T);
-  for (auto& support : d.supports) {
+  for (auto& load : d.forces.of<Pressure>()) load.value *= stress;
+  for (auto& load : d.forces.of<Gravity>()) multiply(load.value, L / T / T);
+  for (auto& support : d.forces.of<Support>()) {
     support.stiffness *= stress / L;
     support.damping *= stress / L * T;
   }
@@ -237,13 +237,13 @@ inline Mapped with_split_loads(Problem problem) {
     }
   };
   Case& d = problem.description;
-  split(d.forces, [&](ImposedForce& load, double share) {
+  split(d.forces.of<DeadForce>(), [&](DeadForce& load, double share) {
     multiply(load.total, share);
     multiply(load.moment, share);
   });
-  split(d.pressures, [&](ImposedPressure& load, double share) { load.value *= share; });
-  split(d.gravity, [&](Gravity& load, double share) { multiply(load.value, share); });
-  split(d.supports, [&](Support& load, double share) {
+  split(d.forces.of<Pressure>(), [&](Pressure& load, double share) { load.value *= share; });
+  split(d.forces.of<Gravity>(), [&](Gravity& load, double share) { multiply(load.value, share); });
+  split(d.forces.of<Support>(), [&](Support& load, double share) {
     load.stiffness *= share;
     load.damping *= share;
   });
@@ -262,7 +262,7 @@ inline std::optional<Mapped> with_formulas(Problem problem) {
     const std::string formula =
         fmt::format("max(min({0} + ({1} - {0}) * t / {2}, max({0}, {1})), min({0}, {1}))", curve.factors[0],
                     curve.factors[1], curve.times[1]);
-    curve = {.formula = formula, .evaluate = parse_formula(formula)};
+    curve = {.formula = Formula(formula)};
     any = true;
   });
   if (!any) return std::nullopt;
@@ -278,11 +278,19 @@ inline std::optional<std::string> text_of(const Problem& problem) {
     text += fmt::format(format, std::forward<Values>(values)...) + "\n";
   };
   const auto put_parameters = [&](const auto& owner) {
-    std::apply([&](const auto&... key) { (put("{} = {}", key.name, owner.*key.member), ...); },
-               owner.parameters());
-  };
-  const auto put_curve = [&](const LoadCurve& curve) {
-    if (!curve.times.empty()) put("times = {}\nfactors = {}", curve.times, curve.factors);
+    const auto put_key = [&]<class Owner, class Value>(const Parameter<Owner, Value>& key) {
+      const Value& value = owner.*key.member;
+      if constexpr (std::is_same_v<Value, LoadCurve>) {
+        if (!value.times.empty()) put("times = {}\nfactors = {}", value.times, value.factors);
+      } else if constexpr (std::is_enum_v<Value>) {
+        put("{} = '{}'", key.name, words_of(value)[static_cast<std::size_t>(value)]);
+      } else if constexpr (std::is_same_v<Value, std::string>) {
+        put("{} = '{}'", key.name, value);
+      } else {
+        put("{} = {}", key.name, value);
+      }
+    };
+    std::apply([&](const auto&... key) { (put_key(key), ...); }, owner.parameters());
   };
   for (const auto& material : d.materials) {
     if (std::holds_alternative<ListedFibres>(material.fibres)) return std::nullopt;
@@ -309,22 +317,10 @@ inline std::optional<std::string> text_of(const Problem& problem) {
   for (const auto& turned : d.rotations)
     put("[[rotation]]\nset = '{}'\naxis = {}\nangle = {}\ndisplacement = {}", turned.set, turned.axis,
         turned.angle * 180.0 / std::numbers::pi, turned.displacement);
-  for (const auto& load : d.forces) {
-    put("[[force]]\nset = '{}'\ntotal = {}", load.set, load.total);
-    put("{}", load.on_nodes ? "on = 'nodes'" : fmt::format("moment = {}", load.moment));
-    put_curve(load.curve);
-  }
-  for (const auto& load : d.pressures) {
-    put("[[pressure]]\nset = '{}'\nvalue = {}", load.set, load.value);
-    put_curve(load.curve);
-  }
-  for (const auto& load : d.gravity) {
-    put("[[gravity]]\nvalue = {}", load.value);
-    put_curve(load.curve);
-  }
-  for (const auto& support : d.supports)
-    put("[[support]]\nset = '{}'\nstiffness = {}\ndamping = {}\nonly_normal = {}", support.set,
-        support.stiffness, support.damping, support.only_normal);
+  d.forces.for_each([&]<class Force>(const Force& force) {
+    put("[[{}]]", Force::name);
+    put_parameters(force);
+  });
   for (const auto& start : d.velocities) put("[[velocity]]\nvalue = {}\nspin = {}", start.value, start.spin);
   put("[relaxation]");
   put_parameters(d.relaxation);

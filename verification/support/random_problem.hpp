@@ -268,20 +268,24 @@ class RandomProblem {
     const double force = amplitude_ * slender * modulus_ * thickness_ * thickness_;
     if (likely(0.35)) {
       const bool on_nodes = likely(0.3);
-      d.forces.push_back({likely(0.5) ? "side" : "moved", vector(force),
-                          on_nodes ? Vector{} : vector(0.3 * force * thickness_), on_nodes, curve()});
+      d.forces.of<DeadForce>().push_back({likely(0.5) ? "side" : "moved", vector(force),
+                                          on_nodes ? Vector{} : vector(0.3 * force * thickness_),
+                                          on_nodes ? DeadForce::Carrier::nodes : DeadForce::Carrier::faces,
+                                          curve()});
     }
     if (likely(0.2))
-      d.pressures.push_back({"side", amplitude_ * slender * modulus_ * uniform(-1.0, 1.0), curve()});
-    const bool bare = drive >= 0.45 && d.forces.empty() && d.pressures.empty();
+      d.forces.of<Pressure>().push_back(
+          {"side", amplitude_ * slender * modulus_ * uniform(-1.0, 1.0), curve()});
+    const bool bare = drive >= 0.45 && d.forces.of<DeadForce>().empty() && d.forces.of<Pressure>().empty();
     if (likely(0.2) || (bare && !moves))
-      d.gravity.push_back({vector(amplitude_ * slender * modulus_ / density / extent_), curve()});
+      d.forces.of<Gravity>().push_back(
+          {vector(amplitude_ * slender * modulus_ / density / extent_), curve()});
     if (moves && (bare || likely(0.3)))
       d.velocities.push_back(
           {.value = vector(amplitude_ * speed), .spin = vector(amplitude_ * speed / extent_)});
     if (likely(0.15))
-      d.supports.push_back({"side", modulus_ / extent_ * uniform(0.1, 1.0),
-                            likely(0.5) ? 0.2 * density * speed : 0.0, likely(0.5)});
+      d.forces.of<Support>().push_back({"side", modulus_ / extent_ * uniform(0.1, 1.0),
+                                        likely(0.5) ? 0.2 * density * speed : 0.0, likely(0.5)});
   }
 
   // Settings.

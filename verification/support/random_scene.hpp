@@ -45,7 +45,7 @@ class RandomScene {
     } else {
       const double bending = law_.young_modulus * size_[0] * std::pow(size_[1], 3) / 12.0 / (length * length);
       const double stretch = 0.1 * law_.young_modulus * size_[0] * size_[1];
-      description.forces.push_back(
+      description.forces.of<DeadForce>().push_back(
           {"moved",
            {random_.uniform(-3.0, 3.0) * bending, random_.uniform(-3.0, 3.0) * bending,
             random_.uniform(-1.0, 1.0) * stretch},

@@ -34,7 +34,7 @@ class SemiDiscrete {
       for (const int node : cell)
         masses_[index(node)] += scene.description.materials.front().density * volume / 8.0;
     }
-    for (const auto& [node, force, curve] : scene.loads) {
+    for (const auto& [node, force, curve] : dead_loads(scene.forces)) {
       for (std::size_t i = 0; i < 3; ++i) load_[3 * index(node) + i] = force[i];
     }
     for (const Constraint& constraint : scene.constraints) {

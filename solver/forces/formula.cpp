@@ -1,4 +1,4 @@
-#include "io/formula.hpp"
+#include "forces/formula.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -36,14 +36,14 @@ double largest(const double* values, int count) {
 }
 
 /// A parser of the language and the variable that it reads.
-struct Formula {
+struct Parser {
   std::string text;
   double t = 0.0;
   mu::Parser parser = {};
   std::mutex one_at_a_time = {};
 
   /// The library's own language has more than ours, which Python must read the same.
-  explicit Formula(const std::string& written) : text(written) {
+  explicit Parser(const std::string& written) : text(written) {
     parser.ClearFun();
     parser.ClearConst();
     parser.ClearOprt();
@@ -97,7 +97,7 @@ std::function<double(double)> parse_formula(const std::string& text) {
   const std::size_t strange =
       text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-*/^(), ");
   if (strange != std::string::npos) refuse(fmt::format("'{}'", text[strange]), strange);
-  const auto formula = std::make_shared<Formula>(text);
+  const auto formula = std::make_shared<Parser>(text);
   const auto value_at = [formula](double time) {
     const double value = formula->at(time);
     if (std::isfinite(value)) return value;

@@ -13,4 +13,14 @@ std::string formula_language();
 /// called by several threads.
 std::function<double(double)> parse_formula(const std::string& text);
 
+/// A formula and what it means; without a text there is none.
+struct Formula {
+  std::string text = {};
+  std::function<double(double)> evaluate = {};
+
+  Formula() = default;
+  /// Throws as parse_formula does.
+  explicit Formula(const std::string& written) : text(written), evaluate(parse_formula(written)) {}
+};
+
 }  // namespace sandglass

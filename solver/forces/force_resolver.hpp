@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "forces/dead_loads.hpp"
+#include "forces/load_curve.hpp"
+
+namespace sandglass {
+
+/// Where the forces of a case act, and what comes of them there: every kind adds itself by its function
+/// `resolve`.
+struct ForceResolver {
+  std::string file;  ///< of the case, for messages
+  const NodalField& points;
+  const std::vector<Quadrilateral>& boundary;
+  const NodeSets& sets;
+  const std::vector<double>& element_masses;  ///< kg
+  const std::vector<double>& masses;          ///< of nodes, kg
+
+  std::vector<LoadCurve> curves = {LoadCurve{}};            ///< the first is that of the case
+  BodyForces forces = {};                                   ///< those that are no dead loads
+  std::map<std::pair<std::size_t, int>, Vector> dead = {};  ///< of curve and node, N
+  std::vector<LoadSize> sizes_of_dead = {};
+
+  /// The nodes of the set that a table names. Throws InputError if there is no such set or it is empty.
+  const std::vector<int>& nodes(std::string_view table, const std::string& set) const;
+
+  /// The boundary faces within that set. Throws InputError as well if there are none.
+  std::vector<Quadrilateral> faces(std::string_view table, const std::string& set) const;
+
+  /// The number of a curve among those that are known, to which it is added if it is new.
+  std::size_t number_of(const LoadCurve& curve);
+
+  /// Adds a dead load (N), `factor` times a force.
+  void add_dead(std::size_t curve, int node, const Vector& force, double factor);
+
+  /// All forces, dead loads first.
+  BodyForces all() const;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+
+#include "base/type_list.hpp"
+#include "forces/dead_force.hpp"
+#include "forces/gravity.hpp"
+#include "forces/pressure.hpp"
+#include "forces/support.hpp"
+
+namespace sandglass {
+
+/// The list of kinds of forces, in the order in which they are summed. A new one is a header, its source and
+/// one entry here. Each is the plain data of a table [[name]] of a case file, and has: name, summary, and
+/// parameters(), whose texts name node sets; only_in_motion, the parameter that plays no part at rest, if
+/// there is one; by_mass, whether it depends on the density; holds(), whether a body at rest needs nothing
+/// else to stay where it is; scale(factor), which multiplies what it imposes; and resolve(resolver), which
+/// adds the BodyForce that it is on a mesh. `one_of`, where it is there, names parameters of which at least
+/// one must be given.
+using Forces = TypeList<DeadForce, Pressure, Gravity, Support>;
+
+/// The forces of a case: of each kind those that it names, in their order.
+template <class List>
+class ForceTables;
+
+template <class... Kinds>
+class ForceTables<TypeList<Kinds...>> {
+ public:
+  template <class Kind>
+  std::vector<Kind>& of() {
+    return std::get<std::vector<Kind>>(tables_);
+  }
+  template <class Kind>
+  const std::vector<Kind>& of() const {
+    return std::get<std::vector<Kind>>(tables_);
+  }
+
+  /// Calls use(force) for all of them, kind by kind.
+  template <class Use>
+  void for_each(const Use& use) {
+    (std::ranges::for_each(of<Kinds>(), use), ...);
+  }
+  template <class Use>
+  void for_each(const Use& use) const {
+    (std::ranges::for_each(of<Kinds>(), use), ...);
+  }
+
+ private:
+  std::tuple<std::vector<Kinds>...> tables_;
+};
+
+}  // namespace sandglass

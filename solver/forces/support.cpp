@@ -1,0 +1,120 @@
+#include "forces/support.hpp"
+
+#include <algorithm>
+
+namespace sandglass {
+
+namespace {
+
+class FaceSupports final : public BodyForce {
+ public:
+  FaceSupports(const NodalField& points, std::vector<Quadrilateral> faces, const Support& support)
+      : BodyForce(nodes_of(faces), {Support::name, false, support.damping > 0.0, ""}),
+        faces_(std::move(faces)),
+        support_(support) {
+    for (const Quadrilateral& face : faces_) points_.push_back(gauss_points_of(corners_of(points, face)));
+  }
+
+  void add_forces(Factors /*factors*/, const NodalMotion& motion,
+                  AtNodes<Row<double>> forces) const override {
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      const auto resist = [&](double factor, NodalRows field) {
+        for_each_point(k, field, [&](const std::array<double, 4>& N, const Vector& t) {
+          for (std::size_t I = 0; I < 4; ++I) {
+            for (std::size_t i = 0; i < 3; ++i) forces[faces_[k][I]][i] -= factor * N[I] * t[i];
+          }
+        });
+      };
+      resist(support_.stiffness, motion.u);
+      // The velocity is that of half a step before; without time it is zero.
+      if (support_.damping > 0.0) resist(support_.damping / motion.step, motion.increment);
+    }
+  }
+
+  void add_potential(Factors /*factors*/, NodalRows u, double& sum) const override {
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      for_each_point(k, u, [&](const std::array<double, 4>& N, const Vector& t) {
+        for (std::size_t I = 0; I < 4; ++I) {
+          const Row<double>& moved = u[faces_[k][I]];
+          sum += 0.5 * support_.stiffness * N[I] * (moved[0] * t[0] + moved[1] * t[1] + moved[2] * t[2]);
+        }
+      });
+    }
+  }
+
+  /// As if each node had its share of the area for itself.
+  void add_rates(Factors /*largest*/, const std::vector<double>& masses,
+                 std::vector<LoadRates>& rates) const override {
+    for_each_share([&](std::size_t k, std::size_t I, const FacePoint& point) {
+      const std::size_t n = at(faces_[k][I]);
+      rates[n].square += support_.stiffness * point.N[I] * point.area / masses[n];
+      rates[n].damping += support_.damping * point.N[I] * point.area / masses[n];
+    });
+  }
+
+  /// As if each node had its share of the area for itself.
+  void add_stiffness(AtNodes<Row<float>> diagonal) const override {
+    for_each_share([&](std::size_t k, std::size_t I, const FacePoint& point) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double n = point.normal.entries[i] / point.area, share = support_.only_normal ? n * n : 1.0;
+        diagonal[faces_[k][I]][i] += static_cast<float>(support_.stiffness * share * point.N[I] * point.area);
+      }
+    });
+  }
+
+  void add_size(double /*arm*/, double& /*sum*/) const override {}
+  std::span<const NodalLoad> dead_loads() const override { return {}; }
+
+  std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const override {
+    auto faces = faces_in(part, faces_);
+    if (faces.empty()) return nullptr;
+    return std::make_shared<FaceSupports>(part.mesh.points, std::move(faces), support_);
+  }
+
+ private:
+  /// Calls use(N, t) for the Gauss points of the k-th face with their shape functions and what resists the
+  /// vector `field`, such as u (m), times the area: its normal part or all of it.
+  template <class Use>
+  void for_each_point(std::size_t k, NodalRows field, const Use& use) const {
+    for (const FacePoint& point : points_[k]) {
+      Vector t{};
+      for (std::size_t I = 0; I < 4; ++I) {
+        for (std::size_t i = 0; i < 3; ++i) t[i] += point.N[I] * point.area * field[faces_[k][I]][i];
+      }
+      if (support_.only_normal) {
+        const auto& n = point.normal.entries;
+        const double along = (n[0] * t[0] + n[1] * t[1] + n[2] * t[2]) / (point.area * point.area);
+        t = {along * n[0], along * n[1], along * n[2]};
+      }
+      use(point.N, t);
+    }
+  }
+
+  /// Calls use(k, I, point) for the Gauss points of all faces k and their corners I.
+  template <class Use>
+  void for_each_share(const Use& use) const {
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      for (const FacePoint& point : points_[k]) {
+        for (std::size_t I = 0; I < 4; ++I) use(k, I, point);
+      }
+    }
+  }
+
+  std::vector<Quadrilateral> faces_;
+  std::vector<std::array<FacePoint, 4>> points_;  // undeformed
+  Support support_;
+};
+
+}  // namespace
+
+std::optional<BrokenRule> Support::broken_rule() const {
+  if (stiffness > 0.0 || damping > 0.0) return std::nullopt;
+  return BrokenRule{"stiffness", "or damping must be given and positive, or both"};
+}
+
+void Support::resolve(ForceResolver& resolver) const {
+  resolver.forces.push_back(
+      std::make_shared<FaceSupports>(resolver.points, resolver.faces(name, set), *this));
+}
+
+}  // namespace sandglass
