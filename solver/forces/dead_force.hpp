@@ -11,7 +11,7 @@ namespace sandglass {
 struct DeadForce {
   static constexpr std::string_view name = "force";
   static constexpr std::string_view summary = "a dead load: it keeps its direction";
-  static constexpr std::string_view only_in_motion = "";
+  static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
   static constexpr std::array<std::string_view, 2> one_of{"total", "moment"};
 

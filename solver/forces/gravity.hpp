@@ -8,7 +8,7 @@ namespace sandglass {
 struct Gravity {
   static constexpr std::string_view name = "gravity";
   static constexpr std::string_view summary = "the weight of the body";
-  static constexpr std::string_view only_in_motion = "";
+  static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = true;
 
   Vector value{};  ///< acceleration at the factor one, m/s^2

@@ -11,7 +11,7 @@ namespace sandglass {
 struct Pressure {
   static constexpr std::string_view name = "pressure";
   static constexpr std::string_view summary = "pushes on boundary faces, and follows them";
-  static constexpr std::string_view only_in_motion = "";
+  static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
 
   std::string set;
