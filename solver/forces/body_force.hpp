@@ -36,10 +36,10 @@ struct LoadRates {
   double damping = 0.0;  ///< 1/s
 };
 
-/// What a force is like.
+/// Properties of a force.
 struct ForceTraits {
   std::string_view name;  ///< that of its table
-  bool drives;  ///< it is proportional to the factors of its curves; else it resists what others drive
+  bool drives;  ///< it is proportional to the factors of its curves; otherwise it only resists motion
   bool dissipates;
   std::string_view no_potential;  ///< why it has none, as far as is known; empty where it has one
 };
@@ -74,7 +74,7 @@ class BodyForce {
   /// Adds what drives a body at the factor one (N), however it is directed; moments as forces at an arm (m).
   virtual void add_size(double arm, double& sum) const = 0;
 
-  /// What it comes to where the body's motion does not change it, at the factor one; else none.
+  /// Its nodal loads at the factor one if the motion of the body does not change them; otherwise none.
   virtual std::span<const NodalLoad> dead_loads() const = 0;
 
   /// The same force on a part of the mesh; null where none of it acts there.

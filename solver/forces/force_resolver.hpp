@@ -8,8 +8,7 @@
 
 namespace sandglass {
 
-/// Where the forces of a case act, and what comes of them there: every kind adds itself by its function
-/// `resolve`.
+/// Resolves the forces of a case on a mesh: every kind adds its nodal forces in its function `resolve`.
 struct ForceResolver {
   std::string file;  ///< of the case, for messages
   const NodalField& points;
