@@ -23,7 +23,7 @@
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
-#include "solve/body.hpp"
+#include "solve/frame.hpp"
 
 namespace sandglass {
 

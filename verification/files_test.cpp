@@ -9,7 +9,7 @@
 #include "io/mesh_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
-#include "solve/body.hpp"
+#include "solve/frame.hpp"
 #include "solve/relaxation.hpp"
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"

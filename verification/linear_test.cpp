@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solve/body.hpp"
+#include "solve/frame.hpp"
 #include "support/derivatives.hpp"
 #include "support/distorted_bar.hpp"
 #include "support/exact_stress.hpp"

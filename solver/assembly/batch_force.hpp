@@ -9,6 +9,7 @@
 
 #include "assembly/element_block.hpp"
 #include "assembly/method_entry.hpp"
+#include "assembly/strip_walk.hpp"
 #include "element/method_traits.hpp"
 #include "material/material_axes.hpp"
 #include "material/memory.hpp"
@@ -76,69 +77,65 @@ class BatchLoop final : public BatchForce<Number> {
 
   void evaluate(std::span<const Number> u, std::span<Number> force) const override {
     std::fill(force.begin(), force.end(), Number(Real(0)));
-    const auto& groups = layout_.groups;
-    for (std::size_t first = 0, last = 0; first < groups.size(); first = last) {
-      while (last < groups.size() && groups[last].material == groups[first].material) ++last;
+    layout_.for_each_run(0, layout_.groups.size(), [&](std::size_t first, std::size_t last) {
       add_forces(first, last, u.data(), force.data());
-    }
+    });
   }
 
   typename BatchForce<Number>::Extremes extremes(std::span<const Number> u) const override {
     typename BatchForce<Number>::Extremes all{Number(Real(0)), Number(std::numeric_limits<Real>::max())};
-    for (const auto& group : layout_.groups) widen(all, group, u.data());
+    for (std::size_t g = 0; g < layout_.groups.size(); ++g) widen(all, g, u.data());
     return all;
   }
 
  private:
+  auto gather_from(const Number* u) const {
+    return [this, u](std::size_t face, std::size_t /*material*/) { return face_at(u, face); };
+  }
+
+  static ElementMotion<Number> between(const FaceModes<Number>& lower, const FaceModes<Number>& upper) {
+    ElementMotion<Number> motion;
+    motion.u = modes_between(lower, upper);
+    return motion;
+  }
+
   /// Adds the forces of groups `first` to `last` - 1, which are of one material.
   [[gnu::flatten]] void add_forces(std::size_t first, std::size_t last, const Number* u,
                                    Number* force) const {
     const auto law = law_of(layout_.groups[first].material);
-    for (std::size_t g = first; g < last; ++g) {
-      FaceModes<Number> carried{};
-      std::size_t face = layout_.groups[g].first_face;
-      for_each_element(layout_.groups[g], u, [&](const auto& motion, const Element& element) {
-        typename Kernel::template History<Number> none;
-        const Modes<Number> f =
-            Kernel::force(Kernel::deformation(motion, element), element, none, with_axes(law, no_axes));
-        add_to_face(carried + lower_face(f), force, face++);
-        carried = upper_face(f);
-      });
-      add_to_face(carried, force, face);
-    }
+    walk_strips(
+        layout_, first, last, gather_from(u),
+        [&](const auto& lower, const auto& upper, const StripPlace& at) {
+          const Element element = in_all_lanes(constants_[at.pack]);
+          typename Kernel::template History<Number> none;
+          return on_faces(Kernel::force(Kernel::deformation(between(lower, upper), element), element, none,
+                                        with_axes(law, no_axes)));
+        },
+        [&](const FaceModes<Number>& sum, std::size_t face) { add_to_face(sum, force, face); });
   }
 
-  [[gnu::flatten]] void widen(typename BatchForce<Number>::Extremes& all, const ElementGroups::Group& group,
+  [[gnu::flatten]] void widen(typename BatchForce<Number>::Extremes& all, std::size_t group,
                               const Number* u) const {
-    const auto law = law_of(group.material);
-    const Number eighth_of_density(static_cast<Real>(densities_[group.material] / 8.0));
-    for_each_element(group, u, [&](const auto& motion, const Element& element) {
-      const typename Kernel::template History<Number> none;
-      const Number mass = eighth_of_density * Kernel::volume(motion, element);
-      all.frequency_square =
-          max(all.frequency_square,
-              Kernel::stiffness_bound(motion, element, none, with_axes(law, no_axes)) / mass);
-      const Number jacobian = Kernel::smallest_jacobian(motion, element);
-      all.jacobian = min(all.jacobian, jacobian) + Number(Real(0)) * jacobian;
-    });
+    const std::size_t material = layout_.groups[group].material;
+    const auto law = law_of(material);
+    const Number share_of_density(static_cast<Real>(densities_[material] / 8.0));
+    walk_strips(layout_, group, group + 1, gather_from(u),
+                [&](const auto& lower, const auto& upper, const StripPlace& at) {
+                  const Element element = in_all_lanes(constants_[at.pack]);
+                  const ElementMotion<Number> motion = between(lower, upper);
+                  const typename Kernel::template History<Number> none;
+                  const Number mass = share_of_density * Kernel::volume(motion, element);
+                  all.frequency_square =
+                      max(all.frequency_square,
+                          Kernel::stiffness_bound(motion, element, none, with_axes(law, no_axes)) / mass);
+                  const Number jacobian = Kernel::smallest_jacobian(motion, element);
+                  all.jacobian = min(all.jacobian, jacobian) + Number(Real(0)) * jacobian;
+                });
   }
 
   /// A copy that no store can alias, so that moduli are computed once.
   auto law_of(std::size_t material) const {
     return at_step(laws_[material], std::numeric_limits<double>::infinity());
-  }
-
-  /// Calls use(motion, element) for the elements of a group, from strip to strip.
-  template <class Use>
-  void for_each_element(const ElementGroups::Group& group, const Number* u, const Use& use) const {
-    FaceModes<Number> lower = face_at(u, group.first_face);
-    for (std::size_t k = 0; k < group.packs; ++k) {
-      const FaceModes<Number> upper = face_at(u, group.first_face + k + 1);
-      ElementMotion<Number> motion;
-      motion.u = modes_between(lower, upper);
-      use(motion, in_all_lanes(constants_[group.first_pack + k]));
-      lower = upper;
-    }
   }
 
   /// The constants of an element, the same in all lanes. An element consists of numbers alone; through a

@@ -52,7 +52,9 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     layout_->gather_rows(state.increment.data());
     layout_->gather_cells(state.history.data(), history_numbers / width);
     for (std::size_t n = 0; n < this->volume_numbers(); n += this->volumes_of_each()) {
-      layout_->gather_rows(volumes_of(state) + n, 4);
+      Real* const volumes = volumes_of(state) + n;
+      layout_->gather_rows(volumes, 4);
+      std::fill(volumes + 4 * layout_->nodes, volumes + 4 * layout_->rows(), Real(0));  // whatever the ranks
     }
   }
 
@@ -61,7 +63,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const auto laws = laws_at(state.step);
     this->for_each_block(state, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at,
                                                   const auto& for_each_lane) {
-      const auto energy = KernelOf<Method>::energy(motion, element, history<Method>(state, at.block),
+      const auto energy = KernelOf<Method>::energy(motion, element, history<Method>(state, at.pack),
                                                    with_axes(laws[at.material], at.axes));
       for_each_lane([&](std::size_t /*e*/, int lane) {
         partial[2 * at.chunk] += static_cast<double>(Lanes<Number>::get(energy.strain, lane));
@@ -82,7 +84,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     this->per_element(
         state, densities, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
           using Kernel = KernelOf<Method>;
-          const auto remembered = history<Method>(state, at.block);
+          const auto remembered = history<Method>(state, at.pack);
           return Kernel::energy(motion, element, remembered, with_axes(laws[at.material], at.axes))
                      .hourglass /
                  Kernel::volume(motion, element);
@@ -97,7 +99,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
       const Modes<Number> X = modes_between(gather_face_modes<Number>(coordinates, *at.groups, at.face),
                                             gather_face_modes<Number>(coordinates, *at.groups, at.face + 1));
       const Tensor<Number> sigma = KernelOf<Method>::mean_stress(
-          motion, X, element, history<Method>(state, at.block), with_axes(laws[at.material], at.axes));
+          motion, X, element, history<Method>(state, at.pack), with_axes(laws[at.material], at.axes));
       for_each_lane([&](std::size_t e, int lane) {
         for (std::size_t n = 0; n < 9; ++n) {
           stresses[9 * e + n] = static_cast<double>(Lanes<Number>::get(sigma.entries[n], lane));
@@ -110,7 +112,7 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
     const auto laws = laws_at(state.step);
     this->per_element(
         state, bounds, [&]<class Method>(const auto& motion, const auto& element, BlockPlace at) {
-          return KernelOf<Method>::stiffness_bound(motion, element, history<Method>(state, at.block),
+          return KernelOf<Method>::stiffness_bound(motion, element, history<Method>(state, at.pack),
                                                    with_axes(laws[at.material], at.axes));
         });
   }
@@ -217,22 +219,18 @@ class ElementAssembly<TypeList<Methods...>, Law, Number>
   /// coordinates, since those of most levels are not stored.
   void measure_defects(const Layout::Chunk& chunk, const Rows<Real>& u, const Rows<Real>& mobility,
                        std::vector<Defects>& defects) const {
-    for (std::size_t g = chunk.first; g < chunk.last; ++g) {
-      const auto& group = layout_->groups[g];
-      for (std::size_t k = 0; k < group.packs; ++k) {
-        const auto axes = this->axes_of(layout_->elements.data() + (group.first_pack + k) * width);
-        const auto squares =
-            squared_defects(u, mobility, group.first_face + k, group.material, axes ? &*axes : nullptr);
-        for (int lane = 0; lane < width; ++lane) {
-          const int e = layout_->elements[(group.first_pack + k) * width + static_cast<std::size_t>(lane)];
-          if (e < 0) continue;
-          for (std::size_t level = 0; level < top; ++level) {
-            defects[static_cast<std::size_t>(e)][level] =
-                std::sqrt(static_cast<double>(Lanes<Number>::get(squares[level], lane)));
-          }
+    for_each_pack(*layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
+      const int* const elements = layout_->elements.data() + at.pack * width;
+      const auto axes = this->axes_of(elements);
+      const auto squares = squared_defects(u, mobility, at.face, at.material, axes ? &*axes : nullptr);
+      for (int lane = 0; lane < width; ++lane) {
+        if (elements[lane] < 0) continue;
+        for (std::size_t level = 0; level < top; ++level) {
+          defects[static_cast<std::size_t>(elements[lane])][level] =
+              std::sqrt(static_cast<double>(Lanes<Number>::get(squares[level], lane)));
         }
       }
-    }
+    });
   }
 
   /// The squares (m^2) of the defects of the elements between a face of the layout and the next one.
@@ -312,12 +310,9 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
   /// Adds the forces of a part: of runs of groups of one material.
   template <class Method>
   void add_forces(const typename Base::template Part<Method>& part, State<Real>& state, Real* force) const {
-    const auto& groups = part.groups->groups;
-    for (std::size_t first = part.first, last = first; first < part.last; first = last) {
-      const std::size_t material = groups[first].material;
-      while (last < part.last && groups[last].material == material) ++last;
-      add_forces(part, first, last, loop_laws_[material], state, force);
-    }
+    part.groups->for_each_run(part.first, part.last, [&](std::size_t first, std::size_t last) {
+      add_forces(part, first, last, loop_laws_[part.groups->groups[first].material], state, force);
+    });
   }
 
   /// Adds the forces of groups `first` to `last` - 1 of a part. Without `flatten` the compiler leaves small
@@ -334,30 +329,25 @@ class ForceLoop final : public ElementAssembly<Levels, Law, Number> {
     const bool timeless = !(state.step < std::numeric_limits<double>::infinity());
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     const Real* const volumes = this->volumes_of(state);
-    for (std::size_t g = first; g < last; ++g) {
-      const ElementGroups::Group group = groups.groups[g];
-      FaceMotion lower =
-          this->template gather_face<Method>(groups, state, volumes, group.material, group.first_face);
-      const auto* const blocks = part.blocks.data() + (group.first_pack - part.first_block);
-      Faces carried{};
-      for (std::size_t k = 0; k < group.packs; ++k) {
-        const std::size_t block = group.first_pack + k;
-        const auto& element = blocks[k];
-        const FaceMotion upper = this->template gather_face<Method>(groups, state, volumes, group.material,
-                                                                    group.first_face + k + 1);
-        if (this->streams_) prefetch_block(part, state, block + packs_ahead);
-        auto remembered = this->template history<Method>(state, block);
-        if (timeless) remembered.law = {};  // irrelevant here, and possibly left by a failed trial
-        const Modes<Number> f = Kernel::force(
-            Kernel::deformation(Base::template between<Method>(lower, upper, inverse_step), element), element,
-            remembered, with_axes(law, part.axes_at(block)));
-        this->template keep_history<Method>(remembered, state, block);
-        scatter_face_modes(carried + lower_face(f), force, groups, group.first_face + k);
-        carried = upper_face(f);
-        lower = upper;
-      }
-      scatter_face_modes(carried, force, groups, group.first_face + group.packs);
-    }
+    const auto* const blocks = part.blocks.data();
+    const std::size_t first_block = part.first_block;
+    walk_strips(
+        groups, first, last,
+        [&](std::size_t face, std::size_t material) {
+          return this->template gather_face<Method>(groups, state, volumes, material, face);
+        },
+        [&](const FaceMotion& lower, const FaceMotion& upper, const StripPlace& at) {
+          const auto& element = blocks[at.pack - first_block];
+          if (this->streams_) prefetch_block(part, state, at.pack + packs_ahead);
+          auto remembered = this->template history<Method>(state, at.pack);
+          if (timeless) remembered.law = {};  // irrelevant here, and possibly left by a failed trial
+          const Modes<Number> f =
+              Kernel::force(Kernel::deformation(motion_between<Kernel>(lower, upper, inverse_step), element),
+                            element, remembered, with_axes(law, part.axes_at(at.pack)));
+          this->template keep_history<Method>(remembered, state, at.pack);
+          return on_faces(f);
+        },
+        [&](const Faces& sum, std::size_t face) { scatter_face_modes(sum, force, groups, face); });
   }
 
   /// Prefetches the constants and the history of a block.

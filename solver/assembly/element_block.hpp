@@ -4,11 +4,15 @@
 
 #include <array>
 #include <bit>
+#include <memory>
 #include <vector>
 
 #include "assembly/layout.hpp"
 #include "base/error.hpp"
 #include "element/hourglass_settings.hpp"
+#include "element/method_traits.hpp"
+#include "material/called_law.hpp"
+#include "material/material_axes.hpp"
 #include "math/pack.hpp"
 
 namespace sandglass {
@@ -61,5 +65,34 @@ typename Kernel::template Element<Number> element_block(const Mesh& mesh, const 
   }
   return std::bit_cast<Block>(block);
 }
+
+/// The elements of a chunk at one level: the groups `first` to `last` - 1, with the constants of their
+/// blocks.
+template <class Method, class Number>
+struct ElementPart {
+  using Element = typename FormulationOf<Method, CalledLaw>::template Element<Number>;
+
+  std::shared_ptr<const ElementGroups> groups;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  std::size_t first_block = 0;  // index of the first group's first block among those of `groups`
+  std::vector<Element> blocks;
+  std::vector<MaterialAxes<Number>> axes;  // of the blocks; empty: those of space
+
+  const Element& block(std::size_t pack) const { return blocks[pack - first_block]; }
+
+  const MaterialAxes<Number>* axes_at(std::size_t pack) const {
+    return axes.empty() ? nullptr : &axes[pack - first_block];
+  }
+
+  /// Calls use(e, lane) for the lanes of a pack that have an element, e its number.
+  template <class Use>
+  void for_each_lane(std::size_t pack, const Use& use) const {
+    for (int lane = 0; lane < Lanes<Number>::width; ++lane) {
+      const int e = groups->elements[pack * Lanes<Number>::width + static_cast<std::size_t>(lane)];
+      if (e >= 0) use(static_cast<std::size_t>(e), lane);
+    }
+  }
+};
 
 }  // namespace sandglass

@@ -80,7 +80,7 @@ NodalField to_field(const Rows<Real>& rows, const Layout& layout) {
 }
 
 template <class Real>
-State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u) {
+State<Real> state_at(const ElementForces<Real>& elements, const NodalField& u) {
   State<Real> state = elements.undeformed();
   state.u = to_rows<Real>(u, elements.layout());
   state.increment = state.u;
@@ -91,7 +91,7 @@ template Rows<double> to_rows(const NodalField&, const Layout&);
 template Rows<float> to_rows(const NodalField&, const Layout&);
 template NodalField to_field(const Rows<double>&, const Layout&);
 template NodalField to_field(const Rows<float>&, const Layout&);
-template State<double> state_at(const InternalForce<double>&, const NodalField&);
-template State<float> state_at(const InternalForce<float>&, const NodalField&);
+template State<double> state_at(const ElementForces<double>&, const NodalField&);
+template State<float> state_at(const ElementForces<float>&, const NodalField&);
 
 }  // namespace sandglass

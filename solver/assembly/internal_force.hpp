@@ -1,63 +1,25 @@
 #pragma once
 
-#include <limits>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <variant>
 
 #include "assembly/layout.hpp"
-#include "element/hourglass_settings.hpp"
+#include "assembly/state.hpp"
+#include "element/method_choice.hpp"
 #include "material/materials.hpp"
-#include "math/rows.hpp"
 
 namespace sandglass {
 
-/// Energies of the whole mesh, J.
-struct StrainEnergies {
-  double strain = 0.0;
-  double hourglass = 0.0;
-};
-
-/// The levels of a method's elements and their grouping; only the elements know its content.
-class ElementLevels {
- public:
-  ElementLevels() = default;
-  ElementLevels(const ElementLevels&) = delete;
-  ElementLevels& operator=(const ElementLevels&) = delete;
-  virtual ~ElementLevels() = default;
-};
-
-/// The number of elements whose level changed.
-struct Adaptation {
-  std::size_t promoted = 0;  ///< elements
-  std::size_t demoted = 0;
-};
-
-/// The variables of a simulation: nodal values in rows, in the order of the layout, and the elements'
-/// history.
+/// What moves a body: displacements in, internal forces out. Behind this interface, which hides the choice
+/// made at run time, loops are monomorphic. All functions are const, so that threads may share an object.
 template <class Real>
-struct State {
-  Rows<Real> u;               ///< displacements, m
-  Rows<Real> increment;       ///< their change in the last step, m
-  std::vector<Real> history;  ///< of the elements; only they know its meaning
-  std::shared_ptr<const ElementLevels> levels;
-  double step = std::numeric_limits<double>::infinity();  ///< s, that the increment took; infinite where time
-                                                          ///< plays no part
-};
-
-/// The elements of a mesh with one method and their materials: displacements in, internal forces out. Behind
-/// this interface, which hides the choice made at run time, loops are monomorphic. All functions are const,
-/// so that threads may share an object.
-template <class Real>
-class InternalForce {
+class ElementForces {
  public:
-  InternalForce() = default;
-  InternalForce(const InternalForce&) = delete;
-  InternalForce& operator=(const InternalForce&) = delete;
-  virtual ~InternalForce() = default;
+  ElementForces() = default;
+  ElementForces(const ElementForces&) = delete;
+  ElementForces& operator=(const ElementForces&) = delete;
+  virtual ~ElementForces() = default;
 
   /// The order of rows and elements.
   virtual const Layout& layout() const = 0;
@@ -73,37 +35,19 @@ class InternalForce {
   /// Layout::row_blocks, from the displacements of the same.
   virtual void evaluate(State<Real>& state, Rows<Real>& force) const = 0;
 
-  /// Sets `force` to the nodal forces (N) of pressures p - q(J) (Pa), one for each element in the numbering
-  /// of the mesh, J its volume ratio, q the pressure of its material less (K - lambda) (J - 1), which is
-  /// lambda (J - 1) unless its volumetric part is another, and `defect` to V (q(J) - p) / lambda (m^3). Added
-  /// to the internal forces, they replace the part of each element's own pressure that belongs to lambda by
-  /// p.
-  virtual void replace_pressures(const State<Real>& state, std::span<const Real> p,
-                                 std::span<const double> lambdas, Rows<Real>& force,
-                                 std::span<Real> defect) const = 0;
-
-  /// Gives each element the cheapest sufficient level, if the method has several. The difference between an
-  /// element's force and that at the highest level, times `mobility` (m/N, by row and component), displaces
-  /// its nodes. An element is promoted to the lowest level at which no node is displaced by more than
-  /// `length` (m), and demoted to the lowest at which none is by more than `demoting_length` <= length, never
-  /// if that is 0. Elements that fill otherwise empty lanes may be at a higher level.
-  virtual Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
-                           double demoting_length) const = 0;
-
-  /// The level of each element, 0 the cheapest; empty if the method has only one.
-  virtual std::vector<double> levels(const State<Real>& state) const = 0;
-
-  /// Sets the levels. Throws InputError if one is not a level of the method: they may come from a file.
-  virtual void set_levels(State<Real>& state, const std::vector<double>& levels) const = 0;
-
   /// Makes displacements, increments and history known to all ranks.
   virtual void gather(State<Real>& state) const = 0;
+};
+
+/// What is read from a state: energies of the whole mesh, and values of each element in the numbering of the
+/// mesh, of which only those of chunks that the rank owns are set.
+template <class Real>
+class ElementFields {
+ public:
+  virtual ~ElementFields() = default;
 
   /// Strain and hourglass energy of the whole mesh, of all ranks.
   virtual StrainEnergies energies(const State<Real>& state) const = 0;
-
-  // The following are per element, in the numbering of the mesh; only those of chunks that the rank owns are
-  // set.
 
   /// Hourglass energy per reference volume (J/m^3).
   virtual void hourglass_energy_densities(const State<Real>& state, std::span<double> densities) const = 0;
@@ -123,34 +67,52 @@ class InternalForce {
   virtual void stiffness_bounds(const State<Real>& state, std::span<double> bounds) const = 0;
 };
 
-/// The number type of a run.
-enum class Precision { double_precision, single_precision };
+/// The levels of a method's elements.
+template <class Real>
+class ElementAdaptivity {
+ public:
+  virtual ~ElementAdaptivity() = default;
 
-/// "double" or "float".
-constexpr std::string_view name_of(Precision precision) {
-  return precision == Precision::double_precision ? "double" : "float";
-}
+  /// Gives each element the cheapest sufficient level, if the method has several. The difference between an
+  /// element's force and that at the highest level, times `mobility` (m/N, by row and component), displaces
+  /// its nodes. An element is promoted to the lowest level at which no node is displaced by more than
+  /// `length` (m), and demoted to the lowest at which none is by more than `demoting_length` <= length, never
+  /// if that is 0. Elements that fill otherwise empty lanes may be at a higher level.
+  virtual Adaptation adapt(State<Real>& state, const Rows<Real>& mobility, double length,
+                           double demoting_length) const = 0;
 
-/// How many elements a kernel computes at a time: as many as a register holds, or one, for comparison.
-enum class KernelWidth { pack, scalar };
+  /// The level of each element, 0 the cheapest; empty if the method has only one.
+  virtual std::vector<double> levels(const State<Real>& state) const = 0;
+
+  /// Sets the levels. Throws InputError if one is not a level of the method: they may come from a file.
+  virtual void set_levels(State<Real>& state, const std::vector<double>& levels) const = 0;
+};
+
+/// Elements whose pressures are unknowns of their own, as the search for a static equilibrium takes them.
+template <class Real>
+class ElementPressures {
+ public:
+  virtual ~ElementPressures() = default;
+
+  /// Sets `force` to the nodal forces (N) of pressures p - q(J) (Pa), one for each element in the numbering
+  /// of the mesh, J its volume ratio, q the pressure of its material less (K - lambda) (J - 1), which is
+  /// lambda (J - 1) unless its volumetric part is another, and `defect` to V (q(J) - p) / lambda (m^3). Added
+  /// to the internal forces, they replace the part of each element's own pressure that belongs to lambda by
+  /// p.
+  virtual void replace_pressures(const State<Real>& state, std::span<const Real> p,
+                                 std::span<const double> lambdas, Rows<Real>& force,
+                                 std::span<Real> defect) const = 0;
+};
+
+/// The elements of a mesh with one method and their materials.
+template <class Real>
+class InternalForce : public ElementForces<Real>,
+                      public ElementFields<Real>,
+                      public ElementAdaptivity<Real>,
+                      public ElementPressures<Real> {};
 
 /// Whether this program was linked with `sandglass_scalar`.
 bool has_scalar_kernels();
-
-/// The default accuracy of adaptive methods.
-inline constexpr double default_accuracy = 0.003;
-
-/// The user's choices in addition to the case.
-struct MethodChoice {
-  std::string method;
-  std::optional<double> kappa = {};  ///< none means auto
-  Precision precision = Precision::double_precision;
-  int threads = 1;
-  std::shared_ptr<const Ranks> ranks = std::make_shared<const Ranks>();
-  KernelWidth kernel = KernelWidth::pack;
-  KappaModulus kappa_modulus = KappaModulus::p_wave;
-  double accuracy = default_accuracy;  ///< of an adaptive method: displacement error over the largest imposed
-};
 
 /// Elements in one of the two precisions.
 using AnyInternalForce =
@@ -171,7 +133,7 @@ inline AnyInternalForce make_internal_force(const Mesh& mesh, const AnyLaw& law,
 
 /// The state of a body whose nodes have moved from the undeformed state to displacements u (m) in one step.
 template <class Real>
-State<Real> state_at(const InternalForce<Real>& elements, const NodalField& u);
+State<Real> state_at(const ElementForces<Real>& elements, const NodalField& u);
 
 /// Nodal values of the mesh as rows of a layout; spare rows are zero.
 template <class Real>

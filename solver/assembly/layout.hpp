@@ -29,6 +29,15 @@ struct ElementGroups {
 
   std::size_t packs() const { return elements.size() / static_cast<std::size_t>(width); }
 
+  /// Calls use(first, last) for the runs of groups of one material within `first` to `last` - 1.
+  template <class Use>
+  void for_each_run(std::size_t first, std::size_t last, const Use& use) const {
+    for (std::size_t next = first; first < last; first = next) {
+      while (next < last && groups[next].material == groups[first].material) ++next;
+      use(first, next);
+    }
+  }
+
   /// The places of the rows of one corner of a face, one per lane.
   const Place* places(std::size_t face, std::size_t corner) const {
     return face_places.data() + (4 * face + corner) * static_cast<std::size_t>(width);

@@ -11,13 +11,13 @@
 
 #include "assembly/chunk_sum.hpp"
 #include "assembly/element_block.hpp"
-#include "assembly/face_gather.hpp"
+#include "assembly/face_motion.hpp"
 #include "assembly/internal_force.hpp"
+#include "assembly/strip_walk.hpp"
 #include "base/error.hpp"
 #include "base/type_list.hpp"
-#include "element/hourglass_none.hpp"
 #include "element/method_traits.hpp"
-#include "material/given_pressure.hpp"
+#include "element/replaced_pressure.hpp"
 #include "mesh/node_elements.hpp"
 
 namespace sandglass {
@@ -48,22 +48,8 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
   static constexpr bool uses_coordinates = (KernelOf<Methods>::needs_coordinates || ...);
   static constexpr bool averages_over_nodes = (KernelOf<Methods>::averages_over_nodes || ...);
 
-  /// The elements of a chunk at one level: groups `first` to `last` - 1, with the constants of their blocks.
   template <class Method>
-  struct Part {
-    using Element = typename KernelOf<Method>::template Element<Number>;
-
-    std::shared_ptr<const ElementGroups> groups;
-    std::size_t first = 0;
-    std::size_t last = 0;
-    std::size_t first_block = 0;  // index of the first group's first block among those of `groups`
-    std::vector<Element> blocks;
-    std::vector<MaterialAxes<Number>> axes;  // of the blocks; empty: those of space
-
-    const MaterialAxes<Number>* axes_at(std::size_t block) const {
-      return axes.empty() ? nullptr : &axes[block - first_block];
-    }
-  };
+  using Part = ElementPart<Method, Number>;
 
   /// What the constants of an element depend on besides its shape.
   struct Setup {
@@ -175,13 +161,7 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
 
   const std::vector<std::vector<int>>& elements_of_chunks() const { return regrouping_->elements; }
 
-  /// A face's part of an `ElementMotion`.
-  struct FaceMotion {
-    Faces u;
-    Faces increment;
-    Faces X;
-    std::array<Number, 4> dilatation;
-  };
+  using FaceMotion = sandglass::FaceMotion<Number>;
 
   /// Of `volumes` only those of the elements' own and like materials are used.
   template <class Method>
@@ -201,23 +181,6 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
             gather<Number>(volumes + alike_[material] * volumes_of_each(), groups.places(face, corner));
         motion.dilatation[corner] = change / reference;
       }
-    }
-    return motion;
-  }
-
-  template <class Method>
-  static ElementMotion<Number> between(const FaceMotion& lower, const FaceMotion& upper,
-                                       const Number& inverse_step) {
-    ElementMotion<Number> motion;
-    motion.inverse_step = inverse_step;
-    motion.u = modes_between(lower.u, upper.u);
-    if constexpr (KernelOf<Method>::needs_increment) {
-      motion.increment = modes_between(lower.increment, upper.increment);
-    }
-    if constexpr (KernelOf<Method>::needs_coordinates) motion.X = modes_between(lower.X, upper.X);
-    if constexpr (KernelOf<Method>::averages_over_nodes) {
-      std::copy(lower.dilatation.begin(), lower.dilatation.end(), motion.dilatation.begin());
-      std::copy(upper.dilatation.begin(), upper.dilatation.end(), motion.dilatation.begin() + 4);
     }
     return motion;
   }
@@ -247,15 +210,11 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     return volumes;
   }
 
-  /// A block of elements: its chunk, its index among those of its groups, its material, the axes of its
-  /// elements, and its lower face, behind which its upper one stands.
-  struct BlockPlace {
+  /// A block of elements: its place along the strips, its chunk, and the axes of its elements.
+  struct BlockPlace : StripPlace {
     std::size_t chunk;
-    std::size_t block;
-    std::size_t material;
     const MaterialAxes<Number>* axes;
     const ElementGroups* groups;
-    std::size_t face;
   };
 
   /// Calls visit.operator()<Method>(motion, element, place, for_each_lane) for every block of own elements,
@@ -265,27 +224,17 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     const std::vector<Real> volumes = volumes_around_nodes(state);
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
     const auto visit_part = [&]<class Method>(const Part<Method>& part, std::size_t c) {
-      for (std::size_t g = part.first; g < part.last; ++g) {
-        const auto group = part.groups->groups[g];
-        FaceMotion lower =
-            gather_face<Method>(*part.groups, state, volumes.data(), group.material, group.first_face);
-        for (std::size_t k = 0; k < group.packs; ++k) {
-          const std::size_t block = group.first_pack + k;
-          const FaceMotion upper = gather_face<Method>(*part.groups, state, volumes.data(), group.material,
-                                                       group.first_face + k + 1);
-          visit.template operator()<Method>(
-              between<Method>(lower, upper, inverse_step), part.blocks[block - part.first_block],
-              BlockPlace{c, block, group.material, part.axes_at(block), part.groups.get(),
-                         group.first_face + k},
-              [&](const auto& use) {
-                for (int lane = 0; lane < width; ++lane) {
-                  const int e = part.groups->elements[block * width + static_cast<std::size_t>(lane)];
-                  if (e >= 0) use(static_cast<std::size_t>(e), lane);
-                }
-              });
-          lower = upper;
-        }
-      }
+      walk_strips(
+          *part.groups, part.first, part.last,
+          [&](std::size_t face, std::size_t material) {
+            return gather_face<Method>(*part.groups, state, volumes.data(), material, face);
+          },
+          [&](const FaceMotion& lower, const FaceMotion& upper, const StripPlace& at) {
+            visit.template operator()<Method>(motion_between<KernelOf<Method>>(lower, upper, inverse_step),
+                                              part.block(at.pack),
+                                              BlockPlace{at, c, part.axes_at(at.pack), part.groups.get()},
+                                              [&](const auto& use) { part.for_each_lane(at.pack, use); });
+          });
     };
     for (std::size_t c = layout_->own_chunks.first; c < layout_->own_chunks.last; ++c) {
       std::apply([&](const auto&... part) { (visit_part(part, c), ...); }, *plan_of(state).chunks[c]);
@@ -406,21 +355,23 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
     if constexpr (KernelOf<Method>::averages_over_nodes) {
       const ElementGroups& groups = *part.groups;
       for (std::size_t g = part.first; g < part.last; ++g) {
-        const ElementGroups::Group group = groups.groups[g];
-        if (alike_[group.material] != alike) continue;
-        Faces lower = gather_face_modes<Number>(state.u, groups, group.first_face);
-        NodalVolumes<Number> carried{};
-        for (std::size_t k = 0; k < group.packs; ++k) {
-          const Faces upper = gather_face_modes<Number>(state.u, groups, group.first_face + k + 1);
-          ElementMotion<Number> motion;
-          motion.u = modes_between(lower, upper);
-          const auto own =
-              KernelOf<Method>::nodal_volumes(motion, part.blocks[group.first_pack + k - part.first_block]);
-          scatter_volumes(carried, own, groups, group.first_face + k, volumes);
-          carried = own;
-          lower = upper;
-        }
-        scatter_volumes(carried, NodalVolumes<Number>{}, groups, group.first_face + group.packs, volumes);
+        if (alike_[groups.groups[g].material] != alike) continue;
+        walk_strips(
+            groups, g, g + 1,
+            [&](std::size_t face, std::size_t /*material*/) {
+              return gather_face_modes<Number>(state.u, groups, face);
+            },
+            [&](const Faces& lower, const Faces& upper, const StripPlace& at) {
+              ElementMotion<Number> motion;
+              motion.u = modes_between(lower, upper);
+              return on_faces(KernelOf<Method>::nodal_volumes(motion, part.block(at.pack)));
+            },
+            [&](const FaceVolumes<Number>& sum, std::size_t face) {
+              for (std::size_t corner = 0; corner < 4; ++corner) {
+                scatter_add<Number>({sum.change[corner], sum.reference[corner], Number(Real(0))}, volumes,
+                                    groups.places(face, corner));
+              }
+            });
       }
     }
   }
@@ -431,70 +382,25 @@ class LevelledElements<TypeList<Methods...>, Number> : public InternalForce<type
                                                         const Real* volumes, std::span<const Real> p,
                                                         std::span<const double> lambdas, Real* force,
                                                         std::span<Real> defect) const {
-    using Kernel = Formulation<typename Method::Kinematics, NoHourglassControl, GivenPressure<Number>>;
     const ElementGroups& groups = *part.groups;
     const Number inverse_step(static_cast<Real>(1.0 / state.step));
-    for (std::size_t g = part.first; g < part.last; ++g) {
-      const ElementGroups::Group group = groups.groups[g];
-      const auto lambda = static_cast<Real>(lambdas[group.material]);
-      const Number stiffness(lambda), compliance(Real(1) / lambda);
-      FaceMotion lower = gather_face<Method>(groups, state, volumes, group.material, group.first_face);
-      Faces carried{};
-      for (std::size_t k = 0; k < group.packs; ++k) {
-        const std::size_t block = group.first_pack + k;
-        const int* numbers = groups.elements.data() + block * width;
-        const FaceMotion upper =
-            gather_face<Method>(groups, state, volumes, group.material, group.first_face + k + 1);
-        const auto motion = between<Method>(lower, upper, inverse_step);
-        const auto& body = part.blocks[block - part.first_block].body;
-        Number own(Real(0));
-        for (int lane = 0; lane < width; ++lane) {
-          if (numbers[lane] >= 0) Lanes<Number>::set(own, lane, p[static_cast<std::size_t>(numbers[lane])]);
-        }
-        Number dilatation;
-        if constexpr (is_linear<Method>) {
-          const Tensor<Number> H = OnePoint::mean_gradient(motion.u, body);
-          dilatation = H(0, 0) + H(1, 1) + H(2, 2);
-        } else {
-          dilatation = Kernel::Kinematics::dilatation(motion, body);
-        }
-        const Number V = Kernel::Kinematics::volume(motion, body);
-        Number beyond(Real(0));
-        if constexpr (!is_linear<Method>) {
-          beyond = setups_[group.material].law.pressure_beyond_quadratic(dilatation);
-        }
-        const Number error = V * (dilatation + compliance * (beyond - own));
-        for (int lane = 0; lane < width; ++lane) {
-          if (numbers[lane] >= 0)
-            defect[static_cast<std::size_t>(numbers[lane])] = Lanes<Number>::get(error, lane);
-        }
-        const GivenPressure<Number> law{(own - beyond) - stiffness * dilatation};
-        Modes<Number> f;
-        if constexpr (is_linear<Method>) {
-          f = OnePoint::body_forces((V * law.p) * identity<Number>(), body);
-        } else {
-          NoHourglassControl::Element<Number> control;
-          NoHistory<Number> none;
-          f = Kernel::Kinematics::template force<NoHourglassControl>(
-              Kernel::Kinematics::template deformation<NoHourglassControl>(motion, body), body, control, none,
-              law);
-        }
-        scatter_face_modes(carried + lower_face(f), force, groups, group.first_face + k);
-        carried = upper_face(f);
-        lower = upper;
-      }
-      scatter_face_modes(carried, force, groups, group.first_face + group.packs);
-    }
-  }
-
-  /// Adds the volumes of the elements below and above a face to its rows.
-  static void scatter_volumes(const NodalVolumes<Number>& below, const NodalVolumes<Number>& above,
-                              const ElementGroups& groups, std::size_t face, Real* volumes) {
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      scatter_add<Number>({below.change[4 + corner] + above.change[corner],
-                           below.reference[4 + corner] + above.reference[corner], Number(Real(0))},
-                          volumes, groups.places(face, corner));
-    }
+    walk_strips(
+        groups, part.first, part.last,
+        [&](std::size_t face, std::size_t material) {
+          return gather_face<Method>(groups, state, volumes, material, face);
+        },
+        [&](const FaceMotion& lower, const FaceMotion& upper, const StripPlace& at) {
+          const auto lambda = static_cast<Real>(lambdas[at.material]);
+          Number own(Real(0));
+          part.for_each_lane(at.pack, [&](std::size_t e, int lane) { Lanes<Number>::set(own, lane, p[e]); });
+          const auto [f, error] = replace_pressure<Method>(
+              motion_between<KernelOf<Method>>(lower, upper, inverse_step), part.block(at.pack).body, own,
+              Number(lambda), Number(Real(1) / lambda), setups_[at.material].law);
+          part.for_each_lane(at.pack,
+                             [&](std::size_t e, int lane) { defect[e] = Lanes<Number>::get(error, lane); });
+          return on_faces(f);
+        },
+        [&](const Faces& sum, std::size_t face) { scatter_face_modes(sum, force, groups, face); });
   }
 
   std::unique_ptr<const Regrouping> regrouping_;  // of methods that adapt

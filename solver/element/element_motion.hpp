@@ -25,6 +25,34 @@ struct NodalVolumes {
   std::array<T, 8> reference;
 };
 
+/// The same of one face: a share for each of its nodes.
+template <class T>
+struct FaceVolumes {
+  std::array<T, 4> change;
+  std::array<T, 4> reference;
+
+  friend FaceVolumes operator+(const FaceVolumes& a, const FaceVolumes& b) {
+    FaceVolumes sum;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      sum.change[corner] = a.change[corner] + b.change[corner];
+      sum.reference[corner] = a.reference[corner] + b.reference[corner];
+    }
+    return sum;
+  }
+};
+
+template <class T>
+FacePair<FaceVolumes<T>> on_faces(const NodalVolumes<T>& volumes) {
+  FacePair<FaceVolumes<T>> pair;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    pair.lower.change[corner] = volumes.change[corner];
+    pair.lower.reference[corner] = volumes.reference[corner];
+    pair.upper.change[corner] = volumes.change[4 + corner];
+    pair.upper.reference[corner] = volumes.reference[4 + corner];
+  }
+  return pair;
+}
+
 /// The history of an element without one: its force follows from the displacements.
 template <class T>
 struct NoHistory {};

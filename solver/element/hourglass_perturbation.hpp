@@ -18,8 +18,7 @@ struct PerturbationHourglassControl : PerturbationStiffness {
   template <class T>
   using History = NoHistory<T>;
 
-  /// k = kappa K_max / 8 (eq. 12) of an element with corners X (m), where K_max = rho V omega^2 / 8 (eq. 6),
-  /// omega^2 = c_D^2 g (eq. 7) and g = 8 h_Ii h_Ii (eq. 8); the density cancels.
+  /// k (eq. 12) of an element with corners X (m): as PerturbationStiffness::stiffness has it, by nodes.
   template <class Law>
   static Element<double> precompute(const NodalVectors<double>& X, const Law& law,
                                     const HourglassSettings& settings) {

@@ -28,11 +28,11 @@ struct RatePerturbation : PerturbationStiffness {
     T bound() const { return k; }
   };
 
-  /// k = kappa K_max / 8 (N/m) by eq. 6, eq. 7, eq. 8 and eq. 12; sum_I h_I^2 is 8 times that of the modes.
+  /// k (N/m) by eq. 12 in the current configuration.
   template <class T>
   static Stiffness<T> stiffness(const Modes<T>& /*x*/, const OnePoint::Element<T>& current,
                                 const Element<T>& element) {
-    return {element.modulus * current.V * double_dot(current.h, current.h)};
+    return {PerturbationStiffness::stiffness(element.modulus, current.V, current.h)};
   }
 };
 

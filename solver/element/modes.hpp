@@ -119,6 +119,19 @@ constexpr FaceModes<T> lower_face(const Modes<T>& f) {
   return face;
 }
 
+/// The parts of a nodal quantity that belong to an element's lower and upper face.
+template <class Face>
+struct FacePair {
+  Face lower;
+  Face upper;
+};
+
+/// Modal forces by faces.
+template <class T>
+constexpr FacePair<FaceModes<T>> on_faces(const Modes<T>& f) {
+  return {lower_face(f), upper_face(f)};
+}
+
 /// sum_I s_mI u_I for each mode m of an element, s its nodal signs.
 template <class T>
 constexpr Modes<T> to_modes(const NodalVectors<T>& u) {

@@ -2,6 +2,7 @@
 
 #include "element/hourglass_settings.hpp"
 #include "material/laws.hpp"
+#include "math/matrix.hpp"
 
 namespace sandglass {
 
@@ -30,6 +31,14 @@ struct PerturbationStiffness {
   static double modulus(const Law& law, const HourglassSettings& settings) {
     const double kappa = settings.kappa.value_or(auto_kappa(law, settings.kappa_modulus));
     return kappa * kappa_modulus(law, settings.kappa_modulus);
+  }
+
+  /// k = kappa K_max / 8 (N/m, eq. 12) from this modulus and the volume V (m^3) and mean gradients h (1/m) of
+  /// an element, where K_max = rho V omega^2 / 8 (eq. 6), omega^2 = c_D^2 g (eq. 7) and g = 8 h_Ii h_Ii
+  /// (eq. 8); the density cancels. The h are those of the modes: h_Ii h_Ii by nodes is eight times as much.
+  template <class T>
+  static T stiffness(const T& modulus, const T& V, const Matrix<T, 6, 3>& h) {
+    return modulus * V * double_dot(h, h);
   }
 };
 

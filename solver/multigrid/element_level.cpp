@@ -1,12 +1,16 @@
 #include "multigrid/element_level.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 #include "assembly/chunk_sum.hpp"
-#include "assembly/face_gather.hpp"
+#include "assembly/strip_walk.hpp"
 #include "element/linear_one_point.hpp"
+#include "element/perturbation_stiffness.hpp"
 #include "math/pack.hpp"
 
 namespace sandglass {
@@ -98,31 +102,28 @@ class Elements final : public ElementLevel {
  protected:
   void for_each_corner(const VisitCorner& visit) const override {
     std::vector<Column> columns;  // of an element, those of tied nodes handed on
-    for (std::size_t g = layout_.chunks[layout_.local_chunks.first].first;
-         g < layout_.chunks[layout_.local_chunks.last - 1].last; ++g) {
-      const ElementGroups::Group& group = layout_.groups[g];
-      for (std::size_t k = 0; k < group.packs; ++k) {
-        const std::size_t pack = group.first_pack + k, face = group.first_face + k;
-        const NodalVectors<Number> b = nodal_gradients(elements_[pack]);
-        const Number& V = elements_[pack].body.V;
-        for (int lane = 0; lane < W; ++lane) {
-          const std::size_t cell = pack * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
-          if (layout_.elements[cell] < 0) continue;
-          columns.clear();
-          for (std::size_t I = 0; I < 8; ++I) {
-            const std::size_t row = layout_.places(face + I / 4, I % 4)[lane] / 4;
-            std::array<float, 3> column;
-            for (int i = 0; i < 3; ++i) {
-              column[static_cast<std::size_t>(i)] = Lanes<Number>::get(V * b(static_cast<int>(I), i), lane);
-            }
-            const auto shares = ties_.shares_of(row);
-            for (const auto& [from, weight] : shares) add_column(columns, from, weight, column);
-            if (shares.empty()) add_column(columns, row, 1.0f, column);
+    const std::size_t first = layout_.chunks[layout_.local_chunks.first].first,
+                      last = layout_.chunks[layout_.local_chunks.last - 1].last;
+    for_each_pack(layout_, first, last, [&](const StripPlace& at) {
+      const NodalVectors<Number> b = nodal_gradients(elements_[at.pack]);
+      const Number& V = elements_[at.pack].body.V;
+      for (int lane = 0; lane < W; ++lane) {
+        const std::size_t cell = at.pack * static_cast<std::size_t>(W) + static_cast<std::size_t>(lane);
+        if (layout_.elements[cell] < 0) continue;
+        columns.clear();
+        for (std::size_t I = 0; I < 8; ++I) {
+          const std::size_t row = layout_.places(at.face + I / 4, I % 4)[lane] / 4;
+          std::array<float, 3> column;
+          for (int i = 0; i < 3; ++i) {
+            column[static_cast<std::size_t>(i)] = Lanes<Number>::get(V * b(static_cast<int>(I), i), lane);
           }
-          for (const auto& [row, column] : columns) visit(cell, row, column);
+          const auto shares = ties_.shares_of(row);
+          for (const auto& [from, weight] : shares) add_column(columns, from, weight, column);
+          if (shares.empty()) add_column(columns, row, 1.0f, column);
         }
+        for (const auto& [row, column] : columns) visit(cell, row, column);
       }
-    }
+    });
   }
 
  private:
@@ -141,8 +142,9 @@ class Elements final : public ElementLevel {
   double largest_norm(const Rows<float>& u, const Square& square) const {
     Number largest(0.0f);
     for (std::size_t c = layout_.own_chunks.first; c < layout_.own_chunks.last; ++c) {
-      for_each_pack(layout_.chunks[c], [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
-        largest = max(largest, square(OnePoint::mean_gradient(modes_of(u, face), elements_[pack].body)));
+      for_each_pack(layout_, layout_.chunks[c].first, layout_.chunks[c].last, [&](const StripPlace& at) {
+        largest =
+            max(largest, square(OnePoint::mean_gradient(modes_of(u, at.face), elements_[at.pack].body)));
       });
     }
     return std::sqrt(largest_of_all(largest_lane(largest)));
@@ -209,68 +211,56 @@ class Elements final : public ElementLevel {
                          gather_face_modes<Number>(rows, layout_, face + 1));
   }
 
-  template <class Visit>
-  void for_each_pack(const Layout::Chunk& chunk, const Visit& visit) const {
-    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
-      for (std::size_t k = 0; k < packs; ++k) visit(first_pack + k, first_face + k, material);
-    }
+  auto gather_from(const Rows<float>& rows) const {
+    return [&](std::size_t face, std::size_t /*material*/) {
+      return gather_face_modes<Number>(rows, layout_, face);
+    };
+  }
+
+  auto scatter_to(Rows<float>& rows) const {
+    return [&](const FaceModes<Number>& sum, std::size_t face) {
+      scatter_face_modes(sum, numbers_of(rows), layout_, face);
+    };
   }
 
   [[gnu::flatten]] void apply_to(const Layout::Chunk& chunk, const MixedVector& x, MixedVector& y) const {
-    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
-      auto lower = gather_face_modes<Number>(x.u, layout_, first_face);
-      FaceModes<Number> carried{};
-      for (std::size_t k = 0; k < packs; ++k) {
-        const std::size_t pack = first_pack + k;
-        const Block& block = elements_[pack];
-        const auto upper = gather_face_modes<Number>(x.u, layout_, first_face + k + 1);
-        const Modes<Number> u = modes_between(lower, upper);
-        const Tensor<Number> H = OnePoint::mean_gradient(u, block.body);
-        const Number p = load(x.p, pack);
-        store(block.body.V * (H(0, 0) + H(1, 1) + H(2, 2)) - load(compliance_, pack) * p, y.p, pack);
-        const Modes<Number> f = forces(block, u, H, block.body.V * p);
-        scatter_face_modes(carried + lower_face(f), numbers_of(y.u), layout_, first_face + k);
-        carried = upper_face(f);
-        lower = upper;
-      }
-      scatter_face_modes(carried, numbers_of(y.u), layout_, first_face + packs);
-    }
+    walk_strips(
+        layout_, chunk.first, chunk.last, gather_from(x.u),
+        [&](const auto& lower, const auto& upper, const StripPlace& at) {
+          const Block& block = elements_[at.pack];
+          const Modes<Number> u = modes_between(lower, upper);
+          const Tensor<Number> H = OnePoint::mean_gradient(u, block.body);
+          const Number p = load(x.p, at.pack);
+          store(block.body.V * (H(0, 0) + H(1, 1) + H(2, 2)) - load(compliance_, at.pack) * p, y.p, at.pack);
+          return on_faces(forces(block, u, H, block.body.V * p));
+        },
+        scatter_to(y.u));
   }
 
   [[gnu::flatten]] void diverge(const Layout::Chunk& chunk, const Rows<float>& u,
                                 std::vector<float>& g) const {
-    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
-      auto lower = gather_face_modes<Number>(u, layout_, first_face);
-      for (std::size_t k = 0; k < packs; ++k) {
-        const Block& block = elements_[first_pack + k];
-        const auto upper = gather_face_modes<Number>(u, layout_, first_face + k + 1);
-        const Modes<Number> modes = modes_between(lower, upper);
-        Number sum(0.0f);
-        for (int m = 0; m < 6; ++m) {
-          for (int i = 0; i < 3; ++i) sum = sum + modes(m, i) * block.body.h(m, i);
-        }
-        store(block.body.V * sum, g, first_pack + k);
-        lower = upper;
-      }
-    }
+    walk_strips(layout_, chunk.first, chunk.last, gather_from(u),
+                [&](const auto& lower, const auto& upper, const StripPlace& at) {
+                  const Block& block = elements_[at.pack];
+                  const Modes<Number> modes = modes_between(lower, upper);
+                  Number sum(0.0f);
+                  for (int m = 0; m < 6; ++m) {
+                    for (int i = 0; i < 3; ++i) sum = sum + modes(m, i) * block.body.h(m, i);
+                  }
+                  store(block.body.V * sum, g, at.pack);
+                });
   }
 
   [[gnu::flatten]] void add_gradients(const Layout::Chunk& chunk, const std::vector<float>& p,
                                       Rows<float>& f) const {
-    for (std::size_t group = chunk.first; group < chunk.last; ++group) {
-      const auto [first_pack, first_face, packs, material] = layout_.groups[group];
-      FaceModes<Number> carried{};
-      for (std::size_t k = 0; k < packs; ++k) {
-        const Block& block = elements_[first_pack + k];
-        const Modes<Number> modes = (block.body.V * load(p, first_pack + k)) * gradient_modes(block);
-        scatter_face_modes(carried + lower_face(modes), numbers_of(f), layout_, first_face + k);
-        carried = upper_face(modes);
-      }
-      scatter_face_modes(carried, numbers_of(f), layout_, first_face + packs);
-    }
+    const auto nothing = [](std::size_t /*face*/, std::size_t /*material*/) { return 0; };
+    walk_strips(
+        layout_, chunk.first, chunk.last, nothing,
+        [&](int /*lower*/, int /*upper*/, const StripPlace& at) {
+          const Block& block = elements_[at.pack];
+          return on_faces((block.body.V * load(p, at.pack)) * gradient_modes(block));
+        },
+        scatter_to(f));
   }
 
   /// Bounds the eigenvalues of D^-1 A of the element alone, D the diagonal; no sum of elements has larger
@@ -305,7 +295,8 @@ class Elements final : public ElementLevel {
   [[gnu::flatten]] float set_blocks(const Layout::Chunk& chunk, const std::vector<ModelModuli>& moduli,
                                     const std::vector<float>& stiffening) {
     Number largest(1.0f);
-    for_each_pack(chunk, [&](std::size_t pack, std::size_t face, std::size_t material) {
+    for_each_pack(layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
+      const auto [pack, face, material] = at;
       const auto initial_mu = static_cast<float>(moduli[material].mu),
                  lambda = static_cast<float>(moduli[material].lambda);
       const Number stiffer = load(stiffening, pack);
@@ -315,9 +306,8 @@ class Elements final : public ElementLevel {
       Block& block = elements_[pack];
       block.body = OnePoint::geometry(x);
       block.stress = Number(2.0f * initial_mu) * stiffer * reference.V;
-      // eq. 12; |h|^2 by nodes is eight times that by modes
-      block.hourglass = Number(static_cast<float>(moduli[material].hourglass)) * reference.V *
-                        double_dot(block.body.h, block.body.h);
+      block.hourglass = PerturbationStiffness::stiffness(
+          Number(static_cast<float>(moduli[material].hourglass)), reference.V, block.body.h);
       if (moduli[material].hourglass_stiffens) block.hourglass = stiffer * block.hourglass;
       largest = max(largest, eigenvalue_bound(block));
       for (int lane = 0; lane < W; ++lane) {
@@ -337,12 +327,12 @@ class Elements final : public ElementLevel {
   }
 
   [[gnu::flatten]] void add_diagonals(const Layout::Chunk& chunk) {
-    for_each_pack(chunk, [&](std::size_t pack, std::size_t face, std::size_t /*material*/) {
-      const NodalVectors<Number> g = nodal_gradients(elements_[pack]);
+    for_each_pack(layout_, chunk.first, chunk.last, [&](const StripPlace& at) {
+      const NodalVectors<Number> g = nodal_gradients(elements_[at.pack]);
       for (std::size_t I = 0; I < 8; ++I) {
-        const Triple<Number> D = diagonal(elements_[pack], g, static_cast<int>(I));
+        const Triple<Number> D = diagonal(elements_[at.pack], g, static_cast<int>(I));
         scatter_add<Number>({D(0, 0), D(1, 0), D(2, 0)}, numbers_of(stiffness_),
-                            layout_.places(face + I / 4, I % 4));
+                            layout_.places(at.face + I / 4, I % 4));
       }
     });
   }
@@ -365,8 +355,10 @@ std::unique_ptr<ElementLevel> make_element_level(const Mesh& mesh, const Ties& t
       return std::make_unique<Elements<4>>(mesh, ties, layout, free, springs);
     case 8:
       return std::make_unique<Elements<8>>(mesh, ties, layout, free, springs);
-    default:
+    case 16:
       return std::make_unique<Elements<16>>(mesh, ties, layout, free, springs);
+    default:
+      throw std::logic_error(fmt::format("no elements of the finest level for {} lanes", layout.width));
   }
 }
 

@@ -11,7 +11,7 @@ namespace sandglass {
 struct ModelModuli {
   double lambda;
   double mu;
-  double hourglass;  ///< what kappa is for the perturbation control: its k is this times V |h|^2 / 8 (eq. 12)
+  double hourglass;                 ///< that of PerturbationStiffness::stiffness
   bool hourglass_stiffens = false;  ///< with the law, as it is the law's and not a constant control's
 };
 

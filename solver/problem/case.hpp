@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "assembly/internal_force.hpp"
 #include "element/hourglass_settings.hpp"
+#include "element/method_choice.hpp"
 #include "forces/forces.hpp"
 #include "material/materials.hpp"
 #include "mesh/generators.hpp"

@@ -10,7 +10,7 @@
 
 namespace sandglass {
 
-/// The forces (N) that hold or drive sets of nodes, by name; see Body::set_reactions.
+/// The forces (N) that hold or drive sets of nodes, by name; see Body::reactions_of_sets.
 using Reactions = std::map<std::string, Vector>;
 
 /// One row of the dense history.

@@ -8,6 +8,7 @@
 #include "io/case_file.hpp"
 #include "sandglass/driven_problem.hpp"
 #include "solve/adaption.hpp"
+#include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/relaxation.hpp"
 #include "solve/stable_step.hpp"
@@ -139,7 +140,7 @@ class Simulation<Real>::Parts {
 
   /// False as for `take`.
   bool check() {
-    const bool healthy = leapfrog_.body().healthy();
+    const bool healthy = is_healthy(leapfrog_.body());
     if (!healthy && longest_step_.may_shorten()) {
       keep(StateCopy(std::as_const(whole_)));
       longest_step_.shorten();
@@ -148,7 +149,7 @@ class Simulation<Real>::Parts {
       return false;
     }
     try {
-      if (!healthy) leapfrog_.body().require_healthy(leapfrog_.step());
+      if (!healthy) require_healthy(leapfrog_.body(), leapfrog_.step());
       if (adaption_.active() && adaption_schedule_.due()) {
         const bool rose = adaption_.apply(leapfrog_.body(), Demotion::never).promoted > 0;
         if (rose) leapfrog_.body().evaluate_forces();

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <algorithm>
+#include <optional>
 #include <span>
 
+#include "assembly/gather_elements.hpp"
 #include "assembly/row_ties.hpp"
 #include "problem/model.hpp"
-#include "problem/observer.hpp"
-#include "solve/largest_frequency.hpp"
 #include "solve/loads.hpp"
+#include "solve/row_constraints.hpp"
 #include "solve/subcycling.hpp"
 
 namespace sandglass {
@@ -32,31 +32,12 @@ class Body {
   /// reactions of a body in equilibrium; of several ranks each knows those of its own nodes.
   const std::vector<double>& reactions() const { return reactions_; }
 
-  /// The constraints of nodes whose rows this rank owns.
-  const std::vector<std::size_t>& own_constraints() const { return own_constraints_; }
-
-  /// Numbers in the order of the scene's constraints, of which each rank knows its own, of all ranks.
-  std::vector<double> of_all_constraints(const std::vector<double>& numbers) const;
+  /// The constraints of the scene, on rows.
+  const RowConstraints<Real>& constraints() const { return constraints_; }
 
   /// The sum of the reactions (N) of each set that the case drives: the force that holds or moves it, without
   /// what accelerates the masses of its own nodes.
-  Reactions set_reactions() const;
-
-  /// Sets the values of elements that other ranks own, in the numbering of the mesh: as many for each.
-  template <class T>
-  void gather_elements(std::vector<T>& values) const {
-    std::vector<double> all(values.size());
-    const std::size_t count = values.size() / per_element_.size();
-    const auto rank = static_cast<std::size_t>(ranks().rank());
-    for (std::size_t c = layout().rank_cells[rank]; c < layout().rank_cells[rank + 1]; ++c) {
-      if (layout().elements[c] < 0) continue;
-      const std::size_t first = count * static_cast<std::size_t>(layout().elements[c]);
-      for (std::size_t k = first; k < first + count; ++k) all[k] = static_cast<double>(values[k]);
-    }
-    ranks().sum(all);
-    std::transform(all.begin(), all.end(), values.begin(),
-                   [](double value) { return static_cast<T>(value); });
-  }
+  Reactions reactions_of_sets() const { return constraints_.sums_over_sets(reactions_); }
 
   /// Evaluates the forces of the state. Afterwards the increments of constrained components are cleared, so
   /// that the update of increments can ignore constraints.
@@ -113,6 +94,9 @@ class Body {
   /// masses only free components move, without a branch.
   Rows<Real> on_free_components(const std::vector<double>& nodal) const;
 
+  const InternalForce<Real>& elements() const { return elements_; }
+  const Scene& scene() const { return scene_; }
+
   /// The order of its rows.
   const Layout& layout() const { return elements_.layout(); }
 
@@ -122,25 +106,15 @@ class Body {
   /// Strain and hourglass energy, J.
   StrainEnergies energies() const { return elements_.energies(state_); }
 
-  /// A frame of the present state at `time` (s) with velocities v (m/s).
-  Frame frame(double time, NodalField v) const;
-
-  /// Throws ComputationError when a displacement is not finite or an element is inverted.
-  void require_healthy(long step);
-
-  /// Whether all displacements are finite and no element is inverted.
-  bool healthy();
-
-  /// The stable step, by bounds of elements or, where the case says so, by the largest frequency of the body.
-  /// `inverse_masses` as LargestFrequency has them, `given_step` (s) is the one that a user demands, or 0.
-  StableStep stable_step(const Model& model, const Rows<Real>& inverse_masses, double given_step = 0.0);
-
   /// Lets small elements take small steps alone from the next evaluation on, if the case asks for it; see
   /// Subcycling.
   void subcycle(const Model& model, const Rows<Real>& inverse_masses) {
     if (model.scene().description.dynamics.subcycles > 1)
       subcycling_.emplace(model, elements_, inverse_masses);
   }
+
+  /// What lets small elements take small steps; null unless the case asks for it.
+  Subcycling<Real>* subcycling() { return subcycling_ ? &*subcycling_ : nullptr; }
 
   /// The number of small steps that small elements take in a step at present.
   int substeps() const { return subcycling_ ? subcycling_->substeps() : 1; }
@@ -163,7 +137,7 @@ class Body {
     archive("increment", state_.increment);
     archive("element history", state_.history);
     std::vector<double> levels = elements_.levels(state_);
-    if (!levels.empty()) gather_elements(levels);
+    if (!levels.empty()) gather_elements(layout(), levels);
     archive("element level", levels);
     elements_.set_levels(state_, levels);
     archive("increment step", state_.step);
@@ -172,24 +146,9 @@ class Body {
     archive("load factor", load_factor_);
     loads_.keep(archive);
     if (subcycling_) subcycling_->keep(archive);
-    largest_frequency_.keep(archive);
   }
 
  private:
-  struct RowConstraint {
-    std::size_t index;  // in the scene
-    std::size_t row;
-    std::size_t component;
-    std::array<Real, 3> share;  // of the terms of its path, m
-    std::size_t angle;
-  };
-
-  void impose(const RowConstraint& constraint, Real displacement) {
-    Real& u = state_.u[constraint.row][constraint.component];
-    state_.increment[constraint.row][constraint.component] += displacement - u;
-    u = displacement;
-  }
-
   /// Rows, of which each rank knows its own, of all ranks.
   Rows<Real> of_all(Rows<Real> rows) const {
     layout().gather_rows(rows.data());
@@ -199,31 +158,17 @@ class Body {
   /// Makes everything that is kept known to all ranks.
   void gather();
 
-  /// Sets the values of elements that other ranks own.
-  void fill_others(double value) {
-    if (ranks().count() > 1) std::fill(per_element_.begin(), per_element_.end(), value);
-  }
-
-  const Ranks& ranks() const { return *layout().team.ranks; }
-
   const InternalForce<Real>& elements_;
   const Scene& scene_;
-  std::vector<std::array<Real, 3>> terms_;  // of paths of each angle, at the present factor
-  std::vector<RowConstraint> constraints_;  // of rows that this rank computes
-  std::vector<std::size_t> own_constraints_;
+  RowConstraints<Real> constraints_;
   RowTies<Real> ties_;
   Loads<Real> loads_;
   std::optional<Subcycling<Real>> subcycling_;
-  LargestFrequency<Real> largest_frequency_;
   double load_factor_ = 0.0;
   State<Real> state_;
   Rows<Real> force_;
   std::vector<double> reactions_;
-  std::vector<double> per_element_;
 };
-
-/// A frame of a model with displacements u (m), reached in one step, and zero velocities.
-Frame static_frame(const Model& model, double time, const NodalField& u);
 
 extern template class Body<double>;
 extern template class Body<float>;

@@ -9,6 +9,8 @@
 
 #include "base/error.hpp"
 #include "solve/adaption.hpp"
+#include "solve/frame.hpp"
+#include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
 #include "solve/stable_step.hpp"
 #include "solve/steady_step.hpp"
@@ -101,7 +103,7 @@ class CentralDifference {
 
   /// Of imposed displacements and forces since the start, J.
   double external_work() const {
-    const std::vector<double> all = body_.of_all_constraints(works_);
+    const std::vector<double> all = body_.constraints().of_all(works_);
     return std::accumulate(all.begin(), all.end(), body_.work_of_loads());
   }
 
@@ -123,8 +125,8 @@ class CentralDifference {
   void keep(Archive& archive) {
     leapfrog_.keep(archive);
     steady_step_.keep(archive);
-    reactions_ = body_.of_all_constraints(reactions_);
-    works_ = body_.of_all_constraints(works_);
+    reactions_ = body_.constraints().of_all(reactions_);
+    works_ = body_.constraints().of_all(works_);
     archive("reaction", reactions_);
     archive("next step", next_step_);
     archive("work", works_);
@@ -182,7 +184,7 @@ class CentralDifference {
     }
     const NodalField u = body_.field(body_.state().u), v = velocities();
     advance();
-    if (!body_.healthy()) return true;
+    if (!is_healthy(body_)) return true;
     const NodalField u_after = body_.field(body_.state().u), v_after = velocities();
     while (observer.next_sample() <= time() * (1.0 + 1e-12)) {
       const double left = (time() - observer.next_sample()) / step_size();
@@ -197,7 +199,7 @@ class CentralDifference {
     const double now = loading(time()), before = loading(time() - step_size());
     follow_paths(before, now);
     const auto& constraints = model_.scene().constraints;
-    for (const std::size_t k : body_.own_constraints()) {
+    for (const std::size_t k : body_.constraints().own()) {
       const ImposedPath& path = constraints[k].path;
       const double force = constraint_force(k);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -324,9 +326,10 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   };
   const auto report = [&] {
     observer.history({scheme.time(), kinetic, energies.strain, energies.hourglass, scheme.external_work(),
-                      body.residual(), scheme.step_size(), scheme.adaption_energy(), body.set_reactions()});
+                      body.residual(), scheme.step_size(), scheme.adaption_energy(),
+                      body.reactions_of_sets()});
     if (frame_due()) {
-      observer.frame(body.frame(scheme.time(), std::move(v)));
+      observer.frame(frame_of(body, scheme.time(), std::move(v)));
       ++frames;
     }
     const bool proceeds = observer.proceed(scheme.step(), scheme.time() / settings.duration, body.residual());
@@ -371,13 +374,13 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     motion.most_substeps = std::max(motion.most_substeps, body.substeps());
     const bool check_due = scheme.step() % settings.check_interval == 0, due = check_due || frame_due();
     if (!due && !sampled) continue;
-    const bool healthy = body.healthy();
+    const bool healthy = is_healthy(body);
     if ((!healthy || gains_energy()) && alone && scheme.may_shorten()) {
       keep(StateCopy(std::as_const(sound)));
       scheme.shorten();
       ++motion.repeated;
     } else if (due) {
-      if (!healthy) body.require_healthy(scheme.step());
+      if (!healthy) require_healthy(body, scheme.step());
       report();
       if (check_due) {  // the number of frames does not change the motion
         if (adaption.active() && adaption_schedule.due())

@@ -7,6 +7,8 @@
 #include "base/error.hpp"
 #include "solve/body.hpp"
 #include "solve/condensed_response.hpp"
+#include "solve/frame.hpp"
+#include "solve/health.hpp"
 
 namespace sandglass {
 
@@ -84,16 +86,16 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
   const RelaxationSettings& settings = scene.description.relaxation;
   const NodalField no_velocity(scene.mesh.points.size());
   Body<Real> body(model, elements);
-  observer.frame(body.frame(0.0, no_velocity));
+  observer.frame(frame_of(body, 0.0, no_velocity));
   HistoryRow at_rest{};
-  at_rest.reactions = body.set_reactions();
+  at_rest.reactions = body.reactions_of_sets();
   observer.history(at_rest);
   constexpr auto epsilon = static_cast<double>(std::numeric_limits<Real>::epsilon());
   Relaxation result;
   if (settings.max_steps > 0) body.move_to(superposed<Real>(model, elements.layout()));
   body.impose(1.0);
   body.evaluate_forces();
-  body.require_healthy(1);
+  require_healthy(body, 1);
   result.u = body.field(body.state().u);
   result.energies = body.energies();
   result.residual = body.residual();
@@ -106,9 +108,9 @@ Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Ob
     result.interrupted = !observer.proceed(1, 1.0, result.residual);
   }
   observer.history({1.0, 0.0, result.energies.strain, result.energies.hourglass,
-                    work_of(scene, body.of_all_constraints(body.reactions())) - 0.5 * body.load_potential(),
-                    result.residual, 1.0, 0.0, body.set_reactions()});
-  observer.frame(body.frame(1.0, no_velocity));
+                    work_of(scene, body.constraints().of_all(body.reactions())) - 0.5 * body.load_potential(),
+                    result.residual, 1.0, 0.0, body.reactions_of_sets()});
+  observer.frame(frame_of(body, 1.0, no_velocity));
   return result;
 }
 

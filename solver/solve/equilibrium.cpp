@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "math/row_loops.hpp"
+#include "solve/health.hpp"
 #include "solve/newton_step.hpp"
 
 namespace sandglass {
@@ -116,7 +117,7 @@ bool Equilibrium<Real>::accelerated() {
     best_norm_ = norm;
     best_ = {body().state(), pressures()};
   }
-  const bool near = !norms_.empty() && norm < near_answer * norms_.front() && body().healthy();
+  const bool near = !norms_.empty() && norm < near_answer * norms_.front() && is_healthy(body());
   const bool patient = near || effort_ == Effort::patient;
   if (progress_.take(norm, patient ? patient_patience : accelerated_patience) && linearized_step())
     return true;
@@ -138,7 +139,7 @@ bool Equilibrium<Real>::linearized_step() {
   norms_.push_back(norm);
   if (!std::isfinite(norm) || norm > 1e3 * norms_.front()) return false;
   if (norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front() &&
-      body().healthy()) {
+      is_healthy(body())) {
     mixed_.linearize();
   }
   reduced_ = mixed_.residuals();
@@ -185,7 +186,7 @@ bool Equilibrium<Real>::multiplied() {
   }
   if (progress_.take(mixed_.norm(), multiplied_patience)) {
     const auto multipliers = mixed_.multipliers(penalty_over_shear);
-    if (body().healthy()) mixed_.linearize(multipliers.penalty);
+    if (is_healthy(body())) mixed_.linearize(multipliers.penalty);
     if (newton_step(mixed_, &multipliers, most_products_with_multipliers,
                     leaves_saddle_ ? &convex_ : nullptr)) {
       mixed_.take_pressures(multipliers);
@@ -208,7 +209,7 @@ void Equilibrium<Real>::begin_descent() {
 /// One Newton step of the body's own forces.
 template <class Real>
 bool Equilibrium<Real>::descended() {
-  if (body().healthy()) mixed_.linearize();
+  if (is_healthy(body())) mixed_.linearize();
   return progress_.take(residual(), descent_patience) && newton_step<Real>(mixed_, nullptr, most_products);
 }
 
@@ -236,7 +237,7 @@ bool Equilibrium<Real>::leave(const std::vector<MixedVector>& falling, bool slow
     go_to(saddle);
     mixed_.move(motion, length);
     mixed_.evaluate(multipliers, f);
-    return body().healthy() ? mixed_.potential(multipliers) : INFINITY;
+    return is_healthy(body()) ? mixed_.potential(multipliers) : INFINITY;
   };
   const double at_saddle = potential_along(falling.front(), 0.0);
   double least = at_saddle;
@@ -292,7 +293,7 @@ void Equilibrium<Real>::go_to_lower() {
 template <class Real>
 double Equilibrium<Real>::potential_at(const Point& point) {
   go_to(point);
-  return body().healthy() ? mixed_.potential(nullptr) : INFINITY;
+  return is_healthy(body()) ? mixed_.potential(nullptr) : INFINITY;
 }
 
 template <class Real>

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "solve/equilibrium.hpp"
+#include "solve/health.hpp"
 
 namespace sandglass {
 
@@ -24,7 +25,7 @@ ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   Equilibrium<double> search(exact, elements);
   search.body().state() = state_at(elements, u);
   search.body().impose(1.0);
-  if (!search.body().healthy()) {
+  if (!is_healthy(search.body())) {
     throw ComputationError("the mean-dilatation element is inverted at this answer: no estimate");
   }
   search.take_own_pressures();

@@ -2,14 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
 
 namespace sandglass {
 
+namespace {
+
+/// The smallest det F of each element; 1 where another rank owns it.
+template <class Real>
+std::vector<double> smallest_jacobians(const Body<Real>& body) {
+  std::vector<double> jacobians(body.scene().mesh.cells.size(), 1.0);
+  body.elements().smallest_jacobians(body.state(), jacobians);
+  return jacobians;
+}
+
+}  // namespace
+
 bool is_healthy(double jacobian) {
   return std::isfinite(jacobian) && jacobian > 0.0;
+}
+
+template <class Real>
+bool is_healthy(const Body<Real>& body) {
+  const std::vector<double> jacobians = smallest_jacobians(body);
+  const bool healthy = std::ranges::all_of(jacobians, [](double jacobian) { return is_healthy(jacobian); });
+  return !body.layout().team.ranks->any(!healthy);
 }
 
 void require_healthy(std::span<const double> jacobians, long step) {
@@ -34,5 +54,17 @@ void require_healthy(std::span<const double> jacobians, long step) {
              : "take a smaller step (step_fraction, time_step) or check more often (check_interval)");
   throw ComputationError(text, finite ? Breakdown::inverted : Breakdown::not_finite);
 }
+
+template <class Real>
+void require_healthy(const Body<Real>& body, long step) {
+  std::vector<double> jacobians = smallest_jacobians(body);
+  gather_elements(body.layout(), jacobians);
+  require_healthy(jacobians, step);
+}
+
+template bool is_healthy(const Body<double>&);
+template bool is_healthy(const Body<float>&);
+template void require_healthy(const Body<double>&, long);
+template void require_healthy(const Body<float>&, long);
 
 }  // namespace sandglass

@@ -2,13 +2,23 @@
 
 #include <span>
 
+#include "solve/body.hpp"
+
 namespace sandglass {
 
 /// Whether det F is positive and finite.
 bool is_healthy(double jacobian);
 
+/// Whether all displacements of a body are finite and no element is inverted.
+template <class Real>
+bool is_healthy(const Body<Real>& body);
+
 /// Throws ComputationError if an element is inverted or its det F is not finite; the error names the step,
 /// the first ten such elements with det F, and a remedy. `jacobians` are the smallest det F of each element.
 void require_healthy(std::span<const double> jacobians, long step);
+
+/// The same for the elements of a body.
+template <class Real>
+void require_healthy(const Body<Real>& body, long step);
 
 }  // namespace sandglass

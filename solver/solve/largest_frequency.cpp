@@ -44,7 +44,7 @@ double largest_eigenvalue(Numbers q, const Operator& apply) {
 }  // namespace
 
 template <class Real>
-double LargestFrequency<Real>::square(const Mesh& mesh, const InternalForce<Real>& elements,
+double LargestFrequency<Real>::square(const Mesh& mesh, const ElementForces<Real>& elements,
                                       const RowTies<Real>& ties, const Rows<Real>& inverse_masses,
                                       const State<Real>& state, const std::vector<double>& bounds,
                                       double most) {

@@ -21,7 +21,7 @@ class LargestFrequency {
   /// square for single elements, it is a whole power of 2^(-1/32), rounded up, so that roundoff, which
   /// depends on units and directions, does not reach the steps. `inverse_masses` (1/kg) are zero on
   /// components that are not free.
-  double square(const Mesh& mesh, const InternalForce<Real>& elements, const RowTies<Real>& ties,
+  double square(const Mesh& mesh, const ElementForces<Real>& elements, const RowTies<Real>& ties,
                 const Rows<Real>& inverse_masses, const State<Real>& state, const std::vector<double>& bounds,
                 double most);
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
 #include "math/row_loops.hpp"
@@ -13,6 +16,19 @@ namespace {
 std::vector<double> inverses(std::vector<double> values) {
   for (double& value : values) value = 1.0 / value;
   return values;
+}
+
+/// The smallest of the steps of all ranks; of equal ones that of the first element.
+StableStep smallest_of(const Ranks& ranks, const StableStep& own) {
+  const auto steps = ranks.of_all(own.step), elements = ranks.of_all(static_cast<double>(own.element));
+  StableStep smallest = own;
+  for (std::size_t r = 0; r < steps.size(); ++r) {
+    const auto element = static_cast<int>(elements[r]);
+    if (steps[r] < smallest.step || (steps[r] == smallest.step && element < smallest.element)) {
+      smallest = {steps[r], element};
+    }
+  }
+  return smallest;
 }
 
 }  // namespace
@@ -28,8 +44,25 @@ void require_steps(const Model& model) {
 template <class Real>
 Leapfrog<Real>::Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping)
     : body_(model, elements),
+      largest_frequency_(model.scene().mesh.cells.size()),
       inverse_masses_(body_.on_free_components(inverses(model.masses()))),
       clock_{.damping = damping} {}
+
+template <class Real>
+StableStep Leapfrog<Real>::stable_step(const Model& model, double given_step) {
+  std::vector<double> bounds(model.element_masses().size(), 0.0);
+  body_.elements().stiffness_bounds(body_.state(), bounds);
+  if (auto* subcycling = body_.subcycling()) {
+    return subcycling->choose_substeps(stable_steps(model, std::move(bounds)), given_step);
+  }
+  StableStep stable = smallest_of(*body_.layout().team.ranks, sandglass::stable_step(model, bounds));
+  if (model.scene().description.dynamics.body_frequency == 0) return stable;
+  const double square =
+      largest_frequency_.square(model.scene().mesh, body_.elements(), body_.ties(), inverse_masses_,
+                                body_.state(), bounds, std::pow(2.0 / stable.step, 2));
+  if (std::isfinite(square)) stable.step = std::max(stable.step, stable_step_of(model, square));
+  return stable;
+}
 
 template <class Real>
 void Leapfrog<Real>::move(double step, LeapfrogClock::Coefficients coefficients) {

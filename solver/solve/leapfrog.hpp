@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solve/body.hpp"
+#include "solve/largest_frequency.hpp"
 
 namespace sandglass {
 
@@ -51,10 +52,9 @@ class Leapfrog {
   /// See Body::subcycle.
   void subcycle(const Model& model) { body_.subcycle(model, inverse_masses_); }
 
-  /// See Body::stable_step.
-  StableStep stable_step(const Model& model, double given_step = 0.0) {
-    return body_.stable_step(model, inverse_masses_, given_step);
-  }
+  /// The stable step, by bounds of elements or, where the case says so, by the largest frequency of the body.
+  /// `given_step` (s) is the one that a user demands, or 0.
+  StableStep stable_step(const Model& model, double given_step = 0.0);
 
   double time() const { return clock_.time; }  ///< s, of the displacements
   long step() const { return clock_.step; }
@@ -91,6 +91,7 @@ class Leapfrog {
   template <class Archive>
   void keep(Archive& archive) {
     body_.keep(archive);
+    largest_frequency_.keep(archive);
     archive("time", clock_.time);
     archive("step", clock_.step);
     archive("step size", clock_.step_size);
@@ -101,6 +102,7 @@ class Leapfrog {
   void move(double step, LeapfrogClock::Coefficients coefficients);
 
   Body<Real> body_;
+  LargestFrequency<Real> largest_frequency_;
   Rows<Real> inverse_masses_;  // of nodes (1/kg), zero on constrained components
   LeapfrogClock clock_;
 };

@@ -212,8 +212,8 @@ class LoadLevels {
   template <class Archive>
   void keep(Archive& archive, const Body<Real>& body) {
     body.layout().gather_rows(before_.u.data());
-    body.gather_elements(before_.pressures);
-    body.gather_elements(last_.pressures);
+    gather_elements(body.layout(), before_.pressures);
+    gather_elements(body.layout(), last_.pressures);
     archive("leg", leg_);
     if (leg_ == 0 || leg_ >= turns_.size()) {
       throw InputError("checkpoint: 'leg' must be one of the case's cycles; it belongs to another case");

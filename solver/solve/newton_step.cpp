@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "math/row_loops.hpp"
+#include "solve/health.hpp"
 
 namespace sandglass {
 
@@ -46,7 +47,7 @@ class NewtonStep {
     for (int trial = 0; trial < most_trials; ++trial, share *= 0.5) {
       mixed_.move(step, share);
       mixed_.evaluate(multipliers_, f);
-      if (mixed_.body().healthy()) {
+      if (is_healthy(mixed_.body())) {
         const double allowed = start_potential + 1e-4 * share * slope;
         if (std::sqrt(dot(f, f, blocks().u)) < (1.0 - 1e-4 * share) * size_) return true;
         if (mixed_.potential(multipliers_) <= allowed) return true;

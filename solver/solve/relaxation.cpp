@@ -12,6 +12,8 @@
 #include "solve/condensed_answer.hpp"
 #include "solve/equilibrium.hpp"
 #include "solve/error_estimate.hpp"
+#include "solve/frame.hpp"
+#include "solve/health.hpp"
 #include "solve/load_levels.hpp"
 #include "solve/stagnation.hpp"
 
@@ -42,7 +44,7 @@ class Search {
     if (from != nullptr) {
       keep(CheckpointReader(*from));
     } else {
-      observer_.frame(body().frame(0.0, no_velocity_));
+      observer_.frame(frame_of(body(), 0.0, no_velocity_));
       report();
     }
     while (!ended_) {
@@ -52,7 +54,7 @@ class Search {
         return checkpoint;
       });
       load_levels_.predict(equilibrium_);
-      if (load_levels_.advances() && body().healthy() && solve() && descend_from_saddles()) {
+      if (load_levels_.advances() && is_healthy(body()) && solve() && descend_from_saddles()) {
         finish_load_level();
       } else if (!ended_) {
         retry_load_level();
@@ -63,11 +65,11 @@ class Search {
 
   /// The same from displacements near the answer, at the full load; none if they do not lead to it.
   std::optional<Relaxation> run_near(const NodalField& u) {
-    const Frame rest = body().frame(0.0, no_velocity_);
+    const Frame rest = frame_of(body(), 0.0, no_velocity_);
     load_levels_.skip_to_end();
     body().state() = state_at(elements_, u);
     body().impose(load_levels_.load());
-    if (!body().healthy()) return std::nullopt;
+    if (!is_healthy(body())) return std::nullopt;
     equilibrium_.take_own_pressures();
     const auto& coarser = model_.scene().coarser;
     if (!coarser.empty()) equilibrium_.average_pressures(coarser.front().element_of);
@@ -115,9 +117,9 @@ class Search {
     result_.energies = body().energies();
     result_.steps = equilibrium_.evaluations() + evaluations_of_estimates_;
     result_.residual = equilibrium_.residual();
-    result_.inverted = !body().healthy();
+    result_.inverted = !is_healthy(body());
     result_.adaption_seconds = adaption_.seconds();
-    observer_.frame(body().frame(time(), no_velocity_));
+    observer_.frame(frame_of(body(), time(), no_velocity_));
     return std::move(result_);
   }
 
@@ -182,7 +184,7 @@ class Search {
       equilibrium_.pressures() = best->second;
       equilibrium_.start(load_levels_.effort());
     }
-    const bool healthy = body().healthy();
+    const bool healthy = is_healthy(body());
     result_.stagnated = healthy && !near();
     const bool single = std::is_same_v<Real, float>;
     result_.rounded =
@@ -248,7 +250,7 @@ class Search {
   }
 
   /// Whether the search may end. Where an element is inverted it may not: another equilibrium may be near.
-  bool arrived() { return (near() || (at_rounding() && equilibrium_.bears_nothing())) && body().healthy(); }
+  bool arrived() { return (near() || (at_rounding() && equilibrium_.bears_nothing())) && is_healthy(body()); }
 
   bool near() const {
     return load_levels_.full() ? equilibrium_.residual() < tolerance()
@@ -299,7 +301,7 @@ class Search {
     add_work();
     report();
     if (ended_) return;
-    observer_.frame(body().frame(load_levels_.travelled(), no_velocity_));
+    observer_.frame(frame_of(body(), load_levels_.travelled(), no_velocity_));
     load_levels_.solved(equilibrium_);
     if (!ended_ && !load_levels_.has_more()) {
       throw ComputationError(
@@ -318,7 +320,7 @@ class Search {
     const std::string where =
         fmt::format("the last equilibrium is at {:.6g} of the load", load_levels_.solved_load());
     try {
-      body().require_healthy(equilibrium_.evaluations());
+      require_healthy(body(), equilibrium_.evaluations());
     } catch (const ComputationError& error) {
       throw ComputationError(fmt::format("{}; {}", error.what(), where), error.breakdown());
     }
@@ -354,7 +356,7 @@ class Search {
   void add_work() {
     const auto& constraints = model_.scene().constraints;
     const auto moved = load_levels_.moved();
-    const std::vector<double> forces = body().of_all_constraints(body().reactions());
+    const std::vector<double> forces = body().constraints().of_all(body().reactions());
     for (std::size_t k = 0; k < constraints.size(); ++k) {
       const ImposedPath& path = constraints[k].path;
       const double force = forces[k];
@@ -370,7 +372,7 @@ class Search {
     const StrainEnergies energies = body().energies();
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
                        energies.hourglass, work_ + body().work_of_loads(), equilibrium_.residual(),
-                       load_levels_.increment(), 0.0, body().set_reactions()});
+                       load_levels_.increment(), 0.0, body().reactions_of_sets()});
   }
 
   const Model& model_;

@@ -12,6 +12,7 @@
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/work.hpp"
 #include "solve/adaption.hpp"
+#include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
 
 namespace sandglass {
@@ -65,7 +66,7 @@ class SteppedModelOf final : public SteppedModel {
 
   void require_healthy() override {
     try {
-      leapfrog_.body().require_healthy(0);
+      sandglass::require_healthy(leapfrog_.body(), 0);
     } catch (const ComputationError& error) {
       throw ComputationError(fmt::format("bench of {} with {}: the waves of the start were too much: {}",
                                          model_.scene().description.name, model_.choice().method,
