@@ -118,7 +118,7 @@ class BatchLoop final : public BatchForce<Number> {
                               const Number* u) const {
     const std::size_t material = layout_.groups[group].material;
     const auto law = law_of(material);
-    const Number share_of_density(static_cast<Real>(densities_[material] / 8.0));
+    const Number share_of_density(static_cast<Real>(share_of_node(densities_[material])));
     walk_strips(layout_, group, group + 1, gather_from(u),
                 [&](const auto& lower, const auto& upper, const StripPlace& at) {
                   const Element element = in_all_lanes(constants_[at.pack]);

@@ -32,7 +32,7 @@ std::vector<int> sorted_along_the_mesh(const Mesh& mesh) {
   for (std::size_t e = 0; e < position.size(); ++e) {
     double sum = 0.0;
     for (const int node : mesh.cells[e]) sum += mesh.points[at(node)][axis] - low[axis];
-    position[e] = std::round(sum / 8.0 / grain);
+    position[e] = std::round(sum / static_cast<double>(mesh.cells[e].size()) / grain);
   }
   std::vector<int> order(mesh.cells.size());
   std::iota(order.begin(), order.end(), 0);

@@ -12,6 +12,11 @@ namespace sandglass {
 inline constexpr NodalVectors<double> corner_signs{{-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,  //
                                                     -1, -1, 1,  1, -1, 1,  1, 1, 1,  -1, 1, 1}};
 
+/// The share of an element's mass, or density, that each of its nodes carries.
+constexpr double share_of_node(double of_element) {
+  return of_element / 8.0;
+}
+
 /// Hourglass base vectors Gamma_Ia of Flanagan and Belytschko 1981: the nodal values of eta zeta, xi zeta, xi
 /// eta and xi eta zeta.
 constexpr Matrix<double, 8, 4> hourglass_base_vectors() {

@@ -17,7 +17,7 @@ std::vector<double> element_masses(const Mesh& mesh, const Materials& materials)
 std::vector<double> lumped_masses(const Mesh& mesh, const std::vector<double>& element_masses) {
   std::vector<double> masses(mesh.points.size(), 0.0);
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
-    for (const int node : mesh.cells[e]) masses[at(node)] += element_masses[e] / 8.0;
+    for (const int node : mesh.cells[e]) masses[at(node)] += share_of_node(element_masses[e]);
   }
   return masses;
 }

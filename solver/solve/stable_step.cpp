@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "mesh/hexahedron.hpp"
 
 namespace sandglass {
 
@@ -19,7 +20,7 @@ double step_of(double square, const LoadRates& rates) {
 }
 
 double step_of(const Model& model, std::size_t element, double stiffness) {
-  const double square = stiffness / (model.element_masses()[element] / 8.0);
+  const double square = stiffness / share_of_node(model.element_masses()[element]);
   return step_of(square, model.load_rates().empty() ? LoadRates{} : model.load_rates()[element]);
 }
 
