@@ -18,7 +18,6 @@ from case_file import read_case, read_tables
 from common.errors import ComputationError, InputError
 from common.program import binary
 from exchange.convert import match_displacement
-from exchange.decks import PROGRAMS as DECKS
 from exchange.decks.problem import DAMPING_PER_CROSSING, RELAXATION_CROSSINGS, STEP_FRACTION
 from exchange.hdf5_file import read_displacement
 from mesh_file import load_case_mesh, make_mesh
@@ -65,10 +64,6 @@ class Bench:
             raise kind(f"sandglass {arguments[0]}: {told[-1].removeprefix('error: ')}")
         return done
 
-    def version(self):
-        """Of Sandglass."""
-        return self.sandglass("--version").output.split(maxsplit=1)[1].strip()
-
     def build(self):
         """Compiler and flags of Sandglass, in words."""
         output = self.folder / "provenance.json"
@@ -87,18 +82,10 @@ class Bench:
         """The path of a case's deck for a program and one of its Elements, in a new folder."""
         key = case, program.deck, element
         if key not in self._decks:
-            self._decks[key] = self._write_deck(*key)
+            self._decks[key] = program.write_deck(self, case, element, self.fresh_folder())
         folder = self.fresh_folder()
         shutil.copytree(self._decks[key].parent, folder, dirs_exist_ok=True)
         return folder / self._decks[key].name
-
-    def _write_deck(self, case, deck, element):
-        output = self.fresh_folder() / f"deck{DECKS[deck].ENDING}"
-        words = ["mesh", case, "--deck", deck, "--element", element.name, "-o", output]
-        if element.hourglass is not None:
-            words += ["--hourglass", repr(element.hourglass)]
-        self.sandglass(*words)
-        return output
 
     def score(self, answer):
         """Max errors of a file of displacements, as fractions.

@@ -10,7 +10,6 @@ Needs the Python module (build/release/python, or the folder in SANDGLASS_PYTHON
 Exit codes: 0 all are within 30 %, 1 one is off, 2 bad usage or input, 3 a computation failed.
 """
 
-import argparse
 import json
 import os
 import statistics
@@ -22,7 +21,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.files import write_json
 from common.program import CASES, ROOT, binary, output_of
 
@@ -35,6 +34,7 @@ CANONICAL = (
     "cylinder-stretch",
 )
 WITHIN = 0.3
+KEYS = ("case", "method", "accuracy", "precision", "predicted", "simulated")  # of a record
 STEPS = 10  # of a frame, at whose end driven nodes are moved
 FOLDER = os.environ.get("SANDGLASS_PYTHON_FOLDER", str(ROOT / "build" / "release" / "python"))
 
@@ -133,16 +133,7 @@ def work(options):
         for key, pair in pairs_of(sandglass, case, options.methods).items():
             method, accuracy, precision = key
             predicted, seconds = pair
-            records.append(
-                {
-                    "case": case,
-                    "method": method,
-                    "accuracy": accuracy,
-                    "precision": precision,
-                    "predicted": predicted,
-                    "simulated": seconds,
-                }
-            )
+            records.append(dict(zip(KEYS, (case, *key, *pair), strict=True)))
             ratios.append(seconds / predicted)
             name = f"{method} {accuracy:g}" if accuracy else method
             print(
@@ -157,14 +148,13 @@ def work(options):
     return 1 if far else 0
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("cases", nargs="*", help=f"quasi-static cases; {', '.join(CANONICAL)}")
-    parser.add_argument("--methods", nargs="+", default=[], help="only these")
-    parser.add_argument("--json", type=Path, help="write both to this file")
-    return exit_code(work, parser.parse_args(arguments))
-
+main = command_line(
+    work,
+    __doc__,
+    option("cases", nargs="*", help=f"quasi-static cases; {', '.join(CANONICAL)}"),
+    option("--methods", nargs="+", default=[], help="only these"),
+    option("--json", type=Path, help="write both to this file"),
+)
 
 if __name__ == "__main__":
     sys.exit(main())

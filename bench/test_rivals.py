@@ -159,7 +159,7 @@ def test_openradioss_needs_both_executables_and_its_configuration(tmp_path, monk
         stand_in(tmp_path, OpenRadioss, "exit 0", executables=2)
 
 
-@pytest.mark.parametrize("program", PROGRAMS.values())
+@pytest.mark.parametrize("program", [PROGRAMS[name] for name in decks.PROGRAMS])
 def test_every_program_has_decks_for_its_elements(program):
     known = decks.PROGRAMS[program.deck]
     assert known.NAME == program.name

@@ -22,6 +22,30 @@ def exit_code(work, *arguments):
     return code
 
 
+def option(*names, **settings):
+    """An option or argument of a command_line(): what argparse's add_argument takes."""
+    return names, settings
+
+
+def command_line(work, text, *options, **settings):
+    """The main function of a script: from arguments (None: those of the process) to an exit code.
+
+    work: see exit_code(); takes the parsed options. text: the script's docstring, of which --help
+    shows the first line and the exit codes. settings: of argparse's parser.
+    """
+    codes = " ".join(text[text.find("Exit codes:") :].split()) if "Exit codes:" in text else None
+    described = {"description": text.splitlines()[0], "epilog": codes} | settings
+
+    def main(arguments=None):
+        """The command line. Returns the exit code."""
+        parser = argparse.ArgumentParser(**described)
+        for names, how in options:
+            parser.add_argument(*names, **how)
+        return exit_code(work, parser.parse_args(arguments))
+
+    return main
+
+
 def whole_number(smallest):
     """A type for argparse: whole numbers of at least `smallest`."""
 

@@ -7,7 +7,6 @@ estimates the errors of truths in the same way, from their own meshes.
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
 """
 
-import argparse
 import logging
 import math
 import sys
@@ -23,7 +22,7 @@ if __name__ == "__main__":
 import solve
 from case_file import find_case, read_case
 from common.accuracy import relative_errors
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError, suggestion
 from common.program import CASES
 from mesh_file import load_case_mesh, make_mesh
@@ -152,14 +151,11 @@ def run(options):
         estimate(name)
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Estimate the discretisation errors of stored goldens.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found",
-    )
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all stored ones")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("cases", nargs="*", metavar="CASE", help="default: all stored ones"),
+)
 
 
 if __name__ == "__main__":

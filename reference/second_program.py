@@ -7,7 +7,6 @@ meshes. Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found or a di
 more.
 """
 
-import argparse
 import dataclasses
 import sys
 import tempfile
@@ -18,7 +17,7 @@ if __name__ == "__main__":
 
 from case_file import find_case, read_case
 from common.accuracy import relative_errors
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import ComputationError, InputError, suggestion
 from common.files import read_json, write_json, write_whole
 from common.program import CASES
@@ -123,14 +122,11 @@ def run(options):
     return code
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Compute goldens by a second program, SfePy or GetFEM.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium or too far",
-    )
-    parser.add_argument("cases", metavar="CASE", nargs="*", help="default: all that have one")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("cases", metavar="CASE", nargs="*", help="default: all that have one"),
+)
 
 
 if __name__ == "__main__":

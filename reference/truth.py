@@ -6,7 +6,6 @@ distance from the limit of the sequence. Needs the solver's binary, which makes 
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
 """
 
-import argparse
 import dataclasses
 import hashlib
 import logging
@@ -26,7 +25,7 @@ if __name__ == "__main__":
 import newton
 from case_file import find_case, read_case
 from common.accuracy import relative_errors
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import ComputationError, InputError, suggestion
 from common.files import require_writable, writing
 from common.program import CASES
@@ -298,17 +297,13 @@ def run(options):
         make_truth(name, options.output or path_of("truth", name), options.keep)
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Compute truths with Taylor-Hood tetrahedra on graded meshes.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found",
-    )
-    add = parser.add_argument
-    add("cases", nargs="*", metavar="CASE", help="default: all in GRADINGS")
-    add("-o", "--output", metavar="FILE", help="HDF5 file to write (default: the stored truth)")
-    add("--keep", metavar="FOLDER", help="where answers on each mesh are kept and looked for")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("cases", nargs="*", metavar="CASE", help="default: all in GRADINGS"),
+    option("-o", "--output", metavar="FILE", help="HDF5 file to write (default: the stored truth)"),
+    option("--keep", metavar="FOLDER", help="where answers on each mesh are kept and looked for"),
+)
 
 
 if __name__ == "__main__":
