@@ -160,7 +160,6 @@ def _compare(path, tmp_path):
         ("c10 = 350.0", "young_modulus = 3000.0", ["material.young_modulus", "unknown key", "c10"]),
         ("c10 = 350.0", "c10 = inf", ["material.c10", "finite"]),
         ("c10 = 350.0", "c10 = [1.0, 2.0]", ["material.c10", "three"]),
-        ("bulk_modulus = 1e4", "bulk_modulus = 0.0", ["material.bulk_modulus", "positive"]),
     ],
 )
 def test_wrong_material(tmp_path, old, new, words):
