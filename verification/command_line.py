@@ -69,12 +69,19 @@ def dynamic(text, **numbers):
     return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
-def sandglass(*arguments, program=BINARY, **options):
-    """Runs the program; returns its outcome with its output."""
+def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
+    """Runs the program; returns its outcome with its output.
+
+    code: the exit code that it must end with. told: a text, or several, that its errors must have.
+    """
     command = [program, *map(str, arguments)]
-    return subprocess.run(
+    done = subprocess.run(
         command, capture_output=True, text=True, timeout=120 * PATIENCE, **options
     )
+    assert code in (None, done.returncode), f"{done.returncode}: {done.stdout}{done.stderr}"
+    for text in [told] if isinstance(told, str) else told:
+        assert text in done.stderr, f"{text!r} is not in {done.stderr!r}"
+    return done
 
 
 def catches_interrupts(process):

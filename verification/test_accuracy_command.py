@@ -10,8 +10,7 @@ from command_line import require_refusal, sandglass
 def test_the_mesh_is_refined_until_the_answer_is_near_enough(tmp_path):
     result = tmp_path / "result.h5"
     arguments = ("run", "column", "--accuracy", "0.6%", "--against", "truth", "-o", result)
-    outcome = sandglass(*arguments)
-    assert outcome.returncode == 0, outcome.stderr
+    outcome = sandglass(*arguments, code=0)
     assert "tl-mean-dilatation, double" in outcome.stdout  # the element that meshes are refined for
     found = re.search(
         r"error against the truth: max (\S+) %.*, on (\d+) elements instead of 270", outcome.stdout
@@ -25,15 +24,13 @@ def test_the_mesh_is_refined_until_the_answer_is_near_enough(tmp_path):
 
 
 def test_a_mesh_that_is_fine_enough_stays():
-    outcome = sandglass("run", "column", "--accuracy", "3%", "--against", "truth")
-    assert outcome.returncode == 0, outcome.stderr
+    outcome = sandglass("run", "column", "--accuracy", "3%", "--against", "truth", code=0)
     assert "on 270 elements instead of 270" in outcome.stdout
 
 
 def test_a_method_that_errs_more_than_the_mesh_is_told():
     arguments = ("run", "column", "-m", "linear", "--accuracy", "3%", "--against", "truth")
-    outcome = sandglass(*arguments)
-    assert outcome.returncode == 1, outcome.stderr
+    outcome = sandglass(*arguments, code=1)
     note = "the mesh is fine enough for tl-mean-dilatation, but not for linear"
     assert note in outcome.stdout
 

@@ -24,8 +24,7 @@ def beam(tmp_path):
 
 def test_what_sleeps_is_in_the_result_at_rest(beam):
     result = beam.parent / "result.h5"
-    outcome = sandglass("run", beam, "--sleep", "1%", "-o", result)
-    assert outcome.returncode == 0, outcome.stderr
+    outcome = sandglass("run", beam, "--sleep", "1%", "-o", result, code=0)
     awake = next(line for line in outcome.stdout.splitlines() if line.startswith("awake: "))
     assert 0 < int(awake.split()[1]) < 120 and awake.endswith("of 240 elements")
     assert "static equilibrium (stable): " in outcome.stdout

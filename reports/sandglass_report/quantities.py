@@ -1,4 +1,4 @@
-"""What each number of the page is: quantities.toml, from which axes, heads and their table are made.
+"""What each number of the page is, in quantities.toml: axes, heads and their table follow.
 
 A number has one name, unit and definition wherever it is shown, and one command that makes it.
 """
