@@ -33,35 +33,7 @@ METHODS = ("tl-mean-dilatation", "tl-perturbation")
 RATIOS = (0.3, 0.49, 0.4999)
 WIDTHS = (4, 8, 16, 24, 34)  # elements across the beam; five times as many along it
 ROUNDS = 3
-BEAM = """
-[case]
-name = "beam"
-requirement = "A soft beam, clamped at one end, bends when its other end is moved."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [0.02, 0.02, 0.1]
-elements = [{width}, {width}, {length}]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = {ratio}
-density = 1000.0
-
-[sets]
-clamped = {{ z = [0.0, 0.0] }}
-moved = {{ z = [0.1, 0.1] }}
-
-[[displacement]]
-set = "clamped"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "moved"
-value = [0.03, 0.0, 0.0]
-"""
+BEAM = Path(__file__).with_name("beam.toml.in").read_text()
 
 
 def time_sandglass(path):

@@ -28,36 +28,7 @@ from measuring import rest_of
 
 EDGE = 0.002  # m, of an element
 
-CASE = """# A block on a fixed base, touched in the middle of its upper side.
-
-[case]
-name = "touched-block"
-requirement = "A local touch costs what moves, not what is there."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [{size}]
-elements = [{elements}]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = {poisson_ratio}
-density = 1000.0
-
-[sets]
-base = {{ z = [0.0, 0.0] }}
-touched = {{ x = [{x}], y = [{y}], z = [{z}, {z}] }}
-
-[[displacement]]
-set = "base"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "touched"
-value = [0.0, 0.0, {depth}]
-"""
+CASE = Path(__file__).with_name("touched-block.toml.in").read_text()
 
 
 def case_text(elements, patch, depth, poisson_ratio=0.49):

@@ -5,9 +5,9 @@ Of a slow one, SANDGLASS_PATIENCE says how many times longer its commands may ta
 """
 
 import os
-import pathlib
 import signal
 import subprocess
+from pathlib import Path
 
 import h5py
 
@@ -17,39 +17,7 @@ from common.result_file import last_displacement
 PATIENCE = float(os.environ.get("SANDGLASS_PATIENCE", "1"))
 BINARY = os.environ.get("SANDGLASS_BINARY", str(ROOT / "build" / "release" / "sandglass"))
 
-BLOCK = """
-[case]
-name = "block"
-requirement = "A block is pulled and sheared."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [0.1, 0.1, 0.2]
-elements = [2, 2, 4]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.49
-density = 1000.0
-
-[sets]
-foot = { z = [0.0, 0.0] }
-head = { z = [0.2, 0.2] }
-
-[[displacement]]
-set = "foot"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "head"
-value = [0.02, 0.0, 0.01]
-
-[comparison]
-kappas = [0.01]
-golden = "golden.h5"
-"""
+BLOCK = (Path(__file__).parent / "support/block.toml").read_text()
 
 BARE = BLOCK.partition("[comparison]")[0]  # without a comparison
 
@@ -86,7 +54,7 @@ def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
 
 def catches_interrupts(process):
     """Whether a process handles Ctrl-C, according to the kernel."""
-    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
+    for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
         if line.startswith("SigCgt:"):
             return bool(int(line.split()[1], 16) >> (signal.SIGTERM - 1) & 1)  # watched last
     return False

@@ -12,24 +12,7 @@ import numpy as np
 from make_report import main
 
 HASHES = {"case_hash": "0123456789abcdef", "mesh_hash": "fedcba9876543210"}
-CASE = """
-[case]
-name = "column"
-requirement = "A short column leans by 50 % of its height."
-answer = "quasi-static"
-
-[[displacement]]
-set = "bottom"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "top"
-value = [0.3, 0.0, 0.4]
-
-[profile]
-set = "edge"
-order = "z"
-"""
+CASE = Path(__file__).with_name("column.toml").read_text()
 UNIT = 0.5  # the length of the imposed displacement, m
 
 
