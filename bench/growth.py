@@ -67,7 +67,7 @@ def time_implicit(path, folder, versions, programs):
     bench = peer_runs.Bench(path, folder)
     for program, element in programs:
         program.environment, program.processor = bench.environment, bench.processor
-        run = peer_runs.at_rest(bench, program, element)()
+        run = peer_runs.run_of(bench, program, element, path)()
         versions[program.name] = program.version
         yield program.name, run.seconds, None, run.iterations
 

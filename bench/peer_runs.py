@@ -29,6 +29,9 @@ CURVE_RATE = 15 / 8  # the steepest that the loading curve of eq. 15 is
 # The longer run of a motion has at least three times the steps and, in programs that step quickly,
 # this many elements times steps, half a second, so that its excess is clear of the start-up time.
 MANY = 4e6
+# What `sandglass run` says of its steps in motion, and of its evaluations at rest.
+STEPS = r"in (\d+) steps of"
+EVALUATIONS = r"equilibrium \(.*\): (\d+) evaluation"
 
 
 class Bench:
@@ -151,7 +154,7 @@ class Bench:
         """The step, s, that a method of Sandglass takes by default near the undeformed state."""
         span = self.mesh.largest_imposed() / self.shear_wave_speed
         done = self.sandglass("run", self.write_case(1e-6, duration=span), "-m", method)
-        return span / int(_said(r"in (\d+) steps of", done.output))
+        return span / _said(STEPS, done.output)
 
     @property
     def crossing(self):
@@ -166,27 +169,22 @@ class Bench:
         duration = RELAXATION_CROSSINGS * self.crossing
         settings = {"duration": duration, "damping": DAMPING_PER_CROSSING / self.crossing}
         done = self.sandglass("run", self.write_case(1.0, **settings), "-m", method)
-        return duration / int(_said(r"in (\d+) steps of", done.output))
+        return duration / _said(STEPS, done.output)
 
 
-def at_rest(bench, program, element):
-    """A run: a program's static solution."""
-
-    def run():
-        return program.run(bench.deck(bench.path, program, element), None)
-
-    return run
+def run_of(bench, program, element, case, motion=None):
+    """A run: a program's answer to a case. motion: (time step in s, steps); None: at rest."""
+    return lambda: program.run(bench.deck(case, program, element), motion)
 
 
-def sandglass_at_rest(bench, method, precision):
-    """A run: `sandglass run`, its search for rest. precision: "double" or "float"."""
+def own_run(bench, method, precision, case, counted):
+    """A run: `sandglass run`. precision: "double" or "float". counted: a pattern of its steps."""
 
     def run():
         output = bench.fresh_folder() / "result.h5"
-        words = ["run", bench.path, "-m", method, "--precision", precision, "-t", 1, "-o", output]
+        words = ["run", case, "-m", method, "--precision", precision, "-t", 1, "-o", output]
         done = bench.sandglass(*words)
-        steps = int(_said(r"equilibrium \(.*\): (\d+) evaluation", done.output))
-        return Run(done.seconds, done.processor_seconds, steps, 0, output)
+        return Run(done.seconds, done.processor_seconds, _said(counted, done.output), 0, output)
 
     return run
 
@@ -210,6 +208,10 @@ class Motion:
         duration = self.time_step * self.steps * longer
         return self.bench.write_case(self.share, duration=duration, time_step=self.time_step)
 
+    def of(self, longer):
+        """(time step in s, steps). longer: as of write_case()."""
+        return self.time_step, self.steps * longer
+
     def longer(self, quick):
         """The number of steps in the longer run over that in the shorter one.
 
@@ -223,37 +225,12 @@ class Motion:
         return self.share * self.bench.mesh.largest_imposed()
 
 
-def in_motion(motion, program, element, longer=1):
-    """A run: a program's central differences. longer: factor for the number of steps."""
-    case = motion.write_case(longer)
-
-    def run():
-        deck = motion.bench.deck(case, program, element)
-        return program.run(deck, (motion.time_step, longer * motion.steps))
-
-    return run
-
-
-def sandglass_in_motion(motion, method, precision, longer=1):
-    """A run: `sandglass run` of the motion as a dynamic case. precision: "double" or "float"."""
-    path = motion.write_case(longer)
-
-    def run():
-        output = motion.bench.fresh_folder() / "result.h5"
-        words = ["run", path, "-m", method, "--precision", precision, "-t", 1, "-o", output]
-        done = motion.bench.sandglass(*words)
-        steps = int(_said(r"in (\d+) steps of", done.output))
-        return Run(done.seconds, done.processor_seconds, steps, 0, output)
-
-    return run
-
-
 def _said(pattern, text):
-    """The match of a pattern in a program's output. Raises ComputationError if there is none."""
+    """The number that a pattern finds in an output. Raises ComputationError if there is none."""
     found = re.search(pattern, text)
     if not found:
         raise ComputationError(f"sandglass printed {text!r}: {pattern!r} is required")
-    return found[1]
+    return int(found[1])
 
 
 def _table(name, values):

@@ -113,12 +113,13 @@ def rows_at_rest(bench, programs, options):
         if program.explicit:
             rows.append(damped_row(bench, program, element, found, more))
         else:
-            runs = {"answer": peer_runs.at_rest(bench, program, element)}
+            runs = {"answer": peer_runs.run_of(bench, program, element, bench.path)}
             rows.append(Row(program.name, str(element), NEWTON, runs, **more))
     for method in options.methods or AT_REST:
         step = step_of(bench, method) if "motion" in options.solves else None
         for precision in precisions_of(method):
-            runs = {"answer": peer_runs.sandglass_at_rest(bench, method, precision)}
+            own = (bench, method, precision, bench.path, peer_runs.EVALUATIONS)
+            runs = {"answer": peer_runs.own_run(*own)}
             more = {"precision": precision, "build": "", "time_step": step}
             rows.append(Row("Sandglass", method, RELAXATION, runs, **more))
     return rows
@@ -160,19 +161,21 @@ def rows_in_motion(motion, programs, options):
     for program, element in elements_of(motion.bench, programs, options):
         if not program.moves:
             continue
-        make = peer_runs.in_motion
         runs = {
-            "answer": make(motion, program, element),
-            "longer": make(motion, program, element, motion.longer(program.explicit)),
+            name: peer_runs.run_of(
+                motion.bench, program, element, motion.write_case(longer), motion.of(longer)
+            )
+            for name, longer in (("answer", 1), ("longer", motion.longer(program.explicit)))
         }
         more = {"precision": program.precision, "build": program.build}
         rows.append(Row(program.name, str(element), EXPLICIT, runs, **more))
     for method in motion_methods(options):
         for precision in precisions_of(method):
-            make, longer = peer_runs.sandglass_in_motion, motion.longer(True)
             runs = {
-                "answer": make(motion, method, precision),
-                "longer": make(motion, method, precision, longer),
+                name: peer_runs.own_run(
+                    motion.bench, method, precision, motion.write_case(longer), peer_runs.STEPS
+                )
+                for name, longer in (("answer", 1), ("longer", motion.longer(True)))
             }
             rows.append(Row("Sandglass", method, EXPLICIT, runs, precision=precision, build=""))
     return rows

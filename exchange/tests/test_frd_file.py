@@ -46,7 +46,6 @@ def test_last_displacements_are_read(file):
     points, displacement = frd_file.read(file)
     assert (points == [[9, -9, 9], [9, 9, 8]]).all()
     assert (displacement == u).all()
-    assert (frd_file.read_displacement(file, 2) == u).all()
 
 
 @pytest.mark.parametrize(
@@ -70,12 +69,6 @@ def test_damaged_file(file, old, new, told):
     file.write_text(FRD.replace(old, new))
     with pytest.raises(InputError, match=told):
         frd_file.read(file)
-
-
-@pytest.mark.parametrize("n_nodes, told", [(3, "lacks node 3 of 1..3"), (1, "node 2: every node")])
-def test_nodes_that_are_not_those_of_the_deck(file, n_nodes, told):
-    with pytest.raises(InputError, match=told):
-        frd_file.read_displacement(file, n_nodes)
 
 
 def test_no_file_and_no_text(tmp_path):
