@@ -15,7 +15,7 @@ from common.errors import InputError
 from common.program import binary, output_of
 from common.result_file import last_displacement
 from laws import LAWS, VISCOELASTIC, VOLUMES, parameters
-from mesh_file import load_case_mesh, make_mesh
+from mesh_file import case_with_mesh
 from problem import MixedProblem
 
 # Values for soft tissue, by parameter; parameters that are not listed are given a default guess.
@@ -138,9 +138,7 @@ def test_the_solver_has_the_same_fibres_in_every_element(tmp_path):
 def _compare(path, tmp_path):
     """Asserts that solver and reference find the same answer of a case."""
     computed, energy = _run_solver(path, tmp_path / "result.h5")
-    make_mesh(path, tmp_path / "mesh.h5")
-    case = read_case(path)
-    mesh, _ = load_case_mesh(case, tmp_path / "mesh.h5")
+    case, mesh, _ = case_with_mesh(path)
     problem = MixedProblem(mesh, case.materials)
     newton.solve(problem, 4, 1e-10)
     # The solver stops at forces of 1e-11 of the reactions, which means 1e-11 in displacements. A
