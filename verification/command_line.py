@@ -73,11 +73,3 @@ def write_golden(case, **changed):
         golden["displacement"] = last_displacement(result)
         for name in ("case_hash", "mesh_hash"):
             golden.attrs[name] = changed.get(name, source.attrs[name])
-
-
-def require_refusal(words, folder, *arguments):
-    """Runs a command in an empty folder: it must refuse, with these words, and leave no file."""
-    outcome = sandglass(*arguments, cwd=folder)
-    assert outcome.returncode == 2
-    assert words in outcome.stderr
-    assert not list(folder.iterdir())

@@ -3,8 +3,7 @@
 import re
 
 import h5py
-import pytest
-from command_line import require_refusal, sandglass
+from command_line import sandglass
 
 
 def test_the_mesh_is_refined_until_the_answer_is_near_enough(tmp_path):
@@ -33,25 +32,3 @@ def test_a_method_that_errs_more_than_the_mesh_is_told():
     outcome = sandglass(*arguments, code=1)
     note = "the mesh is fine enough for tl-mean-dilatation, but not for linear"
     assert note in outcome.stdout
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (("column", "--against", "truth"), "--against: give the largest error too"),
-        (("column", "--against", "golden", "--accuracy", "1%"), "--against: golden not in {truth}"),
-        (("column", "--against", "truth", "--accuracy", "0"), "--accuracy = '0' must be a share"),
-        (("bar-wave", "--against", "truth", "--accuracy", "1%"), "'bar-wave' is in motion"),
-        (
-            ("column", "--against", "truth", "--accuracy", "1%", "--sleep", "1%"),
-            "leave out --sleep",
-        ),
-        (
-            ("column", "--against", "truth", "--accuracy", "1%", "--checkpoint", "kept"),
-            "leave out --checkpoint",
-        ),
-    ],
-    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
-)
-def test_wrong_use_is_told(arguments, words, tmp_path):
-    require_refusal(words, tmp_path, "run", *arguments)

@@ -9,7 +9,7 @@ import re
 import subprocess
 
 import pytest
-from command_line import BINARY, BLOCK, dynamic, methods, sandglass
+from command_line import BINARY, methods, sandglass
 
 FIGURES = (
     "ns_per_element_step",
@@ -213,27 +213,6 @@ def test_without_scalar_kernels_packs_are_compared_with_doubles(block):
     assert double["speedup_over_scalar_double"] is None
 
 
-@pytest.mark.parametrize(
-    "arguments, text",
-    [
-        ("bench colum", "did you mean 'column'?"),
-        ("bench --methods tl-ful", "--methods: 'tl-ful' is not known; did you mean 'tl-full'?"),
-        ("bench --precision half", "--precision = 'half' must be 'double' or 'float'"),
-        ("bench --threads 0", "--threads = 0 must be in [1, 1024]"),
-        ("bench --elements 0", "--elements = 0 must be in [1, 100000000]"),
-        ("bench --elements -8", "--elements = -8 must be in [1, 100000000]"),
-        ("bench --elements many", "--elements"),
-        ("bench --rest --elements 8", "--rest"),
-        ("bench --rest --repetitions 8", "--rest"),
-        ("bench --rest --methods tl-ful", "did you mean 'tl-full'?"),
-        ("bench --repetitions 0", "--repetitions = 0 must be in [1, 1000000]"),
-    ],
-)
-def test_wrong_input(arguments, text):
-    outcome = sandglass(*arguments.split(), code=2, told=text)
-    assert not outcome.stdout
-
-
 def test_rest(block):
     """Every method and precision, with ordered seconds; bench/ reads the solver's records."""
     json_file = block.parent / "rest.json"
@@ -265,19 +244,3 @@ def test_rest_that_is_not_reached_ends_with_3(block):
     assert "1 of 1 did not come to rest" in outcome.stderr
     (record,) = json.loads(json_file.read_text())["records"]
     assert record["seconds_to_rest"] is None and record["status"].startswith("failed: ")
-
-
-def test_dynamic_case_has_no_rest(block):
-    block.write_text(dynamic(BLOCK, duration=1.0))
-    outcome = sandglass("bench", "--rest", block, code=2)
-    assert "block.toml: a dynamic case has no rest to come to" in outcome.stderr
-
-
-def test_unwritable_json(tmp_path):
-    sandglass(
-        *"bench --elements 8 --repetitions 1 --methods tl-none --json".split(),
-        tmp_path / "none" / "bench.json",
-        code=2,
-        told="bench.json: cannot be written",
-    )
-    assert list(tmp_path.iterdir()) == []

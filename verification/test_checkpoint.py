@@ -191,23 +191,6 @@ def test_a_damaged_checkpoint_is_refused(stopped):
         assert file.read_bytes() == bad
 
 
-@pytest.mark.parametrize("every", ["-1", "nan", "often"])
-def test_wrong_interval(block, every):
-    outcome = sandglass("run", block, "--checkpoint", "c", f"--checkpoint-every={every}", code=2)
-    assert "--checkpoint-every" in outcome.stderr
-
-
-def test_a_checkpoint_is_no_result(block):
-    outcome = sandglass("run", block, "-o", "one.h5", "--checkpoint", "one.h5", cwd=block.parent)
-    assert outcome.returncode == 2
-    assert "must be another file than --output" in outcome.stderr
-
-
-def test_missing_folder_is_told_before_the_work(block):
-    outcome = sandglass("run", block, "--checkpoint", block.parent / "none" / "c", code=2)
-    assert "none/c: cannot be written" in outcome.stderr
-
-
 @pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="needs Linux's /proc")
 def test_an_interrupted_run_goes_on(block):
     """Ctrl-C writes a checkpoint at the next check, regardless of the interval."""

@@ -196,33 +196,6 @@ def test_run_takes_the_method_of_the_case_unless_told(block):
     assert "tl-full, double" in sandglass("run", block, "-p", "double").stdout
 
 
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (("--tolerance", "0"), ["--tolerance = '0'", "(0, 1]"]),
-        (("--tolerance", "1pc"), ["--tolerance = '1pc'", "1%"]),
-        (("--tolerance", "200%"), ["--tolerance = '200%'"]),
-        (("--budget", "1min"), ["--budget = '1min'", "1ms"]),
-        (("--budget", "-1ms"), ["--budget = '-1ms'"]),
-        (("--against", "gold"), ["--against", "golden"]),
-        (("--against", "truth"), ["block.h5"]),
-        (("--methods", "tl-nothing"), ["'tl-nothing'", "known"]),
-        (("--threads", "0"), ["--threads = 0"]),
-        (("--json", "/dev/null/choice.json"), ["/dev/null/choice.json"]),
-        (("--output", "/dev/null/chosen.toml"), ["/dev/null/chosen.toml"]),
-    ],
-)
-def test_wrong_input_is_told(block, arguments, words):
-    outcome = sandglass("choose", block, *arguments, code=2)
-    for word in words:
-        assert word in outcome.stderr
-
-
-def test_does_not_write_over_the_case(block):
-    sandglass("choose", block, "-o", block, code=2, told="another file")
-    assert block.read_text() == BLOCK
-
-
 def test_a_motion_is_chosen_for_and_the_chosen_case_runs(tmp_path):
     """Every rung that was tried has the time of its run beside the predicted one."""
     case, chosen = copied("loaded-block", tmp_path), tmp_path / "chosen.toml"

@@ -52,24 +52,6 @@ def test_what_the_program_says_of_itself(words, told):
     assert all(text in outcome.stdout for text in told)
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        [],
-        ["nonsense"],
-        ["run"],
-        ["run", "column", "--nonsense"],
-        ["mesh", "column"],
-        ["verify", "--threads", "-1"],
-        ["cases", "column"],
-    ],
-    ids=lambda arguments: " ".join(arguments) or "nothing",
-)
-def test_bad_usage(arguments):
-    outcome = sandglass(*arguments, code=2)
-    assert outcome.stderr
-
-
 def test_cases_lists_every_case_with_its_requirement():
     outcome = sandglass("cases", code=0)
     lines = outcome.stdout.splitlines()
@@ -90,44 +72,6 @@ def test_methods_lists_one_line_each():
 
 
 # Wrong input.
-
-
-def test_unknown_case_suggests_the_nearest(tmp_path):
-    for command in (["run"], ["verify"], ["mesh", "-o", tmp_path / "m.h5"]):
-        outcome = sandglass(command[0], "colum", *command[1:], code=2)
-        assert "did you mean 'column'?" in outcome.stderr
-        assert "`sandglass cases` lists" in outcome.stderr
-        assert "ellipsoid-touch" not in outcome.stderr
-
-
-def test_unknown_method_names_the_nearest(block):
-    outcome = sandglass("run", block, "--method", "tl-pertubation", code=2)
-    assert "did you mean 'tl-perturbation'?" in outcome.stderr
-    assert f"nearest of {len(methods())}: tl-perturbation, " in outcome.stderr
-    assert "`sandglass methods` lists all" in outcome.stderr
-
-
-@pytest.mark.parametrize(
-    "words, told",
-    [
-        *(
-            (["run", "CASE", f"--kappa={kappa}"], ["kappa"])
-            for kappa in ("-0.1", "nan", "", "0.1x")
-        ),
-        (["run", "CASE", "--kappa-modulus", "bulk"], ["'bulk' must be 'p-wave' or 'shear'"]),
-        (["run", "CASE", "--method", "tl-full", "--kappa", "0.1"], ["tl-full", "kappa"]),
-        (["run", "CASE", "-o", "none/a.h5"], ["none/a.h5: cannot be written"]),
-        (["mesh", "CASE", "-o", "none/a.h5"], ["none/a.h5: cannot be written"]),
-        (["verify", "CASE", "--json", "none/v.json"], ["v.json: cannot be written"]),
-        (["run", "bending"], ["'bending' has 12 variants, and one must be named", "2-nu0.49"]),
-        (["run", "bending-2-nu0.48"], ["did you mean 'bending-2-nu0.4"]),
-    ],
-)
-def test_wrong_words_are_refused(block, words, told):
-    words = [str(block) if word == "CASE" else word for word in words]
-    outcome = sandglass(*words, cwd=block.parent, code=2)
-    assert all(text in outcome.stderr for text in told)
-    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
 
 
 def test_wrong_key_is_told_with_file_and_line(block):

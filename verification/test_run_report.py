@@ -81,20 +81,6 @@ def test_a_mesh_in_mm_is_warned_of_with_a_way_out(block, tmp_path):
     )
 
 
-@pytest.mark.parametrize(
-    "options, words",
-    [
-        (("--method", "tl-perturbatoin"), "method: 'tl-perturbatoin' is not known"),
-        (("--kappa", "-1"), "kappa"),
-        (("--accuracy", "1%"), "--accuracy: 'tl-perturbation' does not adapt"),
-        (("-o", "there/is/no/folder.h5"), "folder"),
-    ],
-)
-def test_an_error_of_the_input_is_all_that_is_said(block, options, words):
-    outcome = sandglass("run", block, *options, code=2, told=words)
-    assert outcome.stdout == ""
-
-
 def test_a_condensed_method_in_motion_is_refused_before_anything_is_said(block):
     block.write_text(dynamic(BLOCK))
     outcome = sandglass("run", block, "--method", "linear-condensed", code=2)
@@ -249,14 +235,6 @@ def test_the_case_is_no_place_for_results(block, option):
     shutil.copy(block, case)
     sandglass("run", case, option, case, code=2, told=f"{case}: is what this command reads")
     assert case.read_bytes() == before
-
-
-def test_results_end_in_h5(block):
-    for name in ("block.toml", "result", "result.xdmf", "result.vtu"):
-        outcome = sandglass("run", block, "-o", name, cwd=block.parent, code=2)
-        assert f"--output = '{name}' must end in .h5" in outcome.stderr
-    assert block.read_text() == BLOCK
-    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
 
 
 def test_no_command_overwrites_what_it_reads(block):

@@ -5,7 +5,6 @@ import signal
 import subprocess
 import time
 
-import pytest
 from command_line import BINARY, sandglass
 
 MAP = ("--map", "load,nu", "--values", "load=0.5,1", "--values", "nu=0.3,0.49")
@@ -66,28 +65,6 @@ def test_goes_on_after_a_kill_and_gives_the_same_maps(block, tmp_path):
     after = cells_of(kept)
     assert {file: after[file] for file in before} == before
     assert maps_of(rest) == maps_of(whole)
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (("--map", "lode"), ["'lode'", "did you mean 'load'"]),
-        (("--map", "load,load"), ["--map", "two different ones"]),
-        (("--map", "load", "--values", "load=-1"), ["load = '-1'", "(0, inf)"]),
-        (("--map", "elements", "--values", "elements=1.5"), ["'1.5'", "whole number"]),
-        (("--map", "load", "--values", "nu=0.3"), ["no map has the axis 'nu'"]),
-        (("--methods", "tl-nothing"), ["'tl-nothing'", "known"]),
-        (("--folder", "/dev/null/cells"), ["/dev/null/cells"]),
-    ],
-)
-def test_wrong_input_is_told(block, arguments, words):
-    outcome = sandglass("stability", block, *arguments, code=2)
-    for word in words:
-        assert word in outcome.stderr
-
-
-def test_dynamic_cases_have_no_maps():
-    sandglass("stability", "bar-wave", code=2, told="quasi-static")
 
 
 def test_axes_are_described():

@@ -83,11 +83,6 @@ def test_verify_in_float_gives_figures_and_checks_no_limit(block):
     assert same["status"] == "ok" and 1e-9 < same["golden"]["max_relative_error"] < 6e-4
 
 
-def test_unknown_precision_ends_with_2(block):
-    outcome = sandglass("verify", block, "--precision", "half", code=2)
-    assert "--precision = 'half' must be 'double' or 'float'" in outcome.stderr
-
-
 def test_broken_limit_ends_with_1(block):
     write_golden(block)
     block.write_text(BLOCK + LIMIT.format(method="tl-none", below=1e-30))

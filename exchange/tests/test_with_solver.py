@@ -179,34 +179,6 @@ def test_a_full_disk_leaves_the_old_file(block, ending, size):
     assert (folder / f"own.{ending}").read_text() == "good"
 
 
-@pytest.mark.parametrize(
-    "words, told",
-    [
-        (["-o", "a.stl"], "a.stl: format 'stl'; allowed are h5, vtu, xdmf and inp"),
-        (["-o", "a.vtu", "--deck", "calculix"], "a.vtu: a deck for CalculiX ends in .inp"),
-        (["-o", "a.inp", "--deck", "abaqus"], "--deck abaqus: known: calculix"),
-        (["-o", "none/a.inp", "--deck", "calculix"], "none/a.inp: cannot be written"),
-        (["-o", "none/a.vtu"], "none/a.vtu: cannot be written"),
-        (["-o", "a.h5", "--format", "msh"], "a.h5: format 'msh'"),
-    ],
-)
-def test_wrong_ways_to_write_a_mesh(block, words, told):
-    refused("mesh", "block.toml", *words, told=told, cwd=block.parent)
-    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
-
-
-@pytest.mark.parametrize(
-    "words, told",
-    [
-        (["--element", "C3D8R"], "--element requires --deck"),
-        (["--hourglass", "0.1"], "--hourglass requires --deck"),
-        (["--deck", "calculix", "--format", "inp"], "excludes"),
-    ],
-)
-def test_options_of_decks_alone(block, words, told):
-    sandglass("mesh", block, "-o", block.parent / "a.inp", *words, code=2, told=told)
-
-
 def test_a_motion_with_a_rotation_has_no_deck(block):
     turned = '[[rotation]]\nset = "head"\naxis = "z"\nangle = 9.0\n'
     text = BLOCK[: BLOCK.rindex("[[displacement]]")] + turned
