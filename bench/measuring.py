@@ -12,12 +12,12 @@ if importlib.util.find_spec("ufl") is None:
     # never called, but the import must not fail.
     sys.modules["ufl"] = types.ModuleType("ufl")
 
-from common.command import option
+from common.command import option, writable
 from common.errors import ComputationError, InputError, suggestion
 from common.files import read_toml
 from common.program import CASES, binary, output_of
 
-JSON = option("--json", metavar="FILE", help="write the records and the machine to this file")
+JSON = option("--json", type=writable, metavar="FILE", help="the records and the machine")
 # What `sandglass run` prints of a body at rest: evaluations, seconds.
 EQUILIBRIUM = (
     r"^static equilibrium \(.*\): (\d+) evaluations?(?: and \d+ of its stability)?, (\S+) s; "

@@ -24,7 +24,7 @@ import peer_runs
 from common.accuracy import relative_errors
 from common.command import command_line, option, whole_number
 from common.errors import ComputationError, InputError, suggestion
-from common.files import require_writable, write_json
+from common.files import write_json
 from peer_report import COLUMNS_AT_REST, COLUMNS_IN_MOTION, TWIN, report
 from rest_search import RestSearch
 from rivals import PROGRAMS
@@ -269,8 +269,6 @@ def programs_of(options):
 
 def measure(options):
     """Measure, print, store. Returns the exit code. Raises InputError."""
-    if options.json:
-        require_writable(options.json)
     programs = programs_of(options)
     path = measuring.case_path(options.case)
     place = measuring.machine()

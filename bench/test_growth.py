@@ -54,9 +54,3 @@ def test_less_than_the_smallest_mesh_is_wrong_input(tmp_path, capsys):
     code, document = _measure(tmp_path, "--most", "319")
     assert (code, document) == (2, None)
     assert "--most: 319 is less than 320" in capsys.readouterr().err
-
-
-def test_a_folder_that_is_not_there_is_noticed_before_anything_is_measured(tmp_path, capsys):
-    assert growth.main(["--json", str(tmp_path / "none" / "growth.json")]) == 2
-    streams = capsys.readouterr()
-    assert "none" in streams.err and streams.out == ""

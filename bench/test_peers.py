@@ -142,11 +142,6 @@ def test_a_case_that_is_not_there(capsys):
     )
 
 
-def test_files_that_cannot_be_written(block, capsys):
-    assert peers.main([str(block), "--json", str(block.parent / "none" / "a.json")]) == 2
-    assert "does not exist" in capsys.readouterr().err
-
-
 def test_a_step_costs_what_the_longer_run_takes_more():
     """Time before the first step does not count; rounds are kept separate."""
     short = iter(

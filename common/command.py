@@ -2,8 +2,10 @@
 
 import argparse
 import sys
+from pathlib import Path
 
 from common.errors import ComputationError, InputError
+from common.files import require_writable
 
 
 def exit_code(work, *arguments):
@@ -22,6 +24,13 @@ def exit_code(work, *arguments):
     return code
 
 
+class _Parser(argparse.ArgumentParser):
+    """One whose errors are those of every other input."""
+
+    def error(self, message):
+        raise InputError(f"{message}; --help lists what is allowed")
+
+
 def option(*names, **settings):
     """An option or argument of a command_line(): what argparse's add_argument takes."""
     return names, settings
@@ -38,12 +47,18 @@ def command_line(work, text, *options, **settings):
 
     def main(arguments=None):
         """The command line. Returns the exit code."""
-        parser = argparse.ArgumentParser(**described)
+        parser = _Parser(**described)
         for names, how in options:
             parser.add_argument(*names, **how)
-        return exit_code(work, parser.parse_args(arguments))
+        return exit_code(lambda: work(parser.parse_args(arguments)))
 
     return main
+
+
+def writable(text):
+    """A type for argparse: the Path of a file that can be written. Raises InputError."""
+    require_writable(text)
+    return Path(text)
 
 
 def whole_number(smallest):

@@ -20,9 +20,8 @@ import motion
 import newton
 from case_file import read_case
 from common.accuracy import relative_errors
-from common.command import command_line, option, whole_number
+from common.command import command_line, option, whole_number, writable
 from common.errors import ComputationError, InputError
-from common.files import require_writable
 from hexahedra import refine
 from mesh_file import initial_velocity, load_case_mesh
 from problem import MixedProblem
@@ -85,7 +84,6 @@ def run(options):
             f"{options.case}: a refined mesh has a golden at rest only: motion and meshes that are "
             "split further have no ties here"
         )
-    require_writable(options.output)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     if case.motion:
         velocity = initial_velocity(case, options.mesh)
@@ -148,7 +146,7 @@ main = command_line(
     option("case", metavar="CASE.toml", help="the case file"),
     option("--variant", metavar="NAME", help="case of the file, where it has variants"),
     option("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`"),
-    option("-o", "--output", required=True, help="HDF5 file to write"),
+    option("-o", "--output", type=writable, required=True, help="HDF5 file to write"),
     option(
         "--refine",
         type=whole_number(0),

@@ -11,7 +11,7 @@ from command_line import sandglass
 REFUSED = r"""
 "" |
 nonsense | nonsense
-run | case
+run | CASE
 run column --nonsense | --nonsense
 mesh column | -o
 verify --threads -1 | threads

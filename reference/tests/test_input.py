@@ -91,12 +91,6 @@ def test_mesh_with_impossible_cells(folder, capsys):
     assert "/mesh/cells" in capsys.readouterr().err
 
 
-def test_bad_usage():
-    with pytest.raises(SystemExit) as stop:
-        solve.main(["gold", "block.toml", "--mesh", "mesh.h5", "-o", "out.h5"])
-    assert stop.value.code == 2
-
-
 def test_no_equilibrium(folder, capsys):
     # Both ends are held and the upper one is pushed through the lower one: elements must invert.
     (folder / "block.toml").write_text(CASE.replace("[0.0, 0.0, 0.1]", "[0.0, 0.0, -1.2]"))

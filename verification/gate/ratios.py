@@ -82,8 +82,6 @@ def run(options):
             raise InputError(f"{program}: no program there")
     if options.before.resolve() == options.after.resolve():
         raise InputError(f"{options.after}: must be another program than BEFORE")
-    if options.processes < FEWEST:
-        raise InputError(f"--processes = {options.processes} must be {FEWEST} or more")
     found = ratios(options.before, options.after, options.processes)
     slower = 0
     for (method, precision), samples in sorted(found.items()):
@@ -102,7 +100,7 @@ main = command_line(
     __doc__,
     option("before", type=Path, metavar="BEFORE", help="a build of sandglass"),
     option("after", type=Path, metavar="AFTER", help="another one"),
-    option("--processes", type=whole_number(1), default=12, metavar="N", help="of each (12)"),
+    option("--processes", type=whole_number(FEWEST), default=12, metavar="N", help="of each (12)"),
     option(
         "--most", type=float, default=1.0, metavar="PERCENT", help="how much slower is allowed (1)"
     ),
