@@ -9,13 +9,24 @@ from command_line import sandglass
 # A command | a text of its message, or several between "&"; what is indented continues a line.
 # They run in a folder with block.toml, which has no golden.
 REFUSED = r"""
-"" |
-nonsense | nonsense
+"" | a command is missing; known: cases, methods, run
+qwertz | 'qwertz' is not a command; known: cases
+--verison | '--verison' is not an option; did you mean '--version'?
 run | CASE
-run column --nonsense | --nonsense
-mesh column | -o
-verify --threads -1 | threads
-cases column | column
+run column -x | run: '-x' is not an option
+run column -o | run: --output needs a value
+run column --threads x | run: --threads = x must be an integer
+run column --threads 0,5 | run: --threads = 0,5 must be an integer
+run column -k 0,1 | did you mean 0.1, with a decimal point?
+mesh column | mesh: --output is required
+verify --threads -1 | -1 not in range 0 to 1024
+cases column | cases: 'column' is one argument too many
+score x y --case column | score: 'y' is one argument too many
+score x --case column --tolerance 0,1 |
+  --tolerance = 0,1 must be a number; did you mean 0.1, with a decimal point?
+choose column --tolerance 0,5% | did you mean 0.5%, with a decimal point?
+choose column --budget 1,5ms | did you mean 1.5ms, with a decimal point?
+choose column --budget 1,5,2 | without a unit it is in s
 run colum | did you mean 'column'? & `sandglass cases` lists
 verify colum | did you mean 'column'? & `sandglass cases` lists
 mesh colum -o m.h5 | did you mean 'column'? & `sandglass cases` lists
