@@ -11,27 +11,12 @@ import subprocess
 import pytest
 from command_line import BINARY, methods, sandglass
 
-FIGURES = (
-    "ns_per_element_step",
-    "ns_best",
-    "ns_lower_quartile",
-    "ns_upper_quartile",
-    "check_ns_per_element_step",
-    "ratio_to_tl_perturbation",
-    "speedup_over_scalar_double",
-    "step_p50_us",
-    "step_p99_us",
-    "step_max_us",
-    "operations_per_element_step",
-    "bytes_per_element_step",
-    "gflops",
-    "fraction_of_peak",
-    "gbs",
-    "fraction_of_bandwidth",
-    "stream_gbs_at_working_set",
-    "roofline_fraction",
-)
-
+FIGURES = """
+ns_per_element_step ns_best ns_lower_quartile ns_upper_quartile check_ns_per_element_step
+ratio_to_tl_perturbation speedup_over_scalar_double step_p50_us step_p99_us step_max_us
+operations_per_element_step bytes_per_element_step gflops fraction_of_peak gbs
+fraction_of_bandwidth stream_gbs_at_working_set roofline_fraction
+""".split()
 
 # The same program with the kernels that compute one element at a time.
 SCALAR = BINARY + "-scalar"

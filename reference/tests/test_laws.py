@@ -3,11 +3,12 @@
 The solver's `tl-mean-dilatation` is the golden's element, so on one mesh only the laws differ.
 """
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
 import ufl
-from command_line import BLOCK
 
 import newton
 from case_file import read_case
@@ -74,35 +75,7 @@ def _has_fibres(law):
 
 
 # Stretched by a third, sheared by as much, with free sides: this exercises every term of a law.
-CASE = (
-    BLOCK[: BLOCK.index("[mesh]")]
-    + """
-[mesh]
-generator = "box"
-size = [0.1, 0.1, 0.1]
-elements = [3, 2, 3]
-
-[material]
-law = "{law}"
-density = 1000.0
-{material}
-
-[sets]
-foot = {{ z = [0.0, 0.0] }}
-head = {{ z = [0.1, 0.1] }}
-
-[[displacement]]
-set = "foot"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "head"
-value = [0.03, 0.01, 0.03]
-
-[relaxation]
-tolerance = 1e-11
-"""
-)
+CASE = Path(__file__).with_name("law.toml.in").read_text()
 
 
 def _case(folder, law, **others):
