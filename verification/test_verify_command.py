@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from command_line import BLOCK, LIMIT, methods, sandglass, write_golden
+from command_line import BLOCK, LIMIT, ROOT, methods, sandglass, write_golden
 
 
 ELEMENTS = 16  # of the block
@@ -104,32 +104,7 @@ def test_golden_of_another_case_or_mesh_ends_with_2(block, attribute):
     assert "reference/regenerate block" in outcome.stderr
 
 
-PUBLISHED = """
-[[force]]
-set = "head"
-total = [0.0, 0.0, {force}]
-
-[[published]]
-set = "head"
-component = "z"
-value = {value}
-source = "a calculation by hand"
-
-[[expect]]
-method = "tl-full"
-reference = "published"
-figure = "relative_error"
-{limit}
-reason = "a test"
-
-[[variants.nu]]
-name = "soft"
-material.young_modulus = 1500.0
-
-[[variants.nu]]
-name = "hard"
-material.young_modulus = 3000.0
-"""
+PUBLISHED = (ROOT / "verification/support/published.toml.in").read_text()
 
 
 def test_published_values_in_tables_and_json(block):

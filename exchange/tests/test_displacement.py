@@ -85,49 +85,36 @@ def write_animation(path, points, u, name=b"Displacement"):
     return path
 
 
+def h5(**datasets):
+    """A function that writes them into a folder."""
+    return lambda folder: write_h5(folder / "a.h5", **datasets)
+
+
+def csv(header, *columns):
+    """A function that writes a table into a folder."""
+    return lambda folder: write_csv(folder / "a.csv", header, *columns)
+
+
+LOG = ["*Step  = 1", "*Data  = ux;uy;uz", *(f"{i} 9 9 9" for i in range(1, 13)), "*Step  = 2"]
+LOG += ["*Time  = 1", "*Data  = ux;uy;uz", *(f"{i + 1} {words(U[i])}" for i in ORDER)]
+FRAMES = {"0000": 0 * U, "0010": U[ORDER], "0009": 3 * U}
+FRAMES = {f"frames__{number}__displacement": u for number, u in FRAMES.items()}
+ARRAYS = {"Displacement": U[ORDER], "velocity": U, "u": U[:, 0]}
+MIXED = np.stack([U, POINTS], 1)[ORDER].transpose(2, 1, 0)[[2, 0, 0, 1, 1, 2], [0, 1, 0, 1, 0, 1]]
+PARAVIEW = ",".join(f'"{name}:{i}"' for name in ("displacement", "Points") for i in range(3))
 FILES = {
     "NiftySim": lambda f: write_text(
         f / "U.txt", *(f"{x * 2!r} {x!r} " for x in U.ravel().tolist())
     ),
-    "FEBio": lambda f: write_text(
-        f / "a.log",
-        "*Step  = 1",
-        "*Data  = ux;uy;uz",
-        *(f"{i} 9 9 9" for i in range(1, 13)),
-        "*Step  = 2",
-        "*Time  = 1",
-        "*Data  = ux;uy;uz",
-        *(f"{i + 1} {words(U[i])}" for i in ORDER),
-    ),
-    "result of sandglass": lambda f: write_h5(
-        f / "a.h5",
-        mesh__points=POINTS[ORDER],
-        frames__0000__displacement=0 * U,
-        frames__0010__displacement=U[ORDER],
-        frames__0009__displacement=3 * U,
-    ),
-    "golden": lambda f: write_h5(f / "a.h5", points=POINTS[ORDER], displacement=U[ORDER]),
+    "FEBio": lambda f: write_text(f / "a.log", *LOG),
+    "result of sandglass": h5(mesh__points=POINTS[ORDER], **FRAMES),
+    "golden": h5(points=POINTS[ORDER], displacement=U[ORDER]),
     "by row": lambda f: write_h5(f / "a.hdf5", displacement=U),
-    "vtu": lambda f: write(
-        f / "a.vtu",
-        POINTS[ORDER],
-        [[0, 1]],
-        "line",
-        {"Displacement": U[ORDER], "velocity": U, "u": U[:, 0]},
-    ),
-    "csv": lambda f: write_csv(
-        f / "a.csv",
-        "uz,x,ux,y,uy,z",
-        *np.stack([U, POINTS], 1)[ORDER].transpose(2, 1, 0)[[2, 0, 0, 1, 1, 2], [0, 1, 0, 1, 0, 1]],
-    ),
-    "csv of ParaView": lambda f: write_csv(
-        f / "a.csv",
-        '"displacement:0","displacement:1","displacement:2","Points:0","Points:1","Points:2"',
-        U[ORDER],
-        POINTS[ORDER],
-    ),
-    "csv from 0": lambda f: write_csv(f / "a.csv", "id,ux,uy,uz", ORDER, U[ORDER]),
-    "csv from 1": lambda f: write_csv(f / "a.csv", "ID, Ux, Uy, Uz", ORDER + 1, U[ORDER]),
+    "vtu": lambda f: write(f / "a.vtu", POINTS[ORDER], [[0, 1]], "line", ARRAYS),
+    "csv": csv("uz,x,ux,y,uy,z", *MIXED),
+    "csv of ParaView": csv(PARAVIEW, U[ORDER], POINTS[ORDER]),
+    "csv from 0": csv("id,ux,uy,uz", ORDER, U[ORDER]),
+    "csv from 1": csv("ID, Ux, Uy, Uz", ORDER + 1, U[ORDER]),
 }
 
 
@@ -216,16 +203,6 @@ def test_the_tolerance_is_a_share_of_the_diagonal(tmp_path, capsys, shift, found
         with pytest.raises(Refused, match=r"1 nodes of the case .*: \(1, 0, 1\) by 1.1e-05"):
             matched(capsys, path)
         assert (matched(capsys, path, tolerance=2e-5)[0] == U).all()
-
-
-def h5(**datasets):
-    """A function that writes them into a folder."""
-    return lambda folder: write_h5(folder / "a.h5", **datasets)
-
-
-def csv(header, *columns):
-    """A function that writes a table into a folder."""
-    return lambda folder: write_csv(folder / "a.csv", header, *columns)
 
 
 MOVED = POINTS.copy()
