@@ -7,101 +7,86 @@ SANDGLASS_BINARY. Programs that are not installed are named and skipped.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """
 
-import argparse
+import importlib.util
 import os
+import shutil
 import statistics
 import sys
 import tempfile
 from pathlib import Path
-from types import SimpleNamespace
 
 if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 
-import rest_records
-import time_to_rest
-from common.command import exit_code, whole_number
+import measuring  # first: reference/ may do without UFL afterwards
+
+import peer_runs
+from common.command import command_line, option, whole_number
 from common.errors import ComputationError, InputError
-from common.files import require_writable, write_json
-from common.program import binary, output_of
+from common.files import write_json
+from rivals.calculix import CalculiX
+from rivals.fenicsx import FEniCSx
+from rivals.program import Element
 
 METHODS = ("tl-mean-dilatation", "tl-perturbation")
 RATIOS = (0.3, 0.49, 0.4999)
 WIDTHS = (4, 8, 16, 24, 34)  # elements across the beam; five times as many along it
 ROUNDS = 3
-BEAM = """
-[case]
-name = "beam"
-requirement = "A soft beam, clamped at one end, bends when its other end is moved."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [0.02, 0.02, 0.1]
-elements = [{width}, {width}, {length}]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = {ratio}
-density = 1000.0
-
-[sets]
-clamped = {{ z = [0.0, 0.0] }}
-moved = {{ z = [0.1, 0.1] }}
-
-[[displacement]]
-set = "clamped"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "moved"
-value = [0.03, 0.0, 0.0]
-"""
+BEAM = Path(__file__).with_name("beam.toml.in").read_text()
 
 
-def time_sandglass(job):
+def time_sandglass(path):
     """(method, seconds, evaluations, None) of every method, the median of ROUNDS in turn."""
     found = {method: [] for method in METHODS}
     for _ in range(ROUNDS):
         for method in METHODS:
-            command = (binary(), "run", job.path, "-m", method, "--threads", "1")
-            found[method].append(rest_records.read_run("beam", method, output_of(*command)))
+            evaluations, seconds, _ = measuring.rest_of(path, method, "--threads", "1")
+            found[method].append((seconds, evaluations))
     for method, runs in found.items():
-        seconds = statistics.median(run["seconds_to_rest"] for run in runs)
-        yield method, seconds, runs[0]["evaluations"], None
+        yield method, statistics.median(seconds for seconds, _ in runs), runs[0][1], None
 
 
-def time_implicit(job):
-    """(program, seconds, None, Newton iterations) of FEniCSx and CalculiX."""
-    for name in ("golden", "calculix"):
-        try:
-            time_to_rest.PROGRAMS[name](job)
-        except time_to_rest.Unavailable as reason:
-            time_to_rest.note(f"{name} is skipped: {reason}")
-    for record in job.records:
-        yield record["program"], record["seconds_to_rest"], None, record["iterations"]
+def implicit_programs():
+    """FEniCSx and CalculiX, each with an element; those that are not installed are named."""
+    found = []
+    has_fenicsx = importlib.util.find_spec("dolfinx") is not None
+    for program, path, element in (
+        (FEniCSx, sys.executable if has_fenicsx else None, "Q1-P0-in-1-step"),
+        (CalculiX, shutil.which("ccx"), "C3D8"),
+    ):
+        if path is None:
+            print(f"note: {program.name} is skipped: install {program.package}", file=sys.stderr)
+        else:
+            found.append((program([path]), Element(element)))
+    return found
 
 
-def time_beam(width, ratio, options, versions):
+def time_implicit(path, folder, versions, programs):
+    """(program, seconds, None, Newton iterations) of each of the implicit programs."""
+    bench = peer_runs.Bench(path, folder)
+    for program, element in programs:
+        program.environment, program.processor = bench.environment, bench.processor
+        run = peer_runs.run_of(bench, program, element, path)()
+        versions[program.name] = program.version
+        yield program.name, run.seconds, None, run.iterations
+
+
+def time_beam(width, ratio, programs, versions):
     """Records of one mesh and Poisson's ratio, as far as the programs got, and an exit code."""
-    elements, found = 5 * width**3, []
+    found, code = [], 0
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "beam.toml"
         text = BEAM.format(width=width, length=5 * width, ratio=ratio)
         path.write_text(text, encoding="utf-8")
-        given = SimpleNamespace(case=path, threads=1, load_steps=[1], elements=["C3D8"])
-        job = time_to_rest.Job(given, folder)
         try:
-            found += time_sandglass(job)
-            if elements <= options.most_implicit:
-                found += time_implicit(job)
+            found += time_sandglass(path)
+            found += time_implicit(path, folder, versions, programs) if programs else ()
         except ComputationError as error:
-            job.fail(error)
-        versions |= job.versions
+            print(f"error: {5 * width**3} elements: {error}", file=sys.stderr, flush=True)
+            code = 3
     keys = "poisson_ratio", "elements", "name", "seconds", "evaluations", "iterations"
-    return [dict(zip(keys, (ratio, elements, *of), strict=True)) for of in found], job.exit_code
+    return [dict(zip(keys, (ratio, 5 * width**3, *of), strict=True)) for of in found], code
 
 
 def measure(options):
@@ -109,15 +94,14 @@ def measure(options):
     smallest = 5 * WIDTHS[0] ** 3
     if options.most < smallest:
         raise InputError(f"--most: {options.most} is less than {smallest}, the smallest mesh")
-    if options.json:
-        require_writable(options.json)
-    place, records, worst = time_to_rest.machine(1), [], 0
-    versions = {"sandglass": time_to_rest.version_of(binary())}
+    place, records, worst = measuring.machine(), [], 0
+    implicit = implicit_programs() if options.most_implicit >= smallest else []
     for ratio in RATIOS:
         for width in WIDTHS:
             if 5 * width**3 > options.most:
                 continue
-            found, code = time_beam(width, ratio, options, versions)
+            programs = implicit if 5 * width**3 <= options.most_implicit else []
+            found, code = time_beam(width, ratio, programs, place["versions"])
             worst = max(worst, code)
             records += found
             for of in found:
@@ -126,29 +110,24 @@ def measure(options):
                 print(words.format(**of), f"{of[kind]:5} {kind}", flush=True)
     place["load_average_after"] = os.getloadavg()[0]
     if options.json:
-        write_json(options.json, {**place, "versions": versions, "records": records})
+        write_json(options.json, {**place, "records": records})
     return worst
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Seconds and evaluations to rest over mesh size and Poisson's ratio.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
-    )
-    add = parser.add_argument
-    add("--json", metavar="FILE", help="write the records and the machine to this file")
-    add("--most", type=whole_number(1), default=200_000, metavar="N", help="elements")
-    add(
+main = command_line(
+    measure,
+    __doc__,
+    measuring.JSON,
+    option("--most", type=whole_number(1), default=200_000, metavar="N", help="elements"),
+    option(
         "--most-implicit",
         type=whole_number(0),
         default=3000,
         metavar="N",
         help="elements of the largest mesh for FEniCSx and CalculiX (default: 3000; 20480 takes "
         "them minutes and gigabytes)",
-    )
-    return exit_code(measure, parser.parse_args(arguments))
-
+    ),
+)
 
 if __name__ == "__main__":
     sys.exit(main())

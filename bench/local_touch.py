@@ -10,7 +10,6 @@ The binary is build/release/sandglass, or the one given by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a run failed.
 """
 
-import argparse
 import random
 import re
 import statistics
@@ -23,43 +22,13 @@ import numpy as np
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code, whole_number
-from common.program import binary, output_of
+from common.command import command_line, option, whole_number
 from common.result_file import last_displacement
-from rest_records import EQUILIBRIUM
+from measuring import rest_of
 
 EDGE = 0.002  # m, of an element
 
-CASE = """# A block on a fixed base, touched in the middle of its upper side.
-
-[case]
-name = "touched-block"
-requirement = "A local touch costs what moves, not what is there."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [{size}]
-elements = [{elements}]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = {poisson_ratio}
-density = 1000.0
-
-[sets]
-base = {{ z = [0.0, 0.0] }}
-touched = {{ x = [{x}], y = [{y}], z = [{z}, {z}] }}
-
-[[displacement]]
-set = "base"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "touched"
-value = [0.0, 0.0, {depth}]
-"""
+CASE = Path(__file__).with_name("touched-block.toml.in").read_text()
 
 
 def case_text(elements, patch, depth, poisson_ratio=0.49):
@@ -85,8 +54,7 @@ def run(case, method, folder, share=None):
     """
     result = Path(folder) / "result.h5"
     sleep = ["--sleep", share] if share else []
-    text = output_of(binary(), "run", case, "--method", method, "--output", result, *sleep)
-    seconds = float(re.search(EQUILIBRIUM, text, re.MULTILINE)[2])
+    _, seconds, text = rest_of(case, method, "--output", result, *sleep)
     awake = re.search(r"awake: (\d+) of (\d+)", text)
     share_awake = int(awake[1]) / int(awake[2]) if awake else 1.0
     return seconds, share_awake, last_displacement(result)
@@ -162,20 +130,19 @@ def show(options):
     print("\n".join(survey(options.survey) if options.survey else touch(options)))
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    add, count = parser.add_argument, whole_number(1)
-    add("--elements", nargs=3, type=count, default=[182, 182, 6], metavar=("NX", "NY", "NZ"))
-    add("--patch", type=count, default=4, help="touched faces along x and y")
-    add("--depth", type=float, default=EDGE, help="of the touch, m")
-    add("--method", default="tl-perturbation")
-    add("--shares", nargs="+", default=["1%", "0.1%"], help="what to neglect")
-    add("--repetitions", type=count, default=3)
-    add("--case", type=Path, help="keep the case file there")
-    add("--survey", type=count, metavar="N", help="run N random blocks instead")
-    return exit_code(show, parser.parse_args(arguments))
-
+COUNT = whole_number(1)
+main = command_line(
+    show,
+    __doc__,
+    option("--elements", nargs=3, type=COUNT, default=[182, 182, 6], metavar=("NX", "NY", "NZ")),
+    option("--patch", type=COUNT, default=4, help="touched faces along x and y"),
+    option("--depth", type=float, default=EDGE, help="of the touch, m"),
+    option("--method", default="tl-perturbation"),
+    option("--shares", nargs="+", default=["1%", "0.1%"], help="what to neglect"),
+    option("--repetitions", type=COUNT, default=3),
+    option("--case", type=Path, help="keep the case file there"),
+    option("--survey", type=COUNT, metavar="N", help="run N random blocks instead"),
+)
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -2,19 +2,20 @@
 
 import statistics
 
-from rest_records import table
+from measuring import table
 from rest_search import WITHIN
 
 # The golden element's explicit twin, the reference for motions.
 TWIN = "tl-mean-dilatation"
 NOTES_AT_REST = """
-The same answer by different methods. CalculiX and FEBio use Newton's method with a direct solver,
-Sandglass its search for rest, all until their residuals are below 1e-8. Programs that only
+The same answer by different methods. CalculiX, FEBio and FEniCSx use Newton's method with a direct
+solver, Sandglass its search for rest, all until their residuals are below 1e-8. Programs that only
 integrate in time find it by a damped motion. Its step, duration and damping were searched for
 beforehand: it is the quickest whose end differs by less than {within:g} of the imposed displacement
 from that of a long one. The search is not part of the seconds. Seconds and errors of any two rows
 are comparable, times per step are not.
-seconds: wall time of the whole process; of OpenRadioss, of its engine. CPU: processor time. max to
+seconds: wall time of the whole process; of OpenRadioss, of its engine; of FEniCSx, of the solution
+without set-up and compilation. CPU: processor time. max to
 golden, to truth: largest error at any node over the largest imposed displacement, by `sandglass
 score`; to twin: for a case without a golden, to tl-mean-dilatation.
 """

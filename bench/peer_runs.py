@@ -18,7 +18,6 @@ from case_file import read_case, read_tables
 from common.errors import ComputationError, InputError
 from common.program import binary
 from exchange.convert import match_displacement
-from exchange.decks import PROGRAMS as DECKS
 from exchange.decks.problem import DAMPING_PER_CROSSING, RELAXATION_CROSSINGS, STEP_FRACTION
 from exchange.hdf5_file import read_displacement
 from mesh_file import load_case_mesh, make_mesh
@@ -30,6 +29,9 @@ CURVE_RATE = 15 / 8  # the steepest that the loading curve of eq. 15 is
 # The longer run of a motion has at least three times the steps and, in programs that step quickly,
 # this many elements times steps, half a second, so that its excess is clear of the start-up time.
 MANY = 4e6
+# What `sandglass run` says of its steps in motion, and of its evaluations at rest.
+STEPS = r"in (\d+) steps of"
+EVALUATIONS = r"equilibrium \(.*\): (\d+) evaluation"
 
 
 class Bench:
@@ -65,10 +67,6 @@ class Bench:
             raise kind(f"sandglass {arguments[0]}: {told[-1].removeprefix('error: ')}")
         return done
 
-    def version(self):
-        """Of Sandglass."""
-        return self.sandglass("--version").output.split(maxsplit=1)[1].strip()
-
     def build(self):
         """Compiler and flags of Sandglass, in words."""
         output = self.folder / "provenance.json"
@@ -87,18 +85,10 @@ class Bench:
         """The path of a case's deck for a program and one of its Elements, in a new folder."""
         key = case, program.deck, element
         if key not in self._decks:
-            self._decks[key] = self._write_deck(*key)
+            self._decks[key] = program.write_deck(self, case, element, self.fresh_folder())
         folder = self.fresh_folder()
         shutil.copytree(self._decks[key].parent, folder, dirs_exist_ok=True)
         return folder / self._decks[key].name
-
-    def _write_deck(self, case, deck, element):
-        output = self.fresh_folder() / f"deck{DECKS[deck].ENDING}"
-        words = ["mesh", case, "--deck", deck, "--element", element.name, "-o", output]
-        if element.hourglass is not None:
-            words += ["--hourglass", repr(element.hourglass)]
-        self.sandglass(*words)
-        return output
 
     def score(self, answer):
         """Max errors of a file of displacements, as fractions.
@@ -164,7 +154,7 @@ class Bench:
         """The step, s, that a method of Sandglass takes by default near the undeformed state."""
         span = self.mesh.largest_imposed() / self.shear_wave_speed
         done = self.sandglass("run", self.write_case(1e-6, duration=span), "-m", method)
-        return span / int(_said(r"in (\d+) steps of", done.output))
+        return span / _said(STEPS, done.output)
 
     @property
     def crossing(self):
@@ -179,27 +169,22 @@ class Bench:
         duration = RELAXATION_CROSSINGS * self.crossing
         settings = {"duration": duration, "damping": DAMPING_PER_CROSSING / self.crossing}
         done = self.sandglass("run", self.write_case(1.0, **settings), "-m", method)
-        return duration / int(_said(r"in (\d+) steps of", done.output))
+        return duration / _said(STEPS, done.output)
 
 
-def at_rest(bench, program, element):
-    """A run: a program's static solution."""
-
-    def run():
-        return program.run(bench.deck(bench.path, program, element), None)
-
-    return run
+def run_of(bench, program, element, case, motion=None):
+    """A run: a program's answer to a case. motion: (time step in s, steps); None: at rest."""
+    return lambda: program.run(bench.deck(case, program, element), motion)
 
 
-def sandglass_at_rest(bench, method, precision):
-    """A run: `sandglass run`, its search for rest. precision: "double" or "float"."""
+def own_run(bench, method, precision, case, counted):
+    """A run: `sandglass run`. precision: "double" or "float". counted: a pattern of its steps."""
 
     def run():
         output = bench.fresh_folder() / "result.h5"
-        words = ["run", bench.path, "-m", method, "--precision", precision, "-t", 1, "-o", output]
+        words = ["run", case, "-m", method, "--precision", precision, "-t", 1, "-o", output]
         done = bench.sandglass(*words)
-        steps = int(_said(r"equilibrium \(.*\): (\d+) evaluation", done.output))
-        return Run(done.seconds, done.processor_seconds, steps, 0, output)
+        return Run(done.seconds, done.processor_seconds, _said(counted, done.output), 0, output)
 
     return run
 
@@ -223,6 +208,10 @@ class Motion:
         duration = self.time_step * self.steps * longer
         return self.bench.write_case(self.share, duration=duration, time_step=self.time_step)
 
+    def of(self, longer):
+        """(time step in s, steps). longer: as of write_case()."""
+        return self.time_step, self.steps * longer
+
     def longer(self, quick):
         """The number of steps in the longer run over that in the shorter one.
 
@@ -236,37 +225,12 @@ class Motion:
         return self.share * self.bench.mesh.largest_imposed()
 
 
-def in_motion(motion, program, element, longer=1):
-    """A run: a program's central differences. longer: factor for the number of steps."""
-    case = motion.write_case(longer)
-
-    def run():
-        deck = motion.bench.deck(case, program, element)
-        return program.run(deck, (motion.time_step, longer * motion.steps))
-
-    return run
-
-
-def sandglass_in_motion(motion, method, precision, longer=1):
-    """A run: `sandglass run` of the motion as a dynamic case. precision: "double" or "float"."""
-    path = motion.write_case(longer)
-
-    def run():
-        output = motion.bench.fresh_folder() / "result.h5"
-        words = ["run", path, "-m", method, "--precision", precision, "-t", 1, "-o", output]
-        done = motion.bench.sandglass(*words)
-        steps = int(_said(r"in (\d+) steps of", done.output))
-        return Run(done.seconds, done.processor_seconds, steps, 0, output)
-
-    return run
-
-
 def _said(pattern, text):
-    """The match of a pattern in a program's output. Raises ComputationError if there is none."""
+    """The number that a pattern finds in an output. Raises ComputationError if there is none."""
     found = re.search(pattern, text)
     if not found:
         raise ComputationError(f"sandglass printed {text!r}: {pattern!r} is required")
-    return found[1]
+    return int(found[1])
 
 
 def _table(name, values):

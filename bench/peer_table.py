@@ -10,7 +10,7 @@ if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
 from common.command import exit_code
-from rest_records import table
+from measuring import table
 from results.entry import entry_files, read_entry
 
 AUTHORS = "the authors of Sandglass"

@@ -6,7 +6,6 @@ binary: build/release/sandglass, or the one given by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """
 
-import argparse
 import os
 import re
 import shutil
@@ -19,13 +18,13 @@ if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 
-import time_to_rest  # first: reference/ may do without UFL afterwards
+import measuring  # first: reference/ may do without UFL afterwards
 
 import peer_runs
 from common.accuracy import relative_errors
-from common.command import exit_code, whole_number
+from common.command import command_line, option, whole_number
 from common.errors import ComputationError, InputError, suggestion
-from common.files import require_writable, write_json
+from common.files import write_json
 from peer_report import COLUMNS_AT_REST, COLUMNS_IN_MOTION, TWIN, report
 from rest_search import RestSearch
 from rivals import PROGRAMS
@@ -114,12 +113,13 @@ def rows_at_rest(bench, programs, options):
         if program.explicit:
             rows.append(damped_row(bench, program, element, found, more))
         else:
-            runs = {"answer": peer_runs.at_rest(bench, program, element)}
+            runs = {"answer": peer_runs.run_of(bench, program, element, bench.path)}
             rows.append(Row(program.name, str(element), NEWTON, runs, **more))
     for method in options.methods or AT_REST:
         step = step_of(bench, method) if "motion" in options.solves else None
         for precision in precisions_of(method):
-            runs = {"answer": peer_runs.sandglass_at_rest(bench, method, precision)}
+            own = (bench, method, precision, bench.path, peer_runs.EVALUATIONS)
+            runs = {"answer": peer_runs.own_run(*own)}
             more = {"precision": precision, "build": "", "time_step": step}
             rows.append(Row("Sandglass", method, RELAXATION, runs, **more))
     return rows
@@ -159,19 +159,23 @@ def rows_in_motion(motion, programs, options):
     """A row for each program, element and method, in motion."""
     rows = []
     for program, element in elements_of(motion.bench, programs, options):
-        make = peer_runs.in_motion
+        if not program.moves:
+            continue
         runs = {
-            "answer": make(motion, program, element),
-            "longer": make(motion, program, element, motion.longer(program.explicit)),
+            name: peer_runs.run_of(
+                motion.bench, program, element, motion.write_case(longer), motion.of(longer)
+            )
+            for name, longer in (("answer", 1), ("longer", motion.longer(program.explicit)))
         }
         more = {"precision": program.precision, "build": program.build}
         rows.append(Row(program.name, str(element), EXPLICIT, runs, **more))
     for method in motion_methods(options):
         for precision in precisions_of(method):
-            make, longer = peer_runs.sandglass_in_motion, motion.longer(True)
             runs = {
-                "answer": make(motion, method, precision),
-                "longer": make(motion, method, precision, longer),
+                name: peer_runs.own_run(
+                    motion.bench, method, precision, motion.write_case(longer), peer_runs.STEPS
+                )
+                for name, longer in (("answer", 1), ("longer", motion.longer(True)))
             }
             rows.append(Row("Sandglass", method, EXPLICIT, runs, precision=precision, build=""))
     return rows
@@ -265,12 +269,9 @@ def programs_of(options):
 
 def measure(options):
     """Measure, print, store. Returns the exit code. Raises InputError."""
-    if options.json:
-        require_writable(options.json)
     programs = programs_of(options)
-    path = time_to_rest.case_path(options.case)
-    time_to_rest.require_quasi_static(path)
-    place = time_to_rest.machine(1)
+    path = measuring.case_path(options.case)
+    place = measuring.machine()
     with tempfile.TemporaryDirectory() as folder:
         bench = peer_runs.Bench(path, folder)
         for program in programs:
@@ -285,10 +286,11 @@ def measure(options):
             for row in (*at_rest, *in_motion):
                 row.round()
         place["load_average_after"] = os.getloadavg()[0]
+        version = place.pop("versions")["sandglass"]
         document = {
             **place,
             "processor_of_all_runs": bench.processor,
-            "sandglass": bench.version(),
+            "sandglass": version,
             "build": bench.build(),
             "programs": [program.provenance() for program in programs],
             "case": bench.case.name,
@@ -319,32 +321,27 @@ def keep_answers(rows, folder):
         shutil.copy(row.clocked["answer"][0].answer, folder / row.answer_name())
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        prog="peers.py",
-        description="Other programs and Sandglass on the same mesh, in turn, on one thread each.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
-    )
-    add = parser.add_argument
-    add("case", nargs="?", metavar="CASE", default="column", help="name or file; default: column")
-    add(
+main = command_line(
+    measure,
+    __doc__,
+    option("case", nargs="?", metavar="CASE", default="column", help="name or file; column"),
+    option(
         "--program",
         action="append",
         default=[],
         metavar="NAME[:BUILD]=PATH",
         help=f"of {', '.join(sorted(PROGRAMS))}; several are possible. OpenRadioss: STARTER,ENGINE",
-    )
-    add("--about", action="append", metavar="NAME[:BUILD]=TEXT", help="its revision and flags")
-    add("--json", metavar="FILE", help="write the records and where they come from to this file")
-    add("--answers", type=Path, metavar="FOLDER", help="keep the displacements at rest")
-    add("--repetitions", type=whole_number(1), default=5, metavar="N", help="default: 5")
-    add("--elements", nargs="+", metavar="ELEMENT", help="of the programs; default: all of a list")
-    add("--methods", nargs="+", metavar="METHOD", help="of Sandglass; default: five of each kind")
-    add("--solves", nargs="+", choices=("rest", "motion"), default=("rest", "motion"), help="both")
-    add("--steps", type=whole_number(2), default=200, metavar="N", help="of the motion; 200")
-    return exit_code(measure, parser.parse_args(arguments))
-
+    ),
+    option("--about", action="append", metavar="NAME[:BUILD]=TEXT", help="its revision and flags"),
+    measuring.JSON,
+    option("--answers", type=Path, metavar="FOLDER", help="keep the displacements at rest"),
+    option("--repetitions", type=whole_number(1), default=5, metavar="N", help="default: 5"),
+    option("--elements", nargs="+", metavar="ELEMENT", help="of the programs; default: all"),
+    option("--methods", nargs="+", metavar="METHOD", help="of Sandglass; default: five of each"),
+    option("--solves", nargs="+", choices=("rest", "motion"), default=("rest", "motion")),
+    option("--steps", type=whole_number(2), default=200, metavar="N", help="of the motion; 200"),
+    prog="peers.py",
+)
 
 if __name__ == "__main__":
     sys.exit(main())

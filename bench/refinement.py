@@ -8,7 +8,6 @@ build/release/sandglass, or the one given by SANDGLASS_BINARY.
 Exit codes: 0 done, 2 bad usage or input, 3 a computation failed (the others are still shown).
 """
 
-import argparse
 import re
 import statistics
 import sys
@@ -21,14 +20,14 @@ if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 
-import rest_records
-import time_to_rest
+import measuring  # first: reference/ may do without UFL afterwards
+
 from case_file import find_case
 from common.accuracy import relative_errors
-from common.command import exit_code, whole_number
+from common.command import command_line, option, whole_number
 from common.errors import ComputationError
-from common.files import require_writable, write_json
-from common.program import CASES, binary, output_of
+from common.files import write_json
+from common.program import CASES
 from common.result_file import last_displacement
 from reference_file import path_of, read_reference
 
@@ -63,21 +62,18 @@ def time_uniform(name, splits, residual, result):
     case = result.with_name(f"{name}.toml")
     text = find_case(CASES, name).read_text(encoding="utf-8")
     case.write_text(uniform_text(text, splits, residual), encoding="utf-8")
-    command = (binary(), "run", case, "-m", METHOD, "-o", result)
     for _ in range(ROUNDS):
-        yield rest_records.read_run(name, METHOD, output_of(*command))["seconds_to_rest"]
+        yield measuring.rest_of(case, METHOD, "-o", result)[1]
 
 
 def time_refined(name, accuracy, result):
     """Seconds to an answer on a mesh that is refined until it is that near to the truth."""
-    command = (binary(), "run", name, "-m", METHOD, "-o", result)
-    command += ("--against", "truth", "--accuracy", str(accuracy))
+    options = ("-o", result, "--against", "truth", "--accuracy", accuracy)
     for _ in range(ROUNDS):
-        text = output_of(*command)
+        _, on_the_mesh, text = measuring.rest_of(name, METHOD, *options)
         found = re.search(r"found in (\S+) s$", text, re.MULTILINE)
         if not found:
             raise ComputationError(f"{name}: 'found in T s' is required, not {text!r}")
-        on_the_mesh = rest_records.read_run(name, METHOD, text)["seconds_to_rest"]
         yield float(found[1]) + on_the_mesh
 
 
@@ -129,37 +125,23 @@ def show(record):
 
 def measure(options):
     """Measure, print, store. Returns the exit code. Raises InputError."""
-    if options.json:
-        require_writable(options.json)
-    place, records, worst = time_to_rest.machine(1), [], 0
+    place, records, worst = measuring.machine(), [], 0
     for name in options.cases or NAMES:
         found, code = measure_case(name, options.most)
         records += found
         worst = max(worst, code)
     if options.json:
-        versions = {"sandglass": time_to_rest.version_of(binary())}
-        write_json(options.json, {**place, "versions": versions, "records": records})
+        write_json(options.json, {**place, "records": records})
     return worst
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Error to the truth over time, on refined meshes and on uniform ones.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
-    )
-    add = parser.add_argument
-    add("cases", nargs="*", metavar="CASE", help=f"default: {', '.join(NAMES)}")
-    add("--json", metavar="FILE", help="write the records and the machine to this file")
-    add(
-        "--most",
-        type=whole_number(1),
-        default=60_000,
-        metavar="N",
-        help="elements of uniform ones",
-    )
-    return exit_code(measure, parser.parse_args(arguments))
-
+main = command_line(
+    measure,
+    __doc__,
+    option("cases", nargs="*", metavar="CASE", help=f"default: {', '.join(NAMES)}"),
+    measuring.JSON,
+    option("--most", type=whole_number(1), default=60_000, metavar="N", help="uniform elements"),
+)
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -36,15 +36,21 @@ def test_other_programs_stand_beside_it(tmp_path, monkeypatch):
     assert code == 0
     iterations = {record["name"]: record["iterations"] for record in document["records"]}
     assert 2 < iterations["FEniCSx"] < 20  # Newton's method on a mild load
+    assert document["versions"]["FEniCSx"]
+
+
+def test_missing_programs_are_named_and_left_out(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(growth.shutil, "which", lambda name: None)
+    monkeypatch.setattr(growth.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(growth, "RATIOS", (0.3,))
+    code, document = _measure(tmp_path, "--most", "400")
+    assert code == 0
+    assert {record["name"] for record in document["records"]} == set(growth.METHODS)
+    told = capsys.readouterr().err
+    assert "install python3-dolfinx" in told and "install calculix-ccx" in told
 
 
 def test_less_than_the_smallest_mesh_is_wrong_input(tmp_path, capsys):
     code, document = _measure(tmp_path, "--most", "319")
     assert (code, document) == (2, None)
     assert "--most: 319 is less than 320" in capsys.readouterr().err
-
-
-def test_a_folder_that_is_not_there_is_noticed_before_anything_is_measured(tmp_path, capsys):
-    assert growth.main(["--json", str(tmp_path / "none" / "growth.json")]) == 2
-    streams = capsys.readouterr()
-    assert "none" in streams.err and streams.out == ""

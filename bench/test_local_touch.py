@@ -1,7 +1,6 @@
 """The touched block: its case, the output, and that sleep's error is within its limit."""
 
 import numpy as np
-import pytest
 
 import local_touch
 
@@ -38,12 +37,3 @@ def test_survey_tells_the_worst_first(monkeypatch, capsys):
     assert head.startswith("6 runs") and len(worst) == 5
     ratios = [float(line.split()[0]) for line in worst]
     assert ratios == sorted(ratios, reverse=True)
-
-
-@pytest.mark.parametrize(
-    "option", [["--repetitions", "0"], ["--elements", "0", "4", "4"], ["--survey", "0"]]
-)
-def test_refuses_bad_usage(option):
-    with pytest.raises(SystemExit) as end:
-        local_touch.main(option)
-    assert end.value.code == 2

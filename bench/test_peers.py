@@ -10,21 +10,13 @@ import peers
 from peer_report import spread
 from rivals.calculix import PROGRAM, CalculiX
 from rivals.program import Run
-from test_time_to_rest import BLOCK
+from command_line import BLOCK
 
 CCX = ["--program", f"calculix={PROGRAM}"]
 SMALL = [*CCX, "--repetitions", "1", "--steps", "60", "--methods", "tl-perturbation", "tl-full"]
 needs_ccx = pytest.mark.skipif(
     shutil.which(PROGRAM) is None, reason="ccx is not installed (package calculix-ccx)"
 )
-
-
-@pytest.fixture
-def block(tmp_path):
-    """A small case in its own folder."""
-    file = tmp_path / "block.toml"
-    file.write_text(BLOCK)
-    return file
 
 
 def _compare(case, *options):
@@ -67,6 +59,22 @@ def test_the_same_element_gives_the_same_answers(block, capsys):
     assert "## At rest" in said and "## In motion" in said and "| CalculiX " in said
 
 
+def test_fenicsx_finds_the_golden_in_one_step_or_in_many(block):
+    """Its own element is tl-mean-dilatation; a search for rest ends at a residual of 1e-8."""
+    pytest.importorskip("dolfinx", reason="FEniCSx is not installed (package python3-dolfinx)")
+    words = ["--program", f"fenicsx={sys.executable}", "--repetitions", "1"]
+    words += ["--methods", "tl-perturbation", "--json", str(block.parent / "peers.json")]
+    assert peers.main([str(block), *words, "--steps", "60"]) == 0
+    document = json.loads((block.parent / "peers.json").read_text())
+    many, one, ours = document["at_rest"][:3]
+    assert (many["load_steps"], one["load_steps"]) == (10, 1)
+    assert many["iterations"] > one["iterations"] > 2
+    assert max(many["twin"], one["twin"]) < 1e-6 < 1e-3 < ours["twin"]
+    assert {record["program"] for record in document["in_motion"]} == {"Sandglass"}
+    (program,) = document["programs"]
+    assert program["version"] and 0 < one["seconds"] < one["processor_seconds"]
+
+
 @needs_ccx
 def test_an_element_that_fails_is_told_and_the_others_kept(block, monkeypatch, capsys):
     there = CalculiX.run
@@ -100,17 +108,10 @@ def test_wrong_programs(block, capsys, words, told):
 
 
 @needs_ccx
-@pytest.mark.parametrize(
-    "old, new, told",
-    [
-        ("quasi-static", "dynamic", "must be 'quasi-static'"),
-        ('"neo-hookean"', '"st-venant-kirchhoff"', "is not known to CalculiX"),
-    ],
-)
-def test_cases_that_calculix_cannot_do(block, capsys, old, new, told):
-    block.write_text(BLOCK.replace(old, new))
+def test_a_law_that_calculix_cannot_do(block, capsys):
+    block.write_text(BLOCK.replace('"neo-hookean"', '"st-venant-kirchhoff"'))
     assert _compare(block) == (2, None)
-    assert told in capsys.readouterr().err
+    assert "is not known to CalculiX" in capsys.readouterr().err
 
 
 @needs_ccx
@@ -120,9 +121,25 @@ def test_what_has_a_load_is_not_moved(block, capsys):
     assert "explicit runs support only [[displacement]]" in capsys.readouterr().err
 
 
-def test_files_that_cannot_be_written(block, capsys):
-    assert peers.main([str(block), "--json", str(block.parent / "none" / "a.json")]) == 2
-    assert "does not exist" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    "old, new, told",
+    [
+        ('"quasi-static"', '"dynamic"', "case.answer = 'dynamic' must be 'quasi-static'"),
+        ('"neo-hookean"', '"glass"', "'glass' is not known"),
+        ('set = "head"', 'set = "hat"', "hat"),
+    ],
+)
+def test_bad_cases(block, capsys, old, new, told):
+    block.write_text(BLOCK.replace(old, new))
+    assert peers.main([str(block)]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_case_that_is_not_there(capsys):
+    assert peers.main(["colum"]) == 2
+    assert "'colum' is neither a file nor a known case; did you mean 'column'" in (
+        capsys.readouterr().err
+    )
 
 
 def test_a_step_costs_what_the_longer_run_takes_more():

@@ -40,5 +40,3 @@ def test_an_accuracy_that_cannot_be_reached_ends_the_case(tmp_path, monkeypatch,
 def test_wrong_input_is_told(tmp_path, capsys):
     assert _measure(tmp_path, "colum") == (2, None)
     assert "colum" in capsys.readouterr().err
-    assert refinement.main(["--json", str(tmp_path / "none" / "refinement.json")]) == 2
-    assert "none" in capsys.readouterr().err

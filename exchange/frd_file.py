@@ -26,18 +26,6 @@ def read(path):
     return tuple(np.array([found[node] for node in nodes]) for found in (points, displacement))
 
 
-def read_displacement(path, n_nodes):
-    """The displacements of nodes 1 to n_nodes: (n_nodes, 3) in m. Also raises InputError if the
-    block does not have exactly these nodes."""
-    _, found = _blocks(path)
-    for node in range(1, n_nodes + 1):
-        if node not in found:
-            raise InputError(f"{path}: the block DISP lacks node {node} of 1..{n_nodes}")
-    if len(found) > n_nodes:
-        raise InputError(f"{path}: node {max(found)}: every node 1..{n_nodes} is required once")
-    return np.array([found[node] for node in range(1, n_nodes + 1)])
-
-
 def _blocks(path):
     """(id -> coordinates, id -> displacement) of the nodes. Raises InputError."""
     try:

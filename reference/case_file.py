@@ -169,7 +169,7 @@ def find_case(folder, name):
 
 
 def read_case(path, name=None):
-    """Read and check a case from a case file.
+    """Read a case from a case file.
 
     path: str or Path of a TOML file. name: the case's name; required if the file has variants.
     Returns a Case. Raises InputError naming file, key, value, rule and what is allowed.
@@ -210,25 +210,17 @@ def _motion(path, tables, velocities):
         for where, table in entries(path, tables, key) if key in tables else ():
             if set(names) & set(table):
                 raise InputError(f"{where}: {' and '.join(names)}: not in a golden of motion")
-    where, table = f"{path}: dynamics", entry(path, tables, "dynamics", dict)
-    number = {
-        key: float(entry(where, table, key, NUMBER)) if key in table else 0.0
-        for key in ("duration", "ramp_time", "damping")
-    }
-    if not number["duration"] > 0:
-        raise InputError(f"{where}.duration = {number['duration']} must be positive (s)")
-    frames = entry(where, table, "frames", int) if "frames" in table else 20
-    number["ramp_time"] = number["ramp_time"] or number["duration"]
-    return Motion(**number, frames=frames, velocities=velocities)
+    table = entry(path, tables, "dynamics", dict)
+    keys = {"duration": float, "ramp_time": 0.0, "damping": 0.0, "frames": 20}
+    found = _read(f"{path}: dynamics", table, *table, **keys)
+    found["ramp_time"] = found["ramp_time"] or found["duration"]
+    return Motion(**found, velocities=velocities)
 
 
 def _velocity(where, table):
-    """A checked [[velocity]] table as an InitialVelocity."""
-    _check_keys(where, table, ("set", "value", "half_waves"))
+    """A [[velocity]] table as an InitialVelocity."""
     return InitialVelocity(
-        entry(where, table, "set", str) if "set" in table else None,
-        _vector(where, table, "value"),
-        _vector_or_zero(where, table, "half_waves"),
+        *_read(where, table, set=None, value=tuple, half_waves=(0.0, 0.0, 0.0)).values()
     )
 
 
@@ -244,34 +236,29 @@ def _chosen(path, cases, name):
 
 
 def _material(where, table):
-    """A checked [material] table, or one of [[materials]], as a Material."""
+    """A [material] table, or one of [[materials]], as a Material."""
     law = entry(where, table, "law", str)
     if law not in LAWS:
         raise InputError(f"{where}.law = {law!r} is not known; {suggestion(law, LAWS)}")
-    _check_keys(where, table, (*KEYS_OF_ANY_LAW, *parameters(law)))
     numbers = {
-        key: _material_number(where, table, key)
+        key: tuple if isinstance(table.get(key), list) else float
         for key, required in parameters(law).items()
         if required or key in table
     }
-    density = entry(where, table, "density", NUMBER) if "density" in table else 0.0
-    volumetric = entry(where, table, "volumetric", str) if "volumetric" in table else "quadratic"
+    found = _read(
+        where,
+        table,
+        *KEYS_OF_ANY_LAW,
+        *parameters(law),
+        density=0.0,
+        volumetric="quadratic",
+        **numbers,
+    )
+    density, volumetric = found.pop("density"), found.pop("volumetric")
     if volumetric not in VOLUMES:
         known = suggestion(volumetric, VOLUMES)
         raise InputError(f"{where}.volumetric = {volumetric!r} is not known; {known}")
-    return Material(law, numbers, float(density), volumetric)
-
-
-def _material_number(where, table, key):
-    """A finite number or a tuple of three; the solver checks all other rules."""
-    if isinstance(table.get(key), list):
-        return _vector(where, table, key)
-    value = float(entry(where, table, key, NUMBER))
-    if key == "poisson_ratio" and not -1 < value < 0.5:
-        raise InputError(f"{where}.{key} = {value} must be in (-1, 0.5)")
-    if key in ("young_modulus", "bulk_modulus") and not value > 0:
-        raise InputError(f"{where}.{key} = {value} must be positive (Pa)")
-    return value
+    return Material(law, found, density, volumetric)
 
 
 def _merged(tables, changes):
@@ -284,74 +271,86 @@ def _merged(tables, changes):
 
 
 def _displacement(where, table):
-    """A checked [[displacement]] table as a Displacement. where: file, key and index of it."""
-    _check_keys(where, table, ("set", "value", "components"))
-    letters = entry(where, table, "components", str) if "components" in table else "xyz"
-    if not letters or len(set(letters)) != len(letters) or not set(letters) <= set("xyz"):
-        rule = "must be one or more of the letters 'xyz', each at most once"
-        raise InputError(f"{where}.components = {letters!r} {rule}")
-    return Displacement(
-        entry(where, table, "set", str),
-        _vector(where, table, "value"),
-        tuple(sorted("xyz".index(letter) for letter in letters)),
-    )
+    """A [[displacement]] table as a Displacement. where: file, key and index of it."""
+    found = _read(where, table, set=str, value=tuple, components="xyz")
+    letters = found["components"]
+    if not letters or not set(letters) <= set("xyz"):
+        raise InputError(f"{where}.components = {letters!r} must be letters of 'xyz'")
+    return Displacement(found["set"], found["value"], tuple(sorted(map("xyz".index, letters))))
 
 
 def _rotation(where, table):
-    """A checked [[rotation]] table as a Rotation; the file has degrees."""
-    _check_keys(where, table, ("set", "axis", "angle", "center", "displacement"))
-    axis = table.get("axis")
-    if isinstance(axis, str):
-        if axis not in ("x", "y", "z"):
-            raise InputError(f"{where}.axis = {axis!r} must be 'x', 'y', 'z' or a vector")
-        axis = [float(axis == letter) for letter in "xyz"]
-    else:
-        axis = _vector(where, table, "axis")
+    """A [[rotation]] table as a Rotation; the file has degrees."""
+    by_letter = isinstance(table.get("axis"), str) and table["axis"] in tuple("xyz")
+    keys = {"center": None, "displacement": (0.0, 0.0, 0.0)}
+    found = _read(where, table, set=str, axis=str if by_letter else tuple, angle=float, **keys)
+    axis = found["axis"]
+    if by_letter:
+        axis = tuple(float(axis == letter) for letter in "xyz")
     length = math.hypot(*axis)
     if not length:
         raise InputError(f"{where}.axis = {list(axis)} must not be zero")
-    return Rotation(
-        entry(where, table, "set", str),
-        tuple(a / length for a in axis),
-        entry(where, table, "angle", NUMBER) / 180 * math.pi,
-        _vector(where, table, "center") if "center" in table else None,
-        _vector_or_zero(where, table, "displacement"),
-    )
+    found["axis"], found["angle"] = tuple(a / length for a in axis), math.radians(found["angle"])
+    return Rotation(*found.values())
 
 
 def _force(where, table, moving):
-    """A checked [[force]] table as a Force."""
-    _check_keys(where, table, ("set", "total", "moment", "on", *CURVE))
-    if table.get("on", "faces") != "faces":
+    """A [[force]] table as a Force."""
+    zero = (0.0, 0.0, 0.0)
+    found = _read(where, table, *CURVE, set=str, total=zero, moment=zero, on="faces")
+    if found["on"] != "faces":
         rule = "must be 'faces': the reference knows no other"
-        raise InputError(f"{where}.on = {table['on']!r} {rule}")
+        raise InputError(f"{where}.on = {found['on']!r} {rule}")
     factor, curve = factor_and_curve(where, table, moving)
-    vectors = (_vector_or_zero(where, table, key) for key in ("total", "moment"))
-    loads = (tuple(factor * v for v in vector) for vector in vectors)
-    return Force(entry(where, table, "set", str), *loads, curve)
+    loads = (tuple(factor * v for v in found[key]) for key in ("total", "moment"))
+    return Force(found["set"], *loads, curve)
 
 
 def _pressure(where, table, moving):
-    """A checked [[pressure]] table as a Pressure."""
-    _check_keys(where, table, ("set", "value", *CURVE))
+    """A [[pressure]] table as a Pressure."""
+    found = _read(where, table, *CURVE, set=str, value=float)
     factor, curve = factor_and_curve(where, table, moving)
-    value = factor * float(entry(where, table, "value", NUMBER))
-    return Pressure(entry(where, table, "set", str), value, curve)
+    return Pressure(found["set"], factor * found["value"], curve)
 
 
 def _gravity(where, table):
-    """The acceleration of a checked [[gravity]] table."""
-    _check_keys(where, table, ("value", *CURVE))
+    """The acceleration of a [[gravity]] table."""
     factor, _ = factor_and_curve(where, table, moving=False)
-    return tuple(factor * v for v in _vector(where, table, "value"))
+    return tuple(factor * v for v in _read(where, table, *CURVE, value=tuple)["value"])
 
 
 def _support(where, table):
-    """A checked [[support]] table as a Support; its damping plays no part at rest."""
-    _check_keys(where, table, ("set", "stiffness", "damping", "only_normal"))
-    stiffness = entry(where, table, "stiffness", NUMBER) if "stiffness" in table else 0.0
-    only_normal = entry(where, table, "only_normal", bool) if "only_normal" in table else False
-    return Support(entry(where, table, "set", str), float(stiffness), only_normal)
+    """A [[support]] table as a Support; its damping plays no part at rest."""
+    return Support(
+        *_read(where, table, "damping", set=str, stiffness=0.0, only_normal=False).values()
+    )
+
+
+def _read(where, table, *others, **keys):
+    """The values of a table's keys, in their order: vectors as tuples, numbers as floats.
+
+    keys: a type (float: any number; tuple: a vector) of a required key, or the value of one that is
+    left out; None: a vector or a text. others: keys that are read elsewhere. Raises InputError for
+    any other key: what nothing here knows would give the answer of another case. The rules for
+    values are those of `sandglass mesh`, which has read the same file.
+    """
+    found = {}
+    for key in table:
+        if key not in keys and key not in others:
+            raise InputError(f"{where}.{key}: unknown key; {suggestion(key, (*keys, *others))}")
+    for key, given in keys.items():
+        kind = given if isinstance(given, type) else type(given)
+        if given is None and key in table:
+            kind = tuple if isinstance(table[key], list) else str
+        if not isinstance(given, type) and key not in table:
+            found[key] = given
+        elif kind is tuple:
+            found[key] = _vector(where, table, key)
+        elif kind is float:
+            found[key] = float(entry(where, table, key, NUMBER))
+        else:
+            found[key] = entry(where, table, key, kind)
+    return found
 
 
 def _vector(where, table, key):
@@ -361,15 +360,3 @@ def _vector(where, table, key):
     if not (len(value) == len(numbers) == 3 and all(map(math.isfinite, numbers))):
         raise InputError(f"{where}.{key} = {value!r} must be three finite numbers")
     return tuple(map(float, numbers))
-
-
-def _vector_or_zero(where, table, key):
-    """Three numbers of a table; zeros where it has none."""
-    return _vector(where, table, key) if key in table else (0.0, 0.0, 0.0)
-
-
-def _check_keys(where, table, known):
-    """Raises InputError for the first unknown key of a table."""
-    for key in table:
-        if key not in known:
-            raise InputError(f"{where}.{key}: unknown key; {suggestion(key, known)}")

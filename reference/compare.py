@@ -4,7 +4,6 @@ Usage: /usr/bin/python3 reference/compare.py [--update]
 Exit codes: 0 done, 2 damaged or contradictory files.
 """
 
-import argparse
 import math
 import sys
 from pathlib import Path
@@ -15,7 +14,7 @@ if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
 from common.accuracy import relative_errors
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError
 from common.files import write_whole
 from reference_file import FOLDER, MOTION, path_of, read_reference, stored, write_reference
@@ -141,11 +140,11 @@ def run(options):
         update_readme()
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description="Print the distances of goldens from truths.")
-    parser.add_argument("--update", action="store_true", help="write the tables into README.md")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("--update", action="store_true", help="write the tables into README.md"),
+)
 
 
 if __name__ == "__main__":

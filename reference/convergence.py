@@ -7,11 +7,9 @@ estimates the errors of truths in the same way, from their own meshes.
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
 """
 
-import argparse
 import logging
 import math
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,12 +19,12 @@ if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
 import solve
-from case_file import find_case, read_case
+from case_file import find_case
 from common.accuracy import relative_errors
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError, suggestion
 from common.program import CASES
-from mesh_file import load_case_mesh, make_mesh
+from mesh_file import case_with_mesh
 from reference_file import path_of, read_reference, stored, write_estimate
 from symmetry import halve
 
@@ -118,11 +116,7 @@ def fields_of(name, displacement):
     displacement: the stored one, on the mesh itself. Returns (list of (n, 3), m; why there are no
     more). Raises InputError or ComputationError.
     """
-    path = find_case(CASES, name)
-    case = read_case(path, name)
-    with tempfile.TemporaryDirectory() as scratch:
-        make_mesh(path, Path(scratch) / "mesh.h5", name)
-        mesh, _ = load_case_mesh(case, Path(scratch) / "mesh.h5")
+    case, mesh, _ = case_with_mesh(find_case(CASES, name), name)
     if mesh.ties:
         return [displacement], "a mesh with nodes that hang is not split further"
     cells = len(halve(mesh)[0].cells)
@@ -152,14 +146,11 @@ def run(options):
         estimate(name)
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Estimate the discretisation errors of stored goldens.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found",
-    )
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all stored ones")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("cases", nargs="*", metavar="CASE", help="default: all stored ones"),
+)
 
 
 if __name__ == "__main__":

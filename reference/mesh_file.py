@@ -1,12 +1,14 @@
 """Generates (with `sandglass mesh CASE -o FILE`) and reads mesh files."""
 
 import dataclasses
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import h5py
 import numpy as np
 
+from case_file import read_case
 from common.errors import InputError, suggestion
 from common.program import ROOT, binary, output_of
 from common.result_file import text_of
@@ -42,6 +44,17 @@ def make_mesh(case_path, output, name=None):
     case_path = Path(case_path).resolve()
     case = case_path.parent / name if name else case_path
     output_of(binary(), "mesh", case, "-o", Path(output).resolve(), cwd=ROOT)
+
+
+def case_with_mesh(path, name=None):
+    """(Case, HexMesh, MeshFile) of a case, whose mesh the program makes; arguments of make_mesh().
+
+    Raises InputError or ComputationError.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        make_mesh(path, Path(folder) / "mesh.h5", name)
+        case = read_case(path, name)
+        return case, *load_case_mesh(case, Path(folder) / "mesh.h5")
 
 
 def read_mesh(path):

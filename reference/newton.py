@@ -167,7 +167,7 @@ def _report(load, converged, count, residual, correction, seconds):
     verdict = f"residual {residual:.1e}" if converged else "failed, step halved"
     print(
         f"load {load:6.4f}: {count} iterations, correction {correction:.1e}, {verdict}, "
-        f"{seconds:.1f} s",
+        f"{seconds:.3f} s",
         file=sys.stderr,
         flush=True,
     )

@@ -7,22 +7,20 @@ meshes. Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found or a di
 more.
 """
 
-import argparse
 import dataclasses
 import sys
-import tempfile
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from case_file import find_case, read_case
+from case_file import find_case
 from common.accuracy import relative_errors
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import ComputationError, InputError, suggestion
 from common.files import read_json, write_json, write_whole
 from common.program import CASES
-from mesh_file import load_case_mesh, make_mesh
+from mesh_file import case_with_mesh
 from reference_file import path_of, read_reference, stored
 from solve import load_steps_of, solve_case
 
@@ -39,11 +37,7 @@ def distance(name, change=None):
     name: of a case with a golden. change: from the Case's
     materials to others, for tests. Raises InputError or ComputationError.
     """
-    path = find_case(CASES, name)
-    case = read_case(path, name)
-    with tempfile.TemporaryDirectory() as folder:
-        make_mesh(path, Path(folder) / "mesh.h5", name)
-        mesh, file = load_case_mesh(case, Path(folder) / "mesh.h5")
+    case, mesh, file = case_with_mesh(find_case(CASES, name), name)
     _, reference, attributes = read_reference(path_of("golden", name))
     if (attributes["case_hash"], attributes["mesh_hash"]) != (file.case_hash, file.mesh_hash):
         raise InputError(
@@ -123,14 +117,11 @@ def run(options):
     return code
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Compute goldens by a second program, SfePy or GetFEM.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium or too far",
-    )
-    parser.add_argument("cases", metavar="CASE", nargs="*", help="default: all that have one")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("cases", metavar="CASE", nargs="*", help="default: all that have one"),
+)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ Usage: /usr/bin/python3 reference/solve.py golden|motion CASE.toml --mesh mesh.h
 Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found.
 """
 
-import argparse
 import logging
 import math
 import sys
@@ -21,9 +20,8 @@ import motion
 import newton
 from case_file import read_case
 from common.accuracy import relative_errors
-from common.command import exit_code, whole_number
+from common.command import command_line, option, whole_number, writable
 from common.errors import ComputationError, InputError
-from common.files import require_writable
 from hexahedra import refine
 from mesh_file import initial_velocity, load_case_mesh
 from problem import MixedProblem
@@ -86,7 +84,6 @@ def run(options):
             f"{options.case}: a refined mesh has a golden at rest only: motion and meshes that are "
             "split further have no ties here"
         )
-    require_writable(options.output)
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     if case.motion:
         velocity = initial_velocity(case, options.mesh)
@@ -142,33 +139,29 @@ def discretisation_error(displacements, unit):
     }
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Solve a case with mixed elements in FEniCSx.",
-        epilog="exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found",
-    )
-    add = parser.add_argument
-    add("kind", choices=KINDS, help="golden: at rest; motion: of a dynamic case")
-    add("case", metavar="CASE.toml", help="the case file")
-    add("--variant", metavar="NAME", help="case of the file, where it has variants")
-    add("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`")
-    add("-o", "--output", required=True, help="HDF5 file to write")
-    add(
+main = command_line(
+    run,
+    __doc__,
+    option("kind", choices=KINDS, help="golden: at rest; motion: of a dynamic case"),
+    option("case", metavar="CASE.toml", help="the case file"),
+    option("--variant", metavar="NAME", help="case of the file, where it has variants"),
+    option("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`"),
+    option("-o", "--output", type=writable, required=True, help="HDF5 file to write"),
+    option(
         "--refine",
         type=whole_number(0),
         default=0,
         metavar="N",
         help="split every hexahedron into 8, N times; the difference to N-1 is stored as the "
         "estimate of the discretisation error (default 0: no estimate)",
-    )
-    add(
+    ),
+    option(
         "--load-steps",
         type=whole_number(1),
         metavar="N",
         help=f"default: {LOAD_STEPS}, halved on failure",
-    )
-    return exit_code(run, parser.parse_args(arguments))
+    ),
+)
 
 
 if __name__ == "__main__":

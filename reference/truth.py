@@ -6,7 +6,6 @@ distance from the limit of the sequence. Needs the solver's binary, which makes 
 Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found.
 """
 
-import argparse
 import dataclasses
 import hashlib
 import logging
@@ -24,14 +23,14 @@ if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
 import newton
-from case_file import find_case, read_case
+from case_file import find_case
 from common.accuracy import relative_errors
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import ComputationError, InputError, suggestion
 from common.files import require_writable, writing
 from common.program import CASES
 from convergence import attributes_of
-from mesh_file import load_case_mesh, make_mesh
+from mesh_file import case_with_mesh
 from reference_file import path_of, write_reference
 from solve import BOUNDARY_RULE, NEWTON_TOLERANCE
 from symmetry import expand, halve
@@ -117,9 +116,7 @@ def graded_mesh(name, grading, level):
     with tempfile.TemporaryDirectory() as folder:
         changed = Path(folder) / path.name
         changed.write_text(path.read_text(encoding="utf-8") + grading.tables(level), "utf-8")
-        make_mesh(changed, Path(folder) / "mesh.h5", name)
-        case = read_case(changed, name)
-        mesh, _ = load_case_mesh(case, Path(folder) / "mesh.h5")
+        case, mesh, _ = case_with_mesh(changed, name)
     return case, dataclasses.replace(mesh, ties=None)
 
 
@@ -253,10 +250,7 @@ def make_truth(name, output, keep=None):
     if name not in GRADINGS:
         raise InputError(f"CASE: {name!r} has no meshes in GRADINGS; {suggestion(name, GRADINGS)}")
     require_writable(output)
-    path = find_case(CASES, name)
-    with tempfile.TemporaryDirectory() as folder:
-        make_mesh(path, Path(folder) / "mesh.h5", name)
-        mesh, file = load_case_mesh(read_case(path, name), Path(folder) / "mesh.h5")
+    _, mesh, file = case_with_mesh(find_case(CASES, name), name)
     grading = GRADINGS[name]
     fields, inside, facts = solve_levels(name, grading, mesh, keep)
     orders = grading.sequences or (range(grading.levels()),)
@@ -298,17 +292,13 @@ def run(options):
         make_truth(name, options.output or path_of("truth", name), options.keep)
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Compute truths with Taylor-Hood tetrahedra on graded meshes.",
-        epilog="exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found",
-    )
-    add = parser.add_argument
-    add("cases", nargs="*", metavar="CASE", help="default: all in GRADINGS")
-    add("-o", "--output", metavar="FILE", help="HDF5 file to write (default: the stored truth)")
-    add("--keep", metavar="FOLDER", help="where answers on each mesh are kept and looked for")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("cases", nargs="*", metavar="CASE", help="default: all in GRADINGS"),
+    option("-o", "--output", metavar="FILE", help="HDF5 file to write (default: the stored truth)"),
+    option("--keep", metavar="FOLDER", help="where answers on each mesh are kept and looked for"),
+)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ Usage: /usr/bin/python3 reports/keep_maps.py FILE... [-o FOLDER]
 Exit codes: 0 done, 2 an input is missing or broken.
 """
 
-import argparse
 import json
 import sys
 from pathlib import Path
@@ -14,7 +13,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.files import write_whole, writing
 from sandglass_report.maps import kept, read_maps
 
@@ -30,12 +29,12 @@ def keep(options):
         print(place)
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("files", nargs="+", type=Path, help="of sandglass stability --json")
-    parser.add_argument("-o", "--output", type=Path, default="reports/maps", help="folder")
-    return exit_code(keep, parser.parse_args(arguments))
+main = command_line(
+    keep,
+    __doc__,
+    option("files", nargs="+", type=Path, help="of sandglass stability --json"),
+    option("-o", "--output", type=Path, default="reports/maps", help="folder"),
+)
 
 
 if __name__ == "__main__":

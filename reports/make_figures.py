@@ -8,14 +8,13 @@ Usage: /usr/bin/python3 reports/make_figures.py FILE... [-o FOLDER]
 Exit codes: 0 done, 2 an input is missing or broken.
 """
 
-import argparse
 import sys
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError
 from common.files import read_json, writing
 from sandglass_report.curves import curve_plate, read_costs
@@ -54,13 +53,12 @@ def make(options):
             print(*save_plate(plate, options.output), sep="\n")
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    add = parser.add_argument
-    add("files", nargs="+", type=Path, help="of stability, choose --all, growth or refinement")
-    add("-o", "--output", type=Path, default="reports/figures", help="folder of the figures")
-    return exit_code(make, parser.parse_args(arguments))
+main = command_line(
+    make,
+    __doc__,
+    option("files", nargs="+", type=Path, help="of stability, choose --all, growth or refinement"),
+    option("-o", "--output", type=Path, default="reports/figures", help="folder of the figures"),
+)
 
 
 if __name__ == "__main__":

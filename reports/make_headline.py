@@ -6,14 +6,13 @@ stored in reports/figures/ beside the figure; the texts of README.md and docs/re
 Exit codes: 0 done, 2 an input is missing or broken.
 """
 
-import argparse
 import sys
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.files import read_json, write_json, write_whole
 from common.program import ROOT
 from sandglass_report import headline
@@ -46,11 +45,11 @@ def make(records, root=ROOT):
         print(path)
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("records", type=Path, nargs="?", default=RECORDS, help="of ci/verify")
-    return exit_code(make, parser.parse_args(arguments).records)
+main = command_line(
+    lambda options: make(options.records),
+    __doc__,
+    option("records", type=Path, nargs="?", default=RECORDS, help="of ci/verify"),
+)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ the command that makes it.
 Exit codes: 0 done, 2 an input is missing, broken or does not belong to the others.
 """
 
-import argparse
 import sys
 import time
 from pathlib import Path
@@ -14,7 +13,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from sandglass_report.evidence import read_evidence
 from sandglass_report.growth import growth_plate, read_growth
 from sandglass_report.verdicts import read_verdicts
@@ -58,45 +57,35 @@ def make(options):
     print(f"{options.output}: {size / 1e6:.1f} MB, made in {seconds:.0f} s")
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    add = parser.add_argument
-    add("--verdicts", type=Path, default="build/verdicts.json", help="of sandglass verify --json")
-    add("--results", type=Path, default="build/verify", help="of sandglass verify --results")
-    add("--cases", type=Path, default="cases", help="folder of case files")
-    add(
-        "--case",
-        type=Path,
-        nargs="+",
-        default=[],
-        help="case files in addition to those of the folder",
-    )
-    add("--reference", type=Path, default="reference", help="folder with golden/ and truth/")
-    add("--bench", type=Path, default="build/bench.json", help="of sandglass bench --json")
-    add("--flops", type=Path, default="build/flops.json", help="of sandglass flops --json")
-    add("--curves", type=Path, default="build/curves", help="folder of sandglass choose --json")
-    add("--maps", type=Path, default="build/stability", help="folder of sandglass stability --json")
-    add("--kept-maps", type=Path, default="reports/maps", help="folder of reports/keep_maps.py")
-    add("--pictures", type=Path, default="reports/figures", help="folder of drawn failure maps")
-    add("--growth", type=Path, default="reports/figures/growth.json", help="of bench/growth.py")
-    add(
-        "--refinement",
-        type=Path,
-        default="reports/figures/refinement.json",
-        help="of bench/refinement.py",
-    )
-    add("--submissions", type=Path, default="results", help="folder of submitted results")
-    add("--claims", type=Path, default="verification/claims.toml", help="claims and their tests")
-    add(
-        "--mutants",
-        type=Path,
-        default="verification/mutants/RESULTS.md",
-        help="of verification/mutants/run.py",
-    )
-    add("--root", type=Path, default=".", help="of the tree that the claims' tests are in")
-    add("-o", "--output", type=Path, default="build/report/index.html", help="the page to write")
-    return exit_code(make, parser.parse_args(arguments))
+# Input -> where it is unless an option names another place, and what makes it.
+INPUTS = {
+    "verdicts": ("build/verdicts.json", "of sandglass verify --json"),
+    "results": ("build/verify", "of sandglass verify --results"),
+    "cases": ("cases", "folder of case files"),
+    "reference": ("reference", "folder with golden/ and truth/"),
+    "bench": ("build/bench.json", "of sandglass bench --json"),
+    "flops": ("build/flops.json", "of sandglass flops --json"),
+    "curves": ("build/curves", "folder of sandglass choose --json"),
+    "maps": ("build/stability", "folder of sandglass stability --json"),
+    "kept-maps": ("reports/maps", "folder of reports/keep_maps.py"),
+    "pictures": ("reports/figures", "folder of drawn failure maps"),
+    "growth": ("reports/figures/growth.json", "of bench/growth.py"),
+    "refinement": ("reports/figures/refinement.json", "of bench/refinement.py"),
+    "submissions": ("results", "folder of submitted results"),
+    "claims": ("verification/claims.toml", "claims and their tests"),
+    "mutants": ("verification/mutants/RESULTS.md", "of verification/mutants/run.py"),
+    "root": (".", "of the tree that the claims' tests are in"),
+}
+main = command_line(
+    make,
+    __doc__,
+    *(
+        option(f"--{name}", type=Path, default=place, help=f"{made}; default: {place}")
+        for name, (place, made) in INPUTS.items()
+    ),
+    option("--case", type=Path, nargs="+", default=[], help="case files beside those of --cases"),
+    option("-o", "--output", type=Path, default="build/report/index.html", help="the page"),
+)
 
 
 if __name__ == "__main__":

@@ -4,14 +4,13 @@ Usage: /usr/bin/python3 results/check.py [ENTRY.json...]; all of results/ by def
 Exit codes: 0 all are right, 1 one is not, 2 bad usage.
 """
 
-import argparse
 import sys
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError
 from results.entry import check, entry_files
 
@@ -29,11 +28,11 @@ def check_all(options):
     return 1 if wrong else 0
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("entries", nargs="*", type=Path, metavar="ENTRY.json")
-    return exit_code(check_all, parser.parse_args(arguments))
+main = command_line(
+    check_all,
+    __doc__,
+    option("entries", nargs="*", type=Path, metavar="ENTRY.json"),
+)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ The second form makes an entry of every row that `ci/peers CASE --json --answers
 Exit codes: 0 done, 2 bad usage or input, 3 scoring failed.
 """
 
-import argparse
 import datetime
 import re
 import sys
@@ -16,7 +15,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError
 from common.files import new_file, read_json, write_json
 from results.entry import FOLDER, displacement_file, hash_of, require_valid, scored
@@ -127,24 +126,21 @@ def submit(options):
         print(f"wrote {path}")
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    add = parser.add_argument
-    add("answer", nargs="?", type=Path, metavar="ANSWER", help="a file that sandglass score reads")
-    for key in REQUIRED:
-        add(f"--{key}", help="see results/schema.json")
-    add("--precision", choices=("float", "double", "mixed"), default="double")
-    add("--ns", dest="ns_per_element_step", type=float, help="ns per element and step")
-    add("--step", dest="time_step", type=float, help="stable step used, s")
-    add("--seconds", dest="seconds_to_rest", type=float, help="wall time until the answer, s")
-    add("--how", help="how answer and times were found")
-    add("--peers", type=Path, metavar="FILE", help="of ci/peers --json")
-    add("--answers", type=Path, metavar="FOLDER", help="of ci/peers --answers")
-    add("--by", required=True, metavar="NAME", help="who submits")
-    add("--folder", type=Path, default=FOLDER, help="where to write; results/ by default")
-    return exit_code(submit, parser.parse_args(arguments))
-
+main = command_line(
+    submit,
+    __doc__,
+    option("answer", nargs="?", type=Path, metavar="ANSWER", help="what sandglass score reads"),
+    *(option(f"--{key}", help="see results/schema.json") for key in REQUIRED),
+    option("--precision", choices=("float", "double", "mixed"), default="double"),
+    option("--ns", dest="ns_per_element_step", type=float, help="ns per element and step"),
+    option("--step", dest="time_step", type=float, help="stable step used, s"),
+    option("--seconds", dest="seconds_to_rest", type=float, help="wall time until the answer, s"),
+    option("--how", help="how answer and times were found"),
+    option("--peers", type=Path, metavar="FILE", help="of ci/peers --json"),
+    option("--answers", type=Path, metavar="FOLDER", help="of ci/peers --answers"),
+    option("--by", required=True, metavar="NAME", help="who submits"),
+    option("--folder", type=Path, default=FOLDER, help="where to write; results/ by default"),
+)
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -5,9 +5,9 @@ Of a slow one, SANDGLASS_PATIENCE says how many times longer its commands may ta
 """
 
 import os
-import pathlib
 import signal
 import subprocess
+from pathlib import Path
 
 import h5py
 
@@ -17,39 +17,7 @@ from common.result_file import last_displacement
 PATIENCE = float(os.environ.get("SANDGLASS_PATIENCE", "1"))
 BINARY = os.environ.get("SANDGLASS_BINARY", str(ROOT / "build" / "release" / "sandglass"))
 
-BLOCK = """
-[case]
-name = "block"
-requirement = "A block is pulled and sheared."
-answer = "quasi-static"
-
-[mesh]
-generator = "box"
-size = [0.1, 0.1, 0.2]
-elements = [2, 2, 4]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.49
-density = 1000.0
-
-[sets]
-foot = { z = [0.0, 0.0] }
-head = { z = [0.2, 0.2] }
-
-[[displacement]]
-set = "foot"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "head"
-value = [0.02, 0.0, 0.01]
-
-[comparison]
-kappas = [0.01]
-golden = "golden.h5"
-"""
+BLOCK = (Path(__file__).parent / "support/block.toml").read_text()
 
 BARE = BLOCK.partition("[comparison]")[0]  # without a comparison
 
@@ -69,17 +37,24 @@ def dynamic(text, **numbers):
     return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
-def sandglass(*arguments, program=BINARY, **options):
-    """Runs the program; returns its outcome with its output."""
+def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
+    """Runs the program; returns its outcome with its output.
+
+    code: the exit code that it must end with. told: a text, or several, that its errors must have.
+    """
     command = [program, *map(str, arguments)]
-    return subprocess.run(
+    done = subprocess.run(
         command, capture_output=True, text=True, timeout=120 * PATIENCE, **options
     )
+    assert code in (None, done.returncode), f"{done.returncode}: {done.stdout}{done.stderr}"
+    for text in [told] if isinstance(told, str) else told:
+        assert text in done.stderr, f"{text!r} is not in {done.stderr!r}"
+    return done
 
 
 def catches_interrupts(process):
     """Whether a process handles Ctrl-C, according to the kernel."""
-    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
+    for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
         if line.startswith("SigCgt:"):
             return bool(int(line.split()[1], 16) >> (signal.SIGTERM - 1) & 1)  # watched last
     return False
@@ -98,11 +73,3 @@ def write_golden(case, **changed):
         golden["displacement"] = last_displacement(result)
         for name in ("case_hash", "mesh_hash"):
             golden.attrs[name] = changed.get(name, source.attrs[name])
-
-
-def require_refusal(words, folder, *arguments):
-    """Runs a command in an empty folder: it must refuse, with these words, and leave no file."""
-    outcome = sandglass(*arguments, cwd=folder)
-    assert outcome.returncode == 2
-    assert words in outcome.stderr
-    assert not list(folder.iterdir())

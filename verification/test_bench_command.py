@@ -9,29 +9,14 @@ import re
 import subprocess
 
 import pytest
-from command_line import BINARY, BLOCK, dynamic, methods, sandglass
+from command_line import BINARY, methods, sandglass
 
-FIGURES = (
-    "ns_per_element_step",
-    "ns_best",
-    "ns_lower_quartile",
-    "ns_upper_quartile",
-    "check_ns_per_element_step",
-    "ratio_to_tl_perturbation",
-    "speedup_over_scalar_double",
-    "step_p50_us",
-    "step_p99_us",
-    "step_max_us",
-    "operations_per_element_step",
-    "bytes_per_element_step",
-    "gflops",
-    "fraction_of_peak",
-    "gbs",
-    "fraction_of_bandwidth",
-    "stream_gbs_at_working_set",
-    "roofline_fraction",
-)
-
+FIGURES = """
+ns_per_element_step ns_best ns_lower_quartile ns_upper_quartile check_ns_per_element_step
+ratio_to_tl_perturbation speedup_over_scalar_double step_p50_us step_p99_us step_max_us
+operations_per_element_step bytes_per_element_step gflops fraction_of_peak gbs
+fraction_of_bandwidth stream_gbs_at_working_set roofline_fraction
+""".split()
 
 # The same program with the kernels that compute one element at a time.
 SCALAR = BINARY + "-scalar"
@@ -46,16 +31,14 @@ def tiny(tmp_path_factory):
     """One short run of everything: its output and its file."""
     file = tmp_path_factory.mktemp("bench") / "bench.json"
     command = "bench --elements 64 --repetitions 1 --threads 1 2 --json".split()
-    outcome = sandglass(*command, file, program=SCALAR)
-    assert outcome.returncode == 0, outcome.stderr
+    outcome = sandglass(*command, file, program=SCALAR, code=0)
     return outcome.stdout, json.loads(file.read_text())
 
 
 def test_cubes_take_fewer_operations_and_bytes_than_other_bricks(tmp_path):
     file = tmp_path / "bench.json"
     command = "bench --elements 64 --cubes 64 --repetitions 1 --threads 1 --json".split()
-    outcome = sandglass(*command, file, "--methods", "tl-perturbation", "tl-full")
-    assert outcome.returncode == 0, outcome.stderr
+    sandglass(*command, file, "--methods", "tl-perturbation", "tl-full", code=0)
     found = {(r["case"], r["method"]): r for r in json.loads(file.read_text())["records"]}
     assert set(found) == {(c, m) for c in ("box", "cubes") for m in ("tl-perturbation", "tl-full")}
     for figure in ("operations_per_element_step", "bytes_per_element_step"):
@@ -179,8 +162,7 @@ def test_operations_are_those_of_the_flops_command(tiny, tmp_path):
 def test_condensed_methods_are_left_out_of_large_meshes(tmp_path):
     json_file = tmp_path / "bench.json"
     choice = "--methods linear-condensed --precision double --threads 1 --repetitions 1 --json"
-    outcome = sandglass(*"bench --elements 20000".split(), *choice.split(), json_file)
-    assert outcome.returncode == 0
+    outcome = sandglass(*"bench --elements 20000".split(), *choice.split(), json_file, code=0)
     records = json.loads(json_file.read_text())["records"]
     assert len(records) == 1
     for record in records:
@@ -190,13 +172,13 @@ def test_condensed_methods_are_left_out_of_large_meshes(tmp_path):
 
 def test_a_case_and_a_choice(block):
     json_file = block.parent / "bench.json"
-    outcome = sandglass(
+    sandglass(
         *f"bench {block} --methods tl-full --precision float --threads 1".split(),
         *"--repetitions 2 --json".split(),
         json_file,
         program=SCALAR,
+        code=0,
     )
-    assert outcome.returncode == 0
     records = json.loads(json_file.read_text())["records"]
     assert [(r["case"], r["elements"], r["kernel"], r["precision"]) for r in records] == [
         ("block", 16, "pack", "float"),
@@ -209,42 +191,17 @@ def test_a_case_and_a_choice(block):
 def test_without_scalar_kernels_packs_are_compared_with_doubles(block):
     json_file = block.parent / "packs.json"
     command = f"bench {block} --methods tl-full --threads 1 --repetitions 1 --json".split()
-    outcome = sandglass(*command, json_file)
-    assert outcome.returncode == 0, outcome.stderr
+    sandglass(*command, json_file, code=0)
     double, single = json.loads(json_file.read_text())["records"]
     assert (double["kernel"], single["kernel"]) == ("pack", "pack")
     assert double["force_difference"] == 0.0 and single["force_difference"] > 0.0
     assert double["speedup_over_scalar_double"] is None
 
 
-@pytest.mark.parametrize(
-    "arguments, text",
-    [
-        ("bench colum", "did you mean 'column'?"),
-        ("bench --methods tl-ful", "--methods: 'tl-ful' is not known; did you mean 'tl-full'?"),
-        ("bench --precision half", "--precision = 'half' must be 'double' or 'float'"),
-        ("bench --threads 0", "--threads = 0 must be in [1, 1024]"),
-        ("bench --elements 0", "--elements = 0 must be in [1, 100000000]"),
-        ("bench --elements -8", "--elements = -8 must be in [1, 100000000]"),
-        ("bench --elements many", "--elements"),
-        ("bench --rest --elements 8", "--rest"),
-        ("bench --rest --repetitions 8", "--rest"),
-        ("bench --rest --methods tl-ful", "did you mean 'tl-full'?"),
-        ("bench --repetitions 0", "--repetitions = 0 must be in [1, 1000000]"),
-    ],
-)
-def test_wrong_input(arguments, text):
-    outcome = sandglass(*arguments.split())
-    assert outcome.returncode == 2
-    assert text in outcome.stderr
-    assert not outcome.stdout
-
-
 def test_rest(block):
     """Every method and precision, with ordered seconds; bench/ reads the solver's records."""
     json_file = block.parent / "rest.json"
-    outcome = sandglass("bench", "--rest", block, "--json", json_file)
-    assert outcome.returncode == 0, outcome.stderr
+    outcome = sandglass("bench", "--rest", block, "--json", json_file, code=0)
     assert "block: 16 elements, 45 nodes" in outcome.stdout
     document = json.loads(json_file.read_text())
     assert document["revision"] and document["processor"]
@@ -267,26 +224,8 @@ def test_rest_that_is_not_reached_ends_with_3(block):
     block.write_text(block.read_text() + "\n[relaxation]\nmax_steps = 5\n")
     json_file = block.parent / "rest.json"
     choice = "--methods tl-full --precision double --json".split()
-    outcome = sandglass("bench", "--rest", block, *choice, json_file)
-    assert outcome.returncode == 3
+    outcome = sandglass("bench", "--rest", block, *choice, json_file, code=3)
     assert "failed: not at rest after" in outcome.stdout
     assert "1 of 1 did not come to rest" in outcome.stderr
     (record,) = json.loads(json_file.read_text())["records"]
     assert record["seconds_to_rest"] is None and record["status"].startswith("failed: ")
-
-
-def test_dynamic_case_has_no_rest(block):
-    block.write_text(dynamic(BLOCK, duration=1.0))
-    outcome = sandglass("bench", "--rest", block)
-    assert outcome.returncode == 2
-    assert "block.toml: a dynamic case has no rest to come to" in outcome.stderr
-
-
-def test_unwritable_json(tmp_path):
-    outcome = sandglass(
-        *"bench --elements 8 --repetitions 1 --methods tl-none --json".split(),
-        tmp_path / "none" / "bench.json",
-    )
-    assert outcome.returncode == 2
-    assert "bench.json: cannot be written" in outcome.stderr
-    assert list(tmp_path.iterdir()) == []

@@ -41,8 +41,7 @@ def copied(name, folder, *replaced):
 def answer(case, *arguments):
     """Nodes and final displacements of a run, m."""
     result = case.parent / "result.h5"
-    outcome = sandglass("run", case, *arguments, "-o", result)
-    assert outcome.returncode == 0, outcome.stderr
+    sandglass("run", case, *arguments, "-o", result, code=0)
     with h5py.File(result) as file:
         return file["mesh/points"][:], last_displacement(result)
 
@@ -169,8 +168,7 @@ def test_a_mesh_from_a_file_stays_where_it_is(block, tmp_path):
     outcome, document = choose(case, "--tolerance", "5%", "-o", chosen)
     assert outcome.returncode == 0, outcome.stderr
     assert document["other_meshes"] == []
-    run = sandglass("run", chosen)
-    assert run.returncode == 0, run.stderr
+    run = sandglass("run", chosen, code=0)
     assert chosen_of(document)["method"] in run.stdout
 
 
@@ -196,35 +194,6 @@ def test_run_takes_the_method_of_the_case_unless_told(block):
     block.write_text(BLOCK + '\n[method]\nname = "tl-full"\nprecision = "float"\n')
     assert "tl-full, float" in sandglass("run", block).stdout
     assert "tl-full, double" in sandglass("run", block, "-p", "double").stdout
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (("--tolerance", "0"), ["--tolerance = '0'", "(0, 1]"]),
-        (("--tolerance", "1pc"), ["--tolerance = '1pc'", "1%"]),
-        (("--tolerance", "200%"), ["--tolerance = '200%'"]),
-        (("--budget", "1min"), ["--budget = '1min'", "1ms"]),
-        (("--budget", "-1ms"), ["--budget = '-1ms'"]),
-        (("--against", "gold"), ["--against", "golden"]),
-        (("--against", "truth"), ["block.h5"]),
-        (("--methods", "tl-nothing"), ["'tl-nothing'", "known"]),
-        (("--threads", "0"), ["--threads = 0"]),
-        (("--json", "/dev/null/choice.json"), ["/dev/null/choice.json"]),
-        (("--output", "/dev/null/chosen.toml"), ["/dev/null/chosen.toml"]),
-    ],
-)
-def test_wrong_input_is_told(block, arguments, words):
-    outcome = sandglass("choose", block, *arguments)
-    assert outcome.returncode == 2, outcome.stdout
-    for word in words:
-        assert word in outcome.stderr
-
-
-def test_does_not_write_over_the_case(block):
-    outcome = sandglass("choose", block, "-o", block)
-    assert outcome.returncode == 2 and "another file" in outcome.stderr
-    assert block.read_text() == BLOCK
 
 
 def test_a_motion_is_chosen_for_and_the_chosen_case_runs(tmp_path):

@@ -19,18 +19,9 @@ from command_line import BINARY, BLOCK, ROOT, catches_interrupts, dynamic, metho
 from common.result_file import last_displacement, text_of
 
 CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
-COMMANDS = ["cases", "methods", "mesh", "run", "score", "verify", "bench"]
 
 
 # Help, lists, usage.
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-def test_help_of_every_command(command):
-    outcome = sandglass(command, "--help")
-    assert outcome.returncode == 0
-    assert command in sandglass("--help").stdout
-    assert outcome.stdout and not outcome.stderr
 
 
 @pytest.mark.parametrize(
@@ -49,33 +40,12 @@ def test_help_of_every_command(command):
     ],
 )
 def test_what_the_program_says_of_itself(words, told):
-    outcome = sandglass(*words)
-    assert outcome.returncode == 0
+    outcome = sandglass(*words, code=0)
     assert all(text in outcome.stdout for text in told)
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        [],
-        ["nonsense"],
-        ["run"],
-        ["run", "column", "--nonsense"],
-        ["mesh", "column"],
-        ["verify", "--threads", "-1"],
-        ["cases", "column"],
-    ],
-    ids=lambda arguments: " ".join(arguments) or "nothing",
-)
-def test_bad_usage(arguments):
-    outcome = sandglass(*arguments)
-    assert outcome.returncode == 2
-    assert outcome.stderr
-
-
 def test_cases_lists_every_case_with_its_requirement():
-    outcome = sandglass("cases")
-    assert outcome.returncode == 0
+    outcome = sandglass("cases", code=0)
     lines = outcome.stdout.splitlines()
     assert sorted(line.split()[0] for line in lines) == CASES
     assert any(line.startswith("bending ") and "12 variants" in line for line in lines)
@@ -84,14 +54,11 @@ def test_cases_lists_every_case_with_its_requirement():
 
 def test_cases_in_an_empty_or_missing_folder(tmp_path):
     environment = dict(os.environ, SANDGLASS_CASES=str(tmp_path / "none"))
-    outcome = sandglass("cases", env=environment)
-    assert outcome.returncode == 2
-    assert "none: cannot list the cases" in outcome.stderr
+    sandglass("cases", env=environment, code=2, told="none: cannot list the cases")
 
 
 def test_methods_lists_one_line_each():
-    outcome = sandglass("methods")
-    assert outcome.returncode == 0
+    outcome = sandglass("methods", code=0)
     assert {"tl-none", "tl-perturbation", "tl-full", "tl-mean-dilatation"} <= set(methods())
     assert all(len(line.split()) > 3 for line in outcome.stdout.splitlines())
 
@@ -99,59 +66,10 @@ def test_methods_lists_one_line_each():
 # Wrong input.
 
 
-def test_unknown_case_suggests_the_nearest(tmp_path):
-    for command in (["run"], ["verify"], ["mesh", "-o", tmp_path / "m.h5"]):
-        outcome = sandglass(command[0], "colum", *command[1:])
-        assert outcome.returncode == 2
-        assert "did you mean 'column'?" in outcome.stderr
-        assert "`sandglass cases` lists" in outcome.stderr
-        assert "ellipsoid-touch" not in outcome.stderr
-
-
-def test_unknown_method_names_the_nearest(block):
-    outcome = sandglass("run", block, "--method", "tl-pertubation")
-    assert outcome.returncode == 2
-    assert "did you mean 'tl-perturbation'?" in outcome.stderr
-    assert f"nearest of {len(methods())}: tl-perturbation, " in outcome.stderr
-    assert "`sandglass methods` lists all" in outcome.stderr
-
-
-@pytest.mark.parametrize(
-    "words, told",
-    [
-        *(
-            (["run", "CASE", f"--kappa={kappa}"], ["kappa"])
-            for kappa in ("-0.1", "nan", "", "0.1x")
-        ),
-        (["run", "CASE", "--kappa-modulus", "bulk"], ["'bulk' must be 'p-wave' or 'shear'"]),
-        (["run", "CASE", "--method", "tl-full", "--kappa", "0.1"], ["tl-full", "kappa"]),
-        (["run", "CASE", "-o", "none/a.h5"], ["none/a.h5: cannot be written"]),
-        (["mesh", "CASE", "-o", "none/a.h5"], ["none/a.h5: cannot be written"]),
-        (["verify", "CASE", "--json", "none/v.json"], ["v.json: cannot be written"]),
-        (["run", "bending"], ["'bending' has 12 variants, and one must be named", "2-nu0.49"]),
-        (["run", "bending-2-nu0.48"], ["did you mean 'bending-2-nu0.4"]),
-    ],
-)
-def test_wrong_words_are_refused(block, words, told):
-    words = [str(block) if word == "CASE" else word for word in words]
-    outcome = sandglass(*words, cwd=block.parent)
-    assert outcome.returncode == 2
-    assert all(text in outcome.stderr for text in told)
-    assert [file.name for file in block.parent.iterdir()] == ["block.toml"]
-
-
-def test_wrong_key_is_told_with_file_and_line(block):
-    block.write_text(BLOCK.replace("poisson_ratio = 0.49", "poisson_ratio = 0.5"))
-    outcome = sandglass("run", block)
-    assert outcome.returncode == 2
-    assert f"{block}:15: material.poisson_ratio = 0.5 must be in (-1, 0.5)" in outcome.stderr
-
-
 def test_variant_is_found_by_name_and_beside_its_file(tmp_path):
     shutil.copy(ROOT / "cases" / "bending.toml", tmp_path / "bending.toml")
     for name in ("bending-2-nu0.25", tmp_path / "bending-2-nu0.25"):
-        outcome = sandglass("mesh", name, "-o", tmp_path / "mesh.h5")
-        assert outcome.returncode == 0, outcome.stderr
+        outcome = sandglass("mesh", name, "-o", tmp_path / "mesh.h5", code=0)
         assert "99 nodes, 40 elements" in outcome.stdout
 
 
@@ -160,8 +78,7 @@ def test_variant_is_found_by_name_and_beside_its_file(tmp_path):
 
 def test_run_writes_what_it_says(block):
     result = block.parent / "result.h5"
-    outcome = sandglass("run", block, "-o", result)
-    assert outcome.returncode == 0
+    outcome = sandglass("run", block, "-o", result, code=0)
     assert f"wrote {result}; open {result.with_suffix('.xdmf')} in ParaView" in outcome.stdout
     assert sorted(file.name for file in block.parent.iterdir()) == [
         "block.toml",
@@ -255,8 +172,7 @@ def test_xdmf_points_into_the_result(block):
 
 
 def test_mesh_writes_mesh_and_sets(tmp_path):
-    outcome = sandglass("mesh", "ellipsoid-touch", "-o", tmp_path / "mesh.h5")
-    assert outcome.returncode == 0
+    outcome = sandglass("mesh", "ellipsoid-touch", "-o", tmp_path / "mesh.h5", code=0)
     assert "2535 nodes, 2200 elements" in outcome.stdout
     assert [file.name for file in tmp_path.iterdir()] == ["mesh.h5"]
     with h5py.File(tmp_path / "mesh.h5") as file:
@@ -274,8 +190,7 @@ def test_dynamic_case(block):
         times = [frame.attrs["time"] for frame in file["frames"].values()]
         assert len(times) == 6 and times[0] == 0.0 and times[-1] == pytest.approx(0.05, rel=1e-9)
         assert file["history/kinetic_energy"][:].max() > 0.0
-    outcome = sandglass("verify", block)
-    assert outcome.returncode == 2 and "dynamic" in outcome.stderr
+    sandglass("verify", block, code=2, told="dynamic")
 
 
 def test_run_tells_how_many_subcycles_it_took(block):
@@ -289,13 +204,11 @@ def test_run_tells_how_many_subcycles_it_took(block):
         (bar + end, 1, "s, complete"),
     ]:
         block.write_text(dynamic(text, duration=0.1, subcycles=most))
-        outcome = sandglass("run", block)
-        assert outcome.returncode == 0
+        outcome = sandglass("run", block, code=0)
         assert told in outcome.stdout
         assert ("subcycle" in outcome.stdout) == (most > 1)
     block.write_text(dynamic(bar, duration=0.1, subcycles=65))
-    outcome = sandglass("run", block)
-    assert outcome.returncode == 2 and "dynamics.subcycles = 65" in outcome.stderr
+    sandglass("run", block, code=2, told="dynamics.subcycles = 65")
 
 
 # Failures of the computation.
@@ -304,9 +217,9 @@ def test_run_tells_how_many_subcycles_it_took(block):
 def test_inversion_ends_with_3_and_keeps_the_way_there(block):
     text = BLOCK.replace("[2, 2, 4]", "[2, 2, 1]").replace("[0.02, 0.0, 0.01]", "[0.0, 0.0, -0.3]")
     block.write_text(text)
-    outcome = sandglass("run", block, "-o", block.parent / "result.h5")
-    assert outcome.returncode == 3
-    assert "det F" in outcome.stderr and "remedy" in outcome.stderr
+    outcome = sandglass("run", block, "-o", block.parent / "result.h5", code=3)
+    assert "det F" in outcome.stderr
+    assert "remedy" in outcome.stderr
     assert "the last equilibrium is at 0." in outcome.stderr
     with h5py.File(block.parent / "result.h5") as file:
         assert text_of(file.attrs["status"]) == "failed"
@@ -316,9 +229,7 @@ def test_inversion_ends_with_3_and_keeps_the_way_there(block):
 def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
     block.write_text(BLOCK + "[relaxation]\nmax_steps = 5\n")
     result = block.parent / "result.h5"
-    outcome = sandglass("run", block, "-o", result)
-    assert outcome.returncode == 3
-    assert "not at rest after 5 evaluations" in outcome.stderr
+    sandglass("run", block, "-o", result, code=3, told="not at rest after 5 evaluations")
     with h5py.File(result) as file:
         assert text_of(file.attrs["status"]) == "not at rest after 5 evaluations"
 

@@ -216,7 +216,7 @@ def test_long_commands_are_taken(command):
         ("bash ci/gates", "is not there"),
         ("bash ci/gate --acept", "does not know"),
         ("bench/local_touch.py", "cannot be executed"),
-        ("/usr/bin/python3 bench/time_to_rest.py --elementz C3D8", "does not know"),
+        ("/usr/bin/python3 bench/growth.py --mostly 400", "does not know"),
         ("reference/regenerate --truth-only", "does not know"),
         ("build/release/sandglass bench --resting", "--resting"),
         ("/usr/bin/python3 -m pytest reference/test", "is not there"),

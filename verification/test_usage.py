@@ -39,8 +39,8 @@ def misspelt(names):
 
 def refused(*arguments, **options):
     """What is said of wrong use."""
-    outcome = sandglass(*arguments, **options)
-    assert outcome.returncode == 2 and outcome.stderr.startswith("error: "), outcome
+    outcome = sandglass(*arguments, **options, code=2)
+    assert outcome.stderr.startswith("error: ")
     return outcome.stderr
 
 
@@ -90,39 +90,11 @@ def test_a_misspelt_file_is_answered_with_the_nearest_beside_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "arguments, words",
-    [
-        ([], "a command is missing; known: cases, methods, run"),
-        (["--verison"], "'--verison' is not an option; did you mean '--version'?"),
-        (["run", "column", "-x"], "run: '-x' is not an option\n"),  # one letter is like any other
-        (["qwertz"], "'qwertz' is not a command; known: cases"),
-        (["cases", "column"], "cases: 'column' is one argument too many"),
-        (["mesh", "column"], "mesh: --output is required"),
-        (["run", "column", "-o"], "run: --output needs a value\n"),
-        (["score", "x", "y", "--case", "column"], "score: 'y' is one argument too many"),
-        (["run", "column", "--threads", "x"], "run: --threads = x must be an integer"),
-        (["run", "column", "--threads", "0,5"], "run: --threads = 0,5 must be an integer\n"),
-        (
-            ["score", "x", "--case", "column", "--tolerance", "0,1"],
-            "--tolerance = 0,1 must be a number; did you mean 0.1, with a decimal point?",
-        ),
-        (["verify", "--threads", "-1"], "-1 not in range 0 to 1024"),
-        (["run", "column", "-k", "0,1"], "did you mean 0.1, with a decimal point?"),
-        (["choose", "column", "--tolerance", "0,5%"], "did you mean 0.5%, with a decimal point?"),
-        (["choose", "column", "--budget", "1,5ms"], "did you mean 1.5ms, with a decimal point?"),
-        (["choose", "column", "--budget", "1,5,2"], "without a unit it is in s\n"),
-    ],
-    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
-)
-def test_wrong_arguments_are_told(arguments, words):
-    assert words in refused(*arguments)
-
-
-@pytest.mark.parametrize(
     "old, new, line, words",
     [
         ('name = "block"', 'name = "block', 3, "is not TOML: a quote is open"),
         ('name = "block"', 'name = """block', 3, "is not TOML: a quote is open"),
+        ("= 0.49", "= 0.5", 15, "material.poisson_ratio = 0.5 must be in (-1, 0.5)"),
         ("= 0.49", "= 0,49", 15, "did you mean 0.49, with a decimal point?"),
         ("= 0.49", '= "0,49"', 15, "= '0,49' must be a number; did you mean 0.49, with"),
         ("[0.02, 0.0, 0.01]", "[0,02, 0,0, 0,01]", 28, "did you mean 0.02, with a decimal point?"),
@@ -146,8 +118,8 @@ def test_memory_that_does_not_suffice_is_told_in_gigabytes(block, tmp_path):
         "-o",
         tmp_path / "mesh.h5",
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit),
+        code=3,
     )
-    assert outcome.returncode == 3
     # 27e9 elements of 350 bytes each
     assert re.match(
         r"error: not enough memory: 2\.7e\+10 elements need about 9450\.0 GB, and [1-4]\.\d GB "
@@ -169,8 +141,7 @@ def test_help_fits_a_terminal(command):
 
 
 def test_manual_has_all_commands_and_options_and_no_fault_in_its_markup():
-    page = sandglass("manual")
-    assert page.returncode == 0
+    page = sandglass("manual", code=0)
     for command in COMMANDS:
         section = page.stdout.split(f".SS sandglass {command} ")[1].split(".SS ")[0]
         tagged = re.findall(r"\\fB((?:\\-){2}.*?)\\fR", section)
@@ -190,8 +161,8 @@ def test_manual_has_all_commands_and_options_and_no_fault_in_its_markup():
 
 @pytest.fixture(scope="module")
 def script():
-    outcome = sandglass("completion", "bash")
-    assert outcome.returncode == 0 and not outcome.stderr
+    outcome = sandglass("completion", "bash", code=0)
+    assert not outcome.stderr
     return outcome.stdout
 
 

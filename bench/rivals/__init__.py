@@ -2,8 +2,9 @@
 
 from rivals.calculix import CalculiX
 from rivals.febio import FEBio
+from rivals.fenicsx import FEniCSx
 from rivals.niftysim import NiftySim
 from rivals.openradioss import OpenRadioss
 
-# By the name of their decks.
-PROGRAMS = {one.deck: one for one in (CalculiX, FEBio, NiftySim, OpenRadioss)}
+# By the names of their decks, or their own.
+PROGRAMS = {one.deck: one for one in (CalculiX, FEBio, FEniCSx, NiftySim, OpenRadioss)}

@@ -52,11 +52,6 @@ class CalculiX(Program):
         return math.ceil(duration / float(selected[1]) - 1e-5), 0
 
 
-def solver_seconds(output):
-    """The seconds that ccx prints, including the reading of the deck."""
-    return float(re.search(SECONDS, output)[1])
-
-
 def read_progress(path):
     """(increments, iterations, share of the load reached) from a progress file of ccx (.sta).
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import clock
 from common.errors import ComputationError, InputError
+from exchange.decks import PROGRAMS as DECKS
 
 
 @dataclass(frozen=True)
@@ -38,12 +39,12 @@ class Program(ABC):
     """A program under a name, with what is needed to run it on one thread of one processor.
 
     deck: its name for `sandglass mesh --deck`. explicit: whether it only integrates in time, so
-    that it finds rest by a damped motion.
+    that it finds rest by a damped motion. moves: whether it integrates in time at all.
     """
 
     deck: str
     name: str
-    explicit = True
+    explicit = moves = True
     precision = "double"
 
     def __init__(self, paths, build="", about=""):
@@ -64,6 +65,18 @@ class Program(ABC):
 
         Raises ComputationError if the program fails, InputError if its output cannot be read.
         """
+
+    def write_deck(self, bench, case, element, folder):
+        """Writes a case for the program and one of its Elements into an empty folder.
+
+        Returns the path of the file to run. Raises InputError for what cannot be written.
+        """
+        output = folder / f"deck{DECKS[self.deck].ENDING}"
+        words = ["mesh", case, "--deck", self.deck, "--element", element.name, "-o", output]
+        if element.hourglass is not None:
+            words += ["--hourglass", repr(element.hourglass)]
+        bench.sandglass(*words)
+        return output
 
     @abstractmethod
     def elements(self, bench):

@@ -4,7 +4,7 @@ import argparse
 
 import pytest
 
-from common.command import exit_code, whole_number
+from common.command import command_line, exit_code, option, whole_number, writable
 from common.errors import ComputationError, InputError, suggestion
 
 
@@ -40,3 +40,32 @@ def test_unknown_names_are_answered_with_the_nearest_and_all():
     known = ["golden", "truth"]
     assert suggestion("gulden", known) == "did you mean 'golden'? known: golden, truth"
     assert suggestion("x", known) == "known: golden, truth"
+
+
+TEXT = """Does something.
+
+Exit codes: 0 done, 2 wrong.
+"""
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        (["--count", "0"], "argument --count: 0: must be 1 or more; --help lists"),
+        (["--output", "none/x.h5"], "none/x.h5: cannot be written: the folder"),
+        (["--cuont", "1"], "unrecognized arguments: --cuont 1"),
+    ],
+)
+def test_wrong_use_of_a_script_is_refused_before_its_work(words, told, capsys):
+    options = (option("--count", type=whole_number(1)), option("--output", type=writable))
+    main = command_line(lambda options: options.count, TEXT, *options)
+    assert main(["--count", "3"]) == 3
+    assert main(words) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_help_shows_what_a_script_does_and_its_exit_codes(capsys):
+    with pytest.raises(SystemExit):
+        command_line(None, TEXT)(["--help"])
+    text = capsys.readouterr().out
+    assert "Does something." in text and "Exit codes: 0 done, 2 wrong." in text

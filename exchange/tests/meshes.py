@@ -13,27 +13,8 @@ from exchange import convert
 DATA = Path(__file__).resolve().parent / "data"
 
 # A unit cube and one on top of it, as Abaqus writes them.
-NODES = """\
-*NODE
-1, 0., 0., 0.
-2, 1., 0., 0.
-3, 1., 1., 0.
-4, 0., 1., 0.
-5, 0., 0., 1.
-6, 1., 0., 1.
-7, 1., 1., 1.
-8, 0., 1., 1.
-9, 0., 0., 2.
-10, 1., 0., 2.
-11, 1., 1., 2.
-12, 0., 1., 2.
-"""
-ELEMENTS = """\
-*ELEMENT, TYPE=C3D8R, ELSET=tissue
-1, 1, 2, 3, 4, 5, 6, 7, 8
-2, 5, 6, 7, 8, 9, 10, 11, 12
-"""
-CUBES = NODES + ELEMENTS
+CUBES = (DATA / "cubes.inp").read_text()
+NODES, ELEMENTS = CUBES[: CUBES.index("*ELEMENT")], CUBES[CUBES.index("*ELEMENT") :]
 POINTS = np.array([line.split(",")[1:] for line in NODES.splitlines()[1:]], dtype=float)
 CELLS = np.array([range(8), range(4, 12)])
 

@@ -28,8 +28,7 @@ def run(*words, folder):
 
 def record_of(*words, folder):
     """What `sandglass score` finds, as it is written."""
-    done = sandglass("score", *words, "--json", "score.json", cwd=folder)
-    assert done.returncode == 0, done.stderr
+    sandglass("score", *words, "--json", "score.json", cwd=folder, code=0)
     (record,) = json.loads((folder / "score.json").read_text())["records"]
     return record
 
@@ -97,8 +96,7 @@ def test_the_table_of_calculix(tmp_path, element):
 
 def assert_is_the_displacement_element(folder, record):
     """C3D8 is tl-full in another program: the same answer, to the six digits that are written."""
-    done = sandglass("run", "column", "-m", "tl-full", "-o", folder / "full.h5")
-    assert done.returncode == 0
+    sandglass("run", "column", "-m", "tl-full", "-o", folder / "full.h5", code=0)
     own = record_of("full.h5", "--case", "column", folder=folder)
     for reference in ("golden", "truth"):
         for name, figure in own[reference].items():

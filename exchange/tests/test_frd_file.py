@@ -2,37 +2,14 @@
 
 import numpy as np
 import pytest
+from meshes import DATA
 
 from exchange import frd_file
 from common.errors import InputError
 
 # Fields touch where a number has a sign; the first block is of an earlier increment; node 3 belongs
 # to no element.
-FRD = """\
-    1C
-    2C                             3                                     1
- -1         1 9.00000E+00-9.00000E+00 9.00000E+00
- -1         2 9.00000E+00 9.00000E+00 8.00000E+00
- -1         3 0.00000E+00 0.00000E+00 0.00000E+00
- -3
-  100CL  101 0.500000000           2                     0    1           1
- -4  DISP        4    1
- -5  D1          1    2    1    0
- -1         1 7.00000E+00 7.00000E+00 7.00000E+00
- -1         2 7.00000E+00 7.00000E+00 7.00000E+00
- -3
-  100CL  102 1.000000000           2                     0    2           1
- -4  DISP        4    1
- -5  D1          1    2    1    0
- -1         2-1.25000E-01-2.00000E-03-4.00000E-105
- -1         1 0.00000E+00 5.00000E-01-1.00000E+02
- -3
- -4  STRESS      6    1
- -1         1 8.00000E+00 8.00000E+00 8.00000E+00
- -1         2 8.00000E+00 8.00000E+00 8.00000E+00
- -3
- 9999
-"""
+FRD = (DATA / "two-nodes.frd").read_text()
 
 
 @pytest.fixture
@@ -46,7 +23,6 @@ def test_last_displacements_are_read(file):
     points, displacement = frd_file.read(file)
     assert (points == [[9, -9, 9], [9, 9, 8]]).all()
     assert (displacement == u).all()
-    assert (frd_file.read_displacement(file, 2) == u).all()
 
 
 @pytest.mark.parametrize(
@@ -70,12 +46,6 @@ def test_damaged_file(file, old, new, told):
     file.write_text(FRD.replace(old, new))
     with pytest.raises(InputError, match=told):
         frd_file.read(file)
-
-
-@pytest.mark.parametrize("n_nodes, told", [(3, "lacks node 3 of 1..3"), (1, "node 2: every node")])
-def test_nodes_that_are_not_those_of_the_deck(file, n_nodes, told):
-    with pytest.raises(InputError, match=told):
-        frd_file.read_displacement(file, n_nodes)
 
 
 def test_no_file_and_no_text(tmp_path):

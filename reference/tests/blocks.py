@@ -1,5 +1,7 @@
 """Small distorted meshes for the tests, with node numbers shuffled so that no order is natural."""
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
@@ -12,25 +14,7 @@ from tetrahedra import cut
 
 MATERIAL = {"young_modulus": 3000.0, "poisson_ratio": 0.49}
 MATERIALS = [Material("neo-hookean", MATERIAL)]
-CASE = """
-[case]
-name = "block"
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.49
-density = 1000.0
-
-[[displacement]]
-set = "bottom"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "top"
-value = [0.0, 0.0, 0.1]
-components = "z"
-"""
+CASE = Path(__file__).with_name("block.toml").read_text()
 
 
 def distorted_block(n=3, distortion=0.15, seed=1):

@@ -39,8 +39,6 @@ def test_good_input(folder):
             'law = "neo-hokean"',
             ["material.law", "neo-hokean", "did you mean"],
         ),
-        ("young_modulus = 3000.0", "young_modulus = -1", ["material.young_modulus", "positive"]),
-        ("poisson_ratio = 0.49", "poisson_ratio = 0.5", ["material.poisson_ratio", "0.5"]),
         ("poisson_ratio = 0.49", "poison_ratio = 0.4", ["poison_ratio", "'poisson_ratio'"]),
         ("value = [0.0, 0.0, 0.1]", "value = [0.0, 0.1]", ["displacement[1].value", "three"]),
         ("value = [0.0, 0.0, 0.1]", "value = [0.0, 0.0, nan]", ["displacement[1].value", "finite"]),
@@ -91,12 +89,6 @@ def test_mesh_with_impossible_cells(folder, capsys):
     write_mesh(folder / "mesh.h5", points, cells, {"bottom": [0], "top": [1]})
     assert _run(folder) == 2
     assert "/mesh/cells" in capsys.readouterr().err
-
-
-def test_bad_usage():
-    with pytest.raises(SystemExit) as stop:
-        solve.main(["gold", "block.toml", "--mesh", "mesh.h5", "-o", "out.h5"])
-    assert stop.value.code == 2
 
 
 def test_no_equilibrium(folder, capsys):

@@ -3,6 +3,7 @@
 import json
 import subprocess
 from dataclasses import replace
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -21,52 +22,7 @@ from reference_file import MOTION_ATTRIBUTES, read_reference
 ELEMENTS, LENGTH, SPEED = 6, 1.0, 1e-6
 BAR = Material("neo-hookean", {"young_modulus": 3.0, "poisson_ratio": 0.0}, 2.0)
 
-SMALL = """
-[case]
-name = "small"
-requirement = "A small block is pulled and swings."
-answer = "dynamic"
-
-[mesh]
-generator = "box"
-size = [0.02, 0.02, 0.04]
-elements = [1, 1, 2]
-
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-poisson_ratio = 0.3
-density = 1000.0
-
-[sets]
-foot = { z = [0.0, 0.0] }
-head = { z = [0.04, 0.04] }
-
-[[displacement]]
-set = "foot"
-value = [0.0, 0.0, 0.0]
-
-[[force]]
-set = "head"
-total = [0.03, 0.0, 0.1]
-
-[dynamics]
-duration = 0.12
-ramp_time = 0.06
-damping = 5.0
-frames = 6
-time_step = TIME_STEP
-
-[comparison]
-golden = "golden.h5"
-
-[[expect]]
-method = "tl-mean-dilatation"
-reference = "golden"
-figure = "max_relative_error"
-below = BELOW
-reason = "central differences"
-"""
+SMALL = Path(__file__).with_name("small.toml.in").read_text()
 
 
 def _bar():

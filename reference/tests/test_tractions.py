@@ -1,5 +1,7 @@
 """Tractions: their sum and moment, an exact answer, symmetry and refinement; variants of cases."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -97,27 +99,7 @@ def test_set_without_faces_has_no_traction():
     assert traction(points, cells, edge, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0)) is None
 
 
-VARIED = """
-[case]
-name = "bar"
-[material]
-law = "neo-hookean"
-young_modulus = 3000.0
-[[displacement]]
-set = "root"
-value = [0.0, 0.0, 0.0]
-[[variants.size]]
-name = "1"
-[[variants.size]]
-name = "2"
-force = [{ set = "tip", moment = [1, 0, 0] }]
-[[variants.nu]]
-name = "a"
-material.poisson_ratio = 0.3
-[[variants.nu]]
-name = "b"
-material.poisson_ratio = 0.4
-"""
+VARIED = Path(__file__).with_name("varied.toml").read_text()
 
 
 def test_variants(tmp_path):

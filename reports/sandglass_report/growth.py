@@ -12,7 +12,7 @@ COLOURS = {
     "CalculiX": "#8a6fb0",
 }
 LINES = {0.3: ":", 0.49: "-", 0.4999: "--"}
-
+KEYS = {"poisson_ratio": NUMBER, "elements": int, "name": str, "seconds": NUMBER}
 
 COUNTS = ("evaluations", "iterations")  # of Sandglass; of Newton's method
 
@@ -21,12 +21,7 @@ def read_growth(path):
     """The records of `bench/growth.py --json`. Raises InputError."""
     records = []
     for where, found in entries(path, read_json(path, "bench/growth.py --json"), "records"):
-        for key, kind in (
-            ("poisson_ratio", NUMBER),
-            ("elements", int),
-            ("name", str),
-            ("seconds", NUMBER),
-        ):
+        for key, kind in KEYS.items():
             entry(where, found, key, kind)
         counts = [entry(where, found, key, int, none_allowed=True) for key in COUNTS]
         if counts.count(None) != 1:

@@ -9,10 +9,10 @@ import textwrap
 
 from common.errors import InputError
 from common.records import NUMBER, entries, entry
-from sandglass_report.headline_svg import drawing
+from sandglass_report.headline_svg import drawing, shown
 from sandglass_report.measured import OWN_MESH
 from sandglass_report.points import may_lead
-from sandglass_report.style import FLOOR, percent, plain
+from sandglass_report.style import plain
 
 CASE = "ellipsoid-indentation"
 NAME = "speed-accuracy"
@@ -146,11 +146,6 @@ def in_words(document):
         "Error to the truth, error to the golden and wall time per simulated second: "
         + "; ".join(parts)
     )
-
-
-def shown(error):
-    """An error in percent; 0 below what is counted as one."""
-    return "0 %" if error < FLOOR else percent(error, 2)
 
 
 def replaced(text, block):

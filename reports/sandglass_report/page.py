@@ -11,18 +11,8 @@ import markupsafe
 
 from common.files import write_json, write_whole, writing
 from sandglass_report import bending, bodies, findings, headline, interactive, kappa, lines, maps
-from sandglass_report import (
-    measured,
-    paper,
-    plates,
-    provenance,
-    published,
-    replication,
-    speed,
-    style,
-    tips,
-    viewer,
-)
+from sandglass_report import measured, paper, plates, provenance, published, replication, speed
+from sandglass_report import style, tips, viewer
 from sandglass_report.plausible import require_plausible
 from sandglass_report.points import make_points
 from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
@@ -30,23 +20,10 @@ from sandglass_report.quantities import COSTS, FIGURES, QUANTITIES, RUN_NUMBERS
 TEMPLATES = Path(__file__).parent / "templates"
 
 # A claim's name for a section -> the id of the section's heading.
-ANCHORS = {"chart": "chart-head"} | {
-    name: name
-    for name in (
-        "paper",
-        "shapes",
-        "bending",
-        "published",
-        "programs",
-        "refinement",
-        "growth",
-        "maps",
-        "kappa",
-        "golden",
-        "limits",
-        "runs",
-    )
-}
+OWN_NAMES = (
+    "paper shapes bending published programs refinement growth maps kappa golden limits runs"
+)
+ANCHORS = {"chart": "chart-head"} | {name: name for name in OWN_NAMES.split()}
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,6 @@ LEAST_STEP = 1e-6  # s
 LEAST_SHARE = 0.01  # of the step at rest
 # Eleven days for a second: nobody waited for it.
 MOST_WALL = 1e6  # s per simulated second
-# A step of the cheapest method takes a third of one of the costliest. Times that all agree are of
-# something that all methods have in common.
-LEAST_SPREAD = 0.05
-ENOUGH_METHODS = 5
 # Two measurements of one loop on one machine, of which one may have been busy.
 BENCH_AGREES = 1.3
 # The updated form computes the gradients of the shape functions anew in each step.
@@ -120,14 +116,6 @@ def seconds_are_those_of_the_step(marks):
             )
 
 
-def methods_differ(marks):
-    """The time per element and step differs by more than 5 % over the methods of a case"""
-    for case, methods in marks.by_case().items():
-        times = [p.ns for p in methods.values()]
-        if len(times) >= ENOUGH_METHODS and max(times) < (1 + LEAST_SPREAD) * min(times):
-            yield f"{case}: all {len(times)} methods take {min(times):.4g} to {max(times):.4g} ns"
-
-
 def bench_agrees(marks):
     """The time per element and step is within 30 % of that of bench on this machine and revision"""
     timed = {(s.case, s.method): s.ns for s in marks.steps if s.precision == "double"}
@@ -180,7 +168,6 @@ RULES = (
     steps_are_of_soft_bodies,
     seconds_can_be_waited_for,
     seconds_are_those_of_the_step,
-    methods_differ,
     updated_form_costs_more,
     times_follow_operations,
     bench_agrees,

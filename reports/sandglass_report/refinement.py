@@ -7,6 +7,8 @@ from sandglass_report.axes import log_scale, percent_scale
 from sandglass_report.plates import Panel, Plate
 
 REST = 1e-8  # the residual of cases
+KEYS = {"case": str, "way": str, "elements": int}
+KEYS |= dict.fromkeys(("seconds", "error_max", "error_rms"), NUMBER)
 LINES = {  # (way, whether at rest) -> what it is called, its colour and its line
     ("uniform", True): ("all split, to 1e-8", "#c8553d", "-"),
     ("uniform", False): ("all split, to 1e-3", "#e3a78f", ":"),
@@ -18,14 +20,7 @@ def read_refinement(path):
     """The records of `bench/refinement.py --json`. Raises InputError."""
     records = []
     for where, found in entries(path, read_json(path, "bench/refinement.py --json"), "records"):
-        for key, kind in (
-            ("case", str),
-            ("way", str),
-            ("elements", int),
-            ("seconds", NUMBER),
-            ("error_max", NUMBER),
-            ("error_rms", NUMBER),
-        ):
+        for key, kind in KEYS.items():
             entry(where, found, key, kind)
         if line_of(found) not in LINES:
             raise InputError(f"{where}: is not of bench/refinement.py")

@@ -12,24 +12,8 @@ import numpy as np
 from make_report import main
 
 HASHES = {"case_hash": "0123456789abcdef", "mesh_hash": "fedcba9876543210"}
-CASE = """
-[case]
-name = "column"
-requirement = "A short column leans by 50 % of its height."
-answer = "quasi-static"
-
-[[displacement]]
-set = "bottom"
-value = [0.0, 0.0, 0.0]
-
-[[displacement]]
-set = "top"
-value = [0.3, 0.0, 0.4]
-
-[profile]
-set = "edge"
-order = "z"
-"""
+CASE = Path(__file__).with_name("column.toml").read_text()
+RECORDS = json.loads(Path(__file__).with_name("records.json").read_text())
 UNIT = 0.5  # the length of the imposed displacement, m
 
 
@@ -79,21 +63,7 @@ class DataSet:
         (self.folder / "results/column.tl-full.h5").unlink()
         self.records.append(failed)
         self.published = []
-        self.limits = [
-            {
-                "case": "column",
-                "method": "tl-perturbation",
-                "kappa": "auto",
-                "reference": "golden",
-                "figure": "max_relative_error",
-                "below": 0.003,
-                "above": None,
-                "found": 0.002,
-                "at_kappa": 0.0065,
-                "holds": True,
-                "reason": "it is the paper's",
-            }
-        ]
+        self.limits = [dict(RECORDS["limit"])]
         self.write_verdicts()
 
     def run(self, method, error, kappa=None, auto=False):
@@ -115,32 +85,9 @@ class DataSet:
             "profile_relative_error": error,
             "rms_relative_error": float(np.sqrt(np.mean((shift / UNIT) ** 2))),
         }
-        return {
-            "case": "column",
-            "method": method,
-            "kappa": kappa,
-            "kappa_is_auto": auto,
-            "precision": "double",
-            "status": "ok",
-            "finding": "good",
-            "golden": figures,
-            "truth": None,
-            "operations": 598,
-            "stable_step": 1e-4,
-            "residual": 1e-8,
-            "hourglass_energy_ratio": 0.01,
-            "ns_per_element_step": 120.0,
-            "ns_lower_quartile": 110.0,
-            "ns_upper_quartile": 150.0,
-            "check_ns_per_element_step": 40.0,
-            "mean_step_seconds": 8e-5,
-            "step_remark": "",
-            "seconds_per_simulated_second": 160e-9 * len(self.cells) / 8e-5,
-            "equilibrium_seconds": 0.5,
-            "evaluations": 100,
-            "motion_seconds": None,
-            "steps": None,
-        }
+        second = 160e-9 * len(self.cells) / RECORDS["run"]["mean_step_seconds"]
+        own = {"method": method, "kappa": kappa, "kappa_is_auto": auto, "golden": figures}
+        return RECORDS["run"] | own | {"seconds_per_simulated_second": second}
 
     @staticmethod
     def tip(method, ratio, variant="short", status="ok", to_truth=None, programs=()):
@@ -166,22 +113,9 @@ class DataSet:
     @staticmethod
     def rung(method, seconds, error, **changed):
         """A row of `sandglass choose --all --json` on the case's own mesh, in double."""
-        return {
-            "rung": f"{method} {changed}",
-            "method": method,
-            "kappa": None,
-            "accuracy": None,
-            "precision": "double",
-            "mesh": "own mesh",
-            "elements": 12,
-            "seconds": seconds,
-            "step_size": 1e-3,
-            "seconds_per_simulated_second": 1e3 * seconds,
-            "error": error,
-            "reason": "",
-            "step_remark": "",
-            "check_seconds_per_step": 0.0,
-        } | changed
+        own = {"rung": f"{method} {changed}", "method": method, "seconds": seconds, "error": error}
+        own["seconds_per_simulated_second"] = 1e3 * seconds
+        return RECORDS["rung"] | own | changed
 
     @staticmethod
     def ladder(rungs, reference="golden", tolerance=0.01, case="column"):
@@ -197,17 +131,9 @@ class DataSet:
     @staticmethod
     def timing(method, ns, case="ellipsoid-indentation", elements=2200, **changed):
         """A record of `sandglass bench --json`."""
-        return {
-            "case": case,
-            "elements": elements,
-            "method": method,
-            "kernel": "pack",
-            "precision": "double",
-            "threads": 1,
-            "ns_per_element_step": ns,
-            "mean_step_seconds": 8e-5,
-            "seconds_per_simulated_second": 1e-9 * ns * elements / 8e-5 if ns else None,
-        } | changed
+        second = 1e-9 * ns * elements / RECORDS["timing"]["mean_step_seconds"] if ns else None
+        own = {"case": case, "elements": elements, "method": method, "ns_per_element_step": ns}
+        return RECORDS["timing"] | own | {"seconds_per_simulated_second": second} | changed
 
     @staticmethod
     def count(method, total, part="hourglass", form="kernel"):

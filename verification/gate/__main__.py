@@ -4,13 +4,12 @@ Areas not given as files are run: SANDGLASS_BINARY, else build/release/sandglass
 Exit codes: 0 no regression, 1 a regression, 2 bad usage or input, 3 the solver failed.
 """
 
-import argparse
 import datetime
 import sys
 from collections import Counter
 from pathlib import Path
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError, suggestion
 from common.files import write_whole
 from common.program import binary, output_of
@@ -27,32 +26,6 @@ SOURCES = {
 }
 ORIGIN = ("processor", "compiler", "build_flags")
 MOST = 40  # figures of one verdict that are listed
-
-
-def arguments(given):
-    """The command line, parsed. Raises InputError."""
-    parser = argparse.ArgumentParser(prog="ci/gate", description=__doc__.splitlines()[0])
-    add = parser.add_argument
-    add("areas", nargs="*", metavar="AREA", help=f"{', '.join(AREAS)}; all when left out")
-    baseline = "verification/gate/baseline.json"
-    add("--baseline", type=Path, default=baseline, help="default: %(default)s")
-    for area, (command, _) in SOURCES.items():
-        option = "--verdicts" if area == "accuracy" else "--flops"
-        said = f"of sandglass {command[0]} --json, instead of a run"
-        add(option, dest=area, type=Path, metavar="FILE", help=said)
-    add("-o", "--output", type=Path, default="build/gate", help="folder (default: %(default)s)")
-    add("--accept", action="store_true", help="make what is found the baseline; needs --reason")
-    add("--reason", help="why, for the baseline's history")
-    options = parser.parse_args(given)
-    for area in options.areas:
-        if area not in AREAS:
-            raise InputError(f"AREA: '{area}' is not known; {suggestion(area, AREAS)}")
-    if options.accept and not (options.reason or "").strip():
-        raise InputError("--accept: --reason TEXT is required: why is this the new baseline?")
-    if options.reason and not options.accept:
-        raise InputError("--reason: goes with --accept")
-    options.areas = options.areas or list(AREAS)
-    return options
 
 
 def find(options):
@@ -99,9 +72,16 @@ def table(outcomes):
     return "\n".join(lines)
 
 
-def gate(given):
+def gate(options):
     """Runs the gate; returns the exit code. Raises InputError or ComputationError."""
-    options = arguments(given)
+    for area in options.areas:
+        if area not in AREAS:
+            raise InputError(f"AREA: '{area}' is not known; {suggestion(area, AREAS)}")
+    if options.accept and not (options.reason or "").strip():
+        raise InputError("--accept: --reason TEXT is required: why is this the new baseline?")
+    if options.reason and not options.accept:
+        raise InputError("--reason: goes with --accept")
+    options.areas = options.areas or list(AREAS)
     known = options.baseline.exists() or not options.accept
     baseline = baselines.read(options.baseline) if known else baselines.Baseline()
     figures, revision, machine = find(options)
@@ -121,10 +101,19 @@ def gate(given):
     return 1 if any(outcome.verdict in FAILING for outcome in outcomes) else 0
 
 
-def main(given=None):
-    """The command line. Returns the exit code."""
-    return exit_code(gate, given)
-
+BASELINE = "verification/gate/baseline.json"
+main = command_line(
+    gate,
+    __doc__,
+    option("areas", nargs="*", metavar="AREA", help=f"{', '.join(AREAS)}; all when left out"),
+    option("--baseline", type=Path, default=BASELINE, help="default: %(default)s"),
+    option("--verdicts", dest="accuracy", type=Path, help="of sandglass verify, not of a run"),
+    option("--flops", dest="operations", type=Path, help="of sandglass flops, not of a run"),
+    option("-o", "--output", type=Path, default="build/gate", help="folder (%(default)s)"),
+    option("--accept", action="store_true", help="make what is found the baseline; needs --reason"),
+    option("--reason", help="why, for the baseline's history"),
+    prog="ci/gate",
+)
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -5,7 +5,6 @@ BEFORE and AFTER are two builds of `sandglass`. README.md beside this file expla
 Exit codes: 0 no method is slower, 1 one is, 2 bad usage or input, 3 a program failed.
 """
 
-import argparse
 import math
 import statistics
 import sys
@@ -15,7 +14,7 @@ from pathlib import Path
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parents[2]))
 
-from common.command import exit_code, whole_number
+from common.command import command_line, option, whole_number
 from common.errors import ComputationError, InputError
 from common.files import read_json
 from common.program import output_of
@@ -83,8 +82,6 @@ def run(options):
             raise InputError(f"{program}: no program there")
     if options.before.resolve() == options.after.resolve():
         raise InputError(f"{options.after}: must be another program than BEFORE")
-    if options.processes < FEWEST:
-        raise InputError(f"--processes = {options.processes} must be {FEWEST} or more")
     found = ratios(options.before, options.after, options.processes)
     slower = 0
     for (method, precision), samples in sorted(found.items()):
@@ -98,15 +95,17 @@ def run(options):
     return 1 if slower else 0
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(prog="ratios.py", description=__doc__.splitlines()[0])
-    add = parser.add_argument
-    add("before", type=Path, metavar="BEFORE", help="a build of sandglass")
-    add("after", type=Path, metavar="AFTER", help="another one")
-    add("--processes", type=whole_number(1), default=12, metavar="N", help="of each (12)")
-    add("--most", type=float, default=1.0, metavar="PERCENT", help="how much slower is allowed (1)")
-    return exit_code(run, parser.parse_args(arguments))
+main = command_line(
+    run,
+    __doc__,
+    option("before", type=Path, metavar="BEFORE", help="a build of sandglass"),
+    option("after", type=Path, metavar="AFTER", help="another one"),
+    option("--processes", type=whole_number(FEWEST), default=12, metavar="N", help="of each (12)"),
+    option(
+        "--most", type=float, default=1.0, metavar="PERCENT", help="how much slower is allowed (1)"
+    ),
+    prog="ratios.py",
+)
 
 
 if __name__ == "__main__":

@@ -5,14 +5,13 @@ Prints the limits that are broken. Exit codes: 0 all limits hold, 1 one is broke
 is written all the same), 2 an input is missing, broken or of another program or machine.
 """
 
-import argparse
 import sys
 from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parent.parent.parent))
 
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError
 from common.files import read_json, write_json
 
@@ -50,12 +49,12 @@ def work(options):
     return 1 if broken else 0
 
 
-def main():
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("files", nargs="+", type=Path, help="of sandglass verify --json")
-    parser.add_argument("-o", "--output", type=Path, help="the joined file")
-    return exit_code(work, parser.parse_args())
+main = command_line(
+    work,
+    __doc__,
+    option("files", nargs="+", type=Path, help="of sandglass verify --json"),
+    option("-o", "--output", type=Path, help="the joined file"),
+)
 
 
 if __name__ == "__main__":

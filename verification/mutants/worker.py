@@ -2,11 +2,9 @@
 
 import collections
 import contextlib
-import fcntl
 import os
 import re
 import resource
-import shutil
 import signal
 import subprocess
 import tempfile
@@ -94,11 +92,12 @@ class Worker:
     def __init__(self, revision, stop, jobs=1):
         self._revision, self._stop, self._jobs = revision, stop, jobs
         self._kills = collections.Counter()
-        self.folder, self._lock = _free_folder()
+        self._temporary = tempfile.TemporaryDirectory(prefix="sandglass-mutants.")
+        self.folder = Path(self._temporary.name)
         self.tree = self.folder / "tree"
         self.build = self.tree / "build" / PRESET
         self.cli = self.build / "sandglass"
-        # The same paths in every run, so that ccache recognizes earlier compilations.
+        # ccache recognizes compilations of earlier runs, in other folders.
         own = {"CCACHE_BASEDIR": str(self.tree), "CCACHE_NOHASHDIR": "1"}
         own |= {"SANDGLASS_BINARY": str(self.cli), "GIT_CEILING_DIRECTORIES": str(self.folder)}
         # Waiting threads must not spin, as there are more of them than processors.
@@ -119,8 +118,7 @@ class Worker:
         return self
 
     def __exit__(self, *_):
-        shutil.rmtree(self.folder, ignore_errors=True)
-        self._lock.close()
+        self._temporary.cleanup()
 
     def first_failure(self, patch, seconds):
         """Applies a Patch, then builds and runs tests, which take at most so many seconds in all.
@@ -269,24 +267,6 @@ class Worker:
         if check and process.returncode:
             raise RuntimeError(f"{' '.join(map(str, command))} failed:\n{text[-3000:]}")
         return process.returncode, text
-
-
-def _free_folder():
-    """A folder that no other run uses, and its open lock."""
-    base = Path(tempfile.gettempdir()) / f"sandglass-mutants-{os.getuid()}"
-    base.mkdir(mode=0o700, exist_ok=True)
-    for number in range(1000):
-        lock = open(base / f"{number}.lock", "w")
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
-            continue
-        folder = base / str(number)
-        shutil.rmtree(folder, ignore_errors=True)  # of a run that was killed
-        folder.mkdir()
-        return folder, lock
-    raise RuntimeError(f"{base}: all folders are in use")
 
 
 def _failed_names(text):
