@@ -41,10 +41,10 @@ def test_a_method_that_errs_more_than_the_mesh_is_told():
 @pytest.mark.parametrize(
     "arguments, words",
     [
-        (("column", "--against", "truth"), "--against: give the largest error too"),
+        (("column", "--against", "truth"), "--against: needs the largest error allowed"),
         (("column", "--against", "golden", "--accuracy", "1%"), "--against: golden not in {truth}"),
         (("column", "--against", "truth", "--accuracy", "0"), "--accuracy = '0' must be a share"),
-        (("bar-wave", "--against", "truth", "--accuracy", "1%"), "'bar-wave' is in motion"),
+        (("bar-wave", "--against", "truth", "--accuracy", "1%"), "'bar-wave' is a dynamic case"),
         (
             ("column", "--against", "truth", "--accuracy", "1%", "--sleep", "1%"),
             "leave out --sleep",

@@ -128,7 +128,7 @@ def test_unknown_method_names_the_nearest(block):
         (["run", "CASE", "-o", "none/a.h5"], ["none/a.h5: cannot be written"]),
         (["mesh", "CASE", "-o", "none/a.h5"], ["none/a.h5: cannot be written"]),
         (["verify", "CASE", "--json", "none/v.json"], ["v.json: cannot be written"]),
-        (["run", "bending"], ["'bending' has 12 variants, and one must be named", "2-nu0.49"]),
+        (["run", "bending"], ["'bending' has 12 variants; name one of them", "2-nu0.49"]),
         (["run", "bending-2-nu0.48"], ["did you mean 'bending-2-nu0.4"]),
     ],
 )

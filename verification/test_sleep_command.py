@@ -41,9 +41,9 @@ def test_what_sleeps_is_in_the_result_at_rest(beam):
     "arguments, words",
     [
         (("column", "--sleep", "0"), "--sleep = '0' must be a share in (0, 1]"),
-        (("column", "--sleep", "1"), "--sleep = '1' would be everything; for one percent write 1%"),
+        (("column", "--sleep", "1"), "--sleep = '1' is ambiguous; for one percent write 1%"),
         (("column", "--sleep", "120%"), "--sleep = '120%' must be a share in (0, 1]"),
-        (("bar-wave", "--sleep", "1%"), "--sleep: 'bar-wave' is in motion"),
+        (("bar-wave", "--sleep", "1%"), "--sleep: 'bar-wave' is a dynamic case"),
         (("column", "--sleep", "1%", "--method", "linear-condensed"), "'linear-condensed'"),
         (("column", "--sleep", "1%", "--checkpoint", "kept"), "leave out --checkpoint"),
     ],

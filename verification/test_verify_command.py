@@ -77,7 +77,7 @@ def test_verify_in_float_gives_figures_and_checks_no_limit(block):
     verdicts = block.parent / "verdicts.json"
     outcome = sandglass("verify", block, "--precision", "float", "--json", verdicts)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
-    assert "limits of the cases are for double: none was checked in float" in outcome.stdout
+    assert "the cases' limits are for double precision; none was checked in float" in outcome.stdout
     document = json.loads(verdicts.read_text())
     assert document["limits"] == []
     assert {r["precision"] for r in document["records"]} == {"float"}
