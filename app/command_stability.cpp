@@ -158,7 +158,8 @@ int map_stability(const StabilityOptions& options) {
   for (std::size_t n = 0; n < tasks.size(); ++n) cells[tasks[n].map].push_back(std::move(found[n]));
   fmt::print(
       "{}: . good, up to {:.3g} % from the golden's element on the same mesh; o inaccurate, H hourglassing, "
-      "L locking,\nI inverted, U unstable, R no equilibrium, ? the golden's element fails too, ~ it is too "
+      "L locking,\nI inverted, U unstable, R not at rest (no equilibrium), ? the golden's element fails too, "
+      "~ it is too "
       "far from the truth to judge, - refused by the method\n",
       description.name, 100.0 * limit);
   for (std::size_t m = 0; m < maps.size(); ++m) print_map(maps[m], cells[m]);

@@ -318,9 +318,9 @@ def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
     result = block.parent / "result.h5"
     outcome = sandglass("run", block, "-o", result)
     assert outcome.returncode == 3
-    assert "not at rest after 5 evaluations" in outcome.stderr
+    assert "no equilibrium after 5 evaluations" in outcome.stderr
     with h5py.File(result) as file:
-        assert text_of(file.attrs["status"]) == "not at rest after 5 evaluations"
+        assert text_of(file.attrs["status"]) == "no equilibrium after 5 evaluations"
 
 
 @pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="needs Linux's /proc")

@@ -53,10 +53,10 @@ QUANTITIES = {
         "wall time per simulated second",
         "per simulated second",
         "s",
-        "Seconds of wall time that one thread takes for a second of simulated time: the time of "
-        "a step of the whole mesh with its checks, over the mean step of the case’s own damped "
-        "motion with this method. Below 1 s it keeps up with real time. A condensed method has "
-        "no step: a thousand answers are taken.",
+        "Wall time that one thread takes for a second of simulated time: the time of a step of "
+        "the whole mesh with its checks, over the mean step of the case’s own damped motion with "
+        "this method. Below 1 s it keeps up with real time. A condensed method has no steps: it "
+        "computes a thousand answers.",
         "seconds_per_simulated_second",
     ),
     "step": Quantity(
@@ -70,9 +70,8 @@ QUANTITIES = {
         "wall time to equilibrium",
         "to equilibrium",
         "s",
-        "Seconds of the search for static equilibrium, cycles of the multigrid method included, "
-        "while other runs shared the machine; of quasi-static cases only. Another program’s "
-        "includes its set-up.",
+        "Wall time of the search for static equilibrium, including multigrid cycles, while other "
+        "runs shared the machine; quasi-static cases only. For another program it includes set-up.",
         "equilibrium_seconds",
     ),
     "ns": Quantity(
@@ -87,21 +86,21 @@ QUANTITIES = {
         "wall time of checks per element and step",
         "checks",
         "ns",
-        "A run looks every few steps whether the body is sound and how long the next steps may "
-        "be; this time, shared out over the steps between, per element.",
+        "Every few steps a run checks that the body is valid and how long the next steps may be; "
+        "this is the time of a check, divided by the elements and the steps between checks.",
         "check_ns_per_element_step",
     ),
     "mean_step": Quantity(
         "mean step of the motion",
         "mean step",
         "ms",
-        "Simulated time over steps, of the case’s own damped motion with this method.",
+        "Simulated time over number of steps, in the case’s own damped motion with this method.",
         "mean_step_seconds",
         scale=1000.0,
     ),
     "stable_step": Quantity(
-        "stable step at rest",
-        "step at rest",
+        "undeformed stable step",
+        "undeformed step",
         "ms",
         "The longest stable step of central differences in the undeformed shape.",
         "stable_step",
@@ -118,7 +117,7 @@ QUANTITIES = {
         "wall time of the motion",
         "motion",
         "s",
-        "Seconds of the whole motion, of cases that move.",
+        "Wall time of the whole motion; dynamic cases only.",
         "motion_seconds",
     ),
     "steps": Quantity(
@@ -132,16 +131,16 @@ QUANTITIES = {
         "operations per element and step",
         "operations",
         "",
-        "Additions, multiplications, divisions and others of an element in one step, counted by "
-        "running the kernel with a number type that counts.",
+        "Additions, multiplications, divisions and other operations of an element in one step, "
+        "counted by running the kernel with a counting number type.",
         "operations",
     ),
     "max": Quantity(
         "largest error over all nodes",
         "max",
         "%",
-        "The largest distance of a node from where the reference has it, over the largest "
-        "imposed displacement; of a motion, the largest over time.",
+        "The largest distance of a node from its position in the reference, over the largest "
+        "imposed displacement; in a motion, the largest over time.",
         "max_relative_error",
         scale=100.0,
     ),
@@ -149,7 +148,7 @@ QUANTITIES = {
         "largest error on the profile line",
         "profile",
         "%",
-        "The same over the nodes of the case’s profile line.",
+        "The same, over the nodes of the case’s profile line.",
         "profile_relative_error",
         scale=100.0,
     ),
@@ -188,8 +187,8 @@ QUANTITIES = {
         "operations of the hourglass control",
         "the control",
         "",
-        "The part of the operations that the hourglass control needs: as the paper writes it, "
-        "and as the kernel runs it.",
+        "The operations that the hourglass control needs: as the paper writes it, and as the "
+        "kernel runs it.",
         "total, of part hourglass in form paper or kernel",
         FLOPS,
     ),
@@ -197,8 +196,8 @@ QUANTITIES = {
         "times as long as Sandglass",
         "×",
         "",
-        "What a step, a simulated second or the equilibrium takes another program, over what it "
-        "takes the nearest method of Sandglass on the same machine.",
+        "The time of another program for a step, a simulated second or the equilibrium, over the "
+        "time of the closest method of Sandglass on the same machine.",
         "ns_per_element_step, time_step, seconds_to_rest",
         "results/submit.py",
     ),
@@ -215,7 +214,7 @@ QUANTITIES = {
         "the truth’s own error",
         "truth’s own error",
         "%",
-        "An estimate from the truth on two meshes.",
+        "An estimate from truths on two meshes.",
         "discretisation_error_max, discretisation_error_rms",
         "reference/regenerate",
         scale=100.0,
@@ -231,7 +230,7 @@ QUANTITIES = {
         "distance from the published value",
         "distance",
         "%",
-        "How far the computed value is from the published one, over the published one.",
+        "The difference between computed and published value, over the published value.",
         "ratio",
         scale=100.0,
     ),
@@ -239,17 +238,17 @@ QUANTITIES = {
         "error in a cell of a failure map",
         "error",
         "%",
-        "The largest error over all nodes to the golden’s element, computed for the properties "
-        "of that cell.",
+        "The largest error over all nodes to the golden’s element, both with the properties of "
+        "that cell.",
         "symptoms.error",
         "sandglass stability CASE --json build/stability/CASE.json",
         scale=100.0,
     ),
     "growth": Quantity(
-        "seconds and evaluations to rest",
+        "seconds and evaluations to equilibrium",
         "seconds",
         "s",
-        "Wall time from the model to rest, and evaluations of Sandglass or iterations of "
+        "Wall time from the model to equilibrium, and evaluations of Sandglass or iterations of "
         "Newton’s method, over the number of elements; one thread.",
         "seconds, evaluations, iterations",
         "bench/growth.py --json reports/figures/growth.json",
@@ -259,7 +258,7 @@ QUANTITIES = {
         "error",
         "%",
         "Error to the stored truth at the nodes of the case’s own mesh, over wall time from the "
-        "model to rest.",
+        "model to equilibrium.",
         "error_max, error_rms, seconds",
         "bench/refinement.py --json reports/figures/refinement.json",
         scale=100.0,

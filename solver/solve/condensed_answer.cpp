@@ -42,7 +42,7 @@ Rows<Real> superposed(const Model& model, const Layout& layout) {
                     model.choice().method, other->traits().name));
   }
   if (!scene.ties.empty()) {
-    throw ComputationError(fmt::format("method '{}' does not know refined meshes; choose another method",
+    throw ComputationError(fmt::format("method '{}' does not support refined meshes; choose another method",
                                        model.choice().method));
   }
   const Handles handles = handles_of_sets(scene);

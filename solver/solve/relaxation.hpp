@@ -49,7 +49,7 @@ bool in_equilibrium(const Relaxation& relaxation);
 /// Whether the answer is a minimum, in words: "stable", or the reason why that is not known.
 std::string stability_text(const Relaxation& relaxation);
 
-/// The end of the search in words: "at rest", or the reason why not.
+/// The end of the search in words: "static equilibrium", or the reason why not.
 std::string outcome(const Relaxation& relaxation, Precision precision);
 
 }  // namespace sandglass

@@ -106,7 +106,7 @@ const std::vector<Axis>& list() {
        .matters = takes_strength},
       {.name = "nu",
        .range = Range::between(-1.0, 0.5),
-       .meaning = "Poisson's ratio at rest",
+       .meaning = "initial Poisson's ratio",
        .values = {0.25, 0.4, 0.45, 0.49, 0.499, 0.4999},
        .apply = set_poisson_ratio,
        .possible = has_poisson_ratio,
