@@ -293,7 +293,7 @@ def test_a_column_bends_to_the_side_of_its_load(tmp_path):
     """To where it ends in damped motion; an unstable equilibrium is found first."""
     outcome, result = run("column", tmp_path)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
-    assert "static equilibrium (stable, after an unstable one was left)" in outcome.stdout
+    assert "static equilibrium (stable, reached from an unstable one)" in outcome.stdout
     motion = """
 [dynamics]
 duration = 60.0

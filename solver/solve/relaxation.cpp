@@ -220,15 +220,15 @@ class Search {
       if (softest.falling.empty()) {
         result_.stability = Stability::not_decided;
         result_.why_not_decided = fmt::format(
-            "the least eigenvalue, {:.1g} of the initial stiffness, may be rounding", softest.least);
+            "the smallest eigenvalue, {:.1g} of the initial stiffness, may be rounding", softest.least);
         return true;
       }
       result_.stability = Stability::saddle_left;
       if (left == most_saddles || !equilibrium_.leave(softest.falling, left > 0) || (!search() && !ended_)) {
         throw ComputationError(
-            fmt::format("the equilibrium that was found is unstable: over the initial stiffness, the least "
-                        "eigenvalue of the present one is {:.2g}; the way down from it led to no other; "
-                        "remedy: a small force that decides where the body goes, or a motion with damping",
+            fmt::format("the equilibrium found is unstable: the smallest eigenvalue of the current stiffness "
+                        "is {:.2g} of the initial one; descending from it found no other; remedy: a small "
+                        "force that selects a direction, or a damped motion",
                         softest.least),
             Breakdown::no_balance);
       }
