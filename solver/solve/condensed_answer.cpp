@@ -12,8 +12,7 @@ namespace sandglass {
 
 namespace {
 
-/// What rotated sets, which no handle moves, do to the other nodes by going to their final places: forces
-/// (N).
+/// The forces (N) on other nodes caused by rotated sets, which no handle moves, at their final positions.
 NodalField forces_of_rotations(const Model& model, const Handles& handles) {
   const Scene& scene = model.scene();
   NodalField u(scene.mesh.points.size());
