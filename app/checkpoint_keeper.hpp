@@ -11,6 +11,7 @@ namespace sandglass {
 
 /// Writes checkpoints, so that the same command resumes a run that was killed. A checkpoint includes
 /// everything reported so far, so the result of a resumed run is complete.
+///
 /// A checkpoint that cannot be written causes a warning only: the run continues, the previous checkpoint
 /// stays in place, and the next one is attempted when it is due.
 class CheckpointKeeper {

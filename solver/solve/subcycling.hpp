@@ -19,6 +19,7 @@ struct Division {
 /// Only small elements take small steps, while the others take one large step: the local time stepping of
 /// Diaz and Grote (SIAM J. Sci. Comput. 31, 2009), stabilised after Grote, Michel and Sauter (Math. Comp. 90,
 /// 2021).
+///
 /// In every step, small nodes (on which small elements depend) move from zero velocity in small steps, while
 /// all others are held. At all nodes, the weighted mean of the forces on the way replaces the force at its
 /// start. It is a function of the displacements only, so the rest of a step is as without subcycling. See
