@@ -251,7 +251,7 @@ def test_the_case_is_no_place_for_results(block, option):
     shutil.copy(block, case)
     outcome = sandglass("run", case, option, case)
     assert outcome.returncode == 2
-    assert f"{case}: is what this command reads" in outcome.stderr
+    assert f"{case}: is an input of this command" in outcome.stderr
     assert case.read_bytes() == before
 
 
@@ -289,7 +289,7 @@ def test_no_command_overwrites_what_it_reads(block):
     ):
         outcome = sandglass(*words, cwd=folder)
         assert outcome.returncode == 2, words
-        assert "is what this command reads" in outcome.stderr, words
+        assert "is an input of this command" in outcome.stderr, words
         assert {file.name: file.read_bytes() for file in folder.iterdir()} == before, words
 
 
