@@ -1,4 +1,4 @@
-"""What the tests of several folders share."""
+"""Fixtures that the tests of several folders share."""
 
 import logging
 
@@ -10,7 +10,7 @@ logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
 
 @pytest.fixture
 def block(tmp_path):
-    """A small case in a folder of its own."""
+    """A small case in its own folder."""
     file = tmp_path / "block.toml"
     file.write_text(command_line.BLOCK)
     return file

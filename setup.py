@@ -24,24 +24,24 @@ def cmake(*arguments):
 
 
 def version():
-    """That of the project, which is written in CMakeLists.txt alone."""
+    """The project's version, which is stated only in CMakeLists.txt."""
     text = (ROOT / "CMakeLists.txt").read_text()
     return re.search(r"^project\(sandglass VERSION (\S+) ", text, re.MULTILINE)[1]
 
 
 class Build(build_ext):
-    """Builds by CMake, and tells setuptools of the files beside the module."""
+    """Builds with CMake, and adds the files beside the module to setuptools' list."""
 
     def run(self):
         options = [f"-DPython_EXECUTABLE={sys.executable}", "-DSANDGLASS_PYTHON=ON"]
-        if platform.machine() != "x86_64":  # no common set of instructions is chosen for others
+        if platform.machine() != "x86_64":  # other processors have no common instruction set here
             options.append("-DSANDGLASS_ARCH=native")
         try:
             import pybind11
 
             options.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
         except ImportError:
-            pass  # CMake finds that of the system, or says what is missing
+            pass  # CMake finds the system's, or reports what is missing
         cmake("--preset", PRESET, *options)
         targets = ["sandglass_cli", "sandglass_python"]
         cmake("--build", "--preset", PRESET, "--target", *targets, "--", "--quiet")

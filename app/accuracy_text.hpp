@@ -9,12 +9,13 @@
 
 namespace sandglass {
 
-/// A fraction as a percentage of three digits, "-" where there is none.
+/// A fraction as a percentage with three digits; "-" if there is none.
 inline std::string percent(const std::optional<double>& fraction) {
   return fraction ? fmt::format("{:.3g}", 100.0 * *fraction) : "-";
 }
 
-/// Largest error, that over the profile and root mean square, in three columns of nine.
+/// The largest error, the largest along the profile and the root mean square, in three columns of nine
+/// characters.
 inline std::string percents(const std::optional<Accuracy>& accuracy) {
   if (!accuracy) return fmt::format("{:>9}{:>9}{:>9}", "-", "-", "-");
   return fmt::format("{:>9}{:>9}{:>9}", percent(accuracy->max_relative_error),

@@ -53,16 +53,16 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-/// What names a variant, or the head of these columns; methods take `width` characters.
+/// The columns that name a variant, or their heads; `width` is the width of the method's column.
 std::string label(std::string_view method, std::string_view kernel, std::string_view number,
                   const std::string& threads, std::size_t width) {
   return fmt::format("{:<{}}  {:<6}  {:<6}  {:>3}", method, width, kernel, number, threads);
 }
 
-/// Characters of a line of a table, so that it fits beside a margin of a terminal.
+/// The width of a table in characters; it leaves a margin in a terminal.
 constexpr std::size_t most_width = 110;
 
-/// Heads, units and a line for each record: what names them, and columns of figures as far as they fit.
+/// Heads, units and a line for each record: its name, and as many columns of figures as fit.
 class Block {
  public:
   Block(const std::vector<BenchRecord>& records, std::size_t longest)
@@ -87,7 +87,7 @@ class Block {
     }
   }
 
-  /// With why there are no figures of a record.
+  /// Ends the lines of records without figures with the reason.
   std::string text(const std::vector<BenchRecord>& records) const {
     std::string text = heads_ + "\n" + units_ + "\n";
     for (std::size_t n = 0; n < records.size(); ++n) {
@@ -138,15 +138,15 @@ std::string spread_warning(const std::vector<BenchRecord>& records) {
 std::string rest_table(const Scene& scene, const std::vector<RestRecord>& records) {
   std::size_t longest = 0;
   for (const auto& record : records) longest = std::max(longest, record.choice.method.size());
-  std::string table =
-      fmt::format("{}: {} elements, {} nodes\n{:<{}}  {:<6}  {:>3}{:>11}{:>13}{:>12}{:>8}{:>10}\n",
-                  scene.description.name, scene.mesh.cells.size(), scene.mesh.points.size(), "method",
-                  longest, "number", "thr", "to 1 %, s", "to 0.1 %, s", "to rest, s", "evals", "residual");
+  std::string table = fmt::format(
+      "{}: {} elements, {} nodes\n{:<{}}  {:<6}  {:>3}{:>11}{:>13}{:>19}{:>8}{:>10}\n",
+      scene.description.name, scene.mesh.cells.size(), scene.mesh.points.size(), "method", longest, "number",
+      "thr", "to 1 %, s", "to 0.1 %, s", "to equilibrium, s", "evals", "residual");
   for (const auto& record : records) {
     const MethodChoice& choice = record.choice;
     table += fmt::format("{:<{}}  {:<6}  {:>3}", choice.method, longest, name_of(choice.precision),
                          choice.threads);
-    table += record.times ? fmt::format("{:>11.3g}{:>13.3g}{:>12.3g}{:>8}{:>10.1e}\n",
+    table += record.times ? fmt::format("{:>11.3g}{:>13.3g}{:>19.3g}{:>8}{:>10.1e}\n",
                                         record.times->to_1_percent, record.times->to_0_1_percent,
                                         record.times->to_rest, record.evaluations, record.residual)
                           : fmt::format("  {}\n", record.status);

@@ -9,7 +9,7 @@ namespace sandglass {
 
 namespace {
 
-/// A key and all that is said of it, in columns.
+/// A key and its description, in columns.
 std::string key_line(const std::string& key, std::string_view unit, const std::string& allowed,
                      const std::string& fallback, std::string_view meaning) {
   return fmt::format("  {:<28} {:<8} {:<12} {:<16} {}\n", key, fmt::format("[{}]", unit), allowed, fallback,
@@ -75,15 +75,15 @@ mesh.file = "FILE": instead of a generator, a mesh of hexahedra, in m: .h5 as `s
 )";
 
 constexpr std::string_view parts_of_a_material = R"(
-material.volumetric: the volumetric energy, of K the initial bulk modulus: "quadratic", K/2 (J - 1)^2 (default),
-  "logarithmic", K/2 (ln J)^2, or "quadratic-logarithmic", K/4 (J^2 - 1 - 2 ln J)
+material.volumetric: the volumetric energy, where K is the initial bulk modulus: "quadratic", K/2 (J - 1)^2
+  (default), "logarithmic", K/2 (ln J)^2, or "quadratic-logarithmic", K/4 (J^2 - 1 - 2 ln J)
 material.fibre_direction, sheet_direction = [x, y, z], of any length: for laws with fibres, the same directions
   everywhere; the second may be left out for laws without sheets. Or
 material.fibres = { axis = "x", "y" or "z", center = [x, y, z] in m (default: the origin), radii = [r0, r1] in m,
   angles = [a0, a1] in degrees }: fibres that wind around an axis, at an angle to the circle that is linear
   between two radii; sheets are radial. Or
-material.fibres = { file = "FILE" }: a line of text for each element, three numbers for its fibres, or six with
-  its sheets
+material.fibres = { file = "FILE" }: a line for each element, with three numbers for its fibres, or six for
+  its fibres and sheets
 )";
 
 constexpr std::string_view several_materials = R"(
@@ -98,23 +98,23 @@ constexpr std::string_view sets_and_motions = R"(
   center = [x, y], semi_axes = [a, b] }, ellipsoid = { center = [x, y, z], semi_axes = [a, b, c] } }
   all conditions must hold; lengths in m; inf and -inf are allowed
 
-[[refine]] around = NAME, depth 1 to 8 (default: 1), layers 1 to 8 (default: 2): so many layers of elements at
-  the edge of a node set, where what is imposed on it ends, are split in eight; of their parts at the edge as
-  many layers again, depth times in all. Or elements = NAME, depth: those of an element set. Or numbers =
-  [...], after 0 to 7 (default: 0): elements by their numbers, from 0, in the mesh after so many splits. Faces
-  keep their shape, sets and materials pass on to the parts, and nodes that hang follow the element they hang on
-[[tie]] set = NAME, elements = NAME: nodes of a set that are inside elements of an element set, or on their
-  faces, without being their corners, move with them: where meshes that do not match meet; not with [[refine]]
+[[refine]] around = NAME, depth 1 to 8 (default: 1), layers 1 to 8 (default: 2): splits this many layers of
+  elements at the edge of a node set into eight each, then as many layers of their parts at the edge, depth
+  times in all. Or elements = NAME, depth: splits the elements of an element set. Or numbers = [...], after 0 to
+  7 (default: 0): splits elements by their numbers, from 0, in the mesh after so many splits. Faces keep their
+  shape, parts inherit sets and materials, and hanging nodes follow the element on which they hang
+[[tie]] set = NAME, elements = NAME: joins meshes that do not match: nodes of a set that lie inside elements of
+  an element set, or on their faces, but are not their corners, move with these elements; not with [[refine]]
 [[displacement]] set = NAME, value = [x, y, z] in m, components = "xyz" (default: all)
 [[rotation]] set = NAME, axis = "x", "y", "z" or [x, y, z], angle in degrees, by the right-hand rule:
   the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis
   (default: the mean of the set's nodes), displacement = [x, y, z] in m, added (default: none)
 [[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in rad/s about
-  the set's centre of mass, half_waves = [x, y, z]: value as a wave that stands in the set,
-  value * cos(pi half_waves (x - low) / (high - low)); where a dynamic answer starts, several add up
+  the set's centre of mass, half_waves = [x, y, z]: value as a standing wave in the set,
+  value * cos(pi half_waves (x - low) / (high - low)): the initial velocities of a dynamic case; several add up
 [method] name, kappa (number or "auto"), kappa_modulus ("p-wave" or "shear"), accuracy
-  (of an adaptive method), precision ("double" or "float"): what `sandglass run` takes unless its options
-  say otherwise; `sandglass choose` writes it
+  (of an adaptive method), precision ("double" or "float"): used by `sandglass run` unless its options
+  differ; `sandglass choose` writes it
 [[variants.AXIS]] name, and any of these keys: every combination of one variant of each axis is a case
 )";
 
@@ -126,7 +126,7 @@ std::string describe_case_keys() {
   text += mesh_file;
   text += described_list(Laws{}, "material", "law");
   text +=
-      key_line("material.density", "kg/m^3", Range::positive().text(), "required", "mass density at rest");
+      key_line("material.density", "kg/m^3", Range::positive().text(), "required", "undeformed mass density");
   text += parts_of_a_material;
   text += several_materials;
   text += sets_and_motions;
@@ -135,9 +135,9 @@ std::string describe_case_keys() {
                         described<Force>(std::string(Force::name)));
   });
   text += fmt::format("\nformula: {}\n", formula_language());
-  text += "\n[relaxation]: how a quasi-static answer is found\n";
+  text += "\n[relaxation]: settings of the quasi-static solver\n";
   text += described<RelaxationSettings>("relaxation");
-  text += "\n[dynamics]: how a dynamic answer is found\n";
+  text += "\n[dynamics]: settings of the dynamic solver\n";
   text += described<DynamicsSettings>("dynamics");
   return text;
 }

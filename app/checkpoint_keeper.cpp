@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A hash of everything that a run reads, to the bit: case file and mesh. The hashes of case and mesh are
-/// those of an answer; they leave out settings, and roundoff in a mesh.
+/// A hash of every bit that a run reads: case file and mesh. The hashes that identify an answer leave out
+/// settings, and roundoff in a mesh.
 std::string input_hash(const Scene& scene) {
   std::ostringstream bytes;
   bytes << std::ifstream(scene.description.file, std::ios::binary).rdbuf() << scene.description.name;
@@ -71,7 +71,7 @@ void CheckpointKeeper::resumable(const std::function<Checkpoint()>& checkpoint) 
     run_.point = checkpoint();
     if (ranks_->rank() == 0) write_checkpoint_file(file_, identity_, run_);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "warning: no checkpoint now, the run goes on: {}\n", error.what());
+    fmt::print(stderr, "warning: checkpoint not written, the run continues: {}\n", error.what());
   }
 }
 

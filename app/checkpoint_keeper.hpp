@@ -9,25 +9,25 @@
 
 namespace sandglass {
 
-/// When and where a run is kept, so that the same command goes on after it was killed. What the run told is
-/// kept with it: the result of a run that went on is complete.
+/// Writes checkpoints, so that the same command resumes a run that was killed. A checkpoint includes
+/// everything reported so far, so the result of a resumed run is complete.
 ///
-/// A checkpoint that cannot be written costs a warning, not the run: the run needs none to go on, the former
-/// one stays in place, and the next attempt comes with the next one due.
+/// A checkpoint that cannot be written causes a warning only: the run continues, the previous checkpoint
+/// stays in place, and the next one is attempted when it is due.
 class CheckpointKeeper {
  public:
-  /// Takes up the run that `file` holds, if it is there. A checkpoint is written where the run can go on from
-  /// and `seconds` have passed since the last one, or the run is being interrupted. Throws InputError when
-  /// the file is that of another run, damaged, or its folder is not there.
+  /// Resumes the run in `file`, if there is one. A checkpoint is written at the next point from which the run
+  /// can resume, once `seconds` have passed since the last one or the run is interrupted. Throws InputError
+  /// if the file belongs to another run or is damaged, or if its folder does not exist.
   CheckpointKeeper(const Model& model, std::filesystem::path file, double seconds);
 
-  /// Where to go on; null at a new start.
+  /// Where to resume; null for a new run.
   const Checkpoint* from() const { return resumed_ ? &run_.point : nullptr; }
 
-  /// All that was told so far.
+  /// Everything reported so far.
   const RunSoFar& run() const { return run_; }
 
-  // What an Observer is told:
+  // The calls of an Observer:
   void frame(const Frame& frame) { run_.frames.push_back(frame); }
   void history(const HistoryRow& row) { run_.history.push_back(row); }
   void resumable(const std::function<Checkpoint()>& checkpoint);

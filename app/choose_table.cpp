@@ -39,20 +39,19 @@ std::string head_text(const Scene& scene, const Choice& choice) {
                   demand.real_time ? ", in real time" : "",
                   demand.budget ? fmt::format(", {:.3g} ms a step or answer", 1e3 * *demand.budget) : ""));
   return text +
-         line(fmt::format(
-             "us/step: median of a step, or of a condensed answer, on this machine with {} "
-             "thread{}; s/sim. s: wall time of a simulated second at the mean step of the case's own motion, "
-             "or of {:.0f} condensed answers: what a real-time loop pays, and the order of "
-             "the rows; run s: the same, as the run of a motion took it",
-             demand.threads, demand.threads == 1 ? "" : "s", answers_per_second));
+         line(fmt::format("us/step: median of a step, or of a condensed answer, on this machine with {} "
+                          "thread{}; s/sim. s: wall time of a simulated second at the mean step of the "
+                          "case's own motion, or of {:.0f} condensed answers, as in a real-time loop; rows "
+                          "are sorted by it; run s: the same, measured in the run of a motion",
+                          demand.threads, demand.threads == 1 ? "" : "s", answers_per_second));
 }
 
-/// The meshes by their numbers, and those that no method can stand on.
+/// The numbered meshes, and those rejected for every method.
 std::string meshes_text(const Scene& scene, const Choice& choice) {
   std::string text;
   const auto add = [&](const std::string& number, const std::string& name, const Evaluation& evaluation) {
     text += line(fmt::format("mesh {}: {}{}{}", number, name,
-                             evaluation.error ? fmt::format("; the golden's own element is {} off on it",
+                             evaluation.error ? fmt::format("; the golden's element is {} off on it",
                                                             percent(*evaluation.error))
                                               : "",
                              evaluation.reason.empty() ? "" : "; rejected: " + evaluation.reason),
@@ -68,7 +67,7 @@ std::string meshes_text(const Scene& scene, const Choice& choice) {
     if (!kept) add("-", mesh, evaluation);
   }
   if (std::holds_alternative<MeshFile>(scene.description.mesh)) {
-    text += "the mesh comes from a file: no coarser one was looked at\n";
+    text += "the mesh comes from a file: no coarser one was tried\n";
   }
   return text;
 }
@@ -85,7 +84,7 @@ std::string row_text(const Attempt& attempt, const Choice& choice) {
       evaluation.smallest_jacobian ? fmt::format("{:.2g}", *evaluation.smallest_jacobian) : "-");
 }
 
-/// Rungs that were rejected for reasons of one kind.
+/// Candidates rejected for the same kind of reason.
 struct Rejected {
   std::string kind;
   std::vector<const Attempt*> attempts;
@@ -146,10 +145,10 @@ std::string rungs_text(const Choice& choice) {
   const auto not_tried = std::count_if(choice.attempts.begin(), choice.attempts.end(),
                                        [](const Attempt& a) { return a.outcome == Outcome::not_tried; });
   if (not_tried > 0) {
-    text += fmt::format("{} costlier ones were not tried; --all tries them, and shows the rejected ones\n",
+    text += fmt::format("{} costlier ones were not tried; --all tries them and lists the rejected ones\n",
                         not_tried);
   } else if (!choice.demand.all) {
-    text += "--all shows each of the rejected ones\n";
+    text += "--all lists the rejected ones\n";
   }
   return text;
 }

@@ -6,8 +6,8 @@
 
 namespace sandglass {
 
-/// What `choose` found, for people, in lines of at most 100 columns: meshes, those rungs that suffice with
-/// the chosen one marked, remarks, and how many were rejected why. If all were tried, all are shown.
+/// The result of `choose` as text of at most 100 columns: meshes, the sufficient candidates with the chosen
+/// one marked, remarks, and how many were rejected for which reason. If all were tried, all are shown.
 std::string choose_table(const Scene& scene, const Choice& choice);
 
 }  // namespace sandglass

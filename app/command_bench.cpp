@@ -64,7 +64,7 @@ BenchPlan make_plan(const BenchOptions& options) {
   return plan;
 }
 
-/// What a scene is made of; scenes are made one after another, for large ones fill the memory.
+/// The source of a scene. Scenes are made one after another, because large ones fill the memory.
 struct Subject {
   std::optional<Case> description;  ///< none for a box
   int elements = 0;
@@ -127,8 +127,8 @@ std::vector<MethodChoice> packed_variants(BenchOptions options) {
   return variants;
 }
 
-/// The variants that --rest times: packs only, and by default one thread and the two methods to compare, with
-/// one point and with eight.
+/// The variants that --rest times: packs only; by default one thread, one method with one point and one with
+/// eight.
 std::vector<MethodChoice> rest_variants(BenchOptions options) {
   if (options.methods.empty()) options.methods = {"tl-perturbation", std::string(golden_method)};
   return packed_variants(std::move(options));
@@ -137,8 +137,9 @@ std::vector<MethodChoice> rest_variants(BenchOptions options) {
 int run_rest(const BenchOptions& options) {
   const auto variants = rest_variants(options);
   auto scenes = read_scenes(
-      options.names, [](const Case& description) { return description.quasi_static; }, "rest to come to");
-  if (options.names.empty()) {  // small cases with published values are made for accuracy, not for time
+      options.names, [](const Case& description) { return description.quasi_static; },
+      "static equilibrium to time");
+  if (options.names.empty()) {  // small cases with published values test accuracy, not time
     std::erase_if(scenes,
                   [](const Scene& scene) { return !read_comparison(scene.description).published.empty(); });
   }
@@ -163,11 +164,12 @@ int run_rest(const BenchOptions& options) {
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), records));
   const auto failed = std::count_if(records.begin(), records.end(), [](const auto& r) { return !r.times; });
   if (failed > 0)
-    throw ComputationError(fmt::format("bench: {} of {} did not come to rest", failed, records.size()));
+    throw ComputationError(
+        fmt::format("bench: {} of {} found no static equilibrium", failed, records.size()));
   return 0;
 }
 
-/// The methods that compute bodies side by side, where none is named.
+/// The default methods of --bodies: all that compute bodies side by side.
 std::vector<MethodChoice> variants_of_bodies(BenchOptions options) {
   if (options.methods.empty()) {
     for (const MethodEntry& method : methods()) {
@@ -212,7 +214,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand(
       "bench",
-      "time of every method per element and step, beside what the machine can do.\n"
+      "time every method per element and step, and compare it with the speed of the machine.\n"
       "All variants are timed in turn in one process, after their forces were compared with those in double\n"
       "precision on one thread; one that is wrong gets no time, and the exit code is 1. sandglass-scalar "
       "has\n"
@@ -220,37 +222,39 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "constant and row of a step once. Above 100 % of memory a mesh stays in a cache; the roofline holds "
       "it\n"
       "against the triad over arrays of its own size.\n"
-      "With --rest: wall time from the model to rest, the median of three runs. Further runs, stopped after\n"
-      "fewer force evaluations, find by bisection after how many of them all displacements are within 1 %\n"
-      "and 0.1 % of the largest imposed one from those at rest; their seconds are that share of the median");
-  command->add_option(
-      "CASE", options->names,
-      "names or files of cases; ellipsoid-indentation when neither case nor box is given, with --rest "
-      "all canonical quasi-static ones");
-  auto* rest = command->add_flag("--rest", options->rest, "time quasi-static cases until they are at rest");
-  auto* bodies = command->add_option(
-      "--bodies", options->bodies,
-      "time so many bodies of each case, column when none is given, side by side and one by one");
+      "With --rest: wall time from the model to static equilibrium, the median of three runs. Further runs,\n"
+      "stopped earlier, find by bisection after how many force evaluations all displacements differ from "
+      "the\n"
+      "final ones by at most 1 % and 0.1 % of the largest imposed one; their seconds are that share of the\n"
+      "median");
+  command->add_option("CASE", options->names,
+                      "names or files of cases; default: ellipsoid-indentation unless boxes are given, with "
+                      "--rest all canonical quasi-static cases");
+  auto* rest = command->add_flag("--rest", options->rest, "time quasi-static cases until static equilibrium");
+  auto* bodies =
+      command->add_option("--bodies", options->bodies,
+                          "time this many bodies of each case (default: column) side by side and one by one");
   bodies->excludes(rest);
-  command->add_option("-e,--elements", options->elements, "boxes of about so many elements, besides")
+  command->add_option("-e,--elements", options->elements, "also time boxes of about this many elements")
       ->excludes(rest)
       ->excludes(bodies);
   command
       ->add_option("-c,--cubes", options->cubes,
-                   "boxes of about so many cubes, which some methods compute in less time, besides")
+                   "also time boxes of about this many cubes, which some methods compute in less time")
       ->excludes(rest)
       ->excludes(bodies);
-  command->add_option("-t,--threads", options->threads,
-                      "numbers of threads; 1 and 2 where there are two, with --rest or --bodies 1");
+  command->add_option(
+      "-t,--threads", options->threads,
+      "numbers of threads; default: 1 and 2 if the machine has two, with --rest or --bodies 1");
   command
       ->add_option("-m,--methods", options->methods,
-                   "methods, see `sandglass methods`; all when left out, with --rest tl-perturbation and "
+                   "methods, see `sandglass methods`; default: all, with --rest tl-perturbation and "
                    "tl-mean-dilatation, with --bodies those that run side by side")
       ->type_name("METHOD");
   command->add_option("-p,--precision", options->precisions, "double, float or both")->capture_default_str();
   command
       ->add_option("-r,--repetitions", options->repetitions,
-                   "batches of about 0.5 ms for each variant, twice")
+                   "batches of about 0.5 ms for each variant, timed twice")
       ->excludes(rest)
       ->capture_default_str();
   command->add_option("--json", options->json, "write every figure to this file");

@@ -76,7 +76,7 @@ int run_choose(const ChooseOptions& options) {
   }
   fmt::print("{}", choose_table(scene, *choice));
   if (!choice->chosen) {
-    fmt::print("nothing suffices{}\n",
+    fmt::print("no method suffices{}\n",
                options.output.empty() ? "" : fmt::format("; {} was not written", options.output));
   }
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), scene, *choice));
@@ -91,12 +91,12 @@ void add_choose_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ChooseOptions>();
   CLI::App* command = app.add_subcommand(
       "choose",
-      "the cheapest method, precision and mesh that is accurate enough for a case on this machine.\n"
-      "Tries them from the cheapest on, and says why others were rejected; exit code 1 if nothing suffices");
+      "find the cheapest method, precision and mesh that are accurate enough for a case on this machine.\n"
+      "Tries the cheapest first and prints why others were rejected; exit code 1 if none suffices");
   command->add_option("CASE", options->name, "name or file of a case")->required();
   command
       ->add_option("--tolerance", options->tolerance,
-                   "largest error at any node, of the largest imposed displacement: 1% or 0.01")
+                   "largest error at any node, as a share of the largest imposed displacement: 1% or 0.01")
       ->capture_default_str();
   command
       ->add_option("--against", options->against,
@@ -106,12 +106,11 @@ void add_choose_command(CLI::App& app, int& exit_code) {
   command->add_flag("--realtime", options->real_time, "a simulated second must take at most a second");
   command->add_option("--budget", options->budget,
                       "time that a step or a condensed answer may take: 1ms, 500us");
-  command->add_option("-m,--methods", options->methods, "only these methods, with spaces between")
+  command->add_option("-m,--methods", options->methods, "only these methods, separated by spaces")
       ->type_name("METHOD");
   command->add_option("-t,--threads", options->threads, "threads of a step")->capture_default_str();
-  command->add_flag("--all", options->all, "try the costlier ones too, and show each that was rejected");
-  command->add_option("-o,--output", options->output,
-                      "write the chosen settings as a case file that `run` takes");
+  command->add_flag("--all", options->all, "try the costlier ones too, and list the rejected ones");
+  command->add_option("-o,--output", options->output, "write the chosen settings as a case file for `run`");
   command->add_option("--json", options->json, "write every figure to this file");
   command->callback([options, &exit_code] { exit_code = run_choose(*options); });
 }

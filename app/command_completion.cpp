@@ -13,8 +13,7 @@ namespace sandglass {
 
 namespace {
 
-/// The words that the value of an option or argument may be, as bash finds them; empty where it is a number
-/// or a file.
+/// The possible values of an option or argument, in bash; empty for a number or a file.
 std::string words_of(const CLI::Option& option) {
   const std::string type = option.get_positional() ? option.get_name(true) : option.get_type_name();
   if (type == "METHOD") return "$methods";
@@ -27,7 +26,7 @@ std::string words_of(const CLI::Option& option) {
   return words;
 }
 
-/// What may stand in a command, after an option that takes a value and elsewhere.
+/// The words that may follow in a command, after an option with a value and elsewhere.
 std::string branch(const CLI::App& command) {
   std::string text = fmt::format("    {})\n      case $previous in\n", command.get_name());
   std::vector<std::string> anywhere, several;
@@ -45,8 +44,8 @@ std::string branch(const CLI::App& command) {
   return text + fmt::format("        *) words=\"{}\" ;;\n      esac ;;\n", fmt::join(anywhere, " "));
 }
 
-/// A script for bash that completes the commands of the program, their options and the names of methods and
-/// cases; where none of them fits, files.
+/// A bash script that completes commands, options and the names of methods and cases; file names if none of
+/// them fits.
 std::string bash_completion(const CLI::App& app) {
   std::vector<std::string> cases, options;
   for (const auto& file : canonical_files()) cases.push_back(file.stem().string());
@@ -85,7 +84,7 @@ void add_completion_command(CLI::App& app) {
                                          "print a script that completes commands, options and names.\n"
                                          "In bash: source <(sandglass completion bash)");
   auto shell = std::make_shared<std::string>();
-  command->add_option("SHELL", *shell, "whose script")->check(CLI::IsMember({"bash"}))->required();
+  command->add_option("SHELL", *shell, "the shell")->check(CLI::IsMember({"bash"}))->required();
   command->callback([shell, &app] { fmt::print("{}", bash_completion(app)); });
 }
 

@@ -20,10 +20,10 @@ namespace {
 struct Row {
   std::string_view method;
   std::string_view law;
-  std::string_view form;  ///< "kernel": what runs; "paper": as the paper writes it
+  std::string_view form;  ///< "kernel": as it runs; "paper": as the paper writes it
   std::string_view part;
   Operations operations;
-  long bytes = 0;  ///< 0 where the part reads nothing of its own
+  long bytes = 0;  ///< 0 if the part reads nothing of its own
 };
 
 /// Every method with one law.
@@ -53,7 +53,7 @@ std::vector<Row> count_methods() {
   return rows;
 }
 
-/// Every law at the one point of an element; counts do not depend on the values of its parameters.
+/// Every law at one point of an element; counts do not depend on its parameters.
 std::vector<Row> count_laws() {
   const MethodEntry& plain = method_named("tl-none");
   std::vector<Row> rows;
@@ -93,8 +93,8 @@ void write_json(const std::vector<Row>& rows, const std::string& path) {
 
 void add_flops_command(CLI::App& app) {
   auto json = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("flops", "operations per element and step, counted in the kernels that run");
+  CLI::App* command = app.add_subcommand(
+      "flops", "print the operations per element and step, counted by running the kernels");
   command->add_option("--json", *json, "write every count to this file");
   command->callback([json] {
     if (!json->empty()) require_place(*json);

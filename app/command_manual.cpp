@@ -9,7 +9,7 @@ namespace sandglass {
 
 namespace {
 
-/// A text in roff: no character and no beginning of a line is a command.
+/// A text escaped for roff, so that nothing in it acts as a command.
 std::string escaped(std::string_view text) {
   std::string roff;
   for (const char c : text) {

@@ -23,7 +23,7 @@ struct MeshOptions {
   DeckOptions deck;
 };
 
-/// The format asked for, by name or else by the ending of the file. Throws InputError for an unknown one.
+/// The requested format, by name or else by the file's extension. Throws InputError for an unknown one.
 std::string format_of(const MeshOptions& options) {
   std::string name = options.format;
   if (name.empty()) {
@@ -44,8 +44,8 @@ void print_quality(const QualityTable& table) {
     const auto high = static_cast<double>(tenth) / 10.0;
     fmt::print("    {:.1f} to {:.1f}: {} elements\n", high - 0.1, high, table.counts[tenth]);
   }
-  if (table.smallest > 0.9995) return;  // all alike in what is shown
-  fmt::print("  worst elements, numbered from 0 as in what is written\n");
+  if (table.smallest > 0.9995) return;  // all would be printed as 1.000
+  fmt::print("  worst elements, numbered from 0 as in the file\n");
   for (const auto& [number, quality, centre] : table.worst) {
     fmt::print("    element {}: {:.3f} at ({:.6g}, {:.6g}, {:.6g})\n", number, quality, centre[0], centre[1],
                centre[2]);
@@ -68,18 +68,18 @@ void add_mesh_command(CLI::App& app) {
   command->add_option("CASE", options->name, "name or file of the case")->required();
   command->add_option("-o,--output", options->output, "file to write: .h5, .vtu, .xdmf, .inp, or a deck")
       ->required();
-  auto* format =
-      command->add_option("--format", options->format, "h5, vtu, xdmf or inp, if the ending does not say it");
+  auto* format = command->add_option("--format", options->format,
+                                     "h5, vtu, xdmf or inp; default: from the file's extension");
   auto* deck = command
                    ->add_option("--deck", options->deck.program,
-                                "write a complete input of this program: calculix, febio, niftysim "
+                                "write a complete input for this program: calculix, febio, niftysim "
                                 "or openradioss (exchange/README.md)")
                    ->excludes(format);
-  command->add_option("--element", options->deck.element, "for a deck: element, by the program's own name")
+  command->add_option("--element", options->deck.element, "for a deck: the program's name of the element")
       ->needs(deck);
   command
       ->add_option("--hourglass", options->deck.hourglass,
-                   "for a deck: the program's hourglass coefficient; by default its usual one")
+                   "for a deck: the program's hourglass coefficient; default: its usual one")
       ->needs(deck);
   command->callback([options] {
     const Scene scene = read_scene(find_case(options->name));

@@ -58,7 +58,7 @@ Provenance provenance(const Model& model) {
   return attributes;
 }
 
-/// Prints the estimate that is asked for: against the golden's element on the same mesh, or the truth.
+/// Prints the requested error estimate: against the golden's element on the same mesh, or against the truth.
 void print_estimate_of(const std::string& against, const Model& model, const NodalField& u) {
   const double unit = displacement_unit(model.scene(), u);
   const auto print = [&](std::string_view what, double largest, double rms, const std::string& how) {
@@ -95,11 +95,11 @@ Given parse(const RunOptions& options) {
   return given;
 }
 
-/// What the case says of its method, and before it what the options say. What the case says of kappa is about
-/// its own method, not about one that an option names.
+/// The method of the options, completed by the case's [method]. The case's kappa belongs to the case's own
+/// method, and is ignored if an option names another.
 MethodChoice choose_method(const RunOptions& options, const Given& given, const Case& description) {
   MethodChoice choice = method_of(description, options.method);
-  // The mesh is refined for this method; unless told otherwise, it gives the answer too.
+  // The mesh is refined for this method, which also computes the answer by default.
   if (!options.against.empty() && !options.method && !description.method) choice.method = golden_method;
   choice.kappa = given.kappa.value_or(choice.kappa);
   choice.kappa_modulus = given.kappa_modulus.value_or(choice.kappa_modulus);
@@ -116,7 +116,7 @@ MethodChoice choose_method(const RunOptions& options, const Given& given, const 
   return choice;
 }
 
-/// Throws InputError for options that do not go together.
+/// Throws InputError for options that exclude each other.
 void require_sensible(const RunOptions& options) {
   require_threads(options.threads);
   if (!(options.checkpoint_every >= 0.0)) {
@@ -128,7 +128,8 @@ void require_sensible(const RunOptions& options) {
         fmt::format("--checkpoint = '{}' must be another file than --output", options.checkpoint));
   }
   if (!options.against.empty()) {
-    if (!options.accuracy) throw InputError("--against: give the largest error too, such as --accuracy 2%");
+    if (!options.accuracy)
+      throw InputError("--against: needs the largest error allowed, such as --accuracy 2%");
     if (options.sleep)
       throw InputError("--against: a refined mesh is computed as a whole; leave out --sleep");
     if (!options.checkpoint.empty())
@@ -137,11 +138,11 @@ void require_sensible(const RunOptions& options) {
   if (options.ranks->count() > 1 &&
       (options.sleep || !options.against.empty() || options.estimate == "truth")) {
     throw InputError(
-        "--sleep, --against and --estimate truth compute parts and other meshes, which are not divided among "
+        "--sleep, --against and --estimate truth compute parts or other meshes, which are not divided among "
         "ranks; allowed: one rank with more --threads");
   }
   if (options.sleep && !options.checkpoint.empty()) {
-    throw InputError("--sleep: a run of which a part sleeps keeps no checkpoints; leave out --checkpoint");
+    throw InputError("--sleep: such a run keeps no checkpoints; leave out --checkpoint");
   }
 }
 
@@ -150,31 +151,31 @@ void require_quasi_static(const RunOptions& options, const Case& description) {
   if (description.quasi_static) return;
   const auto refuse = [&](const char* option, const char* what) {
     throw InputError(
-        fmt::format("{}: '{}' is in motion; {} quasi-static answers", option, description.name, what));
+        fmt::format("{}: '{}' is a dynamic case; {} quasi-static cases", option, description.name, what));
   };
-  if (!options.estimate.empty()) refuse("--estimate", "the estimate is for");
+  if (!options.estimate.empty()) refuse("--estimate", "errors are estimated for");
   if (!options.against.empty()) refuse("--against", "meshes are refined for");
-  if (options.sleep) refuse("--sleep", "what sleeps is known of");
+  if (options.sleep) refuse("--sleep", "elements sleep in");
 }
 
-/// What a run has found, static or dynamic.
+/// The answer of a run, static or dynamic.
 struct Answer {
   NodalField u;
-  std::string status;          ///< "complete", or why not
-  std::string stability = {};  ///< of a static answer at rest; see stability_text
+  std::string status;          ///< "complete", or the reason why not
+  std::string stability = {};  ///< of a static answer; see stability_text
   double seconds = 0.0;
   double adaption_seconds = 0.0;
-  bool near_enough = true;  ///< to the exact answer, if that is asked for
+  bool near_enough = true;  ///< to the exact answer, if an accuracy was requested
 };
 
-/// A mesh that was refined for an accuracy, and what it is compared on.
+/// A mesh that was refined for an accuracy, and the case's own scene, on which it is compared.
 struct Refined {
   const Scene& own;  ///< of the case
   AccurateMesh mesh;
   double accuracy;
 };
 
-/// The mesh on which the run is computed, if that is to be refined.
+/// The refined mesh of a run with --against truth, else none.
 std::optional<Refined> refine_as_requested(const RunOptions& options, const Given& given,
                                            const Scene& scene) {
   if (options.against.empty()) return std::nullopt;
@@ -196,7 +197,7 @@ bool print_refined(const Refined& refined, const std::string& method, NodalField
   return false;
 }
 
-/// A static answer, of the whole or of what moves.
+/// A static answer of the whole body, or of its awake part.
 Relaxation relax_as_requested(const Model& model, const std::optional<double>& sleep, Observer& observer,
                               const Checkpoint* from, const NodalField* near) {
   if (!sleep) return relax(model, observer, from, near);
@@ -236,7 +237,7 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   const Scene& scene = model.scene();
   const bool quasi_static = scene.description.quasi_static;
   const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
-  if (from != nullptr) fmt::print("goes on from {}\n", options.checkpoint);
+  if (from != nullptr) fmt::print("resumed from {}\n", options.checkpoint);
   RunObserver observer(model, writer, keeper);
   const NodalField* near = refined != nullptr ? &refined->mesh.u : nullptr;
   Answer answer = quasi_static ? static_answer(model, given.sleep, observer, from, near)
@@ -256,15 +257,15 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
   return answer;
 }
 
-/// Throws InputError unless the results may be written where the options say: a case is no place for them.
+/// Throws InputError unless the output files can be written; a run never overwrites its own input.
 void require_places(const RunOptions& options, const Case& description) {
   const auto inputs = files_of(description);
   if (!options.checkpoint.empty()) require_place(options.checkpoint, inputs);
   if (options.output.empty()) return;
   const std::filesystem::path output(options.output);
   if (output.extension() != ".h5") {
-    throw InputError(fmt::format("--output = '{}' must end in .h5; an .xdmf of the same name goes beside it",
-                                 options.output));
+    throw InputError(fmt::format(
+        "--output = '{}' must end in .h5; an .xdmf of the same name is written beside it", options.output));
   }
   require_place(output, inputs);
   require_place(guide_of(output), inputs);
@@ -277,25 +278,25 @@ int run_case(const RunOptions& options) {
   const Scene scene = read_scene(find_case(options.name));
   require_quasi_static(options, scene.description);
   require_places(options, scene.description);
-  if (!options.sleep) {  // which computes a part
+  if (!options.sleep) {  // --sleep computes a part
     require_memory(static_cast<double>(scene.mesh.cells.size()),
                    scene.description.quasi_static ? MeshUse::equilibrium : MeshUse::motion);
   }
   const MethodChoice choice = choose_method(options, given, scene.description);
   const Model own(scene, choice);
   if (!scene.description.quasi_static) require_steps(own);
-  print_problem(scene);  // what is wrong with the input has been said by now
+  print_problem(scene);  // the input has been checked by now
   const auto refined = refine_as_requested(options, given, scene);
   std::optional<Model> on_refined;
   if (refined) on_refined.emplace(refined->mesh.scene, choice);
   const Model& model = on_refined ? *on_refined : own;
-  watch_for_interrupt();  // before files are there that would be left
+  watch_for_interrupt();  // before there are files that could be left behind
   std::optional<CheckpointKeeper> keeper;
   if (!options.checkpoint.empty()) keeper.emplace(model, options.checkpoint, options.checkpoint_every);
   std::optional<ResultWriter> writer;
   if (!options.output.empty()) writer.emplace(model, options.output, provenance(model));
   print_method(model);
-  std::fflush(stdout);  // to be seen while it computes
+  std::fflush(stdout);  // visible while it computes
   Answer answer;
   try {
     answer = compute(options, given, model, refined ? &*refined : nullptr, writer ? &*writer : nullptr,
@@ -303,7 +304,7 @@ int run_case(const RunOptions& options) {
   } catch (const ComputationError& error) {
     if (!writer || writer->frames() < 2) throw;
     writer->commit("failed");
-    throw ComputationError(fmt::format("{}; what was complete is in {}", error.what(), options.output),
+    throw ComputationError(fmt::format("{}; results so far are in {}", error.what(), options.output),
                            error.breakdown());
   }
   if (writer) {
@@ -311,12 +312,11 @@ int run_case(const RunOptions& options) {
     writer->commit(answer.status);
     fmt::print("wrote {}; open {} in ParaView\n", options.output, guide_of(options.output).string());
   } else if (answer.status == "complete") {
-    fmt::print("nothing stored; -o FILE.h5 keeps displacements, stresses, reactions and energies\n");
+    fmt::print("nothing stored; -o FILE.h5 stores displacements, stresses, reactions and energies\n");
   }
   if (answer.status != "complete") {
-    throw ComputationError(fmt::format("{}: {}; what was complete is {}", scene.description.name,
-                                       answer.status,
-                                       writer ? "in " + options.output : "not kept (no --output)"));
+    throw ComputationError(fmt::format("{}: {}; results so far are {}", scene.description.name, answer.status,
+                                       writer ? "in " + options.output : "not stored (no --output)"));
   }
   if (keeper) keeper->finish();
   return answer.near_enough ? 0 : 1;
@@ -331,49 +331,47 @@ void add_run_command(CLI::App& app, int& exit_code, std::shared_ptr<const Ranks>
   command->add_option("CASE", options->name, "name or file of the case");
   command
       ->add_option("-m,--method", options->method,
-                   "method, see `sandglass methods`; without it that of the case's [method], else "
+                   "method, see `sandglass methods`; default: the case's [method], else "
                    "tl-perturbation in double with kappa auto")
       ->type_name("METHOD");
   command->add_option("-k,--kappa", options->kappa, "strength of the hourglass control, a number or 'auto'");
   command->add_option(
       "--kappa-modulus", options->kappa_modulus,
-      "what kappa multiplies: 'p-wave' (lambda + 2 mu, the paper) or 'shear' (mu), whose best "
-      "kappa hardly "
-      "depends on Poisson's ratio; 'auto' gives the same stiffness with both");
+      "the modulus that kappa multiplies: 'p-wave' (lambda + 2 mu, the paper) or 'shear' (mu), for which the "
+      "best kappa hardly depends on Poisson's ratio; 'auto' gives the same stiffness with both");
   command->add_option("-p,--precision", options->precision, "numbers to compute in, 'double' or 'float'");
   command->add_option(
       "--accuracy", options->accuracy,
-      fmt::format("what an adaptive method aims at, as 0.5% or 0.005: displacement error against its highest "
-                  "level over the largest imposed displacement; {:g}% by default",
+      fmt::format("target of an adaptive method, such as 0.5% or 0.005: displacement error against its "
+                  "highest level over the largest imposed displacement; default: {:g}%",
                   100.0 * default_accuracy));
   command
       ->add_option("--against", options->against,
                    "with 'truth', --accuracy is the largest distance from the exact answer, over the largest "
                    "imposed displacement, at any node of the case's mesh: the mesh is refined where the "
-                   "mean-dilatation element errs, until the estimate is within it. Exit code 1 where that "
-                   "element is accurate enough but METHOD is not")
+                   "mean-dilatation element errs, until the estimated error is within this limit. Exit code "
+                   "1 if that element is accurate enough but METHOD is not")
       ->check(CLI::IsMember({"truth"}));
   command->add_option(
       "--sleep", options->sleep,
-      "leave out what would move by less than this share of the largest imposed displacement, as 0.1%: "
-      "elements wake where something moves near them; for quasi-static answers to a local push");
+      "leave out elements that would move by less than this share of the largest imposed displacement, such "
+      "as 0.1%; elements wake when others move near them; for quasi-static cases with a local load");
   command->add_option("-t,--threads", options->threads, "threads; the answer does not depend on their number")
       ->capture_default_str();
   command->add_option("-o,--output", options->output,
-                      "result file (HDF5; an XDMF file for ParaView goes beside it)");
+                      "result file (HDF5; an XDMF file for ParaView is written beside it)");
   command->add_option("--checkpoint", options->checkpoint,
-                      "file that keeps the run: killed at any moment, the same command goes on from it and "
+                      "checkpoint file: if the run is killed, the same command resumes it from there and "
                       "ends with the same bits; removed when the run is complete");
   command
       ->add_option("--checkpoint-every", options->checkpoint_every,
-                   "seconds between checkpoints; 0 means wherever the run can go on from: at the checks of "
-                   "dynamic runs, at the load levels of quasi-static ones")
+                   "seconds between checkpoints; 0: as often as possible, at every check of a dynamic run "
+                   "and every load level of a quasi-static one")
       ->capture_default_str();
   command
       ->add_option("--estimate", options->estimate,
-                   "estimate how far a quasi-static answer is from the 'golden', that of the mean-dilatation "
-                   "element on the same mesh, or from the 'truth', that of ever finer meshes; without a word "
-                   "the golden")
+                   "estimate how far a quasi-static answer is from the 'golden' (the mean-dilatation element "
+                   "on the same mesh), or from the 'truth' (ever finer meshes); golden if no value is given")
       ->expected(0, 1)
       ->default_str("golden")
       ->check(CLI::IsMember({"golden", "truth"}));

@@ -37,7 +37,7 @@ struct ScoreOptions {
   NodeMatching matching;
 };
 
-/// The largest value that a figure may have.
+/// The largest allowed value of a figure.
 struct Limit {
   std::string figure;
   double most;
@@ -60,19 +60,19 @@ Limit parse_limit(const std::string& text) {
   return {figure, parse_share(fmt::format("--limit {}", figure).c_str(), text.substr(end + 1))};
 }
 
-/// The answer of the golden's explicit twin, for cases that have no stored one. Throws ComputationError when
-/// it finds none.
+/// The answer of the mean-dilatation element, for cases without a stored golden. Throws ComputationError if
+/// there is none.
 Displacements twin_of(const Scene& scene) {
   Observer silent;
   Answer answer = compute_answer(scene, {.method = std::string(golden_method)}, silent);
   if (answer.refused || answer.failure) {
-    throw ComputationError(fmt::format("{}: {} finds no answer to compare with: {}", scene.description.name,
+    throw ComputationError(fmt::format("{}: {} found no answer to compare with: {}", scene.description.name,
                                        golden_method, answer.status));
   }
   return std::move(answer.u);
 }
 
-/// What displacements alone show. How much work they took is not known, so locking is never found.
+/// The verdict that displacements alone allow. Energies are unknown, so locking is never found.
 Finding finding_of(const Scene& scene, const References& references, const Displacements& u) {
   const double unit = displacement_unit(scene, *references.golden);
   Symptoms found = symptoms(scene, u, 0.0, *references.golden, unit);
@@ -108,20 +108,20 @@ void print(const Verdict& verdict) {
     if (accuracy) fmt::print("{:<36}{}\n", fmt::format("against the {}", reference), percents(accuracy));
   };
   row("golden", verdict.golden);
-  row("golden's twin (computed)", verdict.twin);
+  row("mean-dilatation element", verdict.twin);
   row("truth", verdict.truth);
   if (verdict.finding) fmt::print("finding: {}\n", name_of(*verdict.finding));
 }
 
-/// Prints whether each limit holds, against the golden or, in a case without one, its twin, or against the
-/// truth; returns whether all do. Throws InputError for a figure that the case has not.
+/// Prints whether each limit holds, against the golden (the mean-dilatation element in a case without one) or
+/// the truth. Returns whether all do. Throws InputError for a figure that the case lacks.
 bool check(const std::vector<Limit>& limits, const Verdict& verdict, const std::string& against) {
   const std::optional<Accuracy>& found = against == "truth" ? verdict.truth
                                          : verdict.golden   ? verdict.golden
                                                             : verdict.twin;
   if (!found) throw InputError(fmt::format("--against truth: {} has no stored truth", verdict.case_name));
   const Accuracy& accuracy = *found;
-  const std::string reference = &found == &verdict.twin ? "golden's twin" : against;
+  const std::string reference = &found == &verdict.twin ? "mean-dilatation element" : against;
   bool all_hold = true;
   for (const auto& [figure, most] : limits) {
     if (figure == "profile" && !accuracy.profile_relative_error) {
@@ -130,7 +130,7 @@ bool check(const std::vector<Limit>& limits, const Verdict& verdict, const std::
     const double error = figure == "max"   ? accuracy.max_relative_error
                          : figure == "rms" ? accuracy.rms_relative_error
                                            : *accuracy.profile_relative_error;
-    const bool holds = error <= most;  // a figure that is no number breaks its limit
+    const bool holds = error <= most;  // a NaN breaks its limit
     fmt::print("limit {}: {} error against the {} is {} %, at most {} % allowed\n", holds ? "kept" : "BROKEN",
                figure, reference, percent(error), percent(most));
     all_hold = all_hold && holds;
@@ -168,32 +168,30 @@ int run(const ScoreOptions& options) {
 void add_score_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ScoreOptions>();
   CLI::App* command =
-      app.add_subcommand("score", "compare displacements computed by any program with the references");
+      app.add_subcommand("score", "compare the displacements of any program with the references");
   command
       ->add_option("FILE", options->file,
-                   "displacements, of Sandglass or of another program; exchange/README.md lists the formats")
+                   "displacements from Sandglass or another program; exchange/README.md lists the formats")
       ->required();
-  command->add_option("--case", options->case_name, "name or file of the case that they answer")
+  command->add_option("--case", options->case_name, "name or file of their case")
       ->type_name("CASE")
       ->required();
-  command->add_option("--name", options->name, "name of the method; by default that of the file");
+  command->add_option("--name", options->name, "name of the method; default: the name of the file");
   command->add_option("--field", options->matching.field, "name of the displacements in the file");
   command
       ->add_option("--tolerance", options->matching.tolerance,
-                   "nodes nearer than this are the same, as a fraction of the diagonal of the mesh")
+                   "nodes closer than this are the same, as a fraction of the diagonal of the mesh")
       ->capture_default_str();
   command->add_option("--json", options->json, "write the figures to this file, as `verify --json` does");
   command
       ->add_option("--limit", options->limits,
-                   "FIGURE=SHARE, such as max=2%: exit code 1 where an error is larger; the figures are max, "
+                   "FIGURE=SHARE, such as max=2%: exit code 1 if an error is larger; the figures are max, "
                    "profile and rms, and --limit may be given for each")
       ->type_name("FIGURE=SHARE")
       ->allow_extra_args(false);
   command
-      ->add_option(
-          "--against", options->against,
-          "what limits hold against: the case's 'golden' or, where it has none, the golden's twin; or "
-          "its 'truth'")
+      ->add_option("--against", options->against,
+                   "reference of the limits: 'golden' (tl-mean-dilatation if the case has none) or 'truth'")
       ->check(CLI::IsMember({"golden", "truth"}))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run(*options); });

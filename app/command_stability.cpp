@@ -33,7 +33,7 @@ struct StabilityOptions {
   bool describe = false;
 };
 
-/// One cell to be computed, unless a file has it.
+/// One cell to compute, unless a file has it.
 struct Task {
   std::size_t map;
   std::string method;
@@ -96,7 +96,7 @@ char letter(const Cell& cell) {
   return 'R';
 }
 
-/// The maps of all methods side by side would be too wide: one below the other, y upwards.
+/// One below the other, as all side by side would be too wide; y points upwards.
 void print_map(const Map& map, const std::vector<Cell>& cells) {
   fmt::print("\n{} over {}: {}\n", map.y == nullptr ? "all" : map.y->name, map.x->name,
              fmt::join(map.xs, " "));
@@ -130,7 +130,7 @@ int map_stability(const StabilityOptions& options) {
   if (!options.json.empty()) require_place(options.json, files_of(description));
   if (!description.quasi_static) {
     throw InputError(
-        fmt::format("{}: is a dynamic case; all maps, dynamic ones too, start from a quasi-static case",
+        fmt::format("{}: is a dynamic case; all maps, even of motion, start from a quasi-static case",
                     description.file.string()));
   }
   const auto maps = make_maps(options, description);
@@ -150,19 +150,17 @@ int map_stability(const StabilityOptions& options) {
     files.write(maps[m], found[n]);
   });
   if (!complete) {
-    throw ComputationError(
-        fmt::format("stability: interrupted; finished cells are in {}, and the same command continues "
-                    "from there",
-                    options.folder));
+    throw ComputationError(fmt::format(
+        "stability: interrupted; finished cells are in {}, and the same command resumes from there",
+        options.folder));
   }
   std::vector<std::vector<Cell>> cells(maps.size());
   for (std::size_t n = 0; n < tasks.size(); ++n) cells[tasks[n].map].push_back(std::move(found[n]));
   fmt::print(
       "{}: . good, up to {:.3g} % from the golden's element on the same mesh; o inaccurate, H hourglassing, "
-      "L "
-      "locking,\nI inverted, U unstable, R not at rest, ? the golden itself fails, ~ it is too far from the "
-      "truth to judge, - the method does not "
-      "take it\n",
+      "L locking,\nI inverted, U unstable, R not at rest (no equilibrium), ? the golden's element fails too, "
+      "~ it is too "
+      "far from the truth to judge, - refused by the method\n",
       description.name, 100.0 * limit);
   for (std::size_t m = 0; m < maps.size(); ++m) print_map(maps[m], cells[m]);
   if (!options.json.empty()) {
@@ -176,17 +174,17 @@ int map_stability(const StabilityOptions& options) {
 void add_stability_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* command =
-      app.add_subcommand("stability", "where each method fails: maps over kappa, load, step, ...");
+      app.add_subcommand("stability", "map where each method fails, over kappa, load, step, ...");
   command->add_option("CASE", options->name, "name or file of a quasi-static case");
   command
       ->add_option("--map", options->maps,
-                   "axes of a map, 'X,Y' or 'X'; more than one may be given; all usual maps when left out")
+                   "axes of a map, 'X,Y' or 'X'; may be repeated; default: all usual maps")
       ->allow_extra_args(false);
-  command->add_option("--values", options->values, "other values of an axis, AXIS=V1,V2,...")
+  command->add_option("--values", options->values, "values of an axis, AXIS=V1,V2,...")
       ->allow_extra_args(false);
-  command->add_option("--methods", options->methods, "only these methods, with spaces between")
+  command->add_option("--methods", options->methods, "only these methods, separated by spaces")
       ->type_name("METHOD");
-  command->add_option("--folder", options->folder, "folder of finished cells, which are not computed again")
+  command->add_option("--folder", options->folder, "folder of finished cells, which are not recomputed")
       ->capture_default_str();
   command->add_option("--json", options->json, "write all maps to this file");
   command->add_option("-j,--threads", options->threads, "runs at the same time; 0 for one per processor")

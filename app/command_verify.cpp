@@ -38,13 +38,13 @@ struct VerifyOptions {
   bool no_costs = false;
 };
 
-/// A scene with the answers it is compared with.
+/// A scene and its references.
 struct Subject {
   Scene scene;
   References references;
 };
 
-/// One run to be made.
+/// One run.
 struct Task {
   const Subject* subject;
   MethodChoice choice;
@@ -62,15 +62,14 @@ std::deque<Subject> read_subjects(const std::vector<std::string>& names) {
   return subjects;
 }
 
-/// Every method of the list on every scene; those with a kappa that matters at `auto` and along the case's
-/// curve.
+/// Every method on every scene, methods with a kappa at `auto` and along the case's kappa curve.
 std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision precision) {
   std::vector<Task> tasks;
   for (const auto& subject : subjects) {
     for (const MethodEntry& method : methods()) {
-      if (method.is_condensed && !subject.scene.description.quasi_static) continue;  // it does not move
+      if (method.is_condensed && !subject.scene.description.quasi_static) continue;  // it has no motion
       tasks.push_back({&subject, {std::string(method.name), {}, precision}});
-      // A condensed method's curve is that of the method it condenses.
+      // A condensed method has the curve of the method that it condenses.
       if (!method.kappa_affects_equilibrium || method.is_condensed) continue;
       for (const double kappa : subject.references.comparison.kappas) {
         tasks.push_back({&subject, {std::string(method.name), kappa, precision}});
@@ -93,14 +92,13 @@ void write_result(const Task& task, const Displacements& u, const std::string& f
   writer.commit("complete");
 }
 
-/// What came of the tasks, in their order.
+/// The results of the tasks, in their order.
 struct Outcome {
   std::vector<Verdict> verdicts;
-  std::vector<Displacements> answers;  // empty where there is none
+  std::vector<Displacements> answers;  // empty if there is none
 };
 
-/// Runs all tasks on a few threads. Every run is by itself and deterministic; only their order in time is
-/// not.
+/// Runs all tasks on a few threads. Runs are independent and deterministic; only their order in time is not.
 Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
   Outcome outcome{std::vector<Verdict>(tasks.size()), std::vector<Displacements>(tasks.size())};
   const bool complete = run_tasks("verify", tasks.size(), options.threads, [&](std::size_t n) {
@@ -111,7 +109,7 @@ Outcome run_all(const std::vector<Task>& tasks, const VerifyOptions& options) {
   return outcome;
 }
 
-/// Measures what steps cost on the cases that are not tables of published values.
+/// Measures the cost of steps, except in the cases with published values.
 void add_step_costs(const std::vector<Task>& tasks, Outcome& outcome, int threads) {
   std::vector<VerifiedRun> runs;
   for (std::size_t n = 0; n < tasks.size(); ++n) {
@@ -122,7 +120,7 @@ void add_step_costs(const std::vector<Task>& tasks, Outcome& outcome, int thread
   add_step_costs(runs, threads);
 }
 
-/// Whether `a` is nearer to its reference than `b`: to the golden where there is one.
+/// Whether `a` is closer to its reference than `b`; the reference is the golden if there is one.
 bool nearer(const Verdict& a, const Verdict& b) {
   const auto error = [](const Verdict& v) {
     const auto& accuracy = v.golden ? v.golden : v.truth;
@@ -131,7 +129,7 @@ bool nearer(const Verdict& a, const Verdict& b) {
   return error(a) < error(b);
 }
 
-/// What is shown of a case: every method as it comes, and below it the best of its kappa curve.
+/// The rows of a case: every method with its defaults, and below it the best of its kappa curve.
 std::vector<const Verdict*> rows_of(const std::vector<Verdict>& verdicts) {
   std::vector<const Verdict*> rows;
   const Verdict* best = nullptr;
@@ -148,7 +146,7 @@ std::vector<const Verdict*> rows_of(const std::vector<Verdict>& verdicts) {
   return rows;
 }
 
-/// Of a step, its mean length, and of a simulated second.
+/// The cost and mean length of a step, and the cost of a simulated second.
 std::string cost_columns(const Verdict& v) {
   const auto text = [](const std::optional<double>& value, double factor) {
     return value ? fmt::format("{:.3g}", factor * *value) : "-";
@@ -181,10 +179,11 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
   if (std::all_of(verdicts.begin(), verdicts.end(), in_tables)) return;
   fmt::print(
       "errors in % of the imposed displacement, in motion the largest over time: max over all nodes, max "
-      "over the profile, rms;\noperations and ns per element and step, by the loop of `bench`; mean step of "
+      "over the profile, rms;\noperations and ns per element and step, measured as in `bench`; mean step of "
       "the case's own motion, and seconds per\nsimulated second with it; evaluations and seconds of the "
-      "search for equilibrium, or steps and seconds of a motion, other\nruns beside; finding: good means at "
-      "most 1 %, or the golden's own distance from the truth, up to 10 %; beyond, up to that\ndistance: not "
+      "static solution, or steps and seconds of a motion, while other\nruns share the machine; finding: good "
+      "means at most 1 %, or the golden's own distance from the truth, up to 10 %; beyond, up to "
+      "that\ndistance: not "
       "judged\n");
   const std::string* case_name = nullptr;
   for (const Verdict* v : rows_of(verdicts)) {
@@ -193,7 +192,7 @@ void print_verdicts(const std::vector<Verdict>& verdicts) {
       case_name = &v->case_name;
       fmt::print("\n{:<24}{:>13} |{:^27}|{:^27}|{:>8}{:>7}{:>8}{:>9}{:>9}{:>8}{:>9}  {}\n", *case_name,
                  "kappa", "against the golden", "against the truth", "hg/int%", "ops", "ns/step", "step ms",
-                 "s/sim. s", v->motion ? "steps" : "evals", "found, s", "finding");
+                 "s/sim. s", v->motion ? "steps" : "evals", "solved, s", "finding");
     }
     print_verdict(*v);
   }
@@ -236,7 +235,7 @@ int verify(const VerifyOptions& options) {
   fmt::print("{}", published_tables(verdicts));
   print_limits(limits);
   if (precision != Precision::double_precision) {
-    fmt::print("\nlimits of the cases are for double: none was checked in {}\n", options.precision);
+    fmt::print("\nthe cases' limits are for double precision; none was checked in {}\n", options.precision);
   }
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), verdicts, limits));
   for (std::size_t n = 0; n < tasks.size() && !options.results.empty(); ++n) {
@@ -249,17 +248,17 @@ int verify(const VerifyOptions& options) {
 
 void add_verify_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command =
-      app.add_subcommand("verify", "all methods against the references; exit code 1 when a limit is broken");
-  command->add_option("CASE", options->names, "names or files of cases; all canonical ones when left out");
+  CLI::App* command = app.add_subcommand(
+      "verify", "compare all methods with the references; exit code 1 if a limit is broken");
+  command->add_option("CASE", options->names, "names or files of cases; default: all canonical ones");
   command->add_option("--json", options->json, "write every figure to this file");
   command->add_option("--results", options->results, "write the final state of every run to this folder");
   command
       ->add_option("-p,--precision", options->precision,
                    "numbers to compute in, 'double' or 'float'; limits are checked in double only")
       ->capture_default_str();
-  command->add_flag("--no-costs", options->no_costs, "do not measure what steps cost");
-  command->add_option("-j,--threads", options->threads, "runs at a time; 0 takes all processors")
+  command->add_flag("--no-costs", options->no_costs, "do not measure the cost of steps");
+  command->add_option("-j,--threads", options->threads, "runs at the same time; 0: one per processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = verify(*options); });

@@ -14,10 +14,10 @@ namespace sandglass {
 
 namespace {
 
-/// Whose stable step decks take.
+/// The method whose stable step is written to decks.
 constexpr std::string_view one_point = "tl-perturbation";
 
-/// Throws InputError for what no deck says.
+/// Throws InputError for anything that no deck can express.
 void require_expressible(const Scene& scene) {
   const Case& description = scene.description;
   const auto refuse = [&](std::string_view what) {

@@ -8,7 +8,7 @@
 
 namespace sandglass {
 
-/// What a deck is written for, with the names of exchange/decks.
+/// The program and element of a deck, with the names of exchange/decks.
 struct DeckOptions {
   std::string program;              ///< "calculix", "niftysim" and so on
   std::string element = {};         ///< the program's name of an element type; empty: its default

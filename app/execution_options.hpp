@@ -20,7 +20,7 @@ inline Precision parse_precision(const std::string& text) {
   throw InputError(fmt::format("--precision = '{}' must be 'double' or 'float'", text));
 }
 
-/// A positive number, and the unit behind it.
+/// A positive number, and the unit after it.
 struct Quantity {
   double value;
   std::string unit;
@@ -33,14 +33,14 @@ inline std::optional<Quantity> parse_quantity(const std::string& text) {
   return Quantity{value, std::string(end, text.data() + text.size())};
 }
 
-/// The value of an option that is a share of something. Throws InputError for anything else.
+/// The value of an option that takes a share. Throws InputError for anything else.
 inline double parse_share(const char* option, const std::string& text) {
   const auto quantity = parse_quantity(text);
   if (quantity && (quantity->unit.empty() || quantity->unit == "%")) {
     const double share = quantity->unit.empty() ? quantity->value : quantity->value / 100.0;
     if (share == 1.0 && quantity->unit.empty()) {
       throw InputError(
-          fmt::format("{} = '{}' would be everything; for one percent write 1%, for all 100%", option, text));
+          fmt::format("{} = '{}' is ambiguous; for one percent write 1%, for everything 100%", option, text));
     }
     if (share <= 1.0) return share;
   }
@@ -55,7 +55,7 @@ inline void require_count(const char* option, int value, int most) {
   throw InputError(fmt::format("{} = {} must be in [1, {}]", option, value, most));
 }
 
-/// More threads than any machine has processors are a slip.
+/// More threads than this are taken for a typing error.
 inline void require_threads(int threads) {
   require_count("--threads", threads, 1024);
 }

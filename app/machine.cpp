@@ -13,7 +13,7 @@ namespace sandglass {
 
 namespace {
 
-/// The processor's name as the system tells it; "unknown" where it does not.
+/// The processor's name according to the system, or "unknown".
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -22,8 +22,8 @@ std::string processor() {
   return "unknown";
 }
 
-/// What the program is compiled with. "-march=native" says another thing on each machine, whose name may be
-/// the same: memory, bits and speed go with the width of packs.
+/// The compiler's flags and the width of packs. "-march=native" alone is ambiguous, as its meaning depends on
+/// the machine; memory, bits and speed depend on the width.
 std::string build_flags() {
   return fmt::format("{}; packs of {} doubles", build_info::flags, native_width<double>);
 }

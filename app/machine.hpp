@@ -5,11 +5,11 @@
 
 namespace sandglass {
 
-/// Where a figure comes from: processor, revision, compiler and flags.
+/// The origin of a figure: processor, revision, compiler and flags.
 Provenance build_provenance();
 
-/// What makes this program give the bits that it gives: revision, compiler, flags, and a hash of the program
-/// itself where the system shows it.
+/// Everything on which the bits of an answer depend: revision, compiler, flags, and a hash of the executable
+/// if the system provides its path.
 Identity program_identity();
 
 }  // namespace sandglass

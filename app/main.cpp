@@ -25,14 +25,14 @@ enum ExitCode { ok = 0, limit_broken = 1, bad_input = 2, computation_failed = 3 
 /// The program. Of several ranks only the first prints.
 int run(int argc, char** argv, const std::shared_ptr<const sandglass::Ranks>& ranks) {
   CLI::App app{
-      "explicit solver for soft solids: hexahedra with hourglass control, measured against a mixed reference",
+      "explicit solver for soft solids: hexahedra with hourglass control, compared with mixed elements",
       "sandglass"};
   app.formatter(sandglass::help_layout());
   app.failure_message(sandglass::usage_error);
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("sandglass {} ({})", sandglass::build_info::version,
                                                 sandglass::build_info::revision));
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its size limit is reported like a full disk
   if (ranks->rank() > 0 && std::freopen("/dev/null", "w", stdout) == nullptr) return computation_failed;
   if (ranks->count() > 1 && (argc < 2 || std::string_view(argv[1]) != "run")) {
     throw sandglass::InputError(

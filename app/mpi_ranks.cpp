@@ -29,7 +29,7 @@ constexpr std::size_t most = std::size_t{1} << 30;
 class MpiRanks final : public Ranks {
  public:
   MpiRanks() {
-    int given = 0;  // only the thread that starts others calls MPI
+    int given = 0;  // only the main thread calls MPI
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &count_);
@@ -135,7 +135,7 @@ std::shared_ptr<const Ranks> join_ranks() {
 #endif
 
 void warn_if_bound(const Ranks& ranks, int threads) {
-  const int processors = omp_get_num_procs();  // that this process may run on
+  const int processors = omp_get_num_procs();  // available to this process
   const bool by_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
   if (!by_mpirun || ranks.rank() > 0 || threads <= processors) return;
   fmt::print(stderr, "warning: the {} threads of a rank share {} processor{}; give mpirun --bind-to none\n",

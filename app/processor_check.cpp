@@ -1,7 +1,6 @@
-/// Refuses to start where the processor lacks the instructions that everything else is compiled with. This
-/// file is compiled for every x86-64 processor and calls no inline function that another file may have
-/// compiled otherwise. It runs before the initialisers of all other files, which may hold such instructions
-/// already.
+/// Ends the program if the processor lacks the instructions that all other files use. This file is compiled
+/// for every x86-64 processor and calls no inline function that another file may have compiled with other
+/// flags. It runs before the initialisers of all other files, which may already use these instructions.
 
 #include <unistd.h>
 

@@ -5,8 +5,8 @@
 
 namespace sandglass {
 
-/// Shows how far long work is: a bar that redraws itself on a terminal, a plain line every few seconds
-/// elsewhere. Everything goes to standard error.
+/// Shows the progress of long work on standard error: a bar on a terminal, elsewhere a plain line every few
+/// seconds.
 class Progress {
  public:
   explicit Progress(std::string title);
@@ -14,7 +14,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  /// `share` of the work done in [0, 1] and a short remark.
+  /// Shows the `share` of the work done, in [0, 1], and a short remark.
   void show(double share, const std::string& remark);
 
  private:
@@ -24,11 +24,11 @@ class Progress {
   std::chrono::steady_clock::time_point last_{};
 };
 
-/// From now on Ctrl-C, and a request to terminate, ask the running computation to end, so that no file is
-/// left half-written; a second one kills the program.
+/// From now on SIGINT (Ctrl-C) and SIGTERM ask the computation to end, so that no file is left half-written;
+/// a second signal kills the program.
 void watch_for_interrupt();
 
-/// Whether the computation was asked to end.
+/// Whether such a signal has arrived.
 bool interrupted();
 
 }  // namespace sandglass

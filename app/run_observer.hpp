@@ -15,10 +15,10 @@
 
 namespace sandglass {
 
-/// Writes frames and history to the result file, keeps the run, shows progress, and ends on Ctrl-C.
+/// Writes frames, history and checkpoints, shows progress, and ends the run on Ctrl-C.
 class RunObserver final : public Observer {
  public:
-  /// `writer` and `keeper` may be null. The result begins with what a resumed run has written already.
+  /// `writer` and `keeper` may be null. The result of a resumed run begins with its earlier part.
   RunObserver(const Model& model, ResultWriter* writer, CheckpointKeeper* keeper)
       : quasi_static_(model.scene().description.quasi_static),
         duration_(model.scene().description.dynamics.duration),
@@ -55,7 +55,7 @@ class RunObserver final : public Observer {
     return !interrupted();
   }
 
-  /// Takes the progress off the screen, for what is printed next.
+  /// Clears the progress line before something else is printed.
   void end() { progress_.reset(); }
 
   const HistoryReport& found() const { return history_; }

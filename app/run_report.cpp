@@ -18,22 +18,21 @@ namespace sandglass {
 
 namespace {
 
-/// Above this share of the strain energy the answer is one of the hourglass control; a rule of thumb of all
-/// who use one-point elements.
+/// Above this share of the strain energy, the hourglass control affects the answer; a common rule of thumb.
 constexpr double much_hourglass = 0.1;
 
 /// Above this multiple of the automatic kappa its control stiffens more than hourglass modes.
 constexpr double much_kappa = 20.0;
 
-/// Extent of a mesh from a file above which it is probably not in m, m.
+/// A mesh from a file that is longer than this (m) is probably not in m.
 constexpr double most_length = 10.0;
 
-/// The unexplained share of the energy from which on a motion is suspect. Free motions gain at most a percent
-/// (energy_test), and the damping is summed from the rows of the history.
+/// The unexplained share of the energy above which a motion is suspect. Free motions gain at most a percent
+/// (energy_test); the damped energy is summed from the rows of the history.
 constexpr double much_unexplained = 0.02, much_unexplained_if_damped = 0.1;
 
-/// The references of a scene; one that belongs to another case is told, not fatal: a case may be edited and
-/// run.
+/// The references of a scene. One that belongs to another version of the case is reported, not fatal, so that
+/// a case can be edited and run.
 References references_to_show(const Scene& scene) {
   try {
     return read_references(scene);
@@ -54,7 +53,7 @@ std::string force_text(const Vector& force) {
                      component(force[2]));
 }
 
-/// The kappa that a model's method takes by itself; none for a method without one.
+/// The automatic kappa of a model's method; none for a method without one.
 std::optional<double> automatic_kappa(const Model& model) {
   const MethodChoice& choice = model.choice();
   const CalledLaw law = elastic_law(kernel_law(model.scene().description.materials.front().law));
@@ -187,10 +186,10 @@ void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elemen
                      : fmt::format(", {:.4g} ns per element and step",
                                    1e9 * of_step / static_cast<double>(elements)));
   if (found.never_adapted) {
-    fmt::print(
-        stderr,
-        "warning: the motion ended before the levels of elements were chosen: all had the lowest; take more "
-        "steps (dynamics.step_fraction), or tl-mean-dilatation\n");
+    fmt::print(stderr,
+               "warning: the motion ended before the levels of elements were chosen, so all had the lowest; "
+               "take more "
+               "steps (dynamics.step_fraction), or tl-mean-dilatation\n");
   }
 }
 
@@ -209,10 +208,10 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
   if (share > 0.0) fmt::print("; hourglass energy {:.3g} % of strain energy", 100.0 * share);
   const HistoryRow& row = history.last();
   fmt::print("\nenergies (J): strain {:.6g}, hourglass {:.6g}", row.strain, row.hourglass);
-  // In a relaxation part of the external work is damped away, so that there its sum tells nothing.
+  // Relaxation damps part of the external work away, so there the balance means nothing.
   if (!quasi_static) {
     fmt::print(", kinetic {:.6g}, external work {:.6g}", row.kinetic, row.external_work);
-    if (row.adaption != 0.0) fmt::print(", brought by changes of levels {:.3g}", row.adaption);
+    if (row.adaption != 0.0) fmt::print(", added by changes of levels {:.3g}", row.adaption);
     const double damping = scene.description.dynamics.damping;
     fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",
                100.0 * history.unexplained_share(damping), damping > 0.0 ? ", after damping" : "");
@@ -228,8 +227,8 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
   if (share > much_hourglass) {
     fmt::print(
         stderr,
-        "warning: hourglass energy is {:.3g} % of strain energy, above {:g} %: the answer is in part that of "
-        "the hourglass control; compare with --method {}, which has no hourglass modes, or refine the mesh\n",
+        "warning: hourglass energy is {:.3g} % of strain energy, above {:g} %: the hourglass control affects "
+        "the answer; compare with --method {}, which has no hourglass modes, or refine the mesh\n",
         100.0 * share, 100.0 * much_hourglass, golden_method);
   }
   if (!method_named(method).controls_hourglass) {
@@ -245,9 +244,9 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
   if (unexplained > much || (unexplained < -much && !dissipates(model))) {
     fmt::print(
         stderr,
-        "warning: energy drifts: {:.2g} % of the largest is {}; take a smaller step (step_fraction) or "
+        "warning: energy drifts: {:.2g} % of the largest was {}; take a smaller step (step_fraction) or "
         "another method\n",
-        100.0 * std::abs(unexplained), unexplained > 0.0 ? "from nowhere" : "lost");
+        100.0 * std::abs(unexplained), unexplained > 0.0 ? "gained" : "lost");
   }
 }
 

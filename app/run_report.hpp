@@ -10,30 +10,30 @@
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 
-/// What `sandglass run` prints: what it has understood, and what it found.
+/// The output of `sandglass run`: its input as understood, and its results.
 namespace sandglass {
 
-/// The size, mass and stiffness of the body, with units, so that a mistake in them is seen.
+/// Prints size, mass and stiffness of the body with units, so that a wrong unit shows.
 void print_problem(const Scene& scene);
 
-/// The method as a run computes it, its kappa beside it, and the stable step of the undeformed body.
+/// Prints the method, its kappa and the stable step of the undeformed body.
 void print_method(const Model& model);
 
-/// The kappa of a run in words, empty if its method takes none.
+/// The kappa of a run as text, empty if its method takes none.
 std::string kappa_text(const Model& model);
 
-/// What the history of a run shows of its soundness.
+/// Figures from the history of a run that show whether it is sound.
 class HistoryReport {
  public:
   void take(const HistoryRow& row);
 
   const HistoryRow& last() const { return last_; }
 
-  /// Hourglass over strain energy: of a quasi-static run at the end, of a motion the largest of both.
+  /// Hourglass over strain energy: at the end of a quasi-static run; in a motion, the largest of each.
   double hourglass_share(bool quasi_static) const;
 
-  /// The energy (J) that nothing accounts for at the end, negative where some is missing, over the largest
-  /// energy or work. `damping` is that of the masses, 1/s.
+  /// The unexplained energy (J) at the end, negative if some is missing, over the largest energy or work.
+  /// `damping` is the mass damping, 1/s.
   double unexplained_share(double damping) const;
 
  private:
@@ -43,29 +43,29 @@ class HistoryReport {
   double kinetic_time_ = 0.0;  // J s, the integral of the kinetic energy
 };
 
-/// How a run ended, and what it found: the largest displacement of u (m), the smallest volume ratio of an
-/// element, the share of the hourglass energy, reactions, separate parts.
+/// Prints the results of a run: the largest displacement of u (m), the smallest volume ratio of an element,
+/// the share of the hourglass energy, reactions, separate parts.
 void print_static_ending(const Relaxation& found, Precision precision, double tolerance, bool went_on);
 void print_dynamic_ending(const Motion& found, int subcycles, std::size_t elements, bool went_on);
 void print_answer(const Scene& scene, const NodalField& u, const std::vector<double>& volume_ratios,
                   const HistoryReport& history);
 
-/// Warnings on standard error of what makes an answer suspect, with a remedy.
+/// Prints warnings about a suspect answer to standard error, each with a remedy.
 void warn_of_suspect(const Model& model, const HistoryReport& history);
 
-/// The distance of an answer u (m), at the nodes of a scene's own mesh, from the stored truth, and of one
-/// that was computed on this mesh also from the stored golden.
+/// Prints the distance of an answer u (m), at the nodes of a scene's own mesh, from the stored truth and, if
+/// it was computed on this mesh, from the stored golden.
 void print_accuracy(const Scene& scene, const NodalField& u, bool on_own_mesh);
 
-/// An estimate (m) in units of `unit` (m), and how it was found.
+/// Prints an estimate (m) in units of `unit` (m), and how it was found.
 void print_estimate(std::string_view against, const Scene& scene, double unit, double largest, double rms,
                     const std::string& how);
 
-/// How many elements of an adaptive method stand at each of its levels, and what share of the time it took to
-/// choose them. Nothing for other methods.
+/// Prints how many elements of an adaptive method have each of its levels, and the share of the time spent on
+/// choosing them. Prints nothing for other methods.
 void print_levels(const std::string& method, const std::vector<double>& levels, double share_of_time);
 
-/// Prints what an exchange takes on the rank that sends most; all ranks call it.
+/// Prints the size of an exchange on the rank that sends most; all ranks call it.
 void print_traffic(const Ranks& ranks);
 
 }  // namespace sandglass

@@ -9,7 +9,7 @@
 
 namespace sandglass {
 
-/// A quantity with the prefix of its unit, as "3 kPa"; zero and what is beyond the prefixes without one.
+/// A quantity with an SI prefix, such as "3 kPa"; none for zero and beyond the largest prefixes.
 inline std::string with_prefix(double value, std::string_view unit) {
   struct Prefix {
     double factor;
@@ -26,7 +26,7 @@ inline std::string with_prefix(double value, std::string_view unit) {
   return fmt::format("{:.3g} {}", value, unit);
 }
 
-/// A length (m) in mm or, from a metre on, in m; below a micrometre in m again.
+/// A length (m) as text, in mm from a micrometre to a metre, else in m.
 inline std::string length_text(double metres) {
   const bool small = std::abs(metres) < 0.9995 && std::abs(metres) >= 1e-6;
   return small ? fmt::format("{:.3g} mm", 1e3 * metres) : fmt::format("{:.3g} m", metres);

@@ -18,7 +18,7 @@ namespace {
   throw ComputationError("verify: interrupted; nothing was written");
 }
 
-/// The motion that a run has followed already.
+/// The motion that a run has already computed.
 OwnMotion motion_of(const VerifiedRun& run) {
   const auto& [seconds, steps] = *run.verdict->motion;
   return {.mean_step = run.scene->description.dynamics.duration / static_cast<double>(steps),
@@ -33,7 +33,7 @@ OwnMotion own_motion_of(const VerifiedRun& run) {
   return run.verdict->motion ? motion_of(run) : OwnMotion{.remark = run.verdict->status};
 }
 
-/// Times the steps of the runs of one scene, which are those from `first` on.
+/// Times the steps of the runs of one scene, which start at `first`.
 void time_steps(const std::vector<VerifiedRun>& runs, const std::vector<OwnMotion>& motions,
                 std::size_t first, std::size_t last) {
   std::vector<CostTask> tasks;
@@ -45,7 +45,7 @@ void time_steps(const std::vector<VerifiedRun>& runs, const std::vector<OwnMotio
   for (std::size_t n = first; n < last; ++n) runs[n].verdict->step_cost = costings[n - first].cost;
 }
 
-/// The cost at another kappa than a method's own.
+/// The cost at a kappa other than the method's own.
 std::optional<StepCost> at_kappa_of(const Verdict& verdict, const Verdict& own) {
   std::optional<StepCost> cost = own.step_cost;
   if (cost && cost->mean_step) *cost->mean_step *= verdict.stable_step / own.stable_step;

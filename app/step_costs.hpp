@@ -6,7 +6,7 @@
 
 namespace sandglass {
 
-/// A run of `verify`, and what came of it.
+/// A run of `verify` and its result.
 struct VerifiedRun {
   const Scene* scene;
   MethodChoice choice;
@@ -14,11 +14,10 @@ struct VerifiedRun {
   Verdict* verdict;
 };
 
-/// Adds to the verdicts what the steps of their methods cost: follows the own motion of each scene and method
-/// on `threads` threads (0: all processors), then, with nothing else running, times the steps of all methods
-/// of a scene in turn. Points of a kappa curve have the time of their method, as kappa does not change the
-/// work, and its mean step times the ratio of the stable steps at rest. Throws ComputationError when
-/// interrupted.
+/// Adds the cost of steps to the verdicts: computes the own motion of each scene and method on `threads`
+/// threads (0: all processors), then, with nothing else running, times the steps of all methods of a scene in
+/// turn. Points of a kappa curve get the time of their method, as kappa does not change the work, and its
+/// mean step times the ratio of the undeformed stable steps. Throws ComputationError if interrupted.
 void add_step_costs(const std::vector<VerifiedRun>& runs, int threads);
 
 }  // namespace sandglass

@@ -6,9 +6,9 @@
 
 namespace sandglass {
 
-/// Calls work(0) to work(n - 1) on this number of threads (0: one for each processor), each once and in that
-/// order of starting, and shows how far it is. Returns false when Ctrl-C ended it before all were called.
-/// Rethrows the first exception of a call; no further calls are made then.
+/// Calls work(0) to work(n - 1) once each, started in this order, on this number of threads (0: one per
+/// processor), and shows the progress. Returns false if Ctrl-C ended it before all were called. After an
+/// exception it makes no further calls and rethrows the first one.
 bool run_tasks(const std::string& title, std::size_t n, int threads,
                const std::function<void(std::size_t)>& work);
 

@@ -13,7 +13,7 @@ namespace sandglass {
 
 namespace {
 
-/// Descriptions broken into lines, and of other commands only what they do.
+/// Breaks descriptions into lines, and shows only the first line of subcommands.
 class HelpLayout final : public CLI::Formatter {
  public:
   std::string make_option_desc(const CLI::Option* option) const override {
@@ -39,7 +39,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// The rule that a word breaks which no command and no option takes.
+/// What is wrong with a word that no command or option accepts.
 std::string unexpected(const CLI::App& command, const std::string& word) {
   if (word.size() > 1 && word.front() == '-') {
     const std::string name = word.substr(0, word.find('='));
@@ -51,8 +51,8 @@ std::string unexpected(const CLI::App& command, const std::string& word) {
   return fmt::format("'{}' is one argument too many", word);
 }
 
-/// The rule that a value of another type breaks, from the parser's message, "Could not convert: --threads =
-/// x"; the whole message if it is another.
+/// What is wrong with a value of the wrong type, from the parser's message "Could not convert: --threads =
+/// x"; any other message is returned unchanged.
 std::string not_converted(const CLI::App& command, const std::string& message) {
   const std::size_t name = message.find(": "), value = message.find(" = ");
   if (name == std::string::npos || value == std::string::npos) return message;
@@ -96,7 +96,7 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error) {
   const auto parsed = app->get_subcommands();
   const CLI::App& command = parsed.empty() ? *app : *parsed.front();
   std::string rule = error.what();
-  // Where something is missing, a misspelt word is why.
+  // If something is missing, a misspelt word may be the reason.
   if (const auto words = command.remaining(); !words.empty()) {
     rule = unexpected(command, words.front());
   } else if (parsed.empty() && error.get_name() == "RequiredError") {

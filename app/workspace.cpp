@@ -34,14 +34,14 @@ std::vector<fs::path> case_files_in(const fs::path& folder) {
   return files;
 }
 
-/// The names of a file's variants, for people.
+/// The names of a file's variants as text.
 std::string listed(const std::vector<Case>& cases) {
   std::string text;
   for (const auto& scene : cases) text += (text.empty() ? "" : ", ") + scene.name;
   return text;
 }
 
-/// The cases of a file, of which also the tables that the library does not read are checked.
+/// The cases of a file; the tables that the library does not read are checked too.
 std::vector<Case> read_checked(const fs::path& path) {
   auto cases = read_cases(path);
   for (const auto& description : cases) read_comparison(description);
@@ -56,7 +56,7 @@ std::vector<fs::path> canonical_files() {
 
 namespace {
 
-/// The nearest of the known cases to a name that is none of them, and of the files beside it.
+/// The known case, or file beside it, whose name is closest to an unknown name.
 std::string nearest_case(const fs::path& path, std::vector<std::string> known) {
   std::error_code ignored;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
@@ -99,7 +99,7 @@ std::vector<Case> find_cases(const std::string& name_or_path) {
 Case find_case(const std::string& name_or_path) {
   auto cases = find_cases(name_or_path);
   if (cases.size() > 1) {
-    throw InputError(fmt::format("case: '{}' has {} variants, and one must be named; known: {}", name_or_path,
+    throw InputError(fmt::format("case: '{}' has {} variants; name one of them: {}", name_or_path,
                                  cases.size(), listed(cases)));
   }
   return std::move(cases.front());

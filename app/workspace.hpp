@@ -10,24 +10,22 @@
 
 namespace sandglass {
 
-/// The folder of the canonical cases: the environment variable SANDGLASS_CASES, else ./cases, else that which
-/// is installed next to the program, else that of the source.
+/// The folder of the canonical cases: the environment variable SANDGLASS_CASES, else ./cases, else the one
+/// installed next to the program, else the one in the source tree.
 std::filesystem::path case_folder();
 
 /// All case files of that folder, in alphabetical order.
 std::vector<std::filesystem::path> canonical_files();
 
-/// The cases that a file stands for, given by path or by name, or the one variant of that name, with or
-/// without a folder before it. Throws InputError that lists the known names.
+/// All cases of a file, given by path or name, or the one variant of that name, with or without a folder.
+/// Throws InputError that lists the known names.
 std::vector<Case> find_cases(const std::string& name_or_path);
 
-/// The same for a name that stands for one case. Throws InputError that lists the variants when it stands for
-/// more.
+/// The single case of that name. Throws InputError that lists the variants if there are several.
 Case find_case(const std::string& name_or_path);
 
-/// The scenes of those cases that `fit`, among the cases named, by path or by name, or all canonical ones
-/// when there are no names. Throws InputError that tells what a dynamic case has not, when one is named that
-/// does not fit.
+/// The scenes of the cases that `fit`, among the cases named by path or name, or all canonical ones if there
+/// are no names. Throws InputError for a named dynamic case that does not fit, with the thing that it lacks.
 std::deque<Scene> read_scenes(const std::vector<std::string>& names,
                               const std::function<bool(const Case&)>& fit, const std::string& has_not);
 

@@ -6,7 +6,7 @@
 
 namespace sandglass {
 
-/// How wide tables and texts for people are at most.
+/// The greatest width of printed tables and texts.
 inline constexpr std::size_t columns_of_text = 100;
 
 /// A text broken between words into lines of at most `width` columns; all but the first are indented.

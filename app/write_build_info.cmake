@@ -1,4 +1,4 @@
-# Fills build_info.cpp.in; the output changes only when its content does, so that nothing is rebuilt for nothing.
+# Fills build_info.cpp.in; the file is rewritten only if its content changes, which avoids needless builds.
 find_package(Git QUIET)
 set(REVISION "unknown")
 if(GIT_FOUND)

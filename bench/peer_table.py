@@ -30,7 +30,7 @@ COLUMNS = (
     ("to truth, %", "truth", percent),
     ("ns", "ns_per_element_step", lambda ns: f"{float(f'{ns:.3g}'):g}"),
     ("step, ms", "time_step", lambda seconds: f"{1e3 * seconds:.3g}"),
-    ("to rest, s", "seconds_to_rest", "{:.3g}".format),
+    ("to equilibrium, s", "seconds_to_rest", "{:.3g}".format),
 )
 
 

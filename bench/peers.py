@@ -141,7 +141,7 @@ def damped_row(bench, program, element, found, more):
     """
     search, key = RestSearch(bench, program, element), (program.deck, element)
     if key not in found:
-        print(f"{program} {element}, quickest way to rest", file=sys.stderr, flush=True)
+        print(f"{program} {element}, quickest way to equilibrium", file=sys.stderr, flush=True)
         try:
             found[key] = search.quickest()
         except ComputationError as error:

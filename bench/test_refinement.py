@@ -34,7 +34,7 @@ def test_an_accuracy_that_cannot_be_reached_ends_the_case(tmp_path, monkeypatch,
     code, document = _measure(tmp_path, "ellipsoid-indentation", "--most", "1")
     assert code == 3
     assert {record["way"] for record in document["records"]} == {"uniform"}
-    assert "no answer was found on the refined mesh of" in capsys.readouterr().err
+    assert "no answer found on the refined mesh of" in capsys.readouterr().err
 
 
 def test_wrong_input_is_told(tmp_path, capsys):

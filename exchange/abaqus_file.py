@@ -18,8 +18,8 @@ BRICK = re.compile(r"C3D8[A-Z]*")
 
 
 def read(path):
-    """The ForeignMesh of an .inp file: sets of nodes and of elements become node sets, those of
-    elements element sets as well.
+    """The ForeignMesh of an .inp file: all sets become node sets, sets of elements also element
+    sets.
 
     As in Abaqus, names of sets are not case-sensitive; the first spelling is kept. Raises
     InputError naming the line.
@@ -171,7 +171,7 @@ class _Reader:
 
 
 def _joined(blocks):
-    """The blocks, with those of the same kind and width joined."""
+    """The blocks; blocks of the same kind and width are joined."""
     alike = {}
     for block in blocks:
         alike.setdefault((block.kind, block.dimension, block.nodes.shape[1]), []).append(block)
@@ -187,7 +187,7 @@ def _joined(blocks):
 
 
 def _keywords(path, text):
-    """(keyword, options, data lines, place) one by one; a data line is (place, fields)."""
+    """Yields (keyword, options, data lines, place); a data line is (place, fields)."""
     current, lines = None, []
     for number, line in enumerate(text.splitlines(), start=1):
         place, line = f"{path}:{number}", line.strip()
@@ -236,7 +236,7 @@ def _real(place, text):
 
 
 def number(value):
-    """A number in at most 20 characters, as more are not read; exact if they suffice."""
+    """A number in at most 20 characters (longer ones are not read), exact if possible."""
     texts = (repr(float(value)), f"{value:.13e}", f"{value:.12e}")
     return next(text for text in texts if len(text) <= 20)
 

@@ -116,7 +116,7 @@ def match_displacement(source, mesh_path, output, tolerance=USUAL_TOLERANCE, fie
         if values is not None and not np.isfinite(values).all():
             row = int(np.flatnonzero(~np.isfinite(values).all(axis=1))[0])
             raise InputError(
-                f"{source}: {name} must be finite; those of node {row} (from 0) are not"
+                f"{source}: {name} must be finite; the values of node {row} (from 0) are not"
             )
     if not len(displacement):
         raise InputError(f"{source}: has no nodes")

@@ -9,8 +9,8 @@ from common.hexahedron import LEXICOGRAPHIC
 from exchange import orientation
 
 HEXAHEDRON = "hexahedron"
-SHOWN = 3  # of what is wrong, in a message
-LARGEST = 20.0  # m; what is larger was perhaps meant in millimetres
+SHOWN = 3  # of faulty items listed in a message
+LARGEST = 20.0  # m; a larger mesh was perhaps meant in millimetres
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class ForeignMesh:
     """Nodes (n,) with points (n, 3), blocks of elements, and node sets: name -> ids of nodes.
 
     hint: how to make and save hexahedra with the program, for messages. element_sets: name -> ids
-    of elements; those of hexahedra count.
+    of elements; only hexahedra count.
     """
 
     node_ids: np.ndarray
@@ -41,7 +41,7 @@ class ForeignMesh:
 
 @dataclass(frozen=True)
 class HexMesh:
-    """points (n, 3) in m, cells (m, 8) in VTK order, sets: name -> sorted nodes; from 0 on.
+    """points (n, 3) in m, cells (m, 8) in VTK order, sets: name -> sorted nodes, from 0.
 
     element_sets: name -> sorted elements.
     """

@@ -1,6 +1,6 @@
 """Reads Gmsh's .msh, versions 2.2 and 4.1, text and binary.
 
-Physical groups become node sets, those of volumes element sets as well.
+Physical groups become node sets, groups of volumes also element sets.
 
 meshio is not used: it loses groups of surfaces that are named with a minus sign, groups of the same
 name and unnamed groups, and takes an unknown node for the last one.
@@ -84,7 +84,7 @@ class _Numbers:
         """The next numbers (count,): of an int, of "size" or of "f8". Raises InputError."""
         kind = self.size if kind == "size" else kind
         if not 0 <= count <= len(self.data):
-            raise InputError(f"{self.where} speaks of {count} numbers, more than it holds")
+            raise InputError(f"{self.where} announces {count} numbers, more than it holds")
         if self.order:
             end = self.position + count * int(kind[1])
             found = self.data[self.position : end]
@@ -104,12 +104,14 @@ class _Numbers:
     def kind(self, number):
         """The entry of KINDS for Gmsh's number. Raises InputError."""
         if number not in KINDS:
-            raise InputError(f"{self.where} has elements of Gmsh's type {number}: unknown here")
+            raise InputError(
+                f"{self.where} has elements of Gmsh's type {number}, which is unknown here"
+            )
         return KINDS[number]
 
 
 def _sections(path, data):
-    """The content of the sections of a file by name. Raises InputError where one has no end."""
+    """The content of the sections of a file by name. Raises InputError if one has no end."""
     sections, position = {}, 0
     while begin := re.compile(rb"^\$(\w+)[ \t]*\r?\n", re.MULTILINE).search(data, position):
         end = data.find(b"$End" + begin[1], begin.end())
@@ -130,7 +132,7 @@ def _byte_order(path, header):
 
 
 def _names(path, section):
-    """(dimension, tag) -> name of the physical groups. Raises InputError where names clash."""
+    """(dimension, tag) -> name of the physical groups. Raises InputError if names clash."""
     names = {}
     for line in section.decode("utf-8", "replace").splitlines()[1:]:
         entry = re.fullmatch(r'\s*([0-3])\s+(-?\d+)\s+"(.+)"\s*', line)
@@ -148,7 +150,7 @@ def _names(path, section):
 
 
 class _Elements:
-    """Collects blocks of elements, and the nodes and volumes of the groups that they belong to."""
+    """Collects blocks of elements, and the nodes and volumes of their groups."""
 
     def __init__(self, names):
         self.names, self.blocks, self.groups = names, [], {name: [] for name in names.values()}
@@ -173,7 +175,7 @@ class _Elements:
 
 
 def _read_2(numbers, names):
-    """Of version 2.2, where an element is said once for each of its groups."""
+    """Blocks of version 2.2, which lists an element once for each of its groups."""
     nodes, elements = numbers("Nodes"), _Elements(names)
     binary = nodes.order is not None
     if binary:
@@ -188,7 +190,7 @@ def _read_2(numbers, names):
         table = nodes.take(4 * count, "f8").reshape(-1, 4)
         ids, points = table[:, 0], table[:, 1:]
         if not (ids == np.round(ids)).all():
-            raise InputError(f"{nodes.where} has a node whose id is no whole number")
+            raise InputError(f"{nodes.where} has a node whose id is not a whole number")
     source = numbers("Elements")
     left = _line(source) if binary else int(source.take(1)[0])
     found = {}  # (kind, tag of the group) -> rows of id and nodes; ids of repetitions are not kept
@@ -226,7 +228,7 @@ def _line(numbers):
 
 
 def _read_4(numbers, names, has_entities):
-    """Of version 4.1, where the entity of an element tells its groups."""
+    """Blocks of version 4.1, in which the entity of an element determines its groups."""
     groups = _groups_of_entities(numbers("Entities")) if has_entities else {}
     source, elements = numbers("Nodes"), _Elements(names)
     ids, points = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
@@ -248,7 +250,7 @@ def _read_4(numbers, names, has_entities):
 
 
 def _groups_of_entities(source):
-    """(dimension, entity) -> tags of its physical groups; negative for those turned round."""
+    """(dimension, entity) -> tags of its physical groups; negative if orientation is reversed."""
     groups = {}
     for dimension, count in enumerate(source.take(4, "size")):
         for _ in range(count):

@@ -1,4 +1,4 @@
-"""Sandglass's own HDF5 files: mesh, displacement, and what a deck needs."""
+"""Sandglass's own HDF5 files: mesh, displacement, and the data of a deck."""
 
 import math
 

@@ -26,13 +26,13 @@ def read_npy(path, spacing):
 
 
 def read_nifti(path, spacing):
-    """The same of a NIfTI image, whose header has the size and the place of its voxels.
+    """The same for a NIfTI image, whose header has the size and position of its voxels.
 
     spacing: must be None.
     """
     if spacing is not None:
         raise InputError(f"{path}: mesh.spacing was given, but the file's header has it")
-    import nibabel  # only where needed, as few install it
+    import nibabel  # imported only if needed, as few install it
 
     try:
         image = nibabel.load(path)

@@ -5,7 +5,7 @@ from scipy.spatial import cKDTree
 
 from common.errors import InputError
 
-WORST = 5  # offenders that are told
+WORST = 5  # offenders listed in a message
 
 
 def by_coordinates(points, found, tolerance, path):
@@ -41,7 +41,7 @@ def by_coordinates(points, found, tolerance, path):
 
 
 def by_ids(ids, n_nodes, path):
-    """Row of each node: (n_nodes,). ids: those of the rows, counted from 0 or from 1, each once.
+    """Row of each node: (n_nodes,). ids: of the rows, counted from 0 or from 1, each once.
 
     Raises InputError.
     """

@@ -14,12 +14,12 @@ DISPLACEMENT = "displacement"
 
 
 def is_animation(path):
-    """Whether a file is named like an animation file, which has no ending."""
+    """Whether a file is named like an animation file, which has no extension."""
     return bool(NAME.fullmatch(path.name))
 
 
 def read_displacement(path):
-    """(points (n, 3), displacement (n, 3)), m, in an order of its own. Raises InputError."""
+    """(points (n, 3), displacement (n, 3)), m, in the program's own order. Raises InputError."""
     try:
         with open(path, "rb") as file:
             return _displacement(path, file)

@@ -1,4 +1,4 @@
-"""Reads the displacements that NiftySim, FEBio and SOFA write as text, after the last step."""
+"""Reads the displacements of the last step that NiftySim, FEBio and SOFA write as text."""
 
 import numpy as np
 

@@ -10,7 +10,7 @@ import numpy as np
 from common.errors import InputError
 from exchange.foreign_mesh import Block, ForeignMesh
 
-# An array with more values holds no labels, but numbers of elements or the like.
+# An array with more values does not hold labels, but perhaps element numbers.
 MOST_LABELS = 1000
 
 DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
@@ -19,9 +19,9 @@ DISPLACEMENTS = ("displacement", "displacements", "u", "disp")
 def read(path):
     """The ForeignMesh of a .vtu file; ids count from 0. Raises InputError.
 
-    Integer point arrays with values 0 and 1 define node sets: 1 marks the nodes of the set. So do
-    integer cell arrays define element sets; one with other values, labels, defines a set NAME-LABEL
-    for each of them.
+    Integer point arrays with values 0 and 1 define node sets: 1 marks the nodes of the set.
+    Likewise, integer cell arrays define element sets; one with other values (labels) defines a set
+    NAME-LABEL for each.
     """
     grid = _read(path)
     ids, first = np.arange(len(grid.points)), 0

@@ -13,17 +13,17 @@ the cheapest method that is accurate enough. Brings the program sandglass, the
 C++ library with its CMake configuration, and the Python module sandglass.
 Needs a processor with AVX2, FMA and BMI2.")
 
-# The libraries that program and module load are looked up in them. The module is for the Python of the system; the files of other
-# programs (exchange/) go through Python as well.
+# The libraries that program and module load are determined from the binaries. The module is for the system's Python, which also
+# converts files of other programs (exchange/).
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, python3-h5py")
-# apt installs these, too, unless told --no-install-recommends: first what find_package(sandglass) needs to link the static library,
-# then what some files of other programs need.
+# apt also installs these, except with --no-install-recommends: first the packages with which find_package(sandglass) links the static
+# library, then packages for some files of other programs.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
   "libfmt-dev, libhdf5-dev, libmuparser-dev, libxxhash-dev, python3-meshio, python3-scipy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, gmsh, paraview, python3-nibabel")
 
-# Licence and changes where Debian wants them, in the package alone.
+# Licence and changes, where Debian expects them, only in the package.
 set(CHANGES ${CMAKE_BINARY_DIR}/changelog)
 string(TIMESTAMP NOW "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(WRITE ${CHANGES}.Debian "sandglass (${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) bookworm; urgency=medium

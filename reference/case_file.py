@@ -13,7 +13,7 @@ from laws import LAWS, VOLUMES, parameters
 from load_curve import CURVE, factor_and_curve
 
 
-# The solver checks the directions of fibres and writes the axes that follow from them.
+# The solver checks the directions of fibres and writes the resulting axes.
 FIBRES = ("fibre_direction", "sheet_direction", "fibres")
 KEYS_OF_ANY_LAW = ("law", "density", "elements", "volumetric", *FIBRES)
 
@@ -46,7 +46,7 @@ class Rotation:
 class Force:
     """A dead load on the faces within a node set: total (3,) in N, moment (3,) in N m.
 
-    curve: in motion a function from time (s) to factor, or None where it follows the load factor.
+    curve: in motion a function from time (s) to factor, or None if it follows the load factor.
     """
 
     set_name: str
@@ -69,7 +69,7 @@ class Pressure:
 
 @dataclass(frozen=True)
 class Support:
-    """Springs on the faces within a node set: stiffness in Pa/m, along the normal alone or not."""
+    """Springs on faces within a node set: stiffness in Pa/m, in all or only normal directions."""
 
     set_name: str
     stiffness: float
@@ -91,9 +91,9 @@ class Material:
 
 @dataclass(frozen=True)
 class InitialVelocity:
-    """A velocity at the start: node set (None: all nodes), value (3,) in m/s, half waves (3,).
+    """An initial velocity: node set (None: all nodes), value (3,) in m/s, half waves (3,).
 
-    With half waves on an axis it is value cos(pi half_waves (x - low) / (high - low)).
+    With half waves along an axis it is value cos(pi half_waves (x - low) / (high - low)).
     """
 
     set_name: str | None
@@ -103,7 +103,7 @@ class InitialVelocity:
 
 @dataclass(frozen=True)
 class Motion:
-    """How a dynamic case moves: duration and ramp time (s), damping (1/s), frames, velocities.
+    """The motion of a dynamic case: duration and ramp time (s), damping (1/s), frames, velocities.
 
     frames: number of equal parts of the duration at whose ends displacements are stored.
     """
@@ -115,7 +115,7 @@ class Motion:
     velocities: tuple = ()
 
     def load_factor(self, time):
-        """The factor of all that has no curve of its own, at a time in s: the paper's eq. 15."""
+        """The factor of all loads without a curve at a time in s: the paper's eq. 15."""
         t = min(max(time / self.ramp_time, 0.0), 1.0)
         return t**3 * (10 - 15 * t + 6 * t**2)
 
@@ -128,7 +128,7 @@ class Motion:
 class Case:
     """A case: name, materials in the order of the file, imposed motions and loads.
 
-    gravity: (3,) m/s^2. motion: a Motion, or None for an answer at rest.
+    gravity: (3,) m/s^2. motion: a Motion, or None for a quasi-static case.
     """
 
     name: str
@@ -205,11 +205,11 @@ def read_case(path, name=None):
 
 
 def _motion(path, tables, velocities):
-    """The Motion of a dynamic case. Raises InputError for what no golden of motion can say yet."""
+    """The Motion of a dynamic case. Raises InputError for features without a golden of motion."""
     for key, names in (("gravity", CURVE), ("support", ("damping",))):
         for where, table in entries(path, tables, key) if key in tables else ():
             if set(names) & set(table):
-                raise InputError(f"{where}: {' and '.join(names)}: not in a golden of motion")
+                raise InputError(f"{where}: {' and '.join(names)}: not supported by goldens of motion")
     table = entry(path, tables, "dynamics", dict)
     keys = {"duration": float, "ramp_time": 0.0, "damping": 0.0, "frames": 20}
     found = _read(f"{path}: dynamics", table, *table, **keys)
@@ -299,7 +299,7 @@ def _force(where, table, moving):
     zero = (0.0, 0.0, 0.0)
     found = _read(where, table, *CURVE, set=str, total=zero, moment=zero, on="faces")
     if found["on"] != "faces":
-        rule = "must be 'faces': the reference knows no other"
+        rule = "must be 'faces': the reference supports no other"
         raise InputError(f"{where}.on = {found['on']!r} {rule}")
     factor, curve = factor_and_curve(where, table, moving)
     loads = (tuple(factor * v for v in found[key]) for key in ("total", "moment"))

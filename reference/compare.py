@@ -20,7 +20,7 @@ from common.files import write_whole
 from reference_file import FOLDER, MOTION, path_of, read_reference, stored, write_reference
 
 
-# Of the distance of a golden from a truth: what the truth's own error should be at most.
+# The largest share of a golden's distance from a truth that the truth's own error should have.
 LARGEST_SHARE = 0.2
 
 
@@ -42,7 +42,7 @@ def golden_error(golden_path, truth_path):
     if points.shape != truth_points.shape or not np.allclose(
         points, truth_points, rtol=0, atol=1e-12 * np.ptp(points)
     ):
-        raise InputError(f"{truth_path}: the nodes are not those of {golden_path}")
+        raise InputError(f"{truth_path}: its nodes differ from those of {golden_path}")
     return relative_errors(displacement, truth_displacement, golden["largest_imposed"])
 
 

@@ -103,7 +103,7 @@ def attributes_of(fields, displacement, unit, reason, assumed_order=ASSUMED_ORDE
 
 
 def splits_of(cells):
-    """How often a golden's mesh with this many cells is split for an estimate."""
+    """The number of times that a golden's mesh with this many cells is split for an estimate."""
     splits = 0
     while splits < MOST_SPLITS and cells * 8 ** (splits + 1) <= MOST_CELLS:
         splits += 1
@@ -111,17 +111,17 @@ def splits_of(cells):
 
 
 def fields_of(name, displacement):
-    """The displacements that the golden's element gives on its mesh split 0, 1, 2, ... times.
+    """The displacements of the golden's element on its mesh split 0, 1, 2, ... times.
 
     displacement: the stored one, on the mesh itself. Returns (list of (n, 3), m; why there are no
     more). Raises InputError or ComputationError.
     """
     case, mesh, _ = case_with_mesh(find_case(CASES, name), name)
     if mesh.ties:
-        return [displacement], "a mesh with nodes that hang is not split further"
+        return [displacement], "a mesh with hanging nodes is not split further"
     cells = len(halve(mesh)[0].cells)
     splits = splits_of(cells)
-    reason = f"a mesh of {cells * 8 ** (splits + 1)} cells was too dear"
+    reason = f"a mesh of {cells * 8 ** (splits + 1)} cells would cost too much"
     fields, _, _ = solve.solve_case(case, mesh, splits, solve.load_steps_of(case))
     return [displacement] + fields[1:], reason
 

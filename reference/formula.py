@@ -1,4 +1,4 @@
-"""Formulas of the time in loading curves: the language of solver/forces/formula.cpp in Python."""
+"""Formulas of time in loading curves: the language of solver/forces/formula.cpp in Python."""
 
 import ast
 import math
@@ -30,7 +30,7 @@ LANGUAGE = (
 def evaluate(text, t):
     """The value of a formula, such as "sin(2*pi*t/0.3)", at a time t in s.
 
-    Raises InputError that names what is wrong and what is allowed; also where it is not finite.
+    Raises InputError, with the mistake and what is allowed, for a bad formula or value.
     """
     if "**" in text:
         raise InputError(f"a power is written ^, not '**'; {LANGUAGE}")
@@ -48,7 +48,7 @@ def evaluate(text, t):
 
 
 def _value(node, variables):
-    """The value of a node of the syntax tree. Raises InputError for what is not allowed."""
+    """The value of a node of the syntax tree. Raises InputError for anything not allowed."""
     match node:
         case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
             return float(number)

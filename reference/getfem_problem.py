@@ -1,8 +1,8 @@
 """Goldens by a second program: GetFEM, with weak forms in its own language.
 
 Elements, quadrature and the symbolic derivatives of the weak form are GetFEM's; its stresses are
-derived by hand, where FEniCSx derives them from the energy. Only Newton's method and the linear
-solver are those of the reference; they decide how fast an answer is found, not which.
+derived by hand, whereas FEniCSx derives them from the energy. Only Newton's method and the linear
+solver are the reference's; they affect the speed, not the answer.
 """
 
 import getfem

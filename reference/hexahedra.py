@@ -74,8 +74,8 @@ class Surface:
     """A pressure that follows the boundary faces within a set of nodes, and springs on them.
 
     nodes: (n,) bool, as of a Traction. pressure: Pa at full load, pushing. stiffness: Pa/m, of
-    springs to the undeformed place; only_normal: along the undeformed normal alone. curve: of the
-    pressure, as of case_file.Force.
+    springs to the undeformed position; only_normal: only along the undeformed normal. curve: of the
+    pressure, as in case_file.Force.
     """
 
     nodes: np.ndarray
@@ -141,7 +141,7 @@ def traction(points, cells, nodes, total, moment):
 
     points: (n, 3) m. cells: (m, 8) VTK. nodes: (n,) bool. total, moment: (3,). Its centre is the
     centroid of the faces. Integrals by 2x2 Gauss points per face, as in solver/mesh/face_load.cpp.
-    Returns None when no boundary face has all its vertices in nodes.
+    Returns None if no boundary face has all its vertices in nodes.
     """
     faces = boundary_faces(cells)
     corners = points[faces[nodes[faces].all(axis=1)]]  # (k, 4, 3)
@@ -176,7 +176,7 @@ def turn_about(points, axis, center, angle):
 def split_nodes(cells, n_nodes):
     """The nodes of split cells: ((m, 27), and for edges, faces and cells the parents (k, 2|4|8)).
 
-    cells: (m, 8), lexicographic. n_nodes: of their mesh; new nodes are numbered from there on.
+    cells: (m, 8), lexicographic. n_nodes: of their mesh; new nodes are numbered from there.
     """
     # Each new node is the mean of the vertices that agree with it in every direction in which it
     # is not half-way.

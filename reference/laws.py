@@ -62,7 +62,7 @@ def guccione(F, *, stiffness, b_fibre, b_transverse, b_shear, bulk_modulus):
 
 
 def holzapfel_ogden(F, *, a, b, a_f, b_f, a_s, b_s, a_fs, b_fs, bulk_modulus):
-    """A matrix, fibres and sheets that resist stretch alone, and their shear, each exponential."""
+    """A matrix, fibres and sheets that resist only stretch, and their shear, each exponential."""
     E = _isochoric_strain(F)
 
     def term(stiffness, exponent, x):
@@ -121,7 +121,7 @@ LAWS = {
 VISCOELASTIC = "viscoelastic-"
 LAWS |= {VISCOELASTIC + name: viscoelastic(law) for name, law in LAWS.items()}
 
-# Volumetric energies over the bulk modulus, functions of J with u'' = 1 at rest.
+# Volumetric energies over the bulk modulus, functions of J with u'' = 1 at J = 1.
 VOLUMES = {
     "quadratic": lambda J: (J - 1) ** 2 / 2,
     "logarithmic": lambda J: ufl.ln(J) ** 2 / 2,

@@ -1,4 +1,4 @@
-"""How a load follows the time: a formula, or points with straight lines between them."""
+"""Curves of loads over time: a formula, or points joined by straight lines."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ CURVE = ("times", "factors", "formula")
 def factor_and_curve(where, table, moving):
     """The constant factor of a load, and in motion its curve, if it has one.
 
-    At rest the factor is that of the end of the curve, where time is 1.
+    In static equilibrium the factor is the curve's at its end, time 1.
     """
     curve = _curve(where, table)
     if curve is None:

@@ -1,4 +1,4 @@
-"""Loads on the mixed problem in FEniCSx: dead tractions, pressures that follow, springs, weight."""
+"""Loads on the mixed problem in FEniCSx: dead tractions, follower pressures, springs, weight."""
 
 import basix
 import dolfinx
@@ -60,7 +60,7 @@ class Loads:
                     fem.Constant(domain, surface.stiffness) * ufl.inner(moved, test) * measure
                 )
         self.symmetric = not any(surface.pressure for surface in mesh.surfaces)
-        # Each with a measure of its own, which one form cannot have.
+        # Each with its own measure, which a common form cannot have.
         trial = ufl.TrialFunction(space)
         self._forms = [
             [
@@ -71,7 +71,7 @@ class Loads:
         ]
 
     def forces(self, factor_of):
-        """Minus the loads (N,) in N in the present configuration.
+        """Minus the loads (N,) in N in the current configuration.
 
         factor_of: function from a load's curve (None: that of the case) to its factor.
         """

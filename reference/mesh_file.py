@@ -18,7 +18,7 @@ from hexahedra import Condition, HexMesh, Surface, traction, turn_about
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, where it came from.
+    """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, origin.
 
     materials: (m,) the number of each element's material; None without several. axes: (m, 3, 3)
     material axes of each element by rows; None without fibres. ties: as of HexMesh.
@@ -119,15 +119,15 @@ def load_case_mesh(case, mesh_path):
     file = read_mesh(mesh_path)
     if file.case != case.name:
         raise InputError(
-            f"{mesh_path}: attribute case = {file.case!r} must be {case.name!r}: the mesh is "
-            f"that of another case (sandglass mesh {case.name} -o FILE)"
+            f"{mesh_path}: attribute case = {file.case!r} must be {case.name!r}: the mesh belongs "
+            f"to another case (sandglass mesh {case.name} -o FILE)"
         )
     if len(case.materials) > 1 and (
         file.materials is None or file.materials.max() >= len(case.materials)
     ):
         raise InputError(
             f"{mesh_path}: /mesh/materials must have a number below {len(case.materials)} for each "
-            "element: the case has so many materials"
+            "element, as the case has this many materials"
         )
     mesh = HexMesh(
         file.points, file.cells, (), materials=file.materials, axes=file.axes, ties=file.ties
@@ -200,13 +200,13 @@ def _loaded(mesh_path, file, table, set_name):
     if not nodes[boundary_faces(file.cells)].all(axis=1).any():
         raise InputError(
             f"{mesh_path}: {table}.set = {set_name!r}: no boundary face has all its vertices in "
-            "this set; one is needed at least"
+            "this set; at least one is needed"
         )
     return nodes
 
 
 def _with_condition(mesh_path, mesh, condition, where):
-    """The HexMesh with one more Condition. Raises InputError where it contradicts the others."""
+    """The HexMesh with one more Condition. Raises InputError if it contradicts the others."""
     for load in (1.0, 0.3):  # paths of rotations may agree at one load and differ at another
         prescribed, values = mesh.imposed(load)
         for axis in condition.components:

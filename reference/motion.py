@@ -1,7 +1,7 @@
 """Goldens of motion: the golden's element, integrated in time by an implicit scheme.
 
 Space is discretised as in the solver, with its lumped masses and its damping, so that
-tl-mean-dilatation and a golden of motion differ by the integration in time alone.
+tl-mean-dilatation and a golden of motion differ only in the integration in time.
 """
 
 import sys
@@ -21,7 +21,7 @@ TOLERANCE = 1e-6
 # Steps of a frame in the first run.
 FIRST_STEPS = 4
 
-# Steps are halved until that changes the extrapolated motion by less than this share of the unit.
+# Steps are halved until this changes the extrapolated motion by less than this share of the unit.
 HALVING_LIMIT = 1e-4
 MOST_HALVINGS = 8
 
@@ -39,7 +39,7 @@ class MovingProblem(MixedProblem):
         self._motion = motion
         self._masses = self.lumped_masses()
         self._v = self.dofs_of(velocity)
-        self._v[self.fixed] = 0.0  # what is imposed has no inertia of its own
+        self._v[self.fixed] = 0.0  # imposed components have no inertia
         self._start = np.zeros_like(self._v)  # displacement at the start of the step
         self._step = np.inf
         self.load = 0.0
@@ -51,7 +51,7 @@ class MovingProblem(MixedProblem):
         return super().values_at(self._motion.load_factor(load))
 
     def factor_of(self, curve):
-        """The factor of a load at the present time."""
+        """The factor of a load at the current time."""
         if curve is None:
             return self._motion.load_factor(self.load)
         return curve(self.load)
@@ -114,7 +114,7 @@ class Golden:
 
 
 def integrate(mesh, materials, motion, velocity, steps):
-    """Displacements (frames, n, 3) in m with so many equal steps in each frame, and an Outcome.
+    """Displacements (frames, n, 3) in m with `steps` equal steps in each frame, and an Outcome.
 
     Arguments as of a MovingProblem. Raises ComputationError.
     """
@@ -132,9 +132,9 @@ def integrate(mesh, materials, motion, velocity, steps):
 
 
 def solve_motion(mesh, materials, motion, velocity):
-    """The Golden of a motion: steps are halved until that changes less than HALVING_LIMIT.
+    """The Golden of a motion: steps are halved until the change is below HALVING_LIMIT.
 
-    The error of the trapezoidal rule has even powers of the step alone, so that two runs give an
+    The error of the trapezoidal rule has only even powers of the step, so two runs give an
     extrapolated motion of fourth order (Richardson). Arguments as of a MovingProblem. Raises
     ComputationError.
     """

@@ -34,7 +34,7 @@ class Outcome:
 
 
 class Unknown:
-    """An array under the name that solve() looks for, for problems of other programs."""
+    """An array under the name that solve() uses, for problems of other programs."""
 
     def __init__(self, size):
         self.x = self
@@ -44,16 +44,16 @@ class Unknown:
 def solve(problem, load_steps, tolerance, guessed=False):
     """Bring a MixedProblem to its prescribed displacement and load, in place.
 
-    problem: MixedProblem at rest or, if guessed, near the answer; if Newton's method fails there,
-    it starts again from rest. load_steps: number of equal load steps from rest; a step that fails
-    is halved. tolerance: the last step ends when a Newton correction is below tolerance times the
+    problem: MixedProblem, undeformed or, if guessed, near the answer; if Newton's method fails
+    there, it starts again undeformed. load_steps: number of equal load steps; a step that fails is
+    halved. tolerance: the last step ends when a Newton correction is below tolerance times the
     largest imposed component or, if none is imposed, the largest component of the displacement.
     Newton's method converges quadratically, so the solution is then exact to round-off. Returns an
     Outcome. Raises ComputationError if halving does not help.
     """
     scale = problem.scale
     state = (problem.displacement.x.array, problem.pressure.x.array)
-    balanced = [np.zeros_like(array) for array in state]  # the last equilibrium: at rest
+    balanced = [np.zeros_like(array) for array in state]  # the last equilibrium: undeformed
     load, steps, iterations = 0.0, 0, 0
     step = 1.0 if guessed else 1 / load_steps
     while load < 1:
@@ -83,7 +83,7 @@ def solve(problem, load_steps, tolerance, guessed=False):
 def equilibrate(problem, load, scale, tolerance):
     """Newton's method at one load, or time: (converged, iterations, residual, correction).
 
-    residual, correction: as of an Outcome. problem: whose displacement and pressure are the guess.
+    residual, correction: as of an Outcome. The displacement and pressure of problem are the guess.
     """
     u = problem.displacement.x.array
     fixed = problem.values_at(load)

@@ -1,7 +1,7 @@
 """The mixed displacement-pressure problem on a mesh of hexahedra, assembled with FEniCSx.
 
-Each element has a pressure of its own, so every Newton step eliminates it exactly on the element
-level (static condensation), which leaves a symmetric system in the displacement alone.
+Each element has its own pressure, so every Newton step eliminates it exactly on the element level
+(static condensation), which leaves a symmetric system in the displacement only.
 """
 
 from functools import partial
@@ -27,11 +27,11 @@ class MixedProblem:
 
     The golden's element: a trilinear displacement and one pressure (Q1-P0), 2 x 2 x 2 Gauss points.
 
-    mesh: HexMesh. materials: list of Material, of which the mesh's elements have the numbers.
+    mesh: HexMesh. materials: list of Material, to which the mesh's material numbers refer.
     Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
     dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
-    (the other dofs), load (the current factor of the loads, 0 to 1),
-    symmetric (whether tangents are).
+    (the other dofs), load (the current factor of the loads, 0 to 1), symmetric (whether tangents
+    are).
     """
 
     def __init__(self, mesh, materials):
@@ -94,7 +94,7 @@ class MixedProblem:
         return values[prescribed]
 
     def factor_of(self, _curve):
-        """The present factor of a load: at rest no load has a curve of its own."""
+        """The current factor of a load: in a quasi-static case no load has its own curve."""
         return self.load
 
     def lumped_masses(self):
@@ -114,7 +114,7 @@ class MixedProblem:
         return 3 * self._vertex_block[:, None] + np.arange(3)
 
     def dofs_of(self, nodal):
-        """Values (n, 3) at the nodes of the HexMesh as those of the displacement dofs (N,)."""
+        """Values (n, 3) at the nodes of the HexMesh as values of the displacement dofs (N,)."""
         dofs = np.zeros((self.displacement.x.array.size // 3, 3))
         dofs[self._vertex_block] = nodal
         return dofs.ravel()

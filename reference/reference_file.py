@@ -12,7 +12,7 @@ from common.files import new_file
 
 FOLDER = Path(__file__).resolve().parent
 KINDS = ("golden", "truth")
-MOTION = "motion"  # the kind of a golden of motion: a folder of its own, as it has many times
+MOTION = "motion"  # the kind of a golden of motion: in its own folder, as it has many times
 
 # Every root attribute of such a file, with its type.
 ATTRIBUTES = {
@@ -43,8 +43,8 @@ ATTRIBUTES = {
     "own_error_note": str,
 }
 
-# What the file of a motion has in addition: the change of the motion when its steps were last
-# halved, over largest_imposed, the largest of all times.
+# Additional attributes of a motion: its change when the steps were last halved, over
+# largest_imposed, the largest of all times.
 MOTION_ATTRIBUTES = {"halving_max": float, "halving_rms": float}
 
 # Values of the own_error attributes in a new file.
@@ -107,7 +107,7 @@ def write_estimate(path, estimate):
 def read_reference(path):
     """Reads a golden or truth: (points (n, 3), displacement (n, 3), m, attributes dict).
 
-    Of a golden of motion displacement is (t, n, 3), and attributes has its times (t,), s, as well.
+    For a golden of motion displacement is (t, n, 3), and attributes also has its times (t,), s.
     Raises InputError if the file is missing, is damaged or lacks an attribute.
     """
     try:

@@ -1,7 +1,7 @@
-"""Goldens by a second program: how far SfePy's and GetFEM's answers are from FEniCSx's.
+"""Goldens by a second program: the distances of SfePy's and GetFEM's answers from FEniCSx's.
 
 Usage: /usr/bin/python3 reference/second_program.py [CASE...]
-Computes the stored goldens once more on the same meshes, from rest, and stores the distances in
+Recomputes the stored goldens on the same meshes, and stores the distances in
 second_program.json and in the table of README.md. Needs the solver's binary, which makes the
 meshes. Exit codes: 0 done, 2 bad usage or input, 3 no equilibrium found or a distance of 1e-9 or
 more.
@@ -32,7 +32,7 @@ PACKAGES = "python3-sfepy and python3-getfem (ci/setup test)"
 
 
 def distance(name, change=None):
-    """How far a second program's answer is from the golden: a record of second_program.json.
+    """The distance of a second program's answer from the golden: a record of second_program.json.
 
     name: of a case with a golden. change: from the Case's
     materials to others, for tests. Raises InputError or ComputationError.
@@ -63,9 +63,9 @@ def distance(name, change=None):
 
 
 def second_problem(mesh, materials):
-    """The problem of a HexMesh by the first of SfePy and GetFEM that can state it.
+    """The problem of a HexMesh in the first of SfePy and GetFEM that supports it.
 
-    materials: list of Material. Raises InputError where neither can.
+    materials: list of Material. Raises InputError if neither does.
     """
     try:
         from getfem_problem import GetfemProblem

@@ -1,7 +1,7 @@
 """The golden's problem by a second program: SfePy's own Total Lagrangian mixed terms on our mesh.
 
-Only Newton's method and the linear solver are those of the golden; they decide how fast an answer
-is found, not which. Pressures have the opposite sign here, which is SfePy's.
+Only Newton's method and the linear solver are the golden's; they affect the speed, not the answer.
+Pressures have SfePy's sign, which is the opposite.
 """
 
 import contextlib
@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse
 
 with contextlib.redirect_stdout(io.StringIO()):
-    # SfePy makes this folder when it is first imported, and fails if another process is quicker.
+    # SfePy creates this folder when first imported, and fails if another process is faster.
     (Path.home() / ".sfepy").mkdir(exist_ok=True)
     import sfepy.discrete as discrete  # first: other orders of import fail
     from sfepy import __version__ as VERSION
@@ -34,9 +34,8 @@ LAWS = ("neo-hookean",)
 class SfepyProblem:
     """Equilibrium of a HexMesh, Q1 displacements and P0 pressures, with the terms of SfePy.
 
-    mesh: HexMesh. materials: list of Material. Raises InputError for what SfePy
-    has no element or term for. It has the functions and attributes of MixedProblem that
-    newton.solve() needs.
+    mesh: HexMesh. materials: list of Material. Raises InputError if SfePy lacks an element or term.
+    It has the functions and attributes of MixedProblem that newton.solve() needs.
     """
 
     program = f"SfePy {VERSION}"
@@ -192,7 +191,7 @@ class SfepyProblem:
         n = len(self.displacement.array)
         try:
             residual = self._evaluator.eval_residual(both)
-        except ValueError:  # an element is inverted, of which SfePy tells on standard error
+        except ValueError:  # an element is inverted, as SfePy reports on standard error
             residual = np.full(len(both), np.nan)
         return residual[:n], residual[n:]
 

@@ -1,4 +1,4 @@
-"""Solve a case with mixed elements (Q1-P0) in FEniCSx: the golden, at rest or of motion.
+"""Solve a case with mixed elements (Q1-P0) in FEniCSx: its golden, quasi-static or of motion.
 
 Usage: /usr/bin/python3 reference/solve.py golden|motion CASE.toml --mesh mesh.h5 -o out.h5
 Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found.
@@ -40,12 +40,12 @@ BOUNDARY_RULE = "trace of Q1: every vertex, edge and face whose vertices are all
 def solve_case(case, mesh, refinements, load_steps, make=MixedProblem):
     """Solve a case on its mesh and on that mesh split once, twice, ... `refinements` times.
 
-    case: Case. mesh: HexMesh. load_steps: from rest, on the first mesh. make: from HexMesh and
-    materials to a problem for newton.solve().
-    Returns (list of displacements (n, 3) in m at the nodes of the mesh, one per mesh; Outcome on
-    the last mesh; axes of the mirror planes used, as text). Raises ComputationError.
+    case: Case. mesh: HexMesh. load_steps: on the first mesh. make: from HexMesh and materials to a
+    problem for newton.solve(). Returns (list of displacements (n, 3) in m at the nodes of the mesh,
+    one per mesh; Outcome on the last mesh; axes of the mirror planes used, as text). Raises
+    ComputationError.
     """
-    # The golden is the oracle for all else: on its own mesh it takes no short cut.
+    # The golden is the oracle for everything else: on its own mesh it takes no short cut.
     part, halves = halve(mesh) if refinements else (mesh, [])
     n_nodes = len(part.points)
     displacements, coarse = [], None
@@ -81,8 +81,8 @@ def run(options):
     mesh, file = load_case_mesh(case, options.mesh)
     if mesh.ties and (kind != "golden" or refinements):
         raise InputError(
-            f"{options.case}: a refined mesh has a golden at rest only: motion and meshes that are "
-            "split further have no ties here"
+            f"{options.case}: a refined mesh has only a quasi-static golden: motion and "
+            "meshes that are split further have no ties here"
         )
     logging.disable(logging.INFO)  # FFCx reports every compiler call otherwise
     if case.motion:
@@ -142,9 +142,9 @@ def discretisation_error(displacements, unit):
 main = command_line(
     run,
     __doc__,
-    option("kind", choices=KINDS, help="golden: at rest; motion: of a dynamic case"),
+    option("kind", choices=KINDS, help="golden: of a quasi-static case; motion: of a dynamic case"),
     option("case", metavar="CASE.toml", help="the case file"),
-    option("--variant", metavar="NAME", help="case of the file, where it has variants"),
+    option("--variant", metavar="NAME", help="case of the file, if it has variants"),
     option("--mesh", required=True, help="file made by `sandglass mesh CASE -o FILE`"),
     option("-o", "--output", type=writable, required=True, help="HDF5 file to write"),
     option(

@@ -30,7 +30,7 @@ class Half:
     mirrored: np.ndarray
 
     def expand(self, displacement):
-        """Displacement (n, 3) on the whole mesh from that of the half."""
+        """Displacement (n, 3) on the whole mesh from the displacement on the half."""
         whole = displacement[self.source]
         whole[self.mirrored, self.axis] *= -1
         return whole
@@ -83,7 +83,7 @@ def _half(mesh, axis):
     if not all(_has_mirror(t, mesh, axis, side, image) for t in mesh.tractions):
         return None
     if mesh.surfaces or any(mesh.gravity) or mesh.axes is not None:
-        return None  # what these ask of a mirror plane is not looked at
+        return None  # their conditions on a mirror plane are not implemented
     if mesh.materials is not None and not _same_materials(mesh, image):
         return None
     kept = np.flatnonzero(side >= 0)

@@ -20,7 +20,7 @@ DEGREE = 4
 
 
 class TaylorHoodProblem:
-    """Equilibrium on quadratic tetrahedra: what newton.solve() needs.
+    """Equilibrium on quadratic tetrahedra, as newton.solve() needs it.
 
     mesh: HexMesh of tetrahedra.cut(). materials: list of Material. A continuous pressure cannot be
     eliminated element by element: unknowns are displacements and pressures together, the latter
@@ -42,7 +42,7 @@ class TaylorHoodProblem:
         block = self.function.function_space.dofmap.list.array.reshape(-1, 10)
         self._block = np.empty(len(mesh.points), dtype=np.int64)
         self._block[self._cells] = block
-        # Where two materials meet the pressure jumps: each has a pressure of its own there.
+        # The pressure jumps between two materials: each has its own pressure there.
         of_cell = np.zeros(len(self._cells), dtype=np.int64)
         if mesh.materials is not None:
             of_cell[:] = mesh.materials[np.asarray(domain.topology.original_cell_index)]
@@ -76,7 +76,7 @@ class TaylorHoodProblem:
         return self.displacement.array[: self._n].reshape(-1, 3)[self._block]
 
     def size(self):
-        """Elements and unknowns in words."""
+        """Numbers of elements and unknowns as text."""
         return f"{len(self.mesh.cells)} tetrahedra, {self.displacement.array.size} unknowns"
 
     def nodal_forces(self):
@@ -86,7 +86,7 @@ class TaylorHoodProblem:
     def start_from(self, coarse, share=None):
         """Interpolate displacement and pressure from a TaylorHoodProblem on another mesh.
 
-        share: how much of them counts at the nodes (n,), beside what there was; all, if None.
+        share: their weight at the nodes (n,), the rest being the previous values; None: 1.
         """
         mesh, other = self.mesh, coarse.mesh
         cell, places = locate(mesh.points, other.points, other.cells)
@@ -128,7 +128,7 @@ class TaylorHoodProblem:
         self._p.x.array[:] = self._stiffness * (self._of_cells @ self.displacement.array[self._n :])
 
     def _pressure_at(self, places):
-        """Pressures in Pa at places: node + nodes * material."""
+        """Pressures in Pa at `places`: node + nodes * material."""
         return (
             self._stiffness
             * self.displacement.array[self._n + np.searchsorted(self._place, places)]

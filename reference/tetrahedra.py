@@ -1,10 +1,10 @@
-"""Cuts a mesh of trilinear hexahedra, with nodes that hang, into quadratic tetrahedra. Only numpy.
+"""Cuts a mesh of trilinear hexahedra, with hanging nodes, into quadratic tetrahedra. Only numpy.
 
 Faces agree between neighbours: one without hanging nodes is cut along the diagonal through its
 lowest-numbered vertex; one with nodes on its edges is a fan around its centre; one whose other side
-is split is cut part by part. A hexahedron with nothing that hangs is six tetrahedra with a common
-vertex, any other a fan around its centre. The ten nodes of a tetrahedron lie where the trilinear
-map of its hexahedron has them. On a face of a hexahedron, and on every plane through three of its
+is split is cut part by part. A hexahedron without hanging nodes becomes six tetrahedra with a
+common vertex, any other a fan around its centre. The ten nodes of a tetrahedron are placed by the
+trilinear map of its hexahedron. On a face of a hexahedron, and on every plane through three of its
 vertices in a box, that is the same surface: a bilinear map is quadratic along straight lines.
 """
 
@@ -34,7 +34,7 @@ def shapes(places):
 
 
 def cut(mesh):
-    """The tetrahedra of a HexMesh with or without hanging nodes (its ties are not looked at).
+    """The tetrahedra of a HexMesh with or without hanging nodes (its ties are ignored).
 
     Returns a HexMesh whose cells (k, 10) are quadratic tetrahedra. The nodes of the hexahedra come
     first; a new one is in a set when all vertices of the smallest edge, face or cell of a
@@ -89,10 +89,10 @@ def cut(mesh):
 
 
 def _slots(mesh):
-    """Nodes (m, 27) at the lattice of every hexahedron, -1 where there is none, and their number.
+    """Nodes (m, 27) at the lattice of every hexahedron, -1 if there is none, and their number.
 
-    Those of the mesh, then one for each face with nodes on its edges alone, then one for each
-    hexahedron with a node that hangs.
+    First the mesh's nodes, then one for each face with nodes only on its edges, then one for each
+    hexahedron with a hanging node.
     """
     corners = mesh.points[mesh.cells]
     found = cKDTree(mesh.points)
@@ -171,7 +171,7 @@ def _tetrahedra(slots):
     corners = np.concatenate([apex[cell][:, None], triangle], axis=1)
     sides = LATTICE[corners[:, 1:]] - LATTICE[corners[:, :1]]
     volume = np.linalg.det(sides.astype(float))
-    kept = np.abs(volume) > 0.1  # triangles of a face that holds the apex are flat with it
+    kept = np.abs(volume) > 0.1  # triangles of a face that contains the apex are coplanar with it
     corners[volume < 0] = corners[volume < 0][:, [0, 2, 1, 3]]
     order = np.argsort(cell[kept], kind="stable")
     return cell[kept][order], corners[kept][order]

@@ -1,4 +1,4 @@
-"""Problems on meshes with nodes that hang: tied nodes follow others."""
+"""Problems on meshes with hanging nodes: tied nodes follow others."""
 
 import numpy as np
 import scipy.sparse
@@ -7,10 +7,10 @@ from newton import Unknown
 
 
 class TiedProblem:
-    """A problem whose tied nodes follow others: what newton.solve() needs, in the free dofs.
+    """A problem whose tied nodes follow others, as newton.solve() needs it, in the free dofs.
 
-    problem: MixedProblem, or one of another program, on a HexMesh with ties, of which it knows
-    nothing. With u = T q, residuals are T^T r and tangents T^T K T; q is zero at tied dofs.
+    problem: MixedProblem, or another program's, on a HexMesh with ties, which it ignores. With u =
+    T q, residuals are T^T r and tangents T^T K T; q is zero at tied dofs.
     """
 
     def __init__(self, problem, ties):

@@ -1,4 +1,4 @@
-"""Truths: Taylor-Hood tetrahedra on meshes graded towards the edges of what is held and driven.
+"""Truths: Taylor-Hood tetrahedra on meshes graded towards the edges of held and driven sets.
 
 Usage: /usr/bin/python3 reference/truth.py CASE... [-o FILE] [--keep FOLDER]
 Solves a case on meshes that become finer at those edges, and stores the finest answer with the
@@ -43,15 +43,15 @@ ASSUMED_ORDER = 1.0  # of two meshes: that of the singular edges
 
 @dataclass(frozen=True)
 class Grading:
-    """The meshes of a truth: how often elements are split on each of them.
+    """The meshes of a truth: how often their elements are split.
 
-    edges: node set -> how often those at its edge are, a number for each mesh. layers: of elements
-    there. whole: how often all elements are, on every mesh. parts: element set -> how often its
-    elements are, a number for each mesh. steps: load steps from rest. inside: the mesh, counted
-    from 0, that is solved with a finer inside as well, None if that costs too much; its edges
-    must be split more often than the rest. starts: mesh -> those whose answers it starts from,
-    if not the one before. sequences: the meshes that show how fast the answer converges, all in one
-    sequence if empty; what is left at the end of each is added up.
+    edges: node set -> number of splits at its edge on each mesh. layers: of elements there. whole:
+    number of splits of all elements, on every mesh. parts: element set -> how often its elements
+    are, a number for each mesh. steps: load steps from rest. inside: the mesh, counted from 0, that
+    is solved with a finer inside as well, None if that costs too much; its edges must be split more
+    often than the rest. starts: mesh -> those whose answers it starts from, if not the one before.
+    sequences: the meshes that show how fast the answer converges, all in one sequence if empty;
+    what is left at the end of each is added up.
     """
 
     edges: dict
@@ -74,7 +74,7 @@ class Grading:
         return text
 
     def with_finer_inside(self):
-        """The Grading with all elements split once more but the smallest, those at the edges."""
+        """The Grading with all elements split once more, except the smallest ones at the edges."""
         return dataclasses.replace(self, whole=self.whole + 1, layers=2 * self.layers)
 
     def levels(self):
@@ -124,9 +124,9 @@ def solve_levels(name, grading, mesh, keep=None):
     """Displacements (n, 3) in m of a case on each level, at the nodes of its own HexMesh.
 
     Each mesh starts from the answer on the one before, or on those that `starts` names, or, if that
-    leads nowhere, from rest. keep: as of an Answer.
-    Returns (list of them; (n, 3), m, by how much a finer inside changes one, None if not measured;
-    what the last mesh took: dict of attributes). Raises ComputationError.
+    fails, undeformed. keep: as of an Answer. Returns (list of them; (n, 3), m, by how much a finer
+    inside changes one, None if not measured; what the last mesh took: dict of attributes). Raises
+    ComputationError.
     """
     answers, fields, inside = [], [], None
     for level in range(grading.levels()):
@@ -145,12 +145,11 @@ def solve_levels(name, grading, mesh, keep=None):
 
 
 class Answer:
-    """The answer on a mesh of a Grading, started from Answers on others or from rest.
+    """The answer on a mesh of a Grading, started from Answers on others or undeformed.
 
-    starts: list of Answers, at most two. keep: a folder where answers are stored, to be taken up by
-    a run that follows one that was stopped.
-    Attributes: problem; field (n, 3), m, at the nodes of the mesh with those that hang; facts
-    (attributes of the file); seconds. Raises ComputationError.
+    starts: list of Answers, at most two. keep: a folder where answers are stored, from which an
+    interrupted run can be resumed. Attributes: problem; field (n, 3), m, at the nodes of the mesh
+    with those that hang; facts (attributes of the file); seconds. Raises ComputationError.
     """
 
     def __init__(self, name, grading, level, starts, keep=None):
@@ -190,8 +189,8 @@ class Answer:
         return newton.solve(self.problem, steps, NEWTON_TOLERANCE, guessed=bool(starts))
 
     def _share(self, one, other):
-        """How much of one of two Answers to take at the problem's nodes (n,): all where its mesh is
-        finer than the other's, nothing where that is."""
+        """The weight of one of two Answers at the problem's nodes (n,): 1 where its mesh is finer
+        than the other's, 0 where it is coarser."""
         points = [answer.problem.mesh.points for answer in (one, other)]
         size = np.ptp(points[0])
         gaps = []
@@ -203,12 +202,12 @@ class Answer:
 
 
 def _digest(mesh):
-    """A name for a mesh: that of a stored answer on it."""
+    """The name of a stored answer on a mesh."""
     return hashlib.sha256(mesh.points.tobytes() + mesh.cells.tobytes()).hexdigest()[:16]
 
 
 def report(what, answer, before, after, unit):
-    """A line on what a mesh took and changed. unit: m, or 0 for the largest displacement."""
+    """A line on cost and change of a mesh. unit: m, or 0 for the largest displacement."""
     text = f"{what}: {answer.problem.size()}, {answer.seconds:.0f} s"
     if before is not None:
         unit = unit or np.linalg.norm(after, axis=1).max()
@@ -221,9 +220,9 @@ def error_bar(sequences, inside, unit):
     """The attributes that state how far a truth is from the exact answer.
 
     sequences: lists of fields (n, 3), m, coarse to fine. inside: as solve_levels() has it. unit: m,
-    for relative errors. What is left at the end of each sequence, by Richardson's extrapolation,
-    and the error of the inside are added, maxima and root mean squares: a finer inside changes the
-    answer by 3/4 of that error if it makes it a quarter.
+    for relative errors. The remaining errors of the sequences, by Richardson's extrapolation, and
+    the error of the inside are added, maxima and root mean squares: a finer inside changes the
+    answer by 3/4 of that error if it reduces it to a quarter.
     """
     few = "there are only two meshes"
     bars = [attributes_of(fields, fields[-1], unit, few, ASSUMED_ORDER) for fields in sequences]
@@ -257,7 +256,7 @@ def make_truth(name, output, keep=None):
     sequences = [[fields[level] for level in order] for order in orders]
     displacement = fields[-1].copy()
     prescribed, values = mesh.imposed()
-    displacement[prescribed] = values[prescribed]  # the same but for rounding
+    displacement[prescribed] = values[prescribed]  # the same except for rounding
     unit = mesh.largest_imposed() or np.linalg.norm(displacement, axis=1).max()
     most, rms = relative_errors(fields[-2], displacement, unit)
     attributes = {
@@ -297,7 +296,7 @@ main = command_line(
     __doc__,
     option("cases", nargs="*", metavar="CASE", help="default: all in GRADINGS"),
     option("-o", "--output", metavar="FILE", help="HDF5 file to write (default: the stored truth)"),
-    option("--keep", metavar="FOLDER", help="where answers on each mesh are kept and looked for"),
+    option("--keep", metavar="FOLDER", help="where answers on each mesh are stored and searched"),
 )
 
 

@@ -1,5 +1,5 @@
-# What `cmake --install` puts where, and how other projects find it: find_package(sandglass), installed or in the build folder. The
-# component `runtime` is what a wheel has beside its module (setup.py).
+# The files of `cmake --install`, and the package that other projects find by find_package(sandglass), installed or in the build folder.
+# The component `runtime` has the files of a wheel beside its module (setup.py).
 include(CMakePackageConfigHelpers)
 
 install(TARGETS sandglass_library EXPORT sandglassTargets ARCHIVE DESTINATION lib LIBRARY DESTINATION lib)

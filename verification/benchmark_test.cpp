@@ -295,7 +295,7 @@ TEST(Rest, seconds_are_in_order_and_a_failure_is_a_status) {
   EXPECT_LT(record.times->to_0_1_percent, record.times->to_rest);
   scene.description.relaxation.max_steps = 5;
   const RestRecord failed = time_to_rest(scene, {"tl-perturbation", {}}, [](double) { return true; });
-  EXPECT_EQ(failed.status.rfind("failed: not at rest after ", 0), 0U) << failed.status;
+  EXPECT_EQ(failed.status.rfind("failed: no equilibrium after ", 0), 0U) << failed.status;
   EXPECT_FALSE(failed.times);
   EXPECT_THROW(time_to_rest(scene, {"tl-perturbation", {}}, [](double) { return false; }), ComputationError);
 }

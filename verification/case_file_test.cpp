@@ -376,9 +376,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"unknown_answer",
                 with("\"quasi-static\"", "\"static\""),
                 {"case.answer = 'static'", "quasi-static, dynamic"}},
-        BadCase{
-            "both_limits", with("below = 0.01", "below = 0.01\nabove = 0.5"), {"below", "one of the two"}},
-        BadCase{"no_limit", with("below = 0.01\n", ""), {"below", "one of the two"}},
+        BadCase{"both_limits", with("below = 0.01", "below = 0.01\nabove = 0.5"), {"below", "but not both"}},
+        BadCase{"no_limit", with("below = 0.01\n", ""), {"below", "but not both"}},
         BadCase{"empty_set",
                 with("top = { z = [3.0, 3.0] }", "top = { z = [4.0, 5.0] }"),
                 {"sets.top selects no node"}},

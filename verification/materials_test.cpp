@@ -302,7 +302,7 @@ TEST(Materials, wrong_input_is_refused) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
   expect(said("elements = \"foot\"", "elements = \"food\""), "did you mean 'foot'?");
-  expect(said("elements = \"foot\"", ""), "leave out their elements 2 times");
+  expect(said("elements = \"foot\"", ""), "lack `elements` 2 times");
   expect(said("law = \"yeoh\"", "elements = \"foot\"\nlaw = \"yeoh\""),
          "element 0 is in 'foot' and in 'foot'");
   expect(said("law = \"yeoh\"", "elements = \"head\"\nlaw = \"yeoh\""), "'head' is not an element set");

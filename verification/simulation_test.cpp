@@ -439,7 +439,7 @@ TEST(Simulation, refuses_meshes_that_are_none) {
   refused(
       "node 0 is at nan", [](auto& mesh) { mesh.points[0][0] = std::nan(""); }, text);
   const auto same = [](auto&) {};
-  refused("mesh must not be here", same, text + "[mesh]\ngenerator = \"box\"\n");
+  refused("mesh is not allowed here", same, text + "[mesh]\ngenerator = \"box\"\n");
   refused("case text:", same, text + "[meterial]\n");
   refused("is not TOML", same, "[case");
 }

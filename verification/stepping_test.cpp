@@ -158,7 +158,7 @@ TYPED_TEST(StepperTest, single_precision_ends_where_its_rounding_begins) {
   MethodChoice choice = this->method();
   const Relaxation fine = relax(Model(scene, choice), silent);
   EXPECT_TRUE(in_equilibrium(fine));
-  EXPECT_EQ(outcome(fine, choice.precision), "at rest");
+  EXPECT_EQ(outcome(fine, choice.precision), "static equilibrium");
   choice.precision = Precision::single_precision;
   const Relaxation coarse = relax(Model(scene, choice), silent);
   EXPECT_TRUE(coarse.stagnated);
@@ -179,16 +179,16 @@ TYPED_TEST(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
   EXPECT_TRUE(answer.stagnated);
   EXPECT_FALSE(answer.converged);
   EXPECT_FALSE(in_equilibrium(answer));
-  EXPECT_TRUE(contains(outcome(answer, choice.precision), "not at rest"));
+  EXPECT_TRUE(contains(outcome(answer, choice.precision), "no equilibrium"));
 }
 
 TEST(Outcome, says_that_elements_are_inverted) {
   Relaxation answer;
   answer.steps = 7;
-  EXPECT_EQ(outcome(answer, Precision::double_precision), "not at rest after 7 evaluations");
+  EXPECT_EQ(outcome(answer, Precision::double_precision), "no equilibrium after 7 evaluations");
   answer.inverted = true;
   EXPECT_EQ(outcome(answer, Precision::double_precision),
-            "not at rest after 7 evaluations, and elements are inverted");
+            "no equilibrium after 7 evaluations, and elements are inverted");
 }
 
 /// The residual must fall below the tolerance; to reach it is not enough. With the residual of an answer for

@@ -225,7 +225,7 @@ def test_rest_that_is_not_reached_ends_with_3(block):
     json_file = block.parent / "rest.json"
     choice = "--methods tl-full --precision double --json".split()
     outcome = sandglass("bench", "--rest", block, *choice, json_file, code=3)
-    assert "failed: not at rest after" in outcome.stdout
-    assert "1 of 1 did not come to rest" in outcome.stderr
+    assert "failed: no equilibrium after" in outcome.stdout
+    assert "1 of 1 found no static equilibrium" in outcome.stderr
     (record,) = json.loads(json_file.read_text())["records"]
     assert record["seconds_to_rest"] is None and record["status"].startswith("failed: ")

@@ -206,7 +206,7 @@ def test_an_interrupted_run_goes_on(block):
         _, errors = process.communicate(timeout=60)
     assert process.returncode == 3 and b"interrupted" in errors
     outcome = sandglass(*call[1:], code=0)
-    assert f"goes on from {file}" in outcome.stdout
+    assert f"resumed from {file}" in outcome.stdout
     assert (folder / "a.h5").read_bytes() == (folder / "whole.h5").read_bytes()
     assert not file.exists()
 
@@ -221,6 +221,6 @@ def test_a_full_disk_costs_a_warning_and_no_run(block):
 
     call = ["run", block, "--checkpoint", file, "--checkpoint-every", "0"]
     outcome = sandglass(*call, preexec_fn=no_room, code=0)
-    assert f"warning: no checkpoint now, the run goes on: {file}: " in outcome.stderr
+    assert f"warning: checkpoint not written, the run continues: {file}: " in outcome.stderr
     assert "File too large" in outcome.stderr
     assert [entry.name for entry in block.parent.iterdir()] == ["block.toml"]

@@ -134,7 +134,7 @@ def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
     outcome, document = choose(case, "--tolerance", "0.001%", "--against", "truth", "-o", chosen)
     assert outcome.returncode == 1, outcome.stderr
     assert not chosen.exists() and document["chosen"] is None
-    assert "nothing suffices" in outcome.stdout and "was not written" in outcome.stdout
+    assert "no method suffices" in outcome.stdout and "was not written" in outcome.stdout
     words = " ".join(document["remarks"])
     assert "nothing can be shown" in words and "no method can be nearer" in words
     assert "the nearest" in words

@@ -229,9 +229,9 @@ def test_inversion_ends_with_3_and_keeps_the_way_there(block):
 def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
     block.write_text(BLOCK + "[relaxation]\nmax_steps = 5\n")
     result = block.parent / "result.h5"
-    sandglass("run", block, "-o", result, code=3, told="not at rest after 5 evaluations")
+    sandglass("run", block, "-o", result, code=3, told="no equilibrium after 5 evaluations")
     with h5py.File(result) as file:
-        assert text_of(file.attrs["status"]) == "not at rest after 5 evaluations"
+        assert text_of(file.attrs["status"]) == "no equilibrium after 5 evaluations"
 
 
 @pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="needs Linux's /proc")

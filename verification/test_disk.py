@@ -142,6 +142,6 @@ def test_a_disk_without_room_for_a_checkpoint(small_disk, case):
     options = ["--checkpoint", small_disk / "c", "--checkpoint-every", "0"]
     result = case.parent / "out.h5"
     outcome = sandglass("run", case, *options, "-o", result, code=0)
-    assert "warning: no checkpoint now, the run goes on: " in outcome.stderr
+    assert "warning: checkpoint not written, the run continues: " in outcome.stderr
     assert "No space left on device" in outcome.stderr
     assert result.exists() and not listing(small_disk)

@@ -168,6 +168,6 @@ def test_a_killed_rank_ends_the_run_and_the_checkpoint_goes_on(tmp_path):
             ranks, "run", case, "-o", result, "--checkpoint", checkpoint, "-t", 3 - ranks
         )
         assert code == 0, err
-        assert "goes on from" in out
+        assert "resumed from" in out
         assert not checkpoint.exists()
         assert content(result) == content(whole)

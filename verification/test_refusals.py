@@ -30,7 +30,7 @@ choose column --budget 1,5,2 | without a unit it is in s
 run colum | did you mean 'column'? & `sandglass cases` lists
 verify colum | did you mean 'column'? & `sandglass cases` lists
 mesh colum -o m.h5 | did you mean 'column'? & `sandglass cases` lists
-run bending | 'bending' has 12 variants, and one must be named & 2-nu0.49
+run bending | 'bending' has 12 variants; name one of them & 2-nu0.49
 run bending-2-nu0.48 | did you mean 'bending-2-nu0.4
 
 run block.toml --method tl-pertubation |
@@ -53,16 +53,16 @@ run block.toml --checkpoint c --checkpoint-every=often | --checkpoint-every
 run block.toml --checkpoint none/c | none/c: cannot be written
 run block.toml -o one.h5 --checkpoint one.h5 | must be another file than --output
 
-run column --against truth | --against: give the largest error too
+run column --against truth | --against: needs the largest error allowed
 run column --against golden --accuracy 1% | --against: golden not in {truth}
 run column --against truth --accuracy 0 | --accuracy = '0' must be a share
-run bar-wave --against truth --accuracy 1% | 'bar-wave' is in motion
+run bar-wave --against truth --accuracy 1% | 'bar-wave' is a dynamic case
 run column --against truth --accuracy 1% --sleep 1% | leave out --sleep
 run column --against truth --accuracy 1% --checkpoint kept | leave out --checkpoint
 run column --sleep 0 | --sleep = '0' must be a share in (0, 1]
-run column --sleep 1 | --sleep = '1' would be everything; for one percent write 1%
+run column --sleep 1 | --sleep = '1' is ambiguous; for one percent write 1%
 run column --sleep 120% | --sleep = '120%' must be a share in (0, 1]
-run bar-wave --sleep 1% | --sleep: 'bar-wave' is in motion
+run bar-wave --sleep 1% | --sleep: 'bar-wave' is a dynamic case
 run column --sleep 1% --checkpoint kept | leave out --checkpoint
 
 mesh block.toml -o none/a.h5 | none/a.h5: cannot be written

@@ -75,7 +75,7 @@ def test_verify_in_float_gives_figures_and_checks_no_limit(block):
     block.write_text(BLOCK + LIMIT.format(method="tl-mean-dilatation", below=1e-30))
     verdicts = block.parent / "verdicts.json"
     outcome = sandglass("verify", block, "--precision", "float", "--json", verdicts, code=0)
-    assert "limits of the cases are for double: none was checked in float" in outcome.stdout
+    assert "the cases' limits are for double precision; none was checked in float" in outcome.stdout
     document = json.loads(verdicts.read_text())
     assert document["limits"] == []
     assert {r["precision"] for r in document["records"]} == {"float"}

@@ -376,7 +376,7 @@ TEST(ViscoelasticCase, wrong_parameters_are_refused_with_their_line) {
   EXPECT_TRUE(
       contains(sum, "hold.toml:16: material.relaxation_2 = 0.4 must be below 1 - relaxation_1 = 0.4"));
   const std::string time = error_of("relaxation_1 = 0.6\ntime_1 = 0.5\nrelaxation_2 = 0.3");
-  EXPECT_TRUE(contains(time, "material.time_2 = 0 must be positive because relaxation_2 = 0.3 is"));
+  EXPECT_TRUE(contains(time, "material.time_2 = 0 must be positive, as relaxation_2 = 0.3 is"));
 }
 
 /// A block of brain tissue, held from t = 0.2 s on after a ramp about 0.1 s. Being nearly incompressible it

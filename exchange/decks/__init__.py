@@ -1,4 +1,4 @@
-"""The programs that a case can be written for; a new one is a module here and an entry in PROGRAMS.
+"""The programs for which decks are written; a new one is a module here and an entry in PROGRAMS.
 
 A module has NAME, ENDING (of its main file), ELEMENTS (the default first), LAWS and VOLUMES (the
 project's names of what it knows), TAKES_HOURGLASS, and deck(problem, element, hourglass), which
@@ -23,7 +23,7 @@ def files(name, problem, output, element="", hourglass=None):
 
     problem: a Problem. output: the Path of the main file. element: the program's name of an element
     type; empty means its default. hourglass: the program's hourglass coefficient; None means its
-    usual one. Raises InputError for what the program cannot express.
+    usual one. Raises InputError for anything that the program cannot express.
     """
     if name not in PROGRAMS:
         raise InputError(f"--deck {name}: {suggestion(name, sorted(PROGRAMS))}")

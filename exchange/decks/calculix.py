@@ -96,8 +96,8 @@ def _static():
 
 
 def _explicit(motion):
-    """The procedure for a motion. The largest increment is the step, which ccx takes if its own
-    estimate says it is stable. Not DIRECT: with it ccx 2.20 does not return."""
+    """The procedure for a motion. The largest increment is the step, which ccx takes if it
+    estimates it to be stable. DIRECT is not used, as ccx 2.20 does not return with it."""
     step = motion.time_step
     # ALPHA is numerical damping, which central differences do not have.
     times = ", ".join(map(number, [step, motion.duration, 1e-6 * step, step]))
@@ -105,6 +105,6 @@ def _explicit(motion):
 
 
 def _amplitude(motion):
-    """The loading curve, given at every step."""
+    """The loading curve, tabulated at every step."""
     points = zip(*motion.curve(motion.ramp_steps + 1))
     return ["*AMPLITUDE, NAME=RAMP", *(f"{number(s)}, {number(d)}" for s, d in points)]

@@ -12,8 +12,8 @@ from common.errors import InputError
 from exchange.decks.problem import refuse, agreed
 
 NAME, ENDING = "FEBio", ".feb"
-# The three-field element is the golden's, mean dilatation; the next has one point and hourglass
-# control, the last is the displacement element.
+# The three-field element is the golden's (mean dilatation); the next has one point and hourglass
+# control, and the last is the displacement element.
 ELEMENTS = ("three-field-solid", "udg-hex", "elastic-solid")
 VOLUMES = {"logarithmic": "default", "quadratic-logarithmic": "NIKE3D", "quadratic": "Abaqus"}
 TAKES_HOURGLASS = True  # hg of udg-hex
@@ -77,7 +77,7 @@ def deck(problem, element, hourglass):
     lines += ["</Boundary>", "<Loads>"]
     lines += [_applied(i, *one) for i, one in enumerate(applied, len(imposed) + 1)]
     lines += ["</Loads>", "<LoadData>", *_curve(motion), "</LoadData>", "<Output><logfile>"]
-    # With all digits, after the last step alone.
+    # With all digits, only after the last step.
     lines.append('<node_data data="ux;uy;uz" delim=" " file="displacement.log"/>')
     return {ENDING: "\n".join([*lines, "</logfile></Output>", "</febio_spec>"]) + "\n"}
 
@@ -113,7 +113,7 @@ def _explicit(motion):
 
 
 def _materials(problem):
-    """The lines of all materials. Raises InputError for one that FEBio lacks."""
+    """The lines of all materials. Raises InputError for one that FEBio does not have."""
     lines = []
     for i, material in enumerate(problem.materials, 1):
         kind, parameters = LAWS[material.law](material)

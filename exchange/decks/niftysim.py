@@ -1,7 +1,7 @@
 """The model file (.xml) of a case for NiftySim, which integrates in time with one-point hexahedra.
 
-Its neo-Hookean energy mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 is that of the project, its loading
-curve POLY345 that of the paper. It has no smooth curve that is then held.
+Its neo-Hookean energy mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 is the project's, its loading curve
+POLY345 the paper's. It has no smooth curve that is then held.
 """
 
 from exchange.decks.problem import refuse
@@ -10,7 +10,7 @@ NAME, ENDING = "NiftySim", ".xml"
 ELEMENTS = ("H8",)
 LAWS = ("neo-hookean",)
 VOLUMES = ("quadratic",)
-USUAL_HOURGLASS = 0.075  # HGKappa in the models that come with it
+USUAL_HOURGLASS = 0.075  # HGKappa in its own example models
 TAKES_HOURGLASS = True
 
 
@@ -40,7 +40,7 @@ def deck(problem, element, hourglass):
         "Density": problem.materials[0].density,
     }
     lines += ["<SystemParams>", *(f"<{k}>{float(v)!r}</{k}>" for k, v in parameters.items())]
-    # The last step alone.
+    # Only the last step.
     lines += ["</SystemParams>", f'<Output Freq="{motion.steps}"><Variable>U</Variable></Output>']
     return {ENDING: "\n".join([*lines, "</Model>"]) + "\n"}
 

@@ -1,7 +1,7 @@
 """The starter and engine files (_0000.rad, _0001.rad) of a case for OpenRadioss.
 
-Its law 42 is sum mu_p / alpha_p (lbar_1^alpha_p + ... - 3) + K/2 (J - 1)^2, as the project's laws.
-It integrates in time: a quasi-static case becomes a damped motion.
+Law 42, sum mu_p / alpha_p (lbar_1^alpha_p + ... - 3) + K/2 (J - 1)^2, covers the project's
+laws. It integrates in time: a quasi-static case becomes a damped motion.
 """
 
 from exchange.abaqus_file import number

@@ -1,4 +1,4 @@
-"""What a deck describes: mesh, materials, supports, loads, and the motion if there is one."""
+"""The problem of a deck: mesh, materials, supports, loads, and the motion if there is one."""
 
 import math
 from dataclasses import dataclass
@@ -8,13 +8,13 @@ import numpy as np
 from common.errors import InputError
 from exchange.foreign_mesh import HexMesh
 
-# A quasi-static case for a program that only integrates in time. The unit of time is that in which
-# a shear wave crosses the body: slow enough for the lowest modes of the canonical cases, which the
-# damping brings to rest.
+# A quasi-static case for a program that only integrates in time. The unit of time is the time in
+# which a shear wave crosses the body: slow enough for the lowest modes of the canonical cases,
+# which the damping suppresses.
 RELAXATION_CROSSINGS = 20
 DAMPING_PER_CROSSING = 2.0
 STEP_FRACTION = 0.8  # of the stable step of Sandglass
-# Of the loading curve, between which other programs interpolate linearly: to 2e-5.
+# Points of the loading curve; other programs interpolate linearly between them, to 2e-5.
 CURVE_POINTS = 201
 
 
@@ -91,19 +91,19 @@ class Problem:
         return Motion(step, steps, steps, agreed(DAMPING_PER_CROSSING / crossing))
 
     def imposed(self):
-        """(component, value in m, nodes) of imposed displacements, those of one value together."""
+        """(component, value in m, nodes) of imposed displacements, grouped by value."""
         return _alike(self.prescribed, self.values)
 
     def applied(self):
-        """(component, force in N, nodes) of all nodal forces, those of one value together."""
+        """(component, force in N, nodes) of all nodal forces, grouped by value."""
         return _alike(self.forces, self.forces)
 
 
 def agreed(value):
-    """A number to twelve digits, on which processors agree, so that they write the same deck.
+    """A number with twelve digits, so that all processors write the same deck.
 
     Sums, products, quotients and square roots are the same on all of them. Powers, exponentials and
-    whatever comes from BLAS or LAPACK differ in the last of sixteen digits.
+    results of BLAS or LAPACK differ in the last of sixteen digits.
     """
     return float(f"{value:.12g}")
 

@@ -84,9 +84,9 @@ def test_attributes_hold_the_distance_of_the_stored_field_from_the_limit():
 
 
 def test_what_is_not_estimated_says_why():
-    found = attributes_of([LIMIT], LIMIT, unit=1.0, reason="a mesh of 9 cells was too dear")
+    found = attributes_of([LIMIT], LIMIT, unit=1.0, reason="a mesh of 9 cells would cost too much")
     assert math.isnan(found["own_error_max"]) and math.isnan(found["own_error_order"])
-    assert found["own_error_note"] == "not estimated: a mesh of 9 cells was too dear"
+    assert found["own_error_note"] == "not estimated: a mesh of 9 cells would cost too much"
     apart = attributes_of([LIMIT, LIMIT + 1, LIMIT - 1], LIMIT, unit=1.0, reason="-")
     assert apart["own_error_note"] == "not estimated: differences do not fall"
 

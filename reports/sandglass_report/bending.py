@@ -54,7 +54,7 @@ def bending_plates(tips, palette):
     )
     return (
         Plate("locking", "Locking: as the body becomes incompressible", locking, 3, note, legend),
-        Plate("bending", "Bending: as elements become finer", bending, 3, note, legend),
+        Plate("bending", "Bending: as the mesh becomes finer", bending, 3, note, legend),
     )
 
 

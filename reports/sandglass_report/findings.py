@@ -17,9 +17,9 @@ VERBS = {
     "inverted": "turns elements inside out",
     "unstable": "is unstable",
     "not at rest": "finds no equilibrium",
-    "not taken": "does not take this case",
+    "not supported": "does not support this case",
 }
-NOT_TAKEN = "not taken"  # in place of a finding
+NOT_SUPPORTED = "not supported"  # in place of a finding
 USUAL_LIMIT = 0.01  # of good_limit in suite/comparison/finding.cpp
 LARGEST_GOOD = 0.1  # largest_good_limit of suite/comparison/finding.hpp
 
@@ -47,8 +47,8 @@ def verb(finding):
 
 
 def judged(run):
-    """The finding of a run; NOT_TAKEN if its method refuses the case, "" if there is no golden."""
-    return run.finding or ("" if run.ok else NOT_TAKEN)
+    """The finding of a run; NOT_SUPPORTED if the method refuses the case, "" without a golden."""
+    return run.finding or ("" if run.ok else NOT_SUPPORTED)
 
 
 def _of_method(subject, method):
@@ -59,7 +59,7 @@ def _of_method(subject, method):
     if not run.ok:
         return f"{method} {verb(judged(run))}: {run.status.removeprefix('failed: ')}."
     if run.golden is None or not run.finding:
-        return f"No golden to judge {method} by."
+        return f"{method} cannot be judged, as there is no golden."
     words = f"{method} {verb(run.finding)}{_why_good(subject, run)}: "
     words += f"{style.percent(run.golden.max)} from the golden at the worst node"
     words += " and time" if subject.motion is not None else ""
@@ -114,7 +114,7 @@ class Failures:
 
     expected: tuple  # of methods that a limit demands to fail, on this case or another
     unexpected: tuple
-    not_taken: tuple  # of methods that do not take the case
+    not_taken: tuple  # of methods that do not support the case
     total: int  # runs with default settings, these included
 
     @property
@@ -129,12 +129,12 @@ class Failures:
             found.append(f"{self.count} of {self.total} runs with default settings fail")
             found[0] += "." if self.unexpected else ", as expected."
         if self.expected:
-            found.append(f"Cases demand the failure of these methods: {_on_cases(self.expected)}.")
+            found.append(f"These failures are required by cases: {_on_cases(self.expected)}.")
         for run in self.unexpected:
             why = run.status.removeprefix("failed: ")
             found.append(f"Not expected: {run.method} on {run.case} ({why}).")
         if self.not_taken:
-            found.append(f"Cases that a method does not take: {_on_cases(self.not_taken)}.")
+            found.append(f"Cases that a method does not support: {_on_cases(self.not_taken)}.")
         return tuple(found)
 
 

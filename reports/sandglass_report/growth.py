@@ -27,7 +27,7 @@ def read_growth(path):
         if counts.count(None) != 1:
             raise InputError(f"{where}: must have one of {' and '.join(COUNTS)}")
         if found["name"] not in COLOURS or found["poisson_ratio"] not in LINES:
-            raise InputError(f"{where}: is not of bench/growth.py")
+            raise InputError(f"{where}: was not written by bench/growth.py")
         records.append(found)
     return records
 
@@ -62,12 +62,14 @@ def growth_plate(records):
             axes.set_ylabel(words)
 
         largest = max(records, key=lambda found: found["elements"])
-        alt = f"{title}: up to {largest['elements']} elements, {value(largest):.3g} {words}"
+        alt = f"{title}: {value(largest):.3g} for {largest['elements']} elements"
         return Panel(f"growth.{key}", title, alt, draw, 420, 320)
 
     panels = (
-        panel("seconds", lambda point: point["seconds"], "Seconds to rest", "s"),
-        panel("work", _count, "Evaluations or iterations to rest", "evaluations or iterations"),
+        panel("seconds", lambda point: point["seconds"], "Seconds to equilibrium", "wall time, s"),
+        panel(
+            "work", _count, "Evaluations or iterations to equilibrium", "evaluations or iterations"
+        ),
     )
     note = (
         "A bent beam on ever finer meshes, one thread. Poisson's ratio: "

@@ -12,7 +12,7 @@ from sandglass_report.plates import MUTED, Panel, Plate
 COLUMNS = 5
 CELL = 30  # pixels
 GOLDEN_FAILS = "the golden fails"
-REFUSED = "not taken"
+REFUSED = "not supported"
 
 # Outcome -> colour and letter; the letter is that of the command line, for those who cannot see
 # the colours.
@@ -73,7 +73,7 @@ def _plate(document, one):
     )
     axes = [axis for axis in (one["x"], one["y"]) if axis]
     note = "; ".join(f"{axis['name']}: {axis['meaning']}" for axis in axes)
-    note += ". Numbers: largest distance in % from the golden's element on this mesh"
+    note += ". Numbers: largest distance in % from the golden's element on the same mesh"
     note += f"; good up to {limit}, unless an axis states another limit"
     title = f"{case}: " + " and ".join(axis["name"] for axis in axes)
     return Plate(f"stability.{case}.{one['name']}", title, panels, COLUMNS, note, legend)

@@ -57,7 +57,7 @@ def _benchmark(title, methods, palette):
     )
     legend = tuple((m, palette.colour(m), palette.mark(m)) for m in methods)
     note = (
-        f"Published: {one.published:g} ({one.source}). Dotted: other programs. Faint: not sound "
+        f"Published: {one.published:g} ({one.source}). Dotted: other programs. Faint: fails "
         "here; values beyond the edges are arrowheads."
     )
     return Benchmark(
@@ -124,7 +124,8 @@ def _over_meshes(name, one, methods, programs, palette):
                 axes.axhline(sign * values[OTHER], color=TEXT, lw=0.7, ls=":")
                 points = [(max(found), sign * values[OTHER])]
             axes.plot(*zip(*points), ":x", color=TEXT, lw=1.0, ms=4.5)
-            labels.append((*points[len(points) // 2], program.program, TEXT))
+            x, y = points[len(points) // 2]
+            labels.append((x, y + 0.025 * (top - bottom), program.program, TEXT))
         axes.set_xscale("log", base=2)
         ticks = [2**n for n in range(10) if min(found) <= 2**n <= max(found)]
         axes.xaxis.set_major_locator(FixedLocator(ticks))

@@ -10,8 +10,8 @@ REST = 1e-8  # the residual of cases
 KEYS = {"case": str, "way": str, "elements": int}
 KEYS |= dict.fromkeys(("seconds", "error_max", "error_rms"), NUMBER)
 LINES = {  # (way, whether at rest) -> what it is called, its colour and its line
-    ("uniform", True): ("all split, to 1e-8", "#c8553d", "-"),
-    ("uniform", False): ("all split, to 1e-3", "#e3a78f", ":"),
+    ("uniform", True): ("all split, residual 1e-8", "#c8553d", "-"),
+    ("uniform", False): ("all split, residual 1e-3", "#e3a78f", ":"),
     ("refined", False): ("refined", "#2f6fb2", "-"),
 }
 
@@ -23,7 +23,7 @@ def read_refinement(path):
         for key, kind in KEYS.items():
             entry(where, found, key, kind)
         if line_of(found) not in LINES:
-            raise InputError(f"{where}: is not of bench/refinement.py")
+            raise InputError(f"{where}: was not written by bench/refinement.py")
         records.append(found)
     return records
 
@@ -61,8 +61,8 @@ def refinement_plate(records):
                 axes.plot(x, y, style, color=colour, marker="o", ms=3, lw=1.2)
             log_scale(axes.xaxis, around(found["seconds"] for found in points))
             percent_scale(axes.yaxis, around(found["error_max"] for found in points))
-            axes.set_xlabel("s")
-            axes.set_ylabel("largest error")
+            axes.set_xlabel("wall time, s")
+            axes.set_ylabel("largest error to the truth")
 
         best = {
             way: min((p for p in points if p["way"] == way), key=lambda p: p["error_max"])
@@ -76,9 +76,9 @@ def refinement_plate(records):
 
     names = dict.fromkeys(found["case"] for found in records)
     note = (
-        "tl-mean-dilatation, one thread, from the model on. Distance from the truth at the worst "
+        "tl-mean-dilatation, one thread. Distance from the truth at the worst "
         "node of the case's own mesh, over the imposed displacement. All elements split 0, 1, 2 "
-        "times, to rest or a residual of 0.001; and refined where the answer needs it."
+        "times, solved to a residual of 1e-8 or 1e-3; and refined where the answer needs it."
     )
     legend = tuple((words, colour, "o") for words, colour, _ in LINES.values())
     panels = tuple(panel(name) for name in names)

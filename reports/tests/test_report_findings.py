@@ -20,7 +20,7 @@ def found(data):
     return card.replace("\u00a0", " ")
 
 
-@pytest.mark.parametrize("finding", [word for word in VERBS if word != "not taken"])
+@pytest.mark.parametrize("finding", [word for word in VERBS if word != "not supported"])
 def test_a_caption_claims_what_the_verdict_says(data, finding):
     data.records[1] = data.run("tl-perturbation", 0.0832, kappa=0.0065, auto=True)
     data.records[1]["finding"] = finding
@@ -141,16 +141,16 @@ def test_failures_are_counted_and_the_unexpected_ones_named(data):
     data.write_verdicts()
     page = data.make()
     assert "1 of 3 runs with default settings fail, as expected." in page
-    assert "demand the failure of these methods: tl-full on column." in page
+    assert "These failures are required by cases: tl-full on column." in page
     assert "Not expected" not in page
 
 
-def test_a_method_that_does_not_take_the_case_has_not_failed(data):
+def test_a_method_that_does_not_support_the_case_has_not_failed(data):
     data.records[3] |= {"status": "failed: choose another method", "finding": None}
     data.write_verdicts()
     page = data.make()
     assert "settings fail" not in page
-    assert "Cases that a method does not take: tl-full on column." in page
+    assert "Cases that a method does not support: tl-full on column." in page
 
 
 @pytest.mark.parametrize(

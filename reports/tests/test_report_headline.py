@@ -193,7 +193,10 @@ def test_one_command_makes_figure_records_and_texts(tmp_path, document, capsys):
     assert text.startswith("before\n") and text.endswith("after\n") and "\nold\n" not in text
     assert "(reports/figures/speed-accuracy.svg)" in text and "tl-full 30 %, 24 %" in text
     words = " ".join(text.split())  # of lines that break anywhere
-    assert "its error to the truth is 14 %" in words and "0.16 s instead of 0.46 s" in words
+    assert (
+        "its error to the truth is 14 %" in words
+        and "0.16 s per simulated second instead of 0.46 s" in words
+    )
     assert "(../reports/figures/speed-accuracy.svg)" in (tree / "docs/results.md").read_text()
     assert (tree / make_headline.FIGURE).read_text() == figure(document)
     assert json.loads((tree / make_headline.FOLDER / f"{NAME}.json").read_text()) == document

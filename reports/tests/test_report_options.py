@@ -69,7 +69,7 @@ def test_options_without_data_are_disabled_and_a_wish_returns_with_the_data(tmp_
         assert disabled(other) == [
             "the truth (finer mesh): none for this case",
             "largest error on the profile line: no profile line",
-            "to equilibrium: no search: the case moves",
+            "to equilibrium: none: a dynamic case",
         ]
         choose(other, "case", "mute")
         assert sum(len(trace) for trace in marks(other)) == 0

@@ -67,7 +67,7 @@ std::array<Tensor<T>, 8> corner_gradients(const Modes<T>& modes) {
       const T b = bilinear[detail::parent_axes[axis].with_second];
       const T c = bilinear[detail::parent_axes[axis].with_third];
       const T low = modes(k, i) - b, high = modes(k, i) + b;  // by the sign along the second axis
-      const T low_c = c - trilinear, high_c = c + trilinear;  // what the sign along the third multiplies
+      const T low_c = c - trilinear, high_c = c + trilinear;  // multiplied by the sign along the third axis
       const std::array<T, 4> values{low - low_c, high - high_c, low + low_c, high + high_c};
       for (std::size_t line = 0; line < 4; ++line) {
         for (const std::size_t q : detail::lines_along[axis][line]) gradients[q](i, k) = values[line];

@@ -48,7 +48,7 @@ struct EightPoint {
   template <class T>
   struct Element {
     std::array<Tensor<T>, 8>
-        inverse_jacobian;     ///< dxi_k/dX_j at the Gauss points, 1/m, times 1/8 for modes are sums
+        inverse_jacobian;     ///< dxi_k/dX_j at the Gauss points, 1/m, times 1/8 because modes are sums
     std::array<T, 8> weight;  ///< det(dX/dxi) at the Gauss points, m^3
     T V;                      ///< reference volume, m^3
   };
@@ -101,7 +101,7 @@ struct EightPoint {
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
                         const NoControl::Element<T>& /*control*/, NoHistory<T>& /*history*/, const Law& law) {
     const auto dilatation = Pressure::dilatations(now.J_minus_one, element);
-    std::array<Tensor<T>, 8> flux;  // w P J^-T, the stress that the parent gradient carries
+    std::array<Tensor<T>, 8> flux;  // w P J^-T, the stress conjugate to the parent gradient
     const auto load = [&](std::size_t q) {
       return PointLoad<T>{
           element.weight[q], {now.J_minus_one[q], now.inverse_root[q]}, law.pressure(dilatation[q])};

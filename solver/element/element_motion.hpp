@@ -9,16 +9,15 @@ namespace sandglass {
 /// only what is declared is gathered.
 template <class T>
 struct ElementMotion {
-  Modes<T> u;          ///< displacements, m
-  Modes<T> increment;  ///< their change in the last step, m
-  Modes<T> X;          ///< reference coordinates, m
-  T inverse_step;      ///< 1 / length of the last step, 1/s; 0 in quasi-static runs
-  std::array<T, 8>
-      dilatation;  ///< volume change over reference volume around each node, of all elements there
+  Modes<T> u;                   ///< displacements, m
+  Modes<T> increment;           ///< their change in the last step, m
+  Modes<T> X;                   ///< reference coordinates, m
+  T inverse_step;               ///< 1 / length of the last step, 1/s; 0 in quasi-static runs
+  std::array<T, 8> dilatation;  ///< volume change over reference volume of all elements around each node
 };
 
-/// What an element that averages over nodes contributes to each of its nodes in the first pass: a share of
-/// its change of volume, and of its reference volume, m^3.
+/// The contribution of an element that averages over nodes to each of its nodes in the first pass: a share of
+/// its change of volume and of its reference volume, m^3.
 template <class T>
 struct NodalVolumes {
   std::array<T, 8> change;

@@ -59,20 +59,20 @@ struct Formulation {
   /// The number of passes over the elements in a step.
   static constexpr int passes = averages_over_nodes ? 2 : 1;
 
-  /// Whether the element can have the reference coordinates X (m), those of a hexahedron with a positive
-  /// measure at all Gauss points. True unless the kinematics declare a condition.
+  /// Whether the element accepts the reference coordinates X (m) of a hexahedron with a positive measure at
+  /// all Gauss points. True unless the kinematics declare a condition.
   static bool accepts(const NodalVectors<double>& X) {
     if constexpr (requires { Kinematics::accepts(X); }) return Kinematics::accepts(X);
     return true;
   }
 
-  /// The condition of `accepts` in words.
+  /// The condition of `accepts` as text.
   static constexpr std::string_view demand = [] {
     if constexpr (requires { Kinematics::demand; }) return Kinematics::demand;
     return std::string_view{};
   }();
 
-  /// The constants of an element with reference coordinates X (m), whose law may have axes of its own.
+  /// The constants of an element with reference coordinates X (m), whose law may have its own axes.
   template <class SetupLaw>
   static Element<double> precompute(const NodalVectors<double>& X, const SetupLaw& law,
                                     const HourglassSettings& settings) {
@@ -93,7 +93,7 @@ struct Formulation {
     return Kinematics::nodal_volumes(motion, element.body);
   }
 
-  /// The first half of a step: the deformation that the force depends on. With two halves a loop can start
+  /// The first half of a step: the deformation on which the force depends. With two halves, a loop can start
   /// the next element before it has finished the current one.
   template <class T>
   using Deformation = typename Kinematics::template Deformation<T>;
@@ -143,9 +143,9 @@ struct Formulation {
   }
 
   /// The Cauchy stress (Pa) of the material, averaged over the current volume, with the history after the
-  /// step and the law at a step of no length, in which memories stay as they are. The forces f_I of a stress
-  /// on nodes at x_I give it for all kinematics alike, sum_I f_I (x) x_I = sum_q w_q P_q F_q^T, and those of
-  /// a pressure of one give the volume. Hourglass controls are no part of it. X: reference coordinates (m).
+  /// step and the law at a step of zero length, which does not change memories. For all kinematics it follows
+  /// from the forces f_I on nodes at x_I, sum_I f_I (x) x_I = sum_q w_q P_q F_q^T, and the volume from the
+  /// forces of a unit pressure. Hourglass controls do not contribute. X: reference coordinates (m).
   template <class T, class LawAtStep>
   static Tensor<T> mean_stress(const ElementMotion<T>& motion, const Modes<T>& X, const Element<T>& element,
                                History<T> history, const LawAtStep& law) {
@@ -168,8 +168,8 @@ struct Formulation {
     }
   }
 
-  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, hourglass part included, for a
-  /// step of any length.
+  /// An upper bound of the largest eigenvalue (N/m) of the tangent stiffness, including the hourglass part,
+  /// for a step of any length.
   template <class T, class LawAtStep>
   static T stiffness_bound(const ElementMotion<T>& motion, const Element<T>& element,
                            const History<T>& history, const LawAtStep& law) {

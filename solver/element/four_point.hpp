@@ -10,24 +10,25 @@
 namespace sandglass {
 
 /// The hexahedron with four points: half the cost of eight in the law, and the memory of one. The fluctuation
-/// of the displacement gradient is that of the parallelepiped whose inverse Jacobian is the mean one,
-/// sum_a q_a/8 (x) dw_a/dX with w_1..3 = eta zeta, xi zeta, xi eta, evaluated at every other corner of the
-/// Gauss rule: (- - -), (+ + -), (+ - +), (- + +) over sqrt 3. There the means of xi, of xi eta and of
-/// xi^2 - 1/3 are zero, so that the mean gradient remains exact, and the energy of the fluctuation is correct
-/// to second order on parallelepipeds, at every deformation and for every law. The element has one pressure,
-/// as the mean-dilatation element.
+/// of the displacement gradient is that of the parallelepiped whose inverse Jacobian is the mean one, sum_a
+/// q_a/8 (x) dw_a/dX with w_1..3 = eta zeta, xi zeta, xi eta, evaluated at every other corner of the Gauss
+/// rule: (- - -), (+ + -), (+ - +), (- + +) over sqrt 3. There the means of xi, of xi eta and of xi^2 - 1/3
+/// are zero, so that the mean gradient remains exact, and the energy of the fluctuation is correct to second
+/// order on parallelepipeds, at every deformation and for every law. The element has one pressure, like the
+/// mean-dilatation element.
 ///
 /// The fourth mode would couple with the others through the mean of xi eta zeta, which is not zero over
 /// alternate corners. It is left to an hourglass control.
 ///
-/// The other four corners are as good, and differ to third order in the fluctuation. `side` decides by the
-/// element's shape, never by its numbering. No such rule can be its own mirror image, since a mirror maps a
-/// cuboid to itself and its alternate corners to the others, nor can it turn with an element of equal edges.
+/// The other four corners are equally good, and differ to third order in the fluctuation. `side` decides by
+/// the element's shape, never by its numbering. No such rule can be symmetric under reflection, since a
+/// mirror maps a cuboid to itself and its alternate corners to the others, nor can it rotate with an element
+/// of equal edges.
 struct FourPoint : OnePoint {
   static constexpr int points = 4;
   static constexpr bool averages_pressure = true;
 
-  /// What is constant in time: that of one point, and which corners the points are near.
+  /// What is constant in time: the data of one point, and the side of the points.
   template <class T>
   struct Element : OnePoint::Element<T> {
     T reach;  ///< the points' coordinate, 1/sqrt 3; negative for the other four corners
@@ -42,9 +43,9 @@ struct FourPoint : OnePoint {
   }
 
   /// 1 or -1: which alternate corners have the points, from the modes of the nodal coordinates x (m). Axes of
-  /// different length, shear or taper have a handedness, the sign of the permutation that sorts them, which
-  /// changes sign with the numbering as the corners do and turns with the element. Where two axes are alike,
-  /// the corner that lies farthest along a fixed direction has a point.
+  /// different length, shear or taper have a handedness, the sign of the permutation that sorts them. Like
+  /// the corners, it changes sign with the numbering and rotates with the element. If two axes are alike, the
+  /// corner farthest along a fixed direction has a point.
   template <class T>
   static T side(const Modes<T>& x) {
     const auto product = [&](int m, int n) {
@@ -171,7 +172,7 @@ struct FourPoint : OnePoint {
   }
 
  private:
-  /// The handedness below which axes count as alike: above what coordinates in single precision leave.
+  /// Axes count as alike below this handedness, which is above the rounding of single-precision coordinates.
   static constexpr double alike = 1e-6;
 
   template <class T>

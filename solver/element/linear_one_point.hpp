@@ -55,12 +55,12 @@ class SmallStrainLaw {
 /// OnePoint with the law replaced by its undeformed tangent, and correct to first order in displacement
 /// gradients; a finite rotation causes a spurious strain of 1 - cos(angle). This is the model of surgery
 /// simulators that superpose or condense responses (Bro-Nielsen and Cotin 1996). Small-strain theory itself
-/// never fails and would silently return inverted elements, which are as impossible for a body as with any
-/// other method: det(I + H) tells them.
+/// never fails and would silently return inverted elements, which are as impossible as with any other method;
+/// det(I + H) detects them.
 struct LinearOnePoint : OnePoint {
   static constexpr bool small_strain = true;  ///< stresses follow from sym(H)
 
-  /// As for OnePoint, without the change of volume, which small strains do not need.
+  /// As in OnePoint, without the change of volume, which small strains do not need.
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& element) {
     Deformation<T> now;

@@ -5,7 +5,8 @@
 /// OnePoint with its geometry h, c and V held in other forms. Forces are the same up to roundoff.
 namespace sandglass {
 
-/// What does not run in every step: OnePoint with the geometry that `Form::geometry(motion, element)` gives.
+/// The functions that do not run in every step: OnePoint with the geometry of `Form::geometry(motion,
+/// element)`.
 template <class Form>
 struct OnePointForm {
   template <class Hourglass, class T, class Element, class Law>
@@ -34,13 +35,13 @@ struct OnePointForm {
   }
 };
 
-/// OnePoint that loads only coordinates and recomputes its geometry in every step, which saves time where
-/// memory is slower than arithmetic.
+/// OnePoint that loads only coordinates and recomputes its geometry in every step, which saves time if memory
+/// is slower than arithmetic.
 struct CompactOnePoint : OnePointForm<CompactOnePoint> {
   static constexpr bool needs_increment = false;
   static constexpr bool needs_coordinates = true;
 
-  /// What is constant in time: nothing that is stored.
+  /// Nothing constant in time is stored.
   template <class T>
   struct Element {};
 

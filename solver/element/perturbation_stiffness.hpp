@@ -20,7 +20,7 @@ struct PerturbationStiffness {
 
   /// The kappa whose product with its modulus is E/9: with it a cube bends with its exact energy at every
   /// Poisson's ratio. A fixed kappa on lambda + 2 mu locks as nu -> 1/2; on mu the same value varies only
-  /// from .278 (nu = .25) to .333.
+  /// from 0.278 (nu = 0.25) to 0.333.
   template <class Law>
   static double auto_kappa(const Law& law, KappaModulus modulus = KappaModulus::p_wave) {
     return young_modulus(law) / (9.0 * kappa_modulus(law, modulus));

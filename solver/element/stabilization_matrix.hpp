@@ -26,10 +26,10 @@ T block_row_sum_bound(const Matrix<T, 12, 12>& A) {
 }
 
 /// The stabilization matrix of Liu, Ong and Uras 1985: the stiffness of the mean-dilatation element minus
-/// that of one point, both undeformed. The difference vanishes for linear fields, hence is a matrix between
-/// hourglass displacements; the pressure, one for the element, is the same in both, so that the matrix
-/// depends only on the law's isochoric stiffness. At small displacements one point with this matrix is
-/// identical to the mean-dilatation element, for any shape. The control follows the mean deformation.
+/// that of one point, both undeformed. The difference vanishes for linear fields, so it is a matrix between
+/// hourglass displacements. The element's single pressure is the same in both, so the matrix depends only on
+/// the law's isochoric stiffness. At small displacements one point with this matrix is identical to the
+/// mean-dilatation element, for any shape. The control follows the mean deformation.
 struct StabilizationMatrixControl {
   static constexpr bool active = true;
   static constexpr bool takes_kappa = false;
@@ -51,7 +51,7 @@ struct StabilizationMatrixControl {
     const Matrix<double, 9, 9> C = undeformed_isochoric_tangent(law);
     Matrix<double, 12, 12> K{};
     for (std::size_t p = 0; p < 8; ++p) {
-      Matrix<double, 9, 12> gradient{};  // of the displacement that each q_ai makes
+      Matrix<double, 9, 12> gradient{};  // of the displacement caused by each q_ai
       for (int a = 0; a < 4; ++a) {
         for (int i = 0; i < 3; ++i) {
           for (int k = 0; k < 3; ++k) gradient(3 * i + k, 3 * a + i) = fluctuation.gradient[p](a, k);

@@ -81,7 +81,7 @@ struct Tetrahedra {
   static Modes<T> force(const Deformation<T>& now, const Element<T>& element,
                         const NoControl::Element<T>& /*control*/, NoHistory<T>& /*history*/, const Law& law) {
     const TetrahedronValues<T> p = Pressure::pressures(now.J_minus_one, now.around, law);
-    TetrahedronTensors<T> flux;  // w P J^-T, the stress that the parent gradient carries
+    TetrahedronTensors<T> flux;  // w P J^-T, the stress conjugate to the parent gradient
     const auto load = [&](std::size_t e) {
       return PointLoad<T>{element.weight[e], {now.J_minus_one[e], now.inverse_root[e]}, p[e]};
     };
@@ -99,7 +99,7 @@ struct Tetrahedra {
     return {nodal_shares(change), nodal_shares(element.weight)};
   }
 
-  /// Strain energy (J); of the energy at a node, the element's share of the node's volume.
+  /// Strain energy (J), including the element's share, by volume, of the energy at its nodes.
   template <class Hourglass, class T, class Law>
   static ElementEnergy<T> energy(const ElementMotion<T>& motion, const Element<T>& element,
                                  const NoControl::Element<T>& /*control*/, const NoHistory<T>& /*history*/,

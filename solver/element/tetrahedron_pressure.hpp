@@ -5,7 +5,7 @@
 #include "element/tetrahedron_split.hpp"
 
 /// The pressure of a tetrahedron: policies of `Tetrahedra`. Each has
-///   around(motion)                       what the pressure depends on of the surrounding elements,
+///   around(motion)                       the data of surrounding elements on which the pressure depends,
 ///   pressures(dilatation, around, law)   the pressure (Pa) of each tetrahedron from J - 1,
 ///   volumetric_energy(...)               the element's share of the volumetric energy, J,
 ///   own_bulk_tangent(dilatation, law)    the bulk tangent (Pa) of a tetrahedron's own volume change,
@@ -16,7 +16,7 @@ namespace sandglass {
 struct OwnPressure {
   static constexpr bool averages_over_nodes = false;
 
-  /// What the pressure depends on of the surrounding elements.
+  /// The data of surrounding elements on which the pressure depends.
   template <class T>
   struct Around {};
   template <class T>
@@ -58,7 +58,7 @@ struct OwnPressure {
 
 /// Averaged nodal pressures (Bonet & Burton 1998; Joldes, Wittek & Miller 2009): a quarter of each
 /// tetrahedron belongs to each of its nodes. With V_I the undeformed volume that belongs to node I and J_I
-/// its volume ratio, both for each material at the node on its own, the energy is
+/// its volume ratio, both separately for each material at the node, the energy is
 ///   sum_e V_e W_iso(F_e) + sum_I V_I U(J_I),
 /// so that the pressure of a tetrahedron is the mean of p_I = U'(J_I) over its nodes, and its stress
 /// P_iso(F) + p cof F, as in Bonet and Burton. Joldes et al. evaluate the law for (Jbar/J)^(1/3) F instead,

@@ -21,7 +21,7 @@ using TetrahedronTensors = std::array<Tensor<T>, tetrahedron_count>;
 /// Their constants.
 template <class T>
 struct TetrahedronConstants {
-  TetrahedronTensors<T> inverse_jacobian;  ///< dxi_k/dX_j, 1/m, times 1/8 for modes are sums
+  TetrahedronTensors<T> inverse_jacobian;  ///< dxi_k/dX_j, 1/m, times 1/8 because modes are sums
   TetrahedronValues<T> weight;             ///< half of each volume, m^3
 };
 

@@ -12,8 +12,8 @@ namespace sandglass {
 /// An hourglass control of this element is given its whole Deformation and has
 ///   resistance(now, control, history)  the hourglass resistances Q (N); advances the history,
 ///   energy(now, control, history)      the stored energy (J) that can be released,
-///   stiffness_bound(body, gamma, now, control, history)  a bound (N/m) of the element's tangent from that of
-///   its body.
+///   stiffness_bound(body, gamma, now, control, history)  a bound (N/m) of the element's tangent, given the
+///   body's bound.
 struct UpdatedOnePoint {
   static constexpr bool needs_increment = true;
   static constexpr bool needs_coordinates = true;
@@ -82,7 +82,7 @@ struct UpdatedOnePoint {
     return OnePoint::geometry(motion.X).V;
   }
 
-  /// det F as this element sees it.
+  /// det F of this element's mean deformation.
   template <class T>
   static T dilatation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
     return jacobian_minus_one(displacement_gradient(motion.u, OnePoint::geometry(motion.X + motion.u)));

@@ -27,8 +27,8 @@ ListedFibres read_fibre_file(const std::filesystem::path& path) {
     const bool as_before = listed.fibres.empty() || listed.sheets.empty() == (row.size() == 3);
     if (!fits || !words.eof() || !as_before) {
       throw InputError(
-          fmt::format("{}:{}: '{}' must be three numbers, the direction of the fibres of an element, or six, "
-                      "those of its fibres and its sheets, in all lines alike",
+          fmt::format("{}:{}: '{}' must be three numbers, the direction of an element's fibres, or six, the "
+                      "directions of its fibres and sheets, the same in all lines",
                       path.string(), number, line));
     }
     listed.fibres.push_back({row[0], row[1], row[2]});
@@ -64,7 +64,7 @@ FibreRule read_fibres(TableReader& table, const AnyLaw& law) {
     return {};
   }
   if (fibre.has_value() == field.has_value() || (sheet && !fibre)) {
-    table.fail("fibre_direction", fmt::format("or fibres must be given, one of the two: law '{}' has fibres; "
+    table.fail("fibre_direction", fmt::format("or fibres must be given, but not both: law '{}' has fibres; "
                                               "sheet_direction goes with fibre_direction",
                                               name_of(law)));
   }
@@ -91,7 +91,7 @@ FibreRule read_fibres(TableReader& table, const AnyLaw& law) {
   return rule;
 }
 
-/// The volumetric part of a material, that of its law unless the file says otherwise.
+/// The volumetric part of a material: its law's, unless the file names another.
 VolumetricPart read_volume(TableReader& table, const AnyLaw& law) {
   if (!table.optional<std::string>("volumetric")) return {};
   const VolumetricPart volume = table.required_listed<VolumetricParts>("volumetric");
@@ -129,9 +129,9 @@ std::vector<CaseMaterial> read_materials(TableReader& reader) {
   if (others > 1) {
     reader.fail(
         "materials",
-        fmt::format("leave out their elements {} times; at most one material may, which is then that of all "
-                    "other elements",
-                    others));
+        fmt::format(
+            "lack `elements` {} times; at most one material may, which is then used for all other elements",
+            others));
   }
   return materials;
 }

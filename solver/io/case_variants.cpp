@@ -27,14 +27,14 @@ std::string line_of(const std::string& text, std::size_t number) {
   return line;
 }
 
-/// Whether the parser met the end of a line, or of the file, in the middle of a text.
+/// Whether the parser met the end of a line or of the file inside a string.
 bool in_open_quote(std::string_view description) {
   return description.find(" string: ") != std::string_view::npos &&
          (description.find("control characters") != std::string_view::npos ||
           description.ends_with("end-of-file"));
 }
 
-/// What a decimal comma in a line should be; empty where there is none.
+/// A hint about a decimal comma in a line; empty if there is none.
 std::string comma_hint(const std::string& line) {
   std::istringstream words(line);
   for (std::string word; words >> word;) {
@@ -53,12 +53,12 @@ toml::table parse(const std::string& text, const std::string& name) {
     std::size_t line = error.source().begin.line;
     std::string rule(error.description());
     if (in_open_quote(rule)) {
-      if (rule.ends_with("end-of-file")) {  // the quote that is open is the last of three in a row
+      if (rule.ends_with("end-of-file")) {  // the open quote is the last of three in a row
         const std::string before =
             text.substr(0, std::min(text.size(), std::max(text.rfind("\"\"\"") + 1, text.rfind("'''") + 1)));
         line = 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
       }
-      rule = "a quote is open: the text has no end";
+      rule = "a quote is open: the string has no end";
     } else {
       rule += comma_hint(line_of(text, line));
     }
@@ -110,10 +110,10 @@ std::vector<Axis> read_axes(const toml::table& root, const std::filesystem::path
   return axes;
 }
 
-/// Adds or replaces; moves, because copies forget their lines in the file.
+/// Adds or replaces by moving, because copies lose their line numbers.
 void merge(toml::table& into, toml::table&& from) {
   for (auto&& [key, node] : from) {
-    const toml::key& name = key;  // clang up to 16 captures no structured binding
+    const toml::key& name = key;  // clang up to 16 cannot capture structured bindings
     toml::table* const table = into[name.str()].as_table();
     if (table != nullptr && node.is_table()) {
       merge(*table, std::move(*node.as_table()));
@@ -123,7 +123,7 @@ void merge(toml::table& into, toml::table&& from) {
   }
 }
 
-/// The variant that has a name on an axis, taken out of the tables of a file.
+/// The variant of an axis with a given name, moved out of the tables of a file.
 toml::table take_variant(toml::table& variants, const std::string& axis, const std::string& name) {
   for (auto& entry : *variants[axis].as_array()) {
     toml::table& variant = *entry.as_table();
@@ -137,7 +137,7 @@ toml::table take_variant(toml::table& variants, const std::string& axis, const s
 }  // namespace
 
 std::vector<CaseTables> read_case_tables(const std::filesystem::path& path) {
-  std::vector<CaseTables> cases(1);  // filled by moving: copies of tables forget their lines in the file
+  std::vector<CaseTables> cases(1);  // filled by moving, because copies lose their line numbers
   cases[0].root = parse(path);
   const auto axes = read_axes(cases[0].root, path);
   if (axes.empty()) return cases;
@@ -149,7 +149,7 @@ std::vector<CaseTables> read_case_tables(const std::filesystem::path& path) {
     auto& [root, names] = cases.back();
     toml::table variants = std::move(*root["variants"].as_table());
     root.erase("variants");
-    std::size_t each = combinations;  // combinations that share the names so far
+    std::size_t each = combinations;  // number of combinations that share the names so far
     for (const auto& axis : axes) {
       each /= axis.names.size();
       names.push_back(axis.names[number / each % axis.names.size()]);
@@ -171,7 +171,7 @@ CaseTables parse_case_text(const std::string& text, const std::string& name) {
   for (const char* key : {"mesh", "variants"}) {
     if (tables.root.contains(key)) {
       TableReader(tables.root, name, "")
-          .fail(key, "must not be here: the text is one case, and its mesh comes separately");
+          .fail(key, "is not allowed here: the text is one case, and its mesh is given separately");
     }
   }
   return tables;

@@ -54,11 +54,11 @@ void require_identity(const Hdf5File& file, const Identity& identity) {
     differences += fmt::format("\n  {}: '{}' in the checkpoint, '{}' in this run", name, found, value);
   }
   if (differences.empty()) return;
-  throw InputError(fmt::format(
-      "{}: is the checkpoint of another run; only the same program can continue it, with the same "
-      "input and options; differences:{}\n"
-      "allowed: continue it with what made it, delete it to start again, or name another file",
-      file.path().string(), differences));
+  throw InputError(
+      fmt::format("{}: is the checkpoint of another run; only the same program can resume it, with the same "
+                  "input and options; differences:{}\nallowed: resume it with the program and input that "
+                  "made it, delete it to start again, or name another file",
+                  file.path().string(), differences));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace sandglass {
 
 namespace {
 
-/// The seal of a file, filled up with zeros.
+/// The seal of a file, padded with zeros.
 std::string seal_of(const std::filesystem::path& path) {
   std::string seal = fmt::format("sandglass seal 1: XXH3 {}\n", hash_of_file(path, seal_size));
   seal.resize(seal_size, '\0');

@@ -127,9 +127,8 @@ MeshWithSets read_mesh_file(const std::filesystem::path& path) {
   }
   if (file.contains("/mesh/ties")) {
     throw InputError(
-        fmt::format("{}: has /mesh/ties: nodes of this mesh hang; a mesh file must have none. Take the mesh "
-                    "before it was "
-                    "refined, and [[refine]]",
+        fmt::format("{}: has /mesh/ties, but a mesh file must have no hanging nodes. Use the mesh before "
+                    "refinement, and [[refine]]",
                     path.string()));
   }
   const auto points = file.read<double>("/mesh/points");

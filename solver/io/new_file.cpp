@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Waits until a file or the entries of a folder are on the disk; an error number, or 0.
+/// Waits until a file or the entries of a folder are on the disk; returns an error number, or 0.
 int synchronize(const fs::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return errno;
@@ -28,7 +28,8 @@ int synchronize(const fs::path& path) {
   return error;
 }
 
-/// Whether the file is nobody's: the process of its number is gone, and no other computer's holds a lock.
+/// Whether the file is abandoned: its process no longer exists, and no process on another computer holds a
+/// lock.
 bool is_abandoned(const fs::path& part, const std::string& process) {
   const pid_t id = std::atoi(process.c_str());
   if (id <= 0 || kill(id, 0) == 0 || errno != ESRCH) return false;
@@ -39,7 +40,7 @@ bool is_abandoned(const fs::path& part, const std::string& process) {
   return free;
 }
 
-/// Keeps what would end the program waiting while it lives, so that no file is left that is about to go.
+/// Blocks signals that end the program during its lifetime, so that no temporary file is left behind.
 class Undisturbed {
  public:
   Undisturbed() {
@@ -60,7 +61,7 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Removes PATH.PROCESS.part of programs that were killed.
+/// Removes files PATH.PROCESS.part of programs that were killed.
 void remove_abandoned(const fs::path& path) {
   const std::string before = path.filename().string() + ".", after = ".part";
   std::error_code ignored;
@@ -109,7 +110,7 @@ void NewFile::commit() {
   fs::rename(temporary_, path_, error);
   if (error) throw InputError(fmt::format("{}: cannot be put in place: {}", path_.string(), error.message()));
   temporary_.clear();
-  synchronize(folder_of(path_));  // as far as the system does that to folders
+  synchronize(folder_of(path_));  // if the system supports that for folders
 }
 
 void require_place(const fs::path& path, const std::vector<fs::path>& inputs) {
@@ -117,7 +118,7 @@ void require_place(const fs::path& path, const std::vector<fs::path>& inputs) {
     std::error_code ignored;
     if (!fs::equivalent(path, input, ignored)) continue;
     throw InputError(fmt::format(
-        "{}: is what this command reads, and would be lost; name another file to write", path.string()));
+        "{}: is an input of this command and would be overwritten; name another output file", path.string()));
   }
   const Undisturbed meanwhile;
   const NewFile tried(path);

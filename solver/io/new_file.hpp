@@ -5,16 +5,16 @@
 
 namespace sandglass {
 
-/// The temporary file of a process beside a path.
+/// The temporary file of this process beside a path.
 std::filesystem::path temporary_path(const std::filesystem::path& path, int process);
 
-/// A file on its way: its bytes go to a temporary file next to its place, and `commit` puts them there.
-/// Without it nothing is left, and a file that stood there before stays as it was. What a program left that
-/// was killed goes when the next one writes to the same place.
+/// A file that is being written: its bytes go to a temporary file beside it, and `commit` renames that.
+/// Without `commit` nothing is left, and an existing file is unchanged. Temporary files of killed programs
+/// are removed when the same file is written again.
 class NewFile {
  public:
-  /// Makes the temporary, empty. Throws InputError when that cannot be done, and where something stands at
-  /// `path` that is no file: a folder, a device.
+  /// Creates the empty temporary file. Throws InputError if that fails, or if `path` exists but is not a file
+  /// (a folder, a device).
   explicit NewFile(const std::filesystem::path& path);
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -23,8 +23,8 @@ class NewFile {
   const std::filesystem::path& path() const { return path_; }
   const std::filesystem::path& temporary() const { return temporary_; }
 
-  /// Waits until the bytes are on the disk and renames: whatever happens, the old file is there or the new
-  /// one. Throws ComputationError when the disk does not take them, InputError when the name cannot be taken.
+  /// Waits until the bytes are on the disk and renames the file, so that at any time either the old or the
+  /// new file exists. Throws ComputationError if writing to the disk fails, InputError if renaming fails.
   void commit();
 
  private:
@@ -32,11 +32,11 @@ class NewFile {
   std::filesystem::path temporary_;
 };
 
-/// Throws InputError unless a file can be made at `path`, and if it is one of the files that the program
-/// reads: for programs that write at the end of long work.
+/// Throws InputError if `path` cannot be written or is one of the program's inputs; for programs that write
+/// at the end of long work.
 void require_place(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
-/// Makes a folder, and those above it, unless it is there. Throws InputError when that cannot be done.
+/// Creates a folder and its parents unless they exist. Throws InputError if that fails.
 void make_folder(const std::filesystem::path& path);
 
 }  // namespace sandglass

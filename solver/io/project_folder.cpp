@@ -9,14 +9,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The prefix of the installation that this code would be part of: of PREFIX/bin/PROGRAM, or of a shared
-/// object, PREFIX/lib/python3/dist-packages/MODULE and the like.
+/// The prefix of an installation that contains this code: of PREFIX/bin/PROGRAM, or of a shared object such
+/// as PREFIX/lib/python3/dist-packages/MODULE.
 fs::path own_prefix() {
   static const char here = 0;
   Dl_info ignored{};
   link_map* object = nullptr;
   dladdr1(&here, &ignored, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP);
-  if (object != nullptr && *object->l_name != '\0')  // that of the program is empty
+  if (object != nullptr && *object->l_name != '\0')  // empty for the program itself
     return fs::absolute(object->l_name).parent_path() / "../../..";
   std::error_code none;
   return fs::read_symlink("/proc/self/exe", none).parent_path() / "..";

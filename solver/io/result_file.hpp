@@ -9,11 +9,11 @@
 
 namespace sandglass {
 
-/// Text attributes that tell where a result comes from: revision, flags, method and the like.
+/// Text attributes on the origin of a result: revision, flags, method and so on.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes a frame as the group of that name, and reads it again with the numbers of nodes and elements that
-/// its mesh has; throws InputError when they are not there.
+/// Writes a frame as the group of that name, and reads it with the mesh's numbers of nodes and elements;
+/// throws InputError if a dataset is missing or has another size.
 void write_frame(Hdf5File& file, const std::string& group, const Frame& frame);
 Frame read_frame(const Hdf5File& file, const std::string& group, std::size_t n_nodes, std::size_t n_elements);
 
@@ -27,8 +27,8 @@ void write_reactions(Hdf5File& file, const std::string& group, const std::vector
 std::string frame_group(std::size_t number);
 
 /// Writes a run: mesh and sets, /frames/NNNN/{displacement (m), velocity (m/s), jacobian (-),
-/// hourglass_energy_density (J/m^3), stress (Pa), reaction/SET (N), of an adaptive method level} with
-/// attribute `time`, and /history/*. Beside it, an XDMF file of the same stem opens in ParaView. Nothing is
+/// hourglass_energy_density (J/m^3), stress (Pa), reaction/SET (N), level (of an adaptive method)} with
+/// attribute `time`, and /history/*. Beside it, an XDMF file of the same stem opens in ParaView. No file is
 /// in place before `commit`.
 class ResultWriter {
  public:
@@ -40,10 +40,10 @@ class ResultWriter {
   /// The frames so far; the first is the undeformed body.
   std::size_t frames() const { return times_.size(); }
 
-  /// A text attribute of the whole.
+  /// Writes a text attribute of the file.
   void note(const std::string& name, const std::string& text) { file_.write_attribute("/", name, text); }
 
-  /// `status` is "complete" or says how the run ended.
+  /// `status` is "complete" or describes how the run ended.
   void commit(const std::string& status);
 
  private:

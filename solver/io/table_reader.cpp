@@ -14,7 +14,7 @@ namespace {
 std::string written(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (!node.is_string()) return value_text(node);
-  std::ostringstream stream;  // in the quotes of all messages, with escapes
+  std::ostringstream stream;  // with the quotes of all messages and escapes
   stream << *node.as_string();
   return stream.str();
 }
@@ -27,8 +27,7 @@ constexpr std::string_view type_name() {
   if constexpr (std::is_same_v<T, std::string>) return "a text";
 }
 
-/// The value of a node as T, or none when it is of another type. Integers count as numbers, not the other way
-/// round.
+/// The value of a node as T, or none if it has another type. Integers are also numbers, but not the reverse.
 template <class T>
 std::optional<T> scalar(const toml::node& node) {
   if constexpr (std::is_same_v<T, int>) {
@@ -66,7 +65,7 @@ void TableReader::fail(const std::string& key, const std::string& message) const
 }
 
 void TableReader::fail_missing(const std::string& key) const {
-  // A misspelt key is missing under its right name; the misspelling is what the user wants to hear of.
+  // If a key is missing because it is misspelt, the message names the misspelling.
   for (const auto& given : keys()) {
     if (!asked_.contains(given) && nearest_name(given, {key}) == key) {
       fail(given, fmt::format("is not a key of this table; did you mean '{}'?", key));
@@ -106,7 +105,7 @@ T TableReader::convert(const toml::node& node, const std::string& key) const {
     if constexpr (fixed) expected = fmt::format("a list of {}, each {}", values.size(), type_name<Entry>());
     if (array == nullptr) fail_type(key, node, expected);
     if constexpr (fixed) {
-      if (array->size() == 2 * values.size()) expected += "; decimals have a point, as 0.1";
+      if (array->size() == 2 * values.size()) expected += "; decimals have a point, such as 0.1";
       if (array->size() != values.size()) fail_type(key, node, expected);
     } else {
       values.resize(array->size());

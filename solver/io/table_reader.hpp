@@ -27,7 +27,7 @@ class TableReader {
 
   const std::filesystem::path& file() const { return file_; }
 
-  /// The value of a key; none when the key is absent. T: double, int, bool, std::string, a std::array or
+  /// The value of a key; none if the key is absent. T: double, int, bool, std::string, a std::array or
   /// std::vector of double or int.
   template <class T>
   std::optional<T> optional(const std::string& key) {
@@ -42,7 +42,7 @@ class TableReader {
     fail_missing(key);
   }
 
-  /// The same of a number, or of numbers, that must lie in a range.
+  /// The same for a number, or numbers, in a range.
   template <class T>
   std::optional<T> optional(const std::string& key, const Range& range) {
     auto value = optional<T>(key);
@@ -57,24 +57,24 @@ class TableReader {
     return value;
   }
 
-  /// Whether the key is there and holds a number, or a text.
+  /// Whether the key exists and holds a number, or a text.
   bool holds_number(const std::string& key);
   bool holds_text(const std::string& key);
 
   /// One of a list of words.
   std::string required_choice(const std::string& key, const std::vector<std::string>& allowed);
 
-  /// A table below this one; none when absent.
+  /// A table below this one; none if absent.
   std::optional<TableReader> table(const std::string& key);
   TableReader required_table(const std::string& key);
 
-  /// The tables of an array of tables [[key]]; empty when absent.
+  /// The tables of an array of tables [[key]]; empty if absent.
   std::vector<TableReader> tables(const std::string& key);
 
-  /// All keys of this table; reading them counts as asking for them.
+  /// All keys of this table; they then count as read.
   std::vector<std::string> keys() const;
 
-  /// The entry of a list of types that a key names, with its parameters read, if it has any.
+  /// The entry of a list of types that a key names, with its parameters, if any.
   template <class List>
   VariantOf<List> required_listed(const std::string& key) {
     VariantOf<List> chosen;
@@ -86,8 +86,8 @@ class TableReader {
     return chosen;
   }
 
-  /// Reads all declared parameters of an aggregate, each within its range, and asks the aggregate whether a
-  /// rule between them is broken. Of a parameter that is an aggregate itself the keys are in this table.
+  /// Reads all declared parameters of an aggregate, each within its range, and checks the aggregate's rules
+  /// between them. The keys of a parameter that is itself an aggregate are in this table.
   template <class Aggregate>
   void parameters(Aggregate& aggregate) {
     std::apply([&](const auto&... parameter) { (read(aggregate, parameter), ...); }, Aggregate::parameters());
@@ -101,7 +101,7 @@ class TableReader {
   /// Accepts a key without reading it.
   void leave(const std::string& key) { asked_.insert(key); }
 
-  /// Throws when the table has a key that was not read; suggests the nearest that was.
+  /// Throws if the table has a key that was not read; suggests the closest one that was.
   void finish() const;
 
   /// Throws an InputError about a key: "file:line: prefix.key message".

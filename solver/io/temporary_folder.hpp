@@ -4,7 +4,7 @@
 
 namespace sandglass {
 
-/// A folder that is removed in the end. Throws ComputationError if it cannot be made.
+/// A folder that is removed at the end of its lifetime. Throws ComputationError if it cannot be created.
 class TemporaryFolder {
  public:
   TemporaryFolder();

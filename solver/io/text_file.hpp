@@ -7,8 +7,8 @@
 
 namespace sandglass {
 
-/// A text file on its way: written next to its place, where `commit` puts it. Throws InputError when the
-/// place cannot be written, ComputationError when the disk does not take the text.
+/// A text file that is being written beside its final path, to which `commit` renames it. Throws InputError
+/// if the path cannot be written, ComputationError if writing to the disk fails.
 class NewTextFile {
  public:
   NewTextFile(const std::filesystem::path& path, const std::string& text);
@@ -18,7 +18,7 @@ class NewTextFile {
   NewFile file_;
 };
 
-/// Writes a text file in one go; errors as above.
+/// Writes a whole text file; errors as above.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace sandglass

@@ -1,12 +1,12 @@
 #pragma once
 
-/// toml++, without two promises to the compiler that wrong input breaks (version 3.3.0, found by fuzzing).
+/// toml++, without two assumptions that wrong input violates (version 3.3.0, found by fuzzing).
 ///
-/// It asserts, or lets the compiler assume where NDEBUG is set, that a key begins as keys do: "[#" does not.
-/// Without assertions it answers that with an error of its own, as it should.
+/// It asserts, or lets the compiler assume if NDEBUG is set, that a key begins with a valid character; in
+/// "[#" it does not. Without the assertion it reports its own error, as it should.
 ///
-/// Its table of white space calls characters from U+00A1 to U+0499 unreachable. They are none: no white
-/// space.
+/// Its table of white space marks characters from U+00A1 to U+0499 as unreachable. They are possible, but not
+/// white space.
 ///
 /// Its functions are compiled once, in toml.cpp.
 #include <cstdint>

@@ -40,7 +40,7 @@ std::string key_text(const std::string& key) {
   return plain ? key : quoted(key);
 }
 
-/// A number that is read as the same number, and not as a whole one.
+/// A number as text that reads back as the same number, and not as an integer.
 std::string number_text(double value) {
   std::string text = fmt::to_string(value);
   if (std::isfinite(value) && text.find_first_of(".e") == std::string::npos) text += ".0";

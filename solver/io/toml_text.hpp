@@ -6,12 +6,12 @@
 
 namespace sandglass {
 
-/// A document as text: tables and keys in the order of the file they were read from, those without one at the
+/// A document as text: tables and keys in the order of the file from which they were read, new ones at the
 /// end; numbers with as many digits as they need. Comments are not part of a document.
 std::string toml_text(const toml::table& document);
 
-/// A value on one line, as a case file may hold it, with as many digits as a number needs. toml++'s own text
-/// of a list counts the columns of small numbers by an undefined conversion.
+/// A value on one line of a case file; numbers have as many digits as they need. (toml++ itself has undefined
+/// behaviour when it formats lists of small numbers.)
 std::string value_text(const toml::node& value);
 
 }  // namespace sandglass

@@ -18,11 +18,9 @@ class OrientedLaw;
 
 /// An elastic law and its volumetric part behind function calls. Kernels are compiled once for all laws that
 /// they call, and laws once for all kernels: the cost of a build is methods + laws, not methods x laws. A
-/// call handles as many elements as a register holds, and all their integration points.
-///
-/// The functions declared here are those of the law, in material axes (null: those of space).
-/// `called_law_functions.hpp` defines them; the library instantiates them for the number types of its
-/// kernels, see CMakeLists.txt.
+/// call handles as many elements as a register holds, and all their integration points. The functions
+/// declared here are the law's, in material axes (null: the axes of space). `called_law_functions.hpp`
+/// defines them; the library instantiates them for the number types of its kernels, see CMakeLists.txt.
 class CalledLaw : public SumOfParts<CalledLaw> {
  public:
   template <class Law>
@@ -47,7 +45,7 @@ class CalledLaw : public SumOfParts<CalledLaw> {
     if (quadratic()) return T(bulk_modulus_) * J_minus_one;
     return called_volume(J_minus_one).slope;
   }
-  /// What the pressure has beyond K (J - 1), Pa.
+  /// The pressure minus K (J - 1), Pa.
   template <class T>
   T pressure_beyond_quadratic(const T& J_minus_one) const {
     if (quadratic()) return T(0);

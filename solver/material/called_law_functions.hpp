@@ -36,7 +36,7 @@ template <class Law, class T>
   *V_tau = law.weighted_kirchhoff(at->V, *H, at->change, at->p);
 }
 
-/// A displacement gradient or a strain in the axes of a law.
+/// A displacement gradient or a strain, transformed to the axes of a law.
 template <class Law, class T>
 Tensor<T> in_axes_of(const Law& /*law*/, const Tensor<T>& H, const MaterialAxes<T>* axes) {
   if constexpr (!is_isotropic<Law>) {
@@ -45,7 +45,7 @@ Tensor<T> in_axes_of(const Law& /*law*/, const Tensor<T>& H, const MaterialAxes<
   return H;
 }
 
-/// A stress in the axes of a law as one in space.
+/// A stress in the axes of a law, transformed to space.
 template <class Law, class T>
 Tensor<T> from_axes_of(const Law& /*law*/, const Tensor<T>& stress, const MaterialAxes<T>* axes) {
   if constexpr (!is_isotropic<Law>) {

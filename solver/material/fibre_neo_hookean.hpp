@@ -12,9 +12,9 @@ namespace sandglass {
 /// Elasticity 49, 1997, 1-30: mu gamma/2 (I4 - 1)^2 with mu gamma = k/4), with the isochoric invariant that
 /// Weiss, Maker and Govindjee (CMAME 135, 1996, 107-128) use for nearly incompressible tissue,
 ///   W = mu/2 (I1bar - 3) + k/2 Ef^2 + K/2 (J - 1)^2,  Ef = (I4bar - 1)/2,  I4bar = J^(-2/3) a.C a.
-/// Ef is the Green strain of a fibre along a without the change of volume. The energy is smooth: fibres
-/// resist shortening as they resist stretching, but soften below a stretch of 1/sqrt(3), where the solid
-/// kinks if k >> mu.
+/// Ef is the Green strain, without the change of volume, of a fibre along a. The energy is smooth: fibres
+/// resist shortening as well as stretching, but soften below a stretch of 1/sqrt(3), where the solid kinks if
+/// k >> mu.
 struct FibreNeoHookean : FibreReinforced<FibreNeoHookean> {
   static constexpr std::string_view name = "fibre-neo-hookean";
   static constexpr std::string_view summary =

@@ -4,9 +4,10 @@
 
 #include "material/first_invariant.hpp"
 
-/// Isochoric energies w(I1bar) + psi(E) of anisotropic solids: a matrix that has an energy of the first
-/// invariant, and fibres that have one of the isochoric Green strain E = (J^(-2/3) F^T F - I)/2. All tensors
-/// are in material axes (material_axes.hpp): the first is that of the fibres, the second lies in the sheets.
+/// Isochoric energies w(I1bar) + psi(E) of anisotropic solids: the energy of the matrix depends on the first
+/// invariant, the energy of the fibres on the isochoric Green strain E = (J^(-2/3) F^T F - I)/2. All tensors
+/// are in material axes (material_axes.hpp): the first points along the fibres, the second lies in the
+/// sheets.
 namespace sandglass {
 
 /// E with all its digits near the undeformed state: 2 E = J^(-2/3) (F^T F - I) + (J^(-2/3) - 1) I, and with
@@ -51,7 +52,7 @@ struct FibreReinforced : QuadraticVolume<Law> {
            (V * r * r) * deviator(to_space(law().fibre_stress(isochoric_green_strain(H, change)), H));
   }
 
-  /// The stress (Pa) of a small strain e: K tr(e) I + 2 mu dev(e) + dev S(dev e), with mu at rest.
+  /// The stress (Pa) of a small strain e: K tr(e) I + 2 mu dev(e) + dev S(dev e), with the undeformed mu.
   template <class T>
   Tensor<T> small_strain_stress(const Tensor<T>& strain) const {
     const Tensor<T> isochoric = deviator(strain);

@@ -6,8 +6,8 @@
 #include "material/tangent_bound.hpp"
 #include "math/strain.hpp"
 
-/// Isochoric energies w(I1bar) of the first invariant I1bar = J^(-2/3) tr(F^T F): their stress is the
-/// neo-Hookean one with a shear modulus that depends on the strain, mu = 2 w'(I1bar). They are written in the
+/// Isochoric energies w(I1bar) of the first invariant I1bar = J^(-2/3) tr(F^T F): their stress is neo-Hookean
+/// with a shear modulus that depends on the strain, mu = 2 w'(I1bar). They are written in terms of the
 /// displacement gradient H = F - I, so that nothing cancels near the undeformed state.
 namespace sandglass {
 
@@ -69,8 +69,7 @@ Tensor<T> first_invariant_kirchhoff(const T& V_mu, const T& V_p, const Tensor<T>
   return tau;
 }
 
-/// Bound of mu/2 d^2 I1bar for a modulus mu >= 0 (Pa); see TangentBound. Its stress is that of b = F F^T,
-/// m = mu J^(-2/3).
+/// Bound of mu/2 d^2 I1bar for a modulus mu >= 0 (Pa); see TangentBound. Here b = F F^T and m = mu J^(-2/3).
 template <class T>
 TangentBound<T> first_invariant_tangent_bound(const T& mu, const Tensor<T>& H) {
   const Tensor<T> e = left_cauchy_green_minus_identity(H);

@@ -4,8 +4,8 @@
 
 namespace sandglass {
 
-/// A law without an isochoric part whose pressure does not depend on the deformation: with it a kernel gives
-/// the forces of a pressure p alone, p dV/du.
+/// A law without an isochoric part whose pressure does not depend on the deformation: with it, a kernel
+/// computes the forces of a pressure p alone, p dV/du.
 template <class T>
 struct GivenPressure {
   T p;  ///< Pa, tension positive

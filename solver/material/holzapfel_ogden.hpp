@@ -14,14 +14,14 @@ namespace sandglass {
 /// isochoric invariants,
 ///   W = a/(2 b) (exp(b (I1bar - 3)) - 1) + sum_i a_i/(2 b_i) (exp(b_i <I4bar_i - 1>^2) - 1)
 ///     + a_fs/(2 b_fs) (exp(b_fs I8bar^2) - 1) + K/2 (J - 1)^2,
-/// i = f, s: fibres and sheets resist stretch alone, <x> = max(x, 0); I8bar is their shear. In the isochoric
+/// i = f, s: fibres and sheets resist only stretch, <x> = max(x, 0); I8bar is their shear. In the isochoric
 /// Green strain, I4bar_f - 1 = 2 E11, I4bar_s - 1 = 2 E22 and I8bar = 2 E12.
 struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
   static constexpr std::string_view name = "holzapfel-ogden";
   static constexpr std::string_view summary =
-      "exponential matrix with fibres and sheets that resist stretch alone: heart muscle";
+      "exponential matrix with fibres and sheets that resist only stretch: heart muscle";
 
-  /// Fibres do not resist shortening: the stress has a kink where they are neither stretched nor shortened.
+  /// Fibres do not resist shortening: the stress has a kink at their undeformed length.
   static constexpr bool slackens = true;
 
   double a = 0.0;
@@ -39,13 +39,13 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
     constexpr Range any_stiffness = Range::at_least(0.0), exponent = Range::positive();
     return std::tuple{
         Parameter{&Self::a, "a", "Pa", Range::positive(), "initial shear modulus of the matrix"},
-        Parameter{&Self::b, "b", "-", exponent, "how fast the matrix stiffens"},
+        Parameter{&Self::b, "b", "-", exponent, "exponent of the matrix"},
         Parameter{&Self::a_f, "a_f", "Pa", any_stiffness, "stiffness of the fibres"},
-        Parameter{&Self::b_f, "b_f", "-", exponent, "how fast the fibres stiffen"},
+        Parameter{&Self::b_f, "b_f", "-", exponent, "exponent of the fibres"},
         Parameter{&Self::a_s, "a_s", "Pa", any_stiffness, "stiffness of the sheets"},
-        Parameter{&Self::b_s, "b_s", "-", exponent, "how fast the sheets stiffen"},
+        Parameter{&Self::b_s, "b_s", "-", exponent, "exponent of the sheets"},
         Parameter{&Self::a_fs, "a_fs", "Pa", any_stiffness, "stiffness of shear between fibres and sheets"},
-        Parameter{&Self::b_fs, "b_fs", "-", exponent, "how fast it stiffens"},
+        Parameter{&Self::b_fs, "b_fs", "-", exponent, "exponent of that shear"},
         Parameter{&Self::bulk, "bulk_modulus", "Pa", Range::positive(), "initial bulk modulus"}};
   }
 
@@ -133,7 +133,7 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
     return {T(0.5 * a / b) * growth, stiffness * E, stiffness * (T(1) + T(2) * exponent)};
   }
 
-  /// The same of stretched fibres; shortened ones do nothing.
+  /// The same for stretched fibres; shortened ones have no energy.
   template <class T>
   static Exponential<T> stretched(double a, double b, const T& E) {
     Exponential<T> psi = exponential(a, b, max(E, T(0)));

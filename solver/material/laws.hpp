@@ -14,10 +14,10 @@ using Laws = Concatenated<ElasticLaws, Wrapped<Viscoelastic, ElasticLaws>>;
 /// A law chosen at run time.
 using AnyLaw = VariantOf<Laws>;
 
-/// The laws that kernels are compiled for: the neo-Hookean one, and the others behind calls.
+/// The laws for which kernels are compiled: the neo-Hookean one, and the others behind calls.
 using KernelLaw = std::variant<NeoHookean, CalledLaw, Viscoelastic<CalledLaw>>;
 
-/// The law as kernels take it, with a volumetric part of its own or another.
+/// The law as kernels take it, with its own volumetric part or another.
 KernelLaw kernel_law(const AnyLaw& law, VolumetricPart volume = {});
 
 /// The elastic law, or the instantaneous response of a viscoelastic one, behind calls.
@@ -28,7 +28,7 @@ inline bool is_viscoelastic(const AnyLaw& law) {
   return std::holds_alternative<Viscoelastic<CalledLaw>>(kernel_law(law));
 }
 
-/// Whether a law chosen at run time has directions of its own.
+/// Whether a law chosen at run time has its own directions.
 inline bool has_fibres(const AnyLaw& any_law) {
   return std::visit([]<class Law>(const Law&) { return !is_isotropic<Law>; }, any_law);
 }

@@ -10,20 +10,20 @@ namespace sandglass {
 template <class T>
 using MaterialAxes = Tensor<T>;
 
-/// A H A^T: a tensor in space as one in material axes.
+/// A H A^T: a tensor, transformed from space to material axes.
 template <class T>
 Tensor<T> in_material(const MaterialAxes<T>& A, const Tensor<T>& H) {
   return A * H * transpose(A);
 }
 
-/// A^T P A: the way back.
+/// A^T P A: the inverse transformation.
 template <class T>
 Tensor<T> in_space(const MaterialAxes<T>& A, const Tensor<T>& P) {
   return transpose(A) * P * A;
 }
 
-/// A law in elements with these axes, one element in each lane; null: the axes are those of space. A law
-/// without axes is returned unchanged.
+/// A law in elements with these axes, one element in each lane; null means the axes of space. A law without
+/// axes is returned unchanged.
 template <class Law, class T>
 constexpr decltype(auto) with_axes(const Law& law, const MaterialAxes<T>* axes) {
   if constexpr (requires { law.with_axes(axes); }) {

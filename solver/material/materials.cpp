@@ -4,7 +4,7 @@ namespace sandglass {
 
 namespace {
 
-/// An elastic law as a viscoelastic one of which nothing decays.
+/// An elastic law as a viscoelastic one without relaxation.
 Viscoelastic<CalledLaw> to_viscoelastic(const KernelLaw& law) {
   if (const auto* viscoelastic = std::get_if<Viscoelastic<CalledLaw>>(&law)) return *viscoelastic;
   return {elastic_law(law), 0.0, 1.0, 0.0, 1.0};

@@ -8,11 +8,11 @@
 
 namespace sandglass {
 
-/// What a body or a part of it is made of.
+/// The material of a body or a part of it.
 struct Material {
   AnyLaw law;
   double density = 0.0;        ///< kg/m^3
-  VolumetricPart volume = {};  ///< in place of that of the law
+  VolumetricPart volume = {};  ///< replaces the law's own
 };
 
 /// The law of a material as kernels take it.
@@ -41,13 +41,13 @@ auto by_material(const Materials& materials, const Property& property) {
   return values;
 }
 
-/// The laws of the materials as kernels take them: of one type, the simplest that all of them are.
+/// The laws of the materials as kernels take them, all of the simplest type that fits all of them.
 using KernelLaws =
     std::variant<std::vector<NeoHookean>, std::vector<CalledLaw>, std::vector<Viscoelastic<CalledLaw>>>;
 
 KernelLaws kernel_laws(const Materials& materials);
 
-/// A number for each material, from 0 on, which those of equal law and parameters share, whatever their
+/// A number for each material, from 0. Materials with equal law and parameters share it, whatever their
 /// density.
 std::vector<std::size_t> numbers_of_alike(const Materials& materials);
 

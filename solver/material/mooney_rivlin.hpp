@@ -32,7 +32,7 @@ struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
   constexpr double bulk_modulus() const { return bulk; }
 
   /// c10 (I1bar - 3) + c01 (I2bar - 3), in J/m^3. I2bar is the first invariant of the cofactor of F, whose
-  /// determinant is J^2: the same expression serves both.
+  /// determinant is J^2, so the same function computes both.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
     return T(3.0 * c10) * third_of_first_invariant_growth(H) +

@@ -66,7 +66,7 @@ struct Ogden : QuadraticVolume<Ogden> {
     return sigma * deformation_cofactor(H);
   }
 
-  /// V tau (J), the Kirchhoff stress J sigma times its reference volume, p J I included.
+  /// V tau (J), the Kirchhoff stress J sigma, including p J I, times its reference volume.
   template <class T>
   Tensor<T> weighted_kirchhoff(const T& V, const Tensor<T>& H, const VolumeChange<T>& change,
                                const T& p) const {

@@ -5,7 +5,7 @@
 namespace sandglass {
 
 /// The base of all laws of the list: the volumetric energy K/2 (J - 1)^2, which a material may replace
-/// (volumetric_parts.hpp). A law defines bulk_modulus() and what SumOfParts asks for, except the functions
+/// (volumetric_parts.hpp). A law defines bulk_modulus() and the functions that SumOfParts needs, except those
 /// below.
 template <class Law>
 struct QuadraticVolume : SumOfParts<Law> {
@@ -31,7 +31,7 @@ struct QuadraticVolume : SumOfParts<Law> {
   constexpr const Law& law() const { return static_cast<const Law&>(*this); }
 };
 
-/// The base of a law around an elastic one, which elastic() returns: it has its initial moduli and its
+/// The base of a law that wraps an elastic one, which elastic() returns, with the same initial moduli and
 /// volumetric part.
 template <class Law>
 struct VolumeOfElastic : SumOfParts<Law> {

@@ -4,7 +4,7 @@
 
 namespace sandglass {
 
-/// Whether a law is isotropic. One that is not defines small_strain_stress(strain).
+/// Whether a law is isotropic. An anisotropic law defines small_strain_stress(strain).
 template <class Law>
 constexpr bool is_isotropic = !requires(const Law& law) {
   law.small_strain_stress(Tensor<double>{});

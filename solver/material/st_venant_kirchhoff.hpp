@@ -20,8 +20,8 @@ namespace sandglass {
 /// whose undeformed tangent is isochoric; elements that average K/2 (J - 1)^2 therefore average the pressure.
 /// At large strains that part is not positive: within such an element K (tr E)^2 acts against K (J - 1)^2,
 /// and the element becomes unstable when K |dev b|^2 exceeds a few mu. A block stretched and sheared with
-/// tl-mean-dilatation endured 30 % at nu = .25, 20 % at .3, 10 % at .4 and less at .45. Other methods use the
-/// whole energy and are not affected.
+/// tl-mean-dilatation withstood 30 % at nu = 0.25, 20 % at 0.3, 10 % at 0.4 and less at 0.45. Other methods
+/// use the whole energy and are not affected.
 struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
   static constexpr std::string_view name = "st-venant-kirchhoff";
   static constexpr std::string_view summary = "Hooke's law of the Green strain; soft in strong compression";

@@ -6,12 +6,12 @@
 
 namespace sandglass {
 
-/// How much stiffer than undeformed a law is against most changes of shape at the displacement gradient H, at
-/// least 1: a third of the mean over all of them, as the mean is mostly that of the stiffest one, where laws
-/// stiffen. So this is 1 at usual strains. The mean is that of the second derivatives of the isochoric energy
-/// along the paths F + t D F, D symmetric and without trace, over twice the initial shear modulus. It follows
-/// from differences of the stress; the five D below are orthonormal. Softening is not counted: steps of a
-/// body that is taken for too stiff are short, those of one that is taken for too soft overshoot.
+/// The stiffness of a law against most changes of shape at the displacement gradient H, over the undeformed
+/// one; at least 1. It is a third of the mean over all changes of shape, because the stiffest one dominates
+/// the mean of stiffening laws; so it is 1 at usual strains. The mean is taken of the second derivatives of
+/// the isochoric energy along the paths F + t D F, D symmetric and without trace, over twice the initial
+/// shear modulus, computed from differences of the stress; the five D below are orthonormal. Softening is not
+/// counted: if the stiffness is overestimated, steps are short; if it is underestimated, they overshoot.
 inline double stiffening(const CalledLaw& law, const Tensor<double>& H, const MaterialAxes<double>* axes) {
   constexpr double a = 0.70710678118654752, b = 0.40824829046386302;  // 1/sqrt(2), 1/sqrt(6)
   constexpr std::array<Tensor<double>, 5> changes_of_shape{{{{a, 0, 0, 0, -a, 0, 0, 0, 0}},

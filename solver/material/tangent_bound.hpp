@@ -68,9 +68,9 @@ TangentBound<T> tangent_bound(const Law& law, const Tensor<T>& H) {
   return tangent_bound(law, H, J_minus_one, law.pressure(J_minus_one), law.bulk_tangent(J_minus_one));
 }
 
-/// The bound of a law whose isochoric stress has relaxed to an unknown share of it. If a law has only a bound
-/// of the total, the response is between the total and its volumetric part, which is the stiffer one where
-/// the isochoric part softens.
+/// The bound of a law whose isochoric stress has relaxed to an unknown share. If a law has only a bound of
+/// the total, the response is between the total and its volumetric part, which is stiffer if the isochoric
+/// part softens.
 template <class Law, class T>
 TangentBound<T> viscoelastic_tangent_bound(const Law& law, const Tensor<T>& H, const T& J_minus_one,
                                            const T& p, const T& bulk) {

@@ -22,8 +22,8 @@ inline constexpr std::string_view viscoelastic_suffix = "; shear stress relaxes 
 
 /// The factors of one Prony term in a step: Q <- Q + decay (share S_old - Q) + follow (S_new - S_old).
 struct ViscousStep {
-  double share;          ///< g, the share of the isochoric stress that has decayed in the end
-  double inverse_share;  ///< 1/g; 0 where g is
+  double share;          ///< g, the share of the isochoric stress that finally decays
+  double inverse_share;  ///< 1/g, or 0 if g is 0
   double decay;          ///< 1 - exp(-dt/tau)
   double follow;         ///< g (1 - (1 - exp(-dt/tau)) / (dt/tau))
 
@@ -98,13 +98,12 @@ class ViscoelasticPoint : public VolumeOfElastic<ViscoelasticPoint<Law, Memory>>
     return VP + VP * transpose(H);
   }
 
-  /// Stored isochoric energy (J/m^3) at the strain of the memory: that of the permanent spring, and of the
-  /// springs of the Prony terms, whose stresses are h_i = g_i S - Q_i:
+  /// Stored isochoric energy (J/m^3) of the permanent spring and the springs of the Prony terms at the strain
+  /// of the memory; the stresses of the latter are h_i = g_i S - Q_i:
   ///   W = g_inf W_iso + sum_i h_i : h_i / (4 g_i mu) * W_iso / (S : S / (4 mu)).
   /// The last factor, 1 near the undeformed state, is the compliance of the elastic law at this strain. The
-  /// energy is the elastic one as long as nothing has decayed, g_inf times it when everything has, never
-  /// negative, and exact for small strains; in between, at large strains, the model has no potential in
-  /// closed form.
+  /// energy is elastic as long as nothing has decayed, g_inf times that when everything has, never negative,
+  /// and exact for small strains; in between, at large strains, the model has no potential in closed form.
   template <class T>
   T isochoric_energy(const Tensor<T>& H) const {
     const T W = elastic_.isochoric_energy(H);
@@ -118,10 +117,10 @@ class ViscoelasticPoint : public VolumeOfElastic<ViscoelasticPoint<Law, Memory>>
     return energy;
   }
 
-  /// The elastic law's bound plus that of the stress in the memory. The stress after another step is
-  /// (1 - sum_i follow_i) S + R, R = -sum_i (b Q_i + (b - a) h_i), a = exp(-x), b = (1 - a) / x,
-  /// x = dt/tau_i. The first part is softer than the elastic law; the second adds (F R F^T) : (L^T L) to the
-  /// second variation, where max(|Q_i|, |h_i|) bounds each part for any step because b + (b - a) <= 1.
+  /// The elastic law's bound plus the bound of the stress in the memory. The stress after another step is (1
+  /// - sum_i follow_i) S + R, R = -sum_i (b Q_i + (b - a) h_i), a = exp(-x), b = (1 - a) / x, x = dt/tau_i.
+  /// The first part is softer than the elastic law; the second adds (F R F^T) : (L^T L) to the second
+  /// variation, where max(|Q_i|, |h_i|) bounds each part for any step because b + (b - a) <= 1.
   template <class T>
   TangentBound<T> tangent_bound(const Tensor<T>& H, const T& J_minus_one, const T& p, const T& bulk) const {
     return viscoelastic_tangent_bound(elastic_, H, J_minus_one, p, bulk) + memory_bound(H);
@@ -203,7 +202,7 @@ class ViscoelasticStep {
 /// Viscoelasticity of any law by a Prony series of two terms: the isochoric second Piola-Kirchhoff stress
 /// relaxes, the volumetric one does not,
 ///   S(t) = S_vol + g_inf S_iso + sum_i h_i,  h_i(t) = g_i int_0^t exp(-(t - s)/tau_i) dS_iso/ds ds,
-/// with g_inf = 1 - sum_i g_i. In the reference frame no stress has to be rotated: the law is objective. The
+/// with g_inf = 1 - sum_i g_i. In the reference frame no stress needs rotation: the law is objective. The
 /// integral is exact for a stress that is linear in time over each step (Taylor, Pister and Goudreau 1970,
 /// IJNME 2:45; Simo 1987, CMAME 60:153; for TLED: Taylor, Comas, Cheng, Passenger, Hawkes, Atkinson and
 /// Ourselin 2009, Med. Image Anal. 13:234, who use a first-order step).
@@ -217,8 +216,8 @@ class ViscoelasticStep {
 /// The parameters of the law, its moduli and its tangent bounds are those of the instantaneous response. So
 /// is the stiffness of hourglass controls, which does not relax. Either choice has an error: a block bent by
 /// a third of its length in half of tau_1, with 81 % of its stress relaxing, differs from the answer of
-/// tl-mean-dilatation by .7 to 1.1 % when just bent and by 2.0 to 3.1 % when fully relaxed, and with
-/// long-term moduli in the control by 2.5 to 6.0 % and .2 to .4 %. For slow loading only, multiply kappa by
+/// tl-mean-dilatation by 0.7 to 1.1 % when just bent and by 2.0 to 3.1 % when fully relaxed, and with
+/// long-term moduli in the control by 2.5 to 6.0 % and 0.2 to 0.4 %. For slow loading only, multiply kappa by
 /// g_inf.
 template <class Law>
 struct Viscoelastic : Law {
@@ -244,7 +243,7 @@ struct Viscoelastic : Law {
             Parameter{&Self::time_1, "time_1", "s", Range::positive(), "first relaxation time"},
             Parameter{&Self::relaxation_2, "relaxation_2", "-", share, "share that relaxes in time_2", false},
             Parameter{&Self::time_2, "time_2", "s", Range::at_least(0.0),
-                      "second relaxation time, positive if relaxation_2 is", false}});
+                      "second relaxation time, positive if relaxation_2 is positive", false}});
   }
 
   /// Some stress must remain, and relaxation times must be positive.
@@ -257,8 +256,8 @@ struct Viscoelastic : Law {
                                                     1.0 - relaxation_1)};
     }
     if (relaxation_2 > 0.0 && !(time_2 > 0.0)) {
-      return BrokenRule{
-          "time_2", fmt::format("= {} must be positive because relaxation_2 = {} is", time_2, relaxation_2)};
+      return BrokenRule{"time_2",
+                        fmt::format("= {} must be positive, as relaxation_2 = {} is", time_2, relaxation_2)};
     }
     return std::nullopt;
   }

@@ -6,7 +6,7 @@
 #include "math/exponential.hpp"
 
 /// Volumetric energies K u(J) that a material may have in place of its law's K/2 (J - 1)^2. Each has u and
-/// its first two derivatives as functions of x = J - 1; all have u'' = 1 at rest.
+/// its first two derivatives as functions of x = J - 1; all have u'' = 1 at x = 0.
 namespace sandglass {
 
 /// u = (J - 1)^2 / 2.
@@ -26,7 +26,7 @@ struct QuadraticPart {
   }
 };
 
-/// u = (ln J)^2 / 2, which no pressure crushes to nothing; convex for J < e.
+/// u = (ln J)^2 / 2, which no finite pressure compresses to zero volume; convex for J < e.
 struct LogarithmicPart {
   static constexpr std::string_view name = "logarithmic";
   template <class T>

@@ -10,7 +10,7 @@
 
 namespace sandglass {
 
-/// The law of Yeoh (Rubber Chemistry and Technology 66, 1993, 754-771) with an isochoric first invariant,
+/// The law of Yeoh (Rubber Chemistry and Technology 66, 1993, 754-771) with the isochoric first invariant,
 ///   W = c1 x + c2 x^2 + c3 x^3 + K/2 (J - 1)^2,  x = J^(-2/3) tr(F^T F) - 3.
 /// With c2 < 0 < c3 it softens first and stiffens later, as rubber and many tissues do.
 struct Yeoh : FirstInvariant<Yeoh> {

@@ -9,8 +9,7 @@
 #include "math/scalar.hpp"
 
 /// expm1 and log1p for kernels: the same operations on plain numbers and on packs, without branches or
-/// tables, fit for the time loop. Accurate to two units in the last place wherever argument and result are
-/// normal numbers.
+/// tables. Accurate to two units in the last place wherever argument and result are normal numbers.
 namespace sandglass {
 
 /// 2^n for a whole number n within the range of exponents: n is shifted into the exponent's bits.

@@ -45,7 +45,7 @@ constexpr Tensor<T> identity() {
   return {{T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1)}};
 }
 
-// Operands are taken by reference and results filled entry by entry: for a copy of packs GCC calls memcpy.
+// Operands are taken by reference and results filled entry by entry, because GCC calls memcpy to copy packs.
 
 template <class T, int R, int C>
 constexpr Matrix<T, R, C> operator+(const Matrix<T, R, C>& a, const Matrix<T, R, C>& b) {
@@ -113,7 +113,7 @@ constexpr T trace(const Tensor<T>& a) {
   return a(0, 0) + a(1, 1) + a(2, 2);
 }
 
-/// The part of a tensor without trace, a - tr(a)/3 I.
+/// The deviator of a tensor, a - tr(a)/3 I.
 template <class T>
 constexpr Tensor<T> deviator(const Tensor<T>& a) {
   const T third = trace(a) * T(1.0 / 3.0);
@@ -149,7 +149,7 @@ constexpr T determinant(const Tensor<T>& a) {
          a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
 }
 
-/// a^-1, for a not singular.
+/// a^-1 of a regular a.
 template <class T>
 constexpr Tensor<T> inverse(const Tensor<T>& a) {
   return (T(1) / determinant(a)) * transpose(cofactor(a));

@@ -33,8 +33,8 @@ inline constexpr int native_width =
     16 / sizeof(T);
 #endif
 
-/// W numbers of type T, one per element of a block, computed together. It has the functions of scalar.hpp, so
-/// that a kernel written for one element runs on W of them.
+/// W numbers of type T, one for each element of a block, computed together. It provides the functions of
+/// scalar.hpp, so a kernel written for one element runs on W of them.
 template <class T, int W = native_width<T>>
 struct Pack {
   using Scalar = T;
@@ -69,7 +69,7 @@ struct Pack {
   friend Pack min(Pack a, Pack b) { return select(b < a, b, a); }
   friend Pack abs(Pack a) { return select(a < Pack(T(0)), -a, a); }
 
-  /// A loop over the lanes in the source; one instruction in the program, since math functions set no errno.
+  /// A loop over the lanes, compiled to one instruction because math functions do not set errno.
   friend Pack sqrt(Pack a) {
     for (int l = 0; l < W; ++l) a.lanes[l] = std::sqrt(a.lanes[l]);
     return a;
@@ -100,8 +100,8 @@ struct Pack {
   }
 };
 
-/// How many elements a number type computes at once, and access to one of them: 1 for plain numbers, W for
-/// packs.
+/// The number of elements that a number type computes together (1 for plain numbers, W for packs), and access
+/// to one of them.
 template <class Number>
 struct Lanes {
   using Scalar = Number;

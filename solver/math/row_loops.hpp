@@ -22,11 +22,11 @@ inline std::size_t block_size(std::size_t numbers) {
   return unit * std::max<std::size_t>(1, (numbers + most_blocks * unit - 1) / (most_blocks * unit));
 }
 
-/// The blocks of a vector, and which of them a rank has: sums are over its own blocks, all else is computed
-/// in a few more, which its neighbours own.
+/// The blocks of a vector, and a rank's share of them: sums are over its own blocks, everything else also
+/// covers a few blocks that its neighbours own.
 class Blocks {
  public:
-  /// The first and the last of some blocks, by number.
+  /// The numbers of the first and the last of some blocks.
   struct Range {
     std::size_t first = 0, last = 0;
   };
@@ -39,8 +39,8 @@ class Blocks {
     own_ = local_ = {0, count()};
   }
 
-  /// The blocks of parts of a vector that end at `ends`: a rank owns those of the parts `own`, and computes
-  /// those of `local`.
+  /// The blocks of parts of a vector that end at `ends`: a rank owns the blocks of the parts `own`, and
+  /// computes those of `local`.
   Blocks(std::span<const std::size_t> ends, Range own, Range local, const Team& team)
       : threads_(team.threads), ranks_(team.ranks) {
     std::vector<std::size_t> first_of_part;
@@ -59,7 +59,7 @@ class Blocks {
   /// The numbers of the blocks that this rank owns.
   Range own() const { return {bounds_[own_.first], bounds_[own_.last]}; }
 
-  /// The numbers that it computes.
+  /// The numbers of the blocks that it computes.
   Range local() const { return {bounds_[local_.first], bounds_[local_.last]}; }
 
   /// Calls body(first, last) with the numbers of each block that is computed here, in parallel.

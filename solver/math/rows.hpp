@@ -8,7 +8,7 @@
 
 #include "math/pack.hpp"
 
-/// Nodal values as the time loop stores them, and how they get into packs and back.
+/// Nodal values as the time loop stores them, and their transfer into packs and back.
 namespace sandglass {
 
 /// The three components of one node, padded with a zero so that one instruction loads or stores them.
@@ -34,7 +34,7 @@ T* numbers_of(Rows<T>& rows) {
   return rows.data()->x.data();
 }
 
-/// The index of a row's first number among them: an address that needs no further arithmetic.
+/// The index of a row's first number among them, usable as an address without further arithmetic.
 using Place = std::uint32_t;
 constexpr Place place_of_row(std::size_t row) {
   return static_cast<Place>(4 * row);
@@ -44,7 +44,7 @@ constexpr Place place_of_row(std::size_t row) {
 template <class T, int W>
 using RowVector = typename detail::VectorOf<T, W>::Vector;
 
-/// W numbers from `numbers` on.
+/// Loads W numbers from `numbers`.
 template <int W, class T>
 RowVector<T, W> load(const T* numbers) {
   RowVector<T, W> vector;
@@ -52,7 +52,7 @@ RowVector<T, W> load(const T* numbers) {
   return vector;
 }
 
-/// Writes a vector to `numbers`.
+/// Stores a vector to `numbers`.
 template <class T, class Vector>
 void store(const Vector& vector, T* numbers) {
   std::memcpy(numbers, &vector, sizeof vector);
@@ -61,7 +61,7 @@ void store(const Vector& vector, T* numbers) {
 namespace detail {
 
 /// A vector of lanes of two vectors: lane l of the result is lane pick(l, W), where lanes of the second
-/// vector are numbered from W on.
+/// vector are numbered from W.
 template <int (*pick)(int, int), int Width, class Vector>
 auto permute(Vector a, Vector b) {
   constexpr int W = sizeof(Vector) / sizeof(a[0]);

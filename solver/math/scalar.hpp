@@ -7,8 +7,8 @@
 #include <cstdint>
 
 /// The scalar functions that kernels may use. A number type (double, float, a pack, a counter, a dual number)
-/// provides overloads of them in this namespace; kernels then need no change. Kernels contain no `if` on a
-/// value but `select`, because a pack cannot branch. expm1 and log1p belong to the set, too; they are in
+/// provides overloads of them in this namespace; kernels then need no change. Kernels use `select` instead of
+/// `if` on a value, because a pack cannot branch. expm1 and log1p also belong to the set; they are in
 /// exponential.hpp.
 namespace sandglass {
 
@@ -29,7 +29,7 @@ struct FloatBits<double> {
   using Integer = std::int64_t;
   static constexpr int mantissa = 52;
   static constexpr int bias = 1023;
-  static constexpr double integers = 0x1p52;           ///< from here on neighbouring numbers differ by one
+  static constexpr double integers = 0x1p52;           ///< from here, neighbouring numbers differ by one
   static constexpr double ln2_high = 0x1.62e42feep-1;  ///< few digits: its products with exponents are exact
   static constexpr double ln2_low = 0x1.a39ef35793c76p-33;
   static constexpr double largest_logarithm = 710.0;  ///< exp of it overflows
@@ -52,9 +52,9 @@ struct FloatBits<float> {
 }  // namespace detail
 
 /// The guess of x^(-1/3): the bits of a number x > 0, read as an integer, are a scaled and shifted logarithm
-/// of x. A linear map gives those of x^(-1/3), within 3.4 %. The integer is computed with as a number from
-/// `integers` on, in whose last bits it stands; so that it fits in there, its own last bits, `shift` of them,
-/// are left out.
+/// of x. A linear map gives those of x^(-1/3), within 3.4 %. The computation treats the integer as a
+/// floating-point number from `integers` on, whose last bits hold it; the integer's own last `shift` bits are
+/// dropped to make it fit.
 template <class T>
 struct RootGuess {
   using Bits = detail::FloatBits<T>;

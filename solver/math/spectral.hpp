@@ -16,7 +16,7 @@ template <class T>
 struct Spectrum {
   std::array<T, 3> values;
   Symmetric<T> first;       ///< n_0 (x) n_0
-  Symmetric<T> difference;  ///< n_1 (x) n_1 - n_2 (x) n_2, next to zero where both values coincide
+  Symmetric<T> difference;  ///< n_1 (x) n_1 - n_2 (x) n_2, nearly zero if both values coincide
 };
 
 /// The spectrum of a dual tensor S + epsilon dS, with the n_a of S in the columns of `axes`, in no particular
@@ -118,7 +118,7 @@ Spectrum<T> spectrum(const Tensor<T>& S) {
   return found;
 }
 
-/// The same of a dual tensor.
+/// The same for a dual tensor.
 template <class T>
 Spectrum<Dual<T>> spectrum(const Tensor<Dual<T>>& S) {
   Tensor<T> value, slope;

@@ -13,8 +13,8 @@ constexpr T jacobian_minus_one(const Tensor<T>& H) {
   return trace(H) + (second_invariant + determinant(H));
 }
 
-/// The volume change at a point: J - 1, and J^(-1/3), with which isochoric laws scale F. The root is a long
-/// chain of dependent operations; computed early, it is ready when the stress needs it.
+/// The volume change at a point: J - 1, and J^(-1/3), by which isochoric laws scale F. The root is a long
+/// chain of dependent operations; if computed early, it is ready when the stress needs it.
 template <class T>
 struct VolumeChange {
   T J_minus_one;

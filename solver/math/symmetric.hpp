@@ -13,7 +13,7 @@ constexpr int symmetric_entry(int i, int j) {
   return i == j ? i : i + j == 1 ? 3 : i + j == 3 ? 4 : 5;
 }
 
-/// The product a b where it is known to be symmetric.
+/// The product a b, known to be symmetric.
 template <class T>
 constexpr Symmetric<T> symmetric_product(const Tensor<T>& a, const Tensor<T>& b) {
   Symmetric<T> c;

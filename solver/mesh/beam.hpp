@@ -13,7 +13,8 @@ namespace sandglass {
 /// degrees.
 struct BeamMesh {
   static constexpr std::string_view name = "beam";
-  static constexpr std::string_view summary = "a beam along x, straight or twisted, with leaning elements";
+  static constexpr std::string_view summary =
+      "a beam along x, straight or twisted, with box-shaped or slanted elements";
 
   std::array<double, 3> size{};
   std::array<int, 3> elements{};
@@ -28,10 +29,10 @@ struct BeamMesh {
                   "length along x, width along y, thickness along z"},
         Parameter{&M::elements, "elements", "-", Range::at_least(1), "hexahedra along x, y, z"},
         Parameter{&M::slant, "slant", "-", Range::any(),
-                  "slope dx/dy of the faces between elements: 1 makes parallelograms of 45 degrees", false},
+                  "slope dx/dy of the faces between elements; 1: parallelograms of 45 degrees", false},
         Parameter{&M::alternating_slant, "alternating_slant", "-", Range::any(),
-                  "the same with a sign that changes from face to face: 1 makes trapezoids", false},
-        Parameter{&M::twist, "twist", "deg", Range::any(), "turn of the section about x from end to end",
+                  "the same with alternating sign; 1: trapezoids of 45 degrees", false},
+        Parameter{&M::twist, "twist", "deg", Range::any(), "rotation of the section about x from end to end",
                   false}};
   }
 

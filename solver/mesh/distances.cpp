@@ -33,7 +33,7 @@ void Distances::mark(std::vector<int> margin, std::vector<bool>& marked) const {
   for (std::size_t n = 0; n < margin.size(); ++n) nodes_of[at(margin[n])].push_back(static_cast<int>(n));
   for (int left = most; left > 0; --left) {
     for (const int node : nodes_of[at(left)]) {
-      if (margin[at(node)] != left) continue;  // it has a larger one by now
+      if (margin[at(node)] != left) continue;  // it has a larger margin by now
       for (const int e : elements_.around(node)) marked[at(e)] = true;
       for_neighbours(node, [&](int other) {
         if (margin[at(other)] >= left - 1) return;

@@ -11,7 +11,7 @@ class Distances {
  public:
   explicit Distances(const Mesh& mesh) : mesh_(mesh), elements_(mesh) {}
 
-  /// The distance of each node from the nearest of `nodes`; -1 where elements do not connect them.
+  /// The distance of each node from the nearest of `nodes`; -1 if elements do not connect them.
   std::vector<int> from(const std::vector<int>& nodes) const;
 
   /// Marks the elements that lie within margin[node] of a node; a margin of 0 marks none.

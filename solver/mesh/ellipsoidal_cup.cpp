@@ -8,8 +8,8 @@
 namespace sandglass {
 
 Mesh EllipsoidalCupMesh::build() const {
-  // The mesh of a flat disc, a core of two fifths of its radius in its middle and the outer surface on top:
-  // turned over, as seen from within the cup the outer surface is below.
+  // The mesh of a flat disc, with a core of two fifths of its radius. The outer surface is its top, so it is
+  // turned over: seen from inside the cup, the outer surface is below.
   constexpr double core_size = 0.35, core_bulge = 0.3;
   Mesh mesh = CylinderMesh{1.0, 1.0, core_elements, rings, layers, core_size, core_bulge}.build();
   for (Vector& point : mesh.points) {

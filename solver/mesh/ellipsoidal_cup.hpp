@@ -29,8 +29,7 @@ struct EllipsoidalCupMesh {
     return std::tuple{
         Parameter{&M::radius, "radius", "m", Range::positive(), "inner semi-axis across z"},
         Parameter{&M::length, "length", "m", Range::positive(), "inner semi-axis along z"},
-        Parameter{&M::thickness, "thickness", "m", Range::positive(),
-                  "what both semi-axes of the outer surface are longer by"},
+        Parameter{&M::thickness, "thickness", "m", Range::positive(), "outer minus inner semi-axes"},
         Parameter{&M::rim, "rim", "m", Range::any(), "z of the rim, within the length; the cup is below",
                   false},
         Parameter{&M::core_elements, "core_elements", "-", Range::at_least(1),

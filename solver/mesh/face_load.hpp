@@ -15,8 +15,8 @@ struct NodalLoad {
 /// da, exact.
 std::array<Vector, 4> pressure_forces(const std::array<Vector, 4>& x);
 
-/// A Gauss point of a face: the shape functions of its four nodes, its place (m), and its share of the area
-/// (m^2).
+/// A Gauss point of a face: the shape functions of its four nodes, its position (m), and its share of the
+/// area (m^2).
 struct FacePoint {
   std::array<double, 4> N;
   Triple<double> X;

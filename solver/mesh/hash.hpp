@@ -13,8 +13,7 @@ namespace sandglass {
 std::string hash_of(std::string_view text);
 
 /// A hash of a mesh, its node sets and the materials of its elements, if there are several. Coordinates enter
-/// rounded to 1e-7 of the mesh's diagonal, so that the last bits, which differ between compilers, do not
-/// matter.
+/// rounded to 1e-7 of the mesh's diagonal, so the last bits, which differ between compilers, do not matter.
 std::string mesh_hash(const Mesh& mesh, const NodeSets& sets,
                       std::span<const std::uint16_t> material_of_element = {});
 

@@ -39,8 +39,8 @@ Vector trilinear(const NodalVectors<double>& nodal, const Vector& xi) {
   return value;
 }
 
-/// The parent point of X in an element, by Newton's method; none if that does not converge, as for points far
-/// outside. Positions are relative to X, so that a body far from the origin is not lost in roundoff.
+/// The parent point of X in an element, by Newton's method; none if it does not converge, as for points far
+/// outside. Positions are relative to X, so a body far from the origin does not suffer from roundoff.
 std::optional<Vector> parent_point(NodalVectors<double> nodes, const Vector& X) {
   constexpr int most_steps = 25;
   constexpr double converged = 1e-13, far_away = 10.0;
@@ -64,7 +64,7 @@ std::optional<Vector> parent_point(NodalVectors<double> nodes, const Vector& X) 
   return std::nullopt;
 }
 
-/// Elements sorted into the boxes of a grid over the mesh that their bounding boxes touch.
+/// Elements sorted into the boxes of a grid over the mesh, by the boxes that their bounding boxes touch.
 class ElementGrid {
  public:
   explicit ElementGrid(const Mesh& mesh) : mesh_(mesh), low_(bounding_box(mesh.points)[0]) {

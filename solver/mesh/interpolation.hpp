@@ -16,14 +16,13 @@ double parent_distance(const Vector& xi);
 /// Values of the trilinear shape functions at a parent point.
 std::array<double, 8> shape_functions(const Vector& xi);
 
-/// The element that contains each point (m), or for a point outside the mesh the one that is nearest in
-/// parent coordinates. Throws InputError for a point that is far from the mesh.
+/// The element that contains each point (m), or for a point outside the mesh the closest one in parent
+/// coordinates. Throws InputError for a point that is far from the mesh.
 std::vector<ElementPoint> element_points(const Mesh& mesh, const NodalField& points);
 
 /// A nodal field of a mesh at other points (m), interpolated trilinearly in the element that contains each
 /// point. For a point outside the mesh, as on the curved boundary of a finer one, the field is extrapolated
-/// from the element that is nearest in parent coordinates. Throws InputError for a point that is far from the
-/// mesh.
+/// from the closest element in parent coordinates. Throws InputError for a point that is far from the mesh.
 NodalField interpolate(const Mesh& mesh, const NodalField& field, const NodalField& points);
 
 }  // namespace sandglass

@@ -92,7 +92,7 @@ double largest_distance(const NodalField& a, const NodalField& b);
 /// The faces that belong to one hexahedron only, in the order of the cells.
 std::vector<Quadrilateral> boundary_faces(const std::vector<Hexahedron>& cells);
 
-/// Whether each of so many nodes belongs to one of some faces.
+/// Whether each of a number of nodes belongs to one of some faces.
 std::vector<bool> nodes_of(const std::vector<Quadrilateral>& faces, std::size_t nodes);
 
 /// Whether each node lies on the boundary.

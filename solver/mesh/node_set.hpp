@@ -28,7 +28,7 @@ struct EllipsoidRegion {
 };
 
 /// A geometric rule that selects nodes; all its conditions must hold. Conditions are closed, with a tolerance
-/// of 1e-9 of the mesh's diagonal, so that nodes meant to lie on a plane are found on it.
+/// of 1e-9 of the mesh's diagonal, so that nodes meant to lie on a plane are found.
 struct NodeSetRule {
   std::string name;
   bool surface = false;  ///< only nodes on the boundary

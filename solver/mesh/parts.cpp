@@ -7,7 +7,7 @@ namespace sandglass {
 
 namespace {
 
-/// Sets of nodes that are joined one after the other; the least node stands for its set.
+/// Sets of nodes that are joined step by step; the smallest node represents its set.
 class JoinedNodes {
  public:
   explicit JoinedNodes(std::size_t nodes) : towards_least_(nodes) {

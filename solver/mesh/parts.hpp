@@ -6,11 +6,11 @@
 
 namespace sandglass {
 
-/// The part of the body that each node belongs to, numbered from 0 in the order of the nodes: elements that
-/// share a node or whose nodes are tied to each other are of one part. -1 for nodes of no element.
+/// The part of the body to which each node belongs, numbered from 0 in the order of the nodes: elements that
+/// share a node or have nodes tied to each other form one part. -1 for nodes without elements.
 std::vector<int> parts_of_nodes(const Mesh& mesh, const Ties& ties);
 
-/// How many parts there are.
+/// The number of parts.
 int number_of_parts(const Mesh& mesh, const Ties& ties);
 
 }  // namespace sandglass

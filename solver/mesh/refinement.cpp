@@ -26,7 +26,7 @@ std::vector<std::size_t> parents_of(const std::array<int, 3>& point) {
   return corners;
 }
 
-/// The same of all points of the lattice; the first coordinate counts fastest.
+/// The same for all points of the lattice; the first coordinate varies fastest.
 const std::vector<std::vector<std::size_t>>& lattice() {
   static const auto all = [] {
     std::vector<std::vector<std::size_t>> found;
@@ -70,7 +70,7 @@ int RefinedMesh::new_node(const Hexahedron& cell, const std::vector<std::size_t>
   return static_cast<int>(mesh_.points.size()) - 1;
 }
 
-/// The node at the point of an element's lattice between some of its corners, made if it is not there yet.
+/// The node at a point of an element's lattice between some of its corners, created if necessary.
 int RefinedMesh::node_at(const Hexahedron& cell, const std::vector<std::size_t>& corners) {
   if (corners.size() == 1) return cell[corners[0]];
   if (!is_edge_or_face(corners)) return new_node(cell, corners);
@@ -79,7 +79,7 @@ int RefinedMesh::node_at(const Hexahedron& cell, const std::vector<std::size_t>&
   return entry->second;
 }
 
-/// Marks elements at the nodes of marked ones that have been split less often, until there are none.
+/// Marks elements that share nodes with marked ones but have been split less often, until there are none.
 void RefinedMesh::balance(std::vector<bool>& marked) const {
   const NodeElements elements(mesh_);
   std::vector<int> todo;
@@ -148,7 +148,7 @@ void RefinedMesh::split(std::vector<bool> marked) {
 }
 
 Ties RefinedMesh::make_ties() const {
-  std::vector<bool> is_corner(mesh_.points.size(), false);  // of what is split: most nodes are not
+  std::vector<bool> is_corner(mesh_.points.size(), false);  // of elements to split; most nodes are not
   for (const auto& [corners, middle] : middles_)
     for (const int n : corners)
       if (n >= 0) is_corner[at(n)] = true;

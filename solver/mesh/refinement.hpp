@@ -6,49 +6,48 @@
 
 namespace sandglass {
 
-/// The mesh before elements were split, and how the mesh after that came from it. Its nodes are the first
-/// ones of that.
+/// The mesh before elements were split, and its relation to the finer mesh, whose first nodes are its nodes.
 struct CoarserMesh {
   Mesh mesh;
   Ties ties;                    ///< to nodes that are not tied
-  std::vector<int> element_of;  ///< which element of this mesh each one of the finer mesh is a part of
-  std::vector<std::vector<int>> corners;  ///< of the new nodes: the nodes whose mean they are
+  std::vector<int> element_of;  ///< the element of this mesh to which each element of the finer mesh belongs
+  std::vector<std::vector<int>> corners;  ///< of each new node: the nodes whose mean it is
 };
 
 /// The corners of an edge, two and then -1, or of a face, in ascending order.
 using EdgeOrFace = std::array<int, 4>;
 
-/// A mesh whose elements are split in eight, some of them, of those some again, and so on. Nodes of small
-/// elements in the middle of an edge or a face of a large one are tied to its corners. Elements that share a
-/// node differ by at most one split; elements keep to the trilinear shapes of those they are made of.
+/// A mesh in which some elements are split in eight, repeatedly. Nodes of small elements in the middle of an
+/// edge or a face of a large one are tied to its corners. Elements that share a node differ by at most one
+/// split; parts keep the trilinear shape of the original element.
 class RefinedMesh {
  public:
-  /// Nothing is split yet.
+  /// Starts without splits.
   explicit RefinedMesh(const Mesh& mesh);
 
-  /// Splits the marked elements of the present mesh, and others as the rule above demands.
+  /// Splits the marked elements of the current mesh, and others as the rule above requires.
   void split(std::vector<bool> marked);
 
   const Mesh& mesh() const { return mesh_; }
 
-  /// Of the nodes in the middle of edges and faces that are not split on all sides, to their corners.
+  /// The ties of nodes in the middle of edges and faces that are not split on all sides, to their corners.
   const Ties& ties() const { return ties_; }
 
   /// The faces on the boundary of the body.
   std::vector<Quadrilateral> boundary() const;
 
-  /// The meshes before each time that elements were split, the last first.
+  /// The meshes before each splitting, the last one first.
   std::vector<CoarserMesh> coarser() const { return {coarser_.rbegin(), coarser_.rend()}; }
 
-  /// How often the original element was split that each element is a part of, and which it is.
+  /// For each element, the number of splits and the original element.
   const std::vector<int>& splits() const { return splits_; }
   const std::vector<int>& original() const { return original_; }
 
-  /// The members of a set of nodes of the original mesh, and the new nodes on edges and faces and in elements
-  /// whose corners are all in it.
+  /// The members of a node set of the original mesh, and the new nodes on edges and faces and in elements
+  /// whose corners are all members.
   std::vector<int> nodes_of(const std::vector<int>& set) const;
 
-  /// The elements that are parts of those in a set of the original mesh.
+  /// The parts of the elements in a set of the original mesh.
   std::vector<int> elements_of(const std::vector<int>& set) const;
 
  private:

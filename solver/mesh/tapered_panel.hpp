@@ -22,9 +22,10 @@ struct TaperedPanelMesh {
   static constexpr auto parameters() {
     using M = TaperedPanelMesh;
     return std::tuple{
-        Parameter{&M::width, "width", "m", Range::positive(), "from the left edge, x = 0, to the right one"},
-        Parameter{&M::left, "left", "m", Range::any(), "lower and upper end of the left edge, y"},
-        Parameter{&M::right, "right", "m", Range::any(), "lower and upper end of the right edge, y"},
+        Parameter{&M::width, "width", "m", Range::positive(),
+                  "width from the left edge, x = 0, to the right edge"},
+        Parameter{&M::left, "left", "m", Range::any(), "y of lower and upper end of the left edge"},
+        Parameter{&M::right, "right", "m", Range::any(), "y of lower and upper end of the right edge"},
         Parameter{&M::thickness, "thickness", "m", Range::positive(), "thickness along z, from z = 0"},
         Parameter{&M::elements, "elements", "-", Range::at_least(1), "hexahedra along x, y, z"}};
   }

@@ -25,8 +25,8 @@ bool is_tied(const Ties& ties, int node) {
 Ties to_free_nodes(const Ties& ties) {
   Ties free = ties;
   for (Tie& tie : free) {
-    // Each round replaces tied nodes by what they follow; without a circle there are at most as many rounds
-    // as ties.
+    // Each round replaces tied nodes by the nodes that they follow; without a cycle there are at most as many
+    // rounds as ties.
     for (std::size_t round = 0;; ++round) {
       std::map<int, double> shares;
       bool tied = false;
@@ -41,7 +41,7 @@ Ties to_free_nodes(const Ties& ties) {
       }
       if (!tied) break;
       if (round > ties.size()) {
-        throw InputError(fmt::format("node {} is tied to itself; ties must not form circles", tie.node));
+        throw InputError(fmt::format("node {} is tied to itself; ties must not form cycles", tie.node));
       }
       tie.mean_of.clear();
       for (const auto& [node, weight] : shares) tie.mean_of.push_back({node, weight});

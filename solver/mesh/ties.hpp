@@ -7,7 +7,7 @@
 namespace sandglass {
 
 /// A node that moves as the weighted mean of others. The weights are positive, constant, and add up to one,
-/// so that it takes part in every rigid motion and no tied mesh has higher frequencies than its elements.
+/// so the node follows every rigid motion, and a tied mesh has no higher frequencies than its elements.
 struct Tie {
   struct Share {
     int node;
@@ -23,11 +23,11 @@ using Ties = std::vector<Tie>;
 /// Whether a node is tied.
 bool is_tied(const Ties& ties, int node);
 
-/// The same ties, each to nodes that are not tied themselves. Throws InputError for nodes tied in a circle.
+/// The same ties, each to nodes that are not tied themselves. Throws InputError for a cycle of ties.
 Ties to_free_nodes(const Ties& ties);
 
-/// What each node stands for where tied nodes hand theirs on to those they follow, by their weights: masses,
-/// for instance. Zero at tied nodes. `ties` are to free nodes.
+/// Nodal values, such as masses, after tied nodes have passed theirs, by weight, to the nodes that they
+/// follow; zero at tied nodes. `ties` are to free nodes.
 std::vector<double> handed_on(const Ties& ties, std::vector<double> nodal);
 
 /// Sets the tied nodes of a nodal field to the means that they follow. `ties` are to free nodes.

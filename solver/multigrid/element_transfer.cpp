@@ -9,21 +9,21 @@ namespace sandglass {
 
 namespace {
 
-/// The stiffness of the springs at constrained components over the node's own: high enough for the grid's
-/// functions to be held, low enough not to spoil its smoother.
+/// The stiffness of the springs at constrained components over the node's own: high enough to hold the grid's
+/// functions, low enough not to spoil its smoother.
 constexpr float spring = 10.0f;
 
-/// An element wider than this share of a box along an axis bends within the box: a sample at its centre alone
-/// would miss that stiffness.
+/// An element wider than this share of a box along an axis bends within the box: a single sample at its
+/// centre would miss that stiffness.
 constexpr double wide = 0.6;
 
 bool is_wide(const Vector& extent, const Vector& box) {
   return extent[0] > wide * box[0] || extent[1] > wide * box[1] || extent[2] > wide * box[2];
 }
 
-/// At the body's edge a node of the grid may move nodes of elements, whose forces it then receives, and
-/// hardly any sample: it would yield a millionfold. Where the elements' centres give it less than this share
-/// of what their nodes do, the elements there are sampled at their nodes too, with that share of their
+/// At the body's edge, a node of the grid may move nodes of elements, and so receive their forces, but hardly
+/// any sample: it would be a millionfold too soft. If the elements' centres contribute less than this share
+/// of their nodes' contribution, the elements there are also sampled at their nodes, with this share of their
 /// volume.
 constexpr float sparse = 0.25f, sparse_share_at_nodes = 0.4f;
 
@@ -42,7 +42,7 @@ std::array<std::array<float, 3>, 8> gradients(const std::array<float, 3>& local,
   return G;
 }
 
-/// The same in the present configuration.
+/// The same in the current configuration.
 std::array<float, 24> pushed_forward(const std::array<std::array<float, 3>, 8>& G,
                                      const ElementTangent& tangent) {
   std::array<float, 24> g;
@@ -78,7 +78,7 @@ ElementTransfer::ElementTransfer(const Mesh& mesh, const Layout& layout, const E
   }
 }
 
-/// The boxes with a corner that has few elements' centres for the elements' nodes around it.
+/// The boxes with a corner that has few elements' centres around it, compared with elements' nodes.
 std::vector<bool> ElementTransfer::sparse_boxes(const Mesh& mesh) const {
   const Grid& grid = grid_.grid();
   std::vector<float> centres(grid.nodes()), nodes(centres);
@@ -99,7 +99,7 @@ std::vector<bool> ElementTransfer::sparse_boxes(const Mesh& mesh) const {
   return boxes;
 }
 
-/// Samples an element at its centre, or at eight points of a Gauss rule, and with a share at its nodes.
+/// Samples an element at its centre or at eight Gauss points, and with a share at its nodes.
 void ElementTransfer::sample(const Mesh& mesh, std::size_t element, float share_at_nodes) {
   const Grid& grid = grid_.grid();
   const auto cell = static_cast<std::uint32_t>(elements_.cells()[element]);

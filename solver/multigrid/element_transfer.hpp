@@ -5,8 +5,9 @@
 
 namespace sandglass {
 
-/// Carries problems, residuals and corrections between the elements of a mesh and the first grid around it.
-/// Displacements interpolate the grid's, pressures of elements are those of the boxes their centres are in.
+/// Transfers problems, residuals and corrections between the elements of a mesh and the first grid around it.
+/// Displacements are interpolated from the grid's; an element has the pressure of the box that contains its
+/// centre.
 class ElementTransfer {
  public:
   /// Both levels must live as long.

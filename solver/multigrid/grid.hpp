@@ -19,7 +19,7 @@ struct Grid {
   /// than twice the narrowest of the three.
   static Grid around(const Mesh& mesh);
 
-  /// Half as many boxes along the axes where they are narrow; `halved` says which.
+  /// Half as many boxes along the axes along which they are narrow, as given by `halved`.
   Grid coarser(std::array<bool, 3>& halved) const;
 
   std::size_t stride(std::size_t axis) const {
@@ -28,17 +28,17 @@ struct Grid {
   std::size_t nodes() const { return (boxes[0] + 3) * (boxes[1] + 3) * (boxes[2] + 3); }
   std::size_t real_nodes() const { return (boxes[0] + 1) * (boxes[1] + 1) * (boxes[2] + 1); }
 
-  /// The number of a node; boxes have that of their lowest node.
+  /// The number of a node; a box has the number of its lowest node.
   std::size_t number(std::size_t i, std::size_t j, std::size_t k) const {
     return (i + 1) + (j + 1) * stride(1) + (k + 1) * stride(2);
   }
 
-  /// What to add to a box's number for its corner, 0 to 7, x varying fastest.
+  /// The offset from a box's number to its corner, 0 to 7, x varying fastest.
   std::size_t corner(std::size_t c) const {
     return (c & 1) + (c >> 1 & 1) * stride(1) + (c >> 2) * stride(2);
   }
 
-  /// A place: a box, and coordinates from 0 to 1 within it.
+  /// A position: a box, and coordinates from 0 to 1 within it.
   struct Location {
     std::size_t box;
     std::array<float, 3> local;
@@ -51,7 +51,7 @@ struct Grid {
 /// The extent of an element's bounding box, m.
 Vector extent(const Mesh& mesh, const Hexahedron& cell);
 
-/// The functions of a box's corners at a place in it.
+/// The functions of a box's corners at a position in it.
 std::array<float, 8> weights(const std::array<float, 3>& local);
 
 }  // namespace sandglass

@@ -9,7 +9,7 @@ namespace sandglass {
 
 namespace {
 
-/// As for the elements; here one less is enough.
+/// As for the elements; here one step less suffices.
 constexpr int pressure_steps = 2;
 
 }  // namespace
@@ -55,7 +55,8 @@ void GridLevel::assemble() {
   set_smoother(diagonal, eigenvalue_bound());
 }
 
-/// Of D^-1 A of the boxes alone, D the diagonal, by power iterations: no sum of boxes has larger ones.
+/// A bound of the eigenvalues of D^-1 A, D the diagonal, from single boxes by power iteration: a sum of boxes
+/// has no larger eigenvalue.
 float GridLevel::eigenvalue_bound() const {
   std::vector<float> largest(grid_.nodes(), 1.0f);
   set_by_lines(0, largest, [&](std::size_t first, std::size_t count) {

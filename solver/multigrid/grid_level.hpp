@@ -13,8 +13,8 @@ struct BoxProblem {
   float C = 0.0f;  ///< zero without elements
 };
 
-/// A coarser level: trilinear displacements on the nodes of a grid, one pressure for each of its boxes. Ranks
-/// divide the lines of a large grid, but each has all values.
+/// A coarser level: trilinear displacements on the nodes of a grid, one pressure for each box. Ranks share
+/// the work on the lines of a large grid, but each has all values.
 class GridLevel final : public SaddleLevel {
  public:
   GridLevel(const Grid& grid, Team team);
@@ -39,7 +39,8 @@ class GridLevel final : public SaddleLevel {
     for_lines(extra, 0, lines(extra), visit);
   }
 
-  /// As for_each_line, which sets `values` of each line: ranks divide the lines and gather the values.
+  /// Like for_each_line for a visit that sets `values` of each line: ranks divide the lines and gather the
+  /// values.
   template <class T, class Visit>
   void set_by_lines(std::size_t extra, std::vector<T>& values, const Visit& visit) const {
     constexpr std::size_t worth_dividing = 4096;  // nodes

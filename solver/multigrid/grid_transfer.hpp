@@ -4,13 +4,13 @@
 
 namespace sandglass {
 
-/// Carries problems, residuals and corrections between a grid and the next coarser one.
+/// Transfers problems, residuals and corrections between a grid and the next coarser one.
 class GridTransfer {
  public:
-  /// `halved` says along which axes the coarse grid has half as many boxes; both levels must live as long.
+  /// The coarse grid has half as many boxes along the `halved` axes. Both levels must live as long.
   GridTransfer(const GridLevel& fine, GridLevel& coarse, const std::array<bool, 3>& halved);
 
-  /// Sets the problems of the coarse boxes: those of the fine ones in them, restricted to coarse functions.
+  /// Sets the problems of the coarse boxes to those of their fine boxes, restricted to coarse functions.
   void gather();
 
   /// b = the residual r of the fine grid for the coarse one.

@@ -5,15 +5,15 @@
 
 namespace sandglass {
 
-/// Carries residuals and corrections between a refined mesh and the one whose elements were split.
-/// Displacements interpolate those of the coarser mesh, pressures of parts are those of their elements.
+/// Transfers residuals and corrections between a refined mesh and the mesh whose elements were split.
+/// Displacements are interpolated from the coarser mesh; parts have the pressures of their elements.
 class MeshTransfer {
  public:
   /// Both levels must live as long.
   MeshTransfer(const CoarserMesh& coarser_mesh, const Layout& fine_layout, const ElementLevel& fine,
                const Layout& coarse_layout, const ElementLevel& coarse);
 
-  /// Displacements (m) of the coarser mesh from those of the finer one, at the nodes that both have.
+  /// Displacements (m) of the coarser mesh from the finer one's, at their common nodes.
   Rows<float> at_common_nodes(const Rows<float>& fine) const;
 
   /// The mean over the parts of each element of the coarser mesh, by cell; 1 in empty cells.

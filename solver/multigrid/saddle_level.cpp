@@ -10,7 +10,7 @@ namespace sandglass {
 
 namespace {
 
-/// body(k) for all numbers of blocks, in parallel.
+/// Calls body(k) for all numbers of blocks, in parallel.
 template <class Body>
 void for_all(const Blocks& blocks, const Body& body) {
   blocks.for_each([&](std::size_t first, std::size_t last) {

@@ -9,11 +9,11 @@ namespace sandglass {
 
 /// One level of a multigrid method for the saddle-point problem of a nearly incompressible body,
 ///   A u + B^T p = f,   B u - C p = g,
-/// with A the stiffness without that of volume changes, B their derivative (m^2), and C the diagonal of
-/// volumes over lambda (m^3/Pa). Solving for both at once, no step suffers from a large lambda.
+/// where A is the stiffness without volume changes, B their derivative (m^2), and C the diagonal of volumes
+/// over lambda (m^3/Pa). Because both unknowns are solved together, no step suffers from a large lambda.
 class SaddleLevel {
  public:
-  /// `blocks` of its vectors; the pressures of the smoother take so many steps.
+  /// `blocks` of its vectors; the smoother takes this number of pressure steps.
   SaddleLevel(MixedBlocks blocks, int pressure_steps)
       : blocks_(std::move(blocks)), pressure_steps_(pressure_steps) {}
   SaddleLevel(const SaddleLevel&) = delete;
@@ -32,7 +32,7 @@ class SaddleLevel {
   /// f = B^T p.
   virtual void gradient(const std::vector<float>& p, Rows<float>& f) const = 0;
 
-  /// Lets what is tied follow.
+  /// Sets tied values from the values that they follow.
   virtual void follow(Rows<float>& /*u*/) const {}
 
   /// One step of the smoother from x: an inexact Uzawa step, symmetric, after Braess and Sarazin 1997.
@@ -40,14 +40,14 @@ class SaddleLevel {
   /// follow the pressures.
   void smooth(const MixedVector& b, MixedVector& x);
 
-  /// The same from zero, whatever x is.
+  /// The same from zero; the value of x is ignored.
   void smooth_from_zero(const MixedVector& b, MixedVector& x);
 
   /// r = b - (A u + B^T p, B u - C p), zero on constrained components.
   void residual(const MixedVector& b, const MixedVector& x, MixedVector& r) const;
 
-  /// The diagonal matrix D (m/N): that of A, inverted and scaled such that D A has eigenvalues below 2; zero
-  /// on constrained components.
+  /// The diagonal matrix D (m/N): the diagonal of A, inverted and scaled such that D A has eigenvalues below
+  /// 2; zero on constrained components.
   const Rows<float>& relaxation() const { return relaxation_; }
 
   /// 1, or 0 on constrained components and unused rows.

@@ -6,7 +6,7 @@ namespace sandglass {
 
 namespace {
 
-/// A grid with at most so many nodes is solved exactly.
+/// A grid with at most this many nodes is solved exactly.
 constexpr std::size_t fewest_nodes = 48;
 
 /// Steps of the smoother before and after each correction.
@@ -42,7 +42,7 @@ SaddleMultigrid::SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::
     for (std::size_t row = 0; row < own->nodes; ++row) {
       const int node = own->node_of_row[row];
       const auto finest = at(layout.row_of_node[at(node)]);
-      // A node that is tied on the finest mesh is tied on all.
+      // A node that is tied on the finest mesh is tied on all meshes.
       if (!is_tied(next.ties, node)) own_free[row] = free[finest];
       if (!springs.empty()) own_springs[row] = springs[finest];
     }
@@ -82,7 +82,7 @@ void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli
     coarse_u = stage.to_finer->at_common_nodes(coarse_u);
     coarse_stiffening = stage.to_finer->means(coarse_stiffening);
     stage.level->update(coarse_u, moduli, coarse_stiffening);
-    // Without the nodes in its middle an element may be inverted.
+    // Without its middle nodes an element may be inverted.
     const auto& tangents = stage.level->tangents();
     const bool healthy = std::all_of(tangents.begin(), tangents.end(), [](const ElementTangent& t) {
       return t.volume == 0.0f || t.jacobian > 0.0f;

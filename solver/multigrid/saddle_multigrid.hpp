@@ -8,22 +8,22 @@
 namespace sandglass {
 
 /// An approximate solution of the saddle-point problem of a body, by one V-cycle over a hierarchy of levels:
-/// the elements of the mesh, whatever its shape, those that were split into them, and grids of boxes around
-/// these, ever coarser. Ranks divide the elements of the mesh; each has all the coarser levels.
+/// the elements of the mesh, the elements that were split into them, and ever coarser grids of boxes around
+/// these. Ranks divide the elements of the mesh; each has all coarser levels.
 class SaddleMultigrid {
  public:
-  /// `ties` are those of the mesh, `coarser` the meshes that it was refined from, the last first. `free` is
-  /// 1, or 0 on constrained components, tied nodes and spare rows; `springs` (N/m) hold rows, empty without
-  /// any; `update` must follow.
+  /// `ties` are the mesh's, `coarser` the meshes from which it was refined, the last one first. `free` is 1,
+  /// or 0 on constrained components, tied nodes and unused rows; `springs` (N/m) hold rows and may be empty;
+  /// `update` must follow.
   SaddleMultigrid(const Mesh& mesh, const Ties& ties, const std::vector<CoarserMesh>& coarser,
                   const Layout& layout, const Rows<float>& free, const Rows<float>& springs);
 
   /// Takes the configuration with displacements u, rows of the layout (m), in which no element may be
-  /// inverted, the moduli of each material, and by cell of the mesh how much stiffer the law has become.
+  /// inverted, the moduli of each material, and for each cell of the mesh the stiffening of the law.
   void update(const Rows<float>& u, const std::vector<ModelModuli>& moduli,
               const std::vector<float>& stiffening);
 
-  /// x = an approximate solution for b: linear in b and symmetric, without the pressures positive.
+  /// x = an approximate solution for b: linear in b and symmetric; positive if pressures are ignored.
   void cycle(const MixedVector& b, MixedVector& x);
 
   const ElementLevel& elements() const { return *elements_; }

@@ -11,7 +11,7 @@ SemidefiniteInverse::SemidefiniteInverse(std::size_t size)
       panel_(panel * stride_),
       diagonal_(stride_) {}
 
-/// Inverts the panel's own block; rows that are left out become zero.
+/// Inverts the panel's own block; omitted rows become zero.
 void SemidefiniteInverse::invert_block(std::size_t first, double floor, Block& B) const {
   for (std::size_t p = 0; p < panel; ++p) {
     for (std::size_t q = 0; q < panel; ++q) B[p][q] = panel_[p * stride_ + first + q];

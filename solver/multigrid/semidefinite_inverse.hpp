@@ -8,8 +8,8 @@
 namespace sandglass {
 
 /// The inverse of a dense, symmetric, positive semidefinite matrix A by the sweep operator (Goodnight 1979),
-/// which needs no pivoting. A row whose diagonal entry is below 1e-8 of the largest, or that depends on the
-/// rows before it up to 1e-6 of its diagonal entry, is left out: x is zero there.
+/// which needs no pivoting. A row is omitted, with x zero there, if its diagonal entry is below 1e-8 of the
+/// largest or if it depends on earlier rows up to 1e-6 of its diagonal entry.
 class SemidefiniteInverse {
  public:
   explicit SemidefiniteInverse(std::size_t size);

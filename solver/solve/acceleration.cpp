@@ -27,10 +27,10 @@ void Acceleration::remember(const MixedVector& residual) {
   has_step_ = false;
 }
 
-/// The shares of the changes whose sum is nearest to the residual, by normal equations of unit diagonal.
+/// The shares of the changes whose sum is closest to the residual, by normal equations with unit diagonal.
 std::vector<double> Acceleration::best_shares() const {
-  // Added to the diagonal: steps may repeat each other, and products of vectors in single precision are
-  // rounded to about this. A combination that makes more of their differences leads anywhere.
+  // Added to the diagonal: steps may be nearly dependent, and products of vectors in single precision are
+  // rounded to about this. A combination that relies on smaller differences is useless.
   constexpr double least = 1e-6;
   const auto n = static_cast<Eigen::Index>(pairs_.size());
   Eigen::MatrixXd products(n, n);

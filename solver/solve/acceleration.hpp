@@ -7,9 +7,9 @@
 
 namespace sandglass {
 
-/// Anderson's acceleration (1965) of an iteration that corrects an unknown by an approximate inverse of its
-/// residual: of the last steps and the changes of the residual along them, it takes the combination that
-/// leaves the least residual. For a linear problem this is GMRES.
+/// Anderson's acceleration (1965) of an iteration that corrects an unknown by an approximate inverse applied
+/// to its residual: it combines the last steps and the changes of the residual along them such that the
+/// residual becomes smallest. For a linear problem this is GMRES.
 class Acceleration {
  public:
   /// `blocks` of the vectors must live as long.
@@ -21,11 +21,11 @@ class Acceleration {
     has_step_ = false;
   }
 
-  /// From the residual at the present point, replaces it by the least one and sets `step` to what leads
+  /// Replaces the residual at the current point by the smallest one, and sets `step` to the step that leads
   /// there.
   void combine(MixedVector& residual, MixedVector& step);
 
-  /// Tells the step that was taken since.
+  /// Records the step taken since.
   void moved(const MixedVector& step) {
     step_ = step;
     has_step_ = true;
@@ -35,8 +35,8 @@ class Acceleration {
   /// The number of steps it remembers.
   static constexpr std::size_t most_pairs = 15;
 
-  /// A change that is so many times the present residual is forgotten: of vectors in single precision it
-  /// would bring its own rounding, and a body of a few nodes has no 15 independent steps.
+  /// A change this many times larger than the current residual is forgotten: in single precision its rounding
+  /// would spoil the result, and a body of a few nodes does not have 15 independent steps.
   static constexpr double most_times_residual = 1e5;
 
   struct Pair {

@@ -32,8 +32,8 @@ std::vector<double> nodal_mobilities(const Scene& scene) {
   return stiffness;
 }
 
-/// The processor time of this thread, s: of the few choices in a motion each counts, and on a busy machine
-/// the wall time of one may be a hundred times as long.
+/// The processor time (s) of this thread. A motion has few choices, so each counts, and on a busy machine the
+/// wall time of one may be a hundred times as long.
 double processor_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -63,7 +63,7 @@ Adaptation Adaption<Real>::apply(Body<Real>& body, Demotion demotion) {
 
 template <class Real>
 bool Adaption<Real>::tighten(const Body<Real>& body, double error) {
-  // Not by less than this, so that it ends, nor by more, as the largest errors weigh most.
+  // Never by less, so that the loop ends, nor by more, as the largest errors weigh most.
   constexpr double least = 0.8, most = 0.25;
   const double excess = error / asked(body);
   if (excess > 1.0) share_ *= std::clamp(1.0 / excess, most, least);

@@ -6,24 +6,23 @@
 
 namespace sandglass {
 
-/// When elements are demoted; they are always promoted immediately. Demotion is possible never, or where a
-/// lower level suffices (at the full load), or, to avoid alternating during a motion, where a lower level
-/// would suffice for half the tolerance.
+/// When elements are demoted (promotion is always immediate): never; if a lower level suffices (at the full
+/// load); or, to avoid alternating during a motion, if a lower level suffices for half the tolerance.
 enum class Demotion { never, where_enough, reluctant };
 
 /// The checks of a dynamic run at which levels are chosen. Choosing them costs about ten steps; it is
-/// frequent while elements are promoted, and becomes rarer while none is. Where displacements are imposed it
-/// begins at the first check, since a motion may be short; elsewhere accuracy is relative to displacements
+/// frequent while elements are promoted, and becomes rarer while none is. With imposed displacements it
+/// begins at the first check, since a motion may be short; without them accuracy is relative to displacements
 /// that must grow first. Elements are only promoted: one that is demoted when its hourglass modes pass
 /// through zero, and promoted again when they are large, would pump energy into every vibration.
 class AdaptionSchedule {
  public:
   explicit AdaptionSchedule(bool early) : wait_(early ? 1 : shortest), next_(wait_) {}
 
-  /// Counts a check; whether levels are to be chosen at it.
+  /// Counts a check; returns whether levels are chosen at it.
   bool due() { return ++checks_ >= next_; }
 
-  /// Sets the next check at which they are, from whether elements were promoted at this one.
+  /// Sets the next check at which levels are chosen, given whether elements were promoted at this one.
   void done(bool promoted) {
     ++choices_;
     const bool begun = wait_ >= shortest;
@@ -31,7 +30,7 @@ class AdaptionSchedule {
     next_ = checks_ + wait_;
   }
 
-  /// How often levels were chosen.
+  /// The number of times that levels were chosen.
   long choices() const { return choices_; }
 
   template <class Archive>
@@ -54,15 +53,15 @@ class AdaptionSchedule {
 /// Chooses the levels of the elements of an adaptive method: the error of an element's force may displace its
 /// nodes by at most half the requested accuracy. The displacement of a node is estimated with its neighbours
 /// fixed, as the force over mu times the integral of |grad N|^2; errors of neighbouring elements and the
-/// motion of the rest of the body about double it in most bodies, hence the half. Where they add up to more,
-/// as along a beam, `tighten` makes it less. Does nothing for other methods.
+/// motion of the rest of the body about double it in most bodies, hence the half. If they add up to more, as
+/// along a beam, `tighten` reduces the share. Does nothing for other methods.
 template <class Real>
 class Adaption {
  public:
   /// For a body of the model, with the accuracy of the model's method choice.
   Adaption(const Model& model, const Body<Real>& body);
 
-  /// Whether there are levels to choose.
+  /// Whether the method has levels to choose.
   bool active() const { return active_; }
 
   /// When to choose them in a motion: early where displacements are imposed.
@@ -72,8 +71,8 @@ class Adaption {
   /// the previous levels until they are evaluated again.
   Adaptation apply(Body<Real>& body, Demotion demotion);
 
-  /// Takes a measured error (m) of an answer at the present levels: elements are henceforth allowed the less,
-  /// the more it exceeds the accuracy. Whether it does.
+  /// Takes a measured error (m) of an answer with the current levels; the more it exceeds the accuracy, the
+  /// less error elements are allowed from then on. Returns whether it does.
   bool tighten(const Body<Real>& body, double error);
 
   /// The processor time that the calling thread spent on it so far, s.
@@ -85,7 +84,7 @@ class Adaption {
   bool active_;
   double accuracy_;
   double imposed_;       // m, largest
-  double share_ = 0.5;   // of the accuracy, that an element may use
+  double share_ = 0.5;   // of the accuracy, allowed to an element
   Rows<Real> mobility_;  // m/N, zero on constrained components
   double seconds_ = 0.0;
 };

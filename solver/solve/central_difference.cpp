@@ -38,8 +38,8 @@ constexpr double loading_curve_acceleration(double relative_time) {
   return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t);
 }
 
-/// Displacements (m) at the share s of a step of h s between displacements and velocities (m/s) at its ends:
-/// of third order, so that what is told of a motion does not depend on where the steps fall.
+/// Displacements (m) at the share s of a step of h seconds, interpolated from displacements and velocities
+/// (m/s) at its ends: of third order, so that reported motions do not depend on the positions of the steps.
 NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, const NodalField& u_after,
                  const NodalField& v_after) {
   const double r = 1.0 - s;
@@ -53,11 +53,12 @@ NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, c
   return between;
 }
 
-/// Notices energy that no work explains: steps that are too long feed the fastest vibrations.
+/// Detects energy that no work explains: steps that are too long feed the fastest vibrations.
 class EnergyWatch {
  public:
-  /// Takes a motion's energy and the work done on it (J), and the step (s). Whether the difference has risen
-  /// noticeably above its least value since the step changed, which changes the energy that is kept.
+  /// Takes a motion's energy and the work done on it (J), and the step (s). Returns whether the difference
+  /// has risen noticeably above its smallest value since the last change of the step, which changes the
+  /// conserved energy.
   bool rises(double energy, double work, double step) {
     constexpr double noticeable = 0.02;  // of the largest energy
     largest_ = std::max({largest_, energy, std::abs(work)});
@@ -109,8 +110,8 @@ class CentralDifference {
 
   double adaption_energy() const { return adaption_energy_; }
 
-  /// The kinetic energy (J) at velocities v (m/s), of the product of velocities half a step before and after:
-  /// with the strain energy, central differences keep this one, in small motions exactly.
+  /// The kinetic energy (J) at velocities v (m/s), from the product of velocities half a step before and
+  /// after: central differences conserve its sum with the strain energy, in small motions exactly.
   double kinetic_energy(const NodalField& v) const {
     const std::vector<double>& masses = model_.masses();
     double sum = 0.0;
@@ -152,12 +153,11 @@ class CentralDifference {
 
   /// Whether steps may be shorter than those that `choose_step` sets.
   bool may_shorten() const {
-    const bool chosen_unstable =
-        settings_.time_step > 0.0 || settings_.step_fraction > 1.0;  // to see what happens
+    const bool chosen_unstable = settings_.time_step > 0.0 || settings_.step_fraction > 1.0;  // on purpose
     return !chosen_unstable && steady_step_.may_shorten();
   }
 
-  /// Takes shorter steps from now on.
+  /// Shortens the steps from now on.
   void shorten() {
     steady_step_.shorten();
     divide_what_is_left();
@@ -174,8 +174,8 @@ class CentralDifference {
                       [this](Body<Real>& body) { body.impose(loading(time()), time()); });
   }
 
-  /// Takes the next step and passes on the displacements that an observer asks for within it, unless the body
-  /// is not healthy after it. Whether it asks for any.
+  /// Takes the next step and, if the body is healthy after it, passes on the displacements that an observer
+  /// wants within it. Returns whether it wants any.
   bool advance(Observer& observer) {
     const bool asked = observer.next_sample() <= time() + next_step_ * (1.0 + 1e-9);
     if (!asked) {
@@ -234,10 +234,10 @@ class CentralDifference {
   }
 
  private:
-  /// Steps equal to the end, of at most the steady one.
+  /// The next of equal steps to the end, at most the steady step.
   void divide_what_is_left() {
     const double left = settings_.duration - time();
-    constexpr double rounding = 1e-9;  // of a step, which must not decide how many there are
+    constexpr double rounding = 1e-9;  // of a step; it must not affect their number
     next_step_ = left / std::max(1.0, std::ceil(left / steady_step_.step() - rounding));
   }
 
@@ -365,7 +365,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     observer.resumable(checkpoint);
   }
   std::vector<std::byte> sound;                           // the state at the last check
-  const bool alone = model.choice().ranks->count() == 1;  // what one rank keeps is not the whole state
+  const bool alone = model.choice().ranks->count() == 1;  // one rank keeps only a part of the state
   if (alone) keep(StateCopy(sound));
   while (!scheme.finished() && !motion.interrupted) {
     const bool sampled = scheme.advance(observer);

@@ -14,8 +14,7 @@ namespace sandglass {
 
 namespace {
 
-/// What rotated sets, which no handle moves, do to the other nodes by going to their final places: forces
-/// (N).
+/// The forces (N) on other nodes caused by rotated sets, which no handle moves, at their final positions.
 NodalField forces_of_rotations(const Model& model, const Handles& handles) {
   const Scene& scene = model.scene();
   NodalField u(scene.mesh.points.size());
@@ -39,12 +38,12 @@ Rows<Real> superposed(const Model& model, const Layout& layout) {
   const Scene& scene = model.scene();
   if (const BodyForce* other = first_not_dead(scene.forces)) {
     throw ComputationError(
-        fmt::format("method '{}' superposes answers to displacements and dead loads, to which a {} does not "
-                    "belong; choose another method",
+        fmt::format("method '{}' superposes answers to displacements and dead loads and does not support a "
+                    "{}; choose another method",
                     model.choice().method, other->traits().name));
   }
   if (!scene.ties.empty()) {
-    throw ComputationError(fmt::format("method '{}' does not know refined meshes; choose another method",
+    throw ComputationError(fmt::format("method '{}' does not support refined meshes; choose another method",
                                        model.choice().method));
   }
   const Handles handles = handles_of_sets(scene);

@@ -12,39 +12,40 @@ namespace sandglass {
 
 namespace {
 
-/// The norm, over that at the start, below which accelerated steps lead to the answer, however slowly; unless
-/// an element is inverted.
+/// If the norm is below this share of its initial value, accelerated steps find the answer, even if slowly,
+/// unless an element is inverted.
 constexpr double near_answer = 0.01;
 
-/// The method of multipliers ends when the norm has fallen to this share; later on the way from a saddle, to
-/// which accelerated steps would return.
+/// The method of multipliers ends when the norm has fallen to this share; after leaving a saddle it ends
+/// later, as accelerated steps would return there.
 constexpr double multiplied_share = 0.1, multiplied_share_from_saddle = 1e-4;
 
-/// So often it may hand over to accelerated steps before the potential's descent begins.
+/// It may hand over to accelerated steps this often before the descent of the potential begins.
 constexpr int most_returns = 2;
 
-/// The resistance to volume changes that multipliers leave to the elements, over the shear modulus.
+/// The elements' own resistance to volume changes beside multipliers, over the shear modulus.
 constexpr double penalty_over_shear = 5.0;
 
 /// Evaluations for one Newton step.
 constexpr int most_products_with_multipliers = 200, most_products = 500;
 
 /// Accelerated steps after which the configuration may have changed too much for the multigrid method, and
-/// the norm, over that at the start, below which that no longer matters.
+/// the norm, over its initial value, below which that no longer matters.
 constexpr std::size_t steps_between_updates = 8;
 constexpr double close_enough = 1e-4;
 
-/// The norm after an accelerated step may be at most so many times the largest of the last ones; longer steps
-/// are shortened. More lets bodies that bend and stretch far wander off. With full effort, and where forces
-/// depend on the path, which remembers every detour, less ends some searches that would recover.
+/// The norm after an accelerated step may be at most this multiple of the largest of the last ones; longer
+/// steps are shortened. With a larger value, bodies that bend and stretch far diverge. With a smaller one,
+/// some searches end that would recover with full effort, or with forces that depend on the path, which
+/// remembers every detour.
 constexpr double most_growth = 1.5, most_growth_of_the_last_try = 3.0;
 
-/// The residual of a linear answer that was not reached may have grown, in slender bodies, and the answer be
-/// good to start from all the same; beyond this it is not.
+/// In slender bodies the residual of an unfinished linear answer may have grown although the answer is still
+/// a good start; beyond this growth it is not.
 constexpr double most_extended_growth = 10.0;
 
-/// A saddle is left by this change of displacement gradients and its doubles, in the first of the directions
-/// in which potentials are equal but for this share of what they fall.
+/// A saddle is left by this change of displacement gradients, doubled repeatedly. Directions whose potentials
+/// differ by less than this share of their fall count as equal; the first is taken.
 constexpr double shortest_leap = 1e-3, hardly_lower = 1e-5;
 
 }  // namespace
@@ -131,8 +132,8 @@ bool Equilibrium<Real>::accelerated() {
   return true;
 }
 
-/// To where the residual would be least after the steps so far, and from there by a multigrid cycle; shorter
-/// while the norm is much larger than the last ones.
+/// Moves to where the steps so far predict the smallest residual, and on by a multigrid cycle; shorter while
+/// the norm is much larger than the last ones.
 template <class Real>
 bool Equilibrium<Real>::linearized_step() {
   const double norm = mixed_.norm();
@@ -177,7 +178,7 @@ void Equilibrium<Real>::begin_multipliers() {
   enough_ = (leaves_saddle_ ? multiplied_share_from_saddle : multiplied_share) * progress_.fallen;
 }
 
-/// One Newton step with the pressures as multipliers, which follow.
+/// One Newton step with the pressures as multipliers, which are updated afterwards.
 template <class Real>
 bool Equilibrium<Real>::multiplied() {
   if (mixed_.norm() < enough_ && convex_) {
@@ -282,14 +283,14 @@ void Equilibrium<Real>::go_to(const Point& point) {
   pressures() = point.pressures;
 }
 
-/// To the point of lower potential: where the search began, or the best since.
+/// Goes to the point of lower potential: the start of the search, or the best since.
 template <class Real>
 void Equilibrium<Real>::go_to_lower() {
   go_to(potential_at(best_) < potential_at(start_) ? best_ : start_);
   mixed_.evaluate();
 }
 
-/// Infinite where an element is inverted.
+/// Infinite if an element is inverted.
 template <class Real>
 double Equilibrium<Real>::potential_at(const Point& point) {
   go_to(point);

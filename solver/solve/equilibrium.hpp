@@ -9,13 +9,12 @@
 
 namespace sandglass {
 
-/// What a search does where its steps go astray: it gives up at once, after a while, or goes through all
-/// stages.
+/// When a search gives up if its steps fail: immediately, after a while, or only after all stages.
 enum class Effort { brief, patient, full };
 
 /// The search for the equilibrium of a body at fixed loads and imposed displacements, in up to three stages:
-/// accelerated steps, each a multigrid cycle and one evaluation of the forces; where they go astray, the
-/// method of multipliers; where that is no better, descent of the body's own potential. See README.md.
+/// accelerated steps, each a multigrid cycle and one evaluation of the forces; if they fail, the method of
+/// multipliers; if that is no better, descent of the body's own potential. See README.md.
 template <class Real>
 class Equilibrium {
  public:
@@ -37,31 +36,31 @@ class Equilibrium {
   /// See MixedBody::average_pressures.
   void average_pressures(const std::vector<int>& element_of) { mixed_.average_pressures(element_of); }
 
-  /// Imposes a load and moves the body by the linear answer to its increase, or by as much of both as changes
-  /// no element's displacement gradient by more than `most`. Returns the load.
+  /// Imposes a load and moves the body by the linear answer to its increase. Scales both down if an element's
+  /// displacement gradient would change by more than `most`. Returns the load.
   double extend(double load, double most);
 
-  /// How many times the body may move by `change` (m) until an element is strained by `most`, in the present
-  /// configuration; as often as one likes where laws are not known to stiffen.
+  /// The factor by which `change` (m) may be scaled until an element of the current configuration is strained
+  /// by `most`; infinite if laws are not known to stiffen.
   double steps_to_strain(const Rows<float>& change, double most) {
     if (!mixed_.may_stiffen()) return INFINITY;
     mixed_.linearize();
     return most / mixed_.multigrid().elements().largest_strain(change);
   }
 
-  /// Starts from the present displacements and pressures, at which no element may be inverted, with one
-  /// evaluation. Later stages descend a potential, which forces must have.
+  /// Starts from the current displacements and pressures, at which no element may be inverted, with one
+  /// evaluation. Later stages descend a potential, so forces must have one.
   void start(Effort effort);
 
-  /// Takes one step with one evaluation, or more in later stages; false if the search goes astray.
+  /// Takes one step with one evaluation, or more in later stages; false if the search fails.
   bool step();
 
-  /// How the body resists small motions from the last evaluation, which must be that of an answer.
+  /// The body's softest small motions at the last evaluation, which must be an answer.
   SoftestMotions softest_motions(const NodalField& points);
 
-  /// Leaves a saddle along the falling motions, to where the potential is least along them or combinations of
-  /// the first two; `step` descends further, the body's own potential if `slowly`. Returns false if it falls
-  /// along none.
+  /// Leaves a saddle along the motions that lower the potential, to its smallest value along them or
+  /// combinations of the first two; `step` descends further, down the body's own potential if `slowly`.
+  /// Returns false if no motion lowers it.
   bool leave(const std::vector<MixedVector>& falling, bool slowly);
 
   /// The residual of the last evaluation; see Body::residual.
@@ -71,8 +70,8 @@ class Equilibrium {
   bool at_rounding() const { return mixed_.at_rounding(stage_ != Stage::descent); }
   bool bears_nothing() const { return mixed_.bears_nothing(); }
 
-  /// The norm of the residuals of both unknowns over that at the start; 1 in the last stage, which has no
-  /// pressures, and once steps have gone astray, after which a body with a small norm may have collapsed.
+  /// The norm of the residuals of both unknowns over its initial value; 1 in the last stage, which has no
+  /// pressures, and after steps have failed, when a body with a small norm may have collapsed.
   double reduction() const { return returns_ > 0 || stage_ == Stage::descent ? 1.0 : mixed_.norm() / first_; }
 
   /// Evaluations of the forces since construction.
@@ -99,17 +98,17 @@ class Equilibrium {
     int steps;
   };
 
-  /// Waits for a norm to fall.
+  /// Watches whether a norm keeps falling.
   struct Progress {
     double fallen = 0.0;
     int waited = 0;
 
-    /// Counts a step; whether the norm has fallen in time.
+    /// Counts a step; returns whether the norm has fallen in time.
     bool take(double norm, const Patience& patience);
   };
 
-  /// A body that buckles descends far before its norm falls, and slow steps are as good as any near the
-  /// answer.
+  /// The patience of the descent: a buckling body descends far before its norm falls, and near the answer
+  /// slow steps are as good as any.
   static constexpr Patience accelerated_patience{0.75, 12}, patient_patience{0.5, 100},
       multiplied_patience{0.5, 100}, descent_patience{0.5, 300};
 
@@ -136,11 +135,11 @@ class Equilibrium {
   Point start_, best_;
   double best_norm_ = 0.0;
   double first_ = 1.0;   // norm
-  double enough_ = 0.0;  // norm at which multipliers have done their work
+  double enough_ = 0.0;  // norm at which multipliers end
   int returns_ = 0;      // to acceleration
   bool leaves_saddle_ = false;
   bool convex_ =
-      true;  // whether the last Newton step met no negative curvature; only asked where a saddle is left
+      true;  // whether the last Newton step met no negative curvature; only used after leaving a saddle
   std::vector<double> norms_;  // since acceleration began
 };
 

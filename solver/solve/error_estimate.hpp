@@ -4,7 +4,7 @@
 
 namespace sandglass {
 
-/// The method that errors are estimated with: eight points and one pressure.
+/// The method for error estimates: eight points and one pressure.
 inline constexpr std::string_view estimate_method = "tl-mean-dilatation";
 
 /// The root of the mean squared distance (m) of two fields of the same length.

@@ -11,7 +11,7 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
 /// The largest eigenvalue of a symmetric operator, plus the residual of its vector, by Lanczos' method from a
-/// start q that has a share of it (Parlett, The Symmetric Eigenvalue Problem, chapter 13). Ten steps are
+/// start q that contains this vector (Parlett, The Symmetric Eigenvalue Problem, chapter 13). Ten steps are
 /// usual.
 template <class Numbers, class Operator>
 double largest_eigenvalue(Numbers q, const Operator& apply) {
@@ -70,7 +70,8 @@ double LargestFrequency<Real>::square(const Mesh& mesh, const ElementForces<Real
   State<Real> moved = state;
   Rows<Real> forces(state.u.size()), change = forces;
   elements.evaluate(moved, forces);
-  // In coordinates in which the mass matrix is one; forces change by the difference of two evaluations.
+  // In coordinates in which the mass matrix is the identity; the change of forces is the difference of two
+  // evaluations.
   const Numbers root = numbers(inverse_masses).cwiseSqrt();
   const auto apply = [&](const Numbers& q) -> Numbers {
     numbers(change) = root.cwiseProduct(q);
@@ -83,7 +84,7 @@ double LargestFrequency<Real>::square(const Mesh& mesh, const ElementForces<Real
     ties.hand_on(change);
     return root.cwiseProduct(numbers(change));
   };
-  // A start with every wave length.
+  // A start that contains every wavelength.
   const Numbers waves = Numbers::LinSpaced(root.size(), Real(0), Real(1)).unaryExpr([&](Real x) {
     return static_cast<Real>(
         std::sin(std::pow(static_cast<double>(x) * static_cast<double>(root.size()), 2)));

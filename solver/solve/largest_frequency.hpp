@@ -7,20 +7,19 @@
 
 namespace sandglass {
 
-/// The largest frequency of small motions of a body, followed through a run. It is below the bounds of single
-/// elements, because the fastest motions of neighbours do not fit together.
+/// The largest frequency of small motions of a body, tracked through a run. It is below the bounds of single
+/// elements, because the fastest motions of neighbours are not compatible.
 template <class Real>
 class LargestFrequency {
  public:
   explicit LargestFrequency(std::size_t elements) : bounds_(elements, 0.0) {}
 
   /// Its square (1/s^2) at a state: an earlier value times the largest growth since then of an element's
-  /// stiffness bound (N/m), computed anew once that is a tenth, or the largest bound has fallen as much,
-  /// or bounds have been others for ten calls.
-  /// Infinite if not known, where forces depend on more than displacements or are not finite. Of `most`, the
-  /// square for single elements, it is a whole power of 2^(-1/32), rounded up, so that roundoff, which
-  /// depends on units and directions, does not reach the steps. `inverse_masses` (1/kg) are zero on
-  /// components that are not free.
+  /// stiffness bound (N/m). It is recomputed once this growth is a tenth, or the largest bound has fallen as
+  /// much, or bounds have differed for ten calls. Infinite if unknown, because forces depend on more than
+  /// displacements or are not finite. Over `most`, the square for single elements, it is a whole power of
+  /// 2^(-1/32), rounded up, so that roundoff, which depends on units and directions, does not affect the
+  /// steps. `inverse_masses` (1/kg) are zero on components that are not free.
   double square(const Mesh& mesh, const ElementForces<Real>& elements, const RowTies<Real>& ties,
                 const Rows<Real>& inverse_masses, const State<Real>& state, const std::vector<double>& bounds,
                 double most);
@@ -34,9 +33,9 @@ class LargestFrequency {
   }
 
  private:
-  double square_ = 0.0;         // 0 before the first time
-  std::vector<double> bounds_;  // then, N/m
-  int age_ = 0;                 // calls at which bounds were others
+  double square_ = 0.0;         // 0 before the first computation
+  std::vector<double> bounds_;  // at that time, N/m
+  int age_ = 0;                 // calls with other bounds
 };
 
 extern template class LargestFrequency<double>;

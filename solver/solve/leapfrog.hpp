@@ -8,8 +8,8 @@ namespace sandglass {
 /// Throws InputError if the model's method superposes static answers instead of taking steps.
 void require_steps(const Model& model);
 
-/// The time of central differences with variable steps and mass-proportional damping. Velocities are those
-/// half a step before, stored as increments of the displacements over `increment_time`.
+/// The time of central differences with variable steps and mass-proportional damping. Velocities belong to
+/// the time half a step earlier, and are stored as increments of the displacements over `increment_time`.
 struct LeapfrogClock {
   double damping;               ///< 1/s
   double time = 0.0;            ///< s, of the displacements
@@ -17,7 +17,7 @@ struct LeapfrogClock {
   double step_size = 0.0;       ///< s, of the last step
   double increment_time = 1.0;  ///< s
 
-  /// What becomes of increments in a step: keep * increment - gain * force / mass, gain in s^2.
+  /// The coefficients of a step: the increment becomes keep * increment - gain * force / mass, gain in s^2.
   struct Coefficients {
     double keep;
     double gain;
@@ -38,12 +38,12 @@ struct LeapfrogClock {
   }
 };
 
-/// Central differences with lumped masses and variable steps. Displacements are those at `time`, velocities
-/// those half a step before. A copy is an independent simulation of the same model.
+/// Central differences with lumped masses and variable steps. Displacements are at `time`, velocities half a
+/// step earlier. A copy is an independent simulation of the same model.
 template <class Real>
 class Leapfrog {
  public:
-  /// Undeformed and at rest. `damping` is mass-proportional, 1/s.
+  /// Starts undeformed, with zero velocities. `damping` is mass-proportional, 1/s.
   Leapfrog(const Model& model, const InternalForce<Real>& elements, double damping);
 
   Body<Real>& body() { return body_; }
@@ -60,8 +60,8 @@ class Leapfrog {
   long step() const { return clock_.step; }
   double step_size() const { return clock_.step_size; }  ///< s, the step that led here
 
-  /// Sets velocities (m/s) before the first step, stored as increments over 1 s; an empty field means at
-  /// rest. They do not apply to constrained components.
+  /// Sets velocities (m/s) before the first step, stored as increments over 1 s; an empty field means zero.
+  /// They do not apply to constrained components.
   void set_initial_velocities(const NodalField& v);
 
   /// Advances by `next_step` (s), then evaluates the forces. `impose(body)` sets constrained components and
@@ -83,7 +83,7 @@ class Leapfrog {
   /// damping included; zero on constrained components.
   NodalField free_velocities() const;
 
-  /// dt^2/8 f M^-1 f (J): by how much the kinetic energy of `free_velocities` exceeds half the product of
+  /// dt^2/8 f M^-1 f (J): the excess of the kinetic energy of `free_velocities` over half the product of
   /// masses and velocities half a step before and after.
   double energy_of_step() const;
 

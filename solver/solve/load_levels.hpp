@@ -11,7 +11,7 @@
 
 namespace sandglass {
 
-/// Twice the largest distance (m) from the mean of some points, however they are turned.
+/// Twice the largest distance (m) of some points from their mean, which does not depend on their orientation.
 inline double span(const NodalField& points) {
   const double count = static_cast<double>(points.size());
   Vector mean{};
@@ -25,9 +25,9 @@ inline double span(const NodalField& points) {
 }
 
 /// A load factor so small that no element inverts wherever the load acts. Driven nodes move by at most a
-/// hundredth of the smallest element's size h; and a cantilever as long as the mesh and as thick as that
-/// element, with the smallest shear modulus for E, would rotate by about a hundredth under the sum F of the
-/// forces, by F l^2 / (2 E I) with I = h^4 / 12, where moments count as forces at the end of l.
+/// hundredth of the smallest element's size h. Under the sum F of the forces, a cantilever as long as the
+/// mesh, l, and as thick as that element, with the smallest shear modulus as E, would rotate by F l^2 / (2 E
+/// I), I = h^4 / 12, at most about a hundredth; moments count as forces at the end of l.
 inline double first_load(const Model& model) {
   const Scene& scene = model.scene();
   double smallest = INFINITY;  // volume
@@ -58,18 +58,18 @@ inline double largest_gradient(const Mesh& mesh, const NodalField& u) {
   return std::sqrt(square);
 }
 
-/// The turning points of the load: 0, the full load, and for each cycle a tenth and the full load again; a
-/// tenth instead of zero, because residuals are relative to reactions.
+/// The turning points of the load: 0, the full load, and for each cycle a tenth and the full load again. It
+/// is a tenth instead of zero because residuals are relative to reactions.
 inline std::vector<double> turning_loads(int cycles) {
   std::vector<double> loads{0.0, 1.0};
   for (int n = 0; n < cycles; ++n) loads.insert(loads.end(), {0.1, 1.0});
   return loads;
 }
 
-/// The load levels of a search: their loads, relative to the case's, and the displacements to start from. As
-/// many equal ones as the user wants. Otherwise, where forces depend on the path, equal ones so short that no
-/// element's displacement gradient changes by more than 0.3; else as few as possible, each twice as long as
-/// the one before.
+/// The load levels of a search: their loads, relative to the case's, and the displacements to start from.
+/// There are as many equal levels as the user wants. By default, if forces depend on the path, levels are
+/// equal and so short that no element's displacement gradient changes by more than 0.3; otherwise they are as
+/// few as possible, each twice as long as the previous one.
 template <class Real>
 class LoadLevels {
  public:
@@ -89,11 +89,11 @@ class LoadLevels {
   double load() const { return load_; }
   double increment() const { return load_ - last_.load; }
 
-  /// Whether more levels are left: as many as the user wants of each leg, and a thousand. Each writes a
+  /// Whether more levels are allowed: the user's number for each leg, and a thousand more. Each writes a
   /// frame.
   bool has_more() const { return solved_ < more_than_asked + chosen_ * static_cast<int>(turns_.size()); }
 
-  /// Whether the load of this level is another than that of the last one, beyond rounding.
+  /// Whether the load of this level differs from the last one by more than rounding.
   bool advances() const { return std::abs(increment()) > least_increment; }
 
   /// The load of the last level that was solved.
@@ -103,7 +103,7 @@ class LoadLevels {
   bool full() const { return leg_ + 1 == turns_.size() && load_ == turns_.back(); }
 
   /// The effort for this level: brief, unless shorter increments have not helped. Forces that depend on the
-  /// path have no potential for more than patience.
+  /// path have no potential, so that only patience can help.
   Effort effort() const {
     if (in_a_row_ == 0 && failures_ < few_failures) return Effort::brief;
     return depends_on_path_ ? Effort::patient : Effort::full;
@@ -129,9 +129,9 @@ class LoadLevels {
     return changes;
   }
 
-  /// Extrapolates the search from the last two load levels linearly, and imposes this load, or one before it
-  /// at which no element is strained further by more than `largest_strain`: a law may stiffen a hundredfold
-  /// beyond. The first time by the linear answer, as far as that goes.
+  /// Extrapolates the search linearly from the last two load levels, and imposes this load, or a smaller one
+  /// at which no element is strained by more than `largest_strain` from here: a law may stiffen a hundredfold
+  /// beyond. The first level uses the linear answer instead.
   void predict(Equilibrium<Real>& search) {
     Body<Real>& body = search.body();
     body.move_to(last_.state.u);
@@ -160,16 +160,16 @@ class LoadLevels {
     body.impose(load_);
   }
 
-  /// Goes to the full load at once, which is worth every effort: there is no shorter increment to try.
+  /// Goes to the full load in one level, with full effort, because there is no shorter increment to try.
   void skip_to_end() {
     leg_ = turns_.size() - 1;
     load_ = turns_.back();
     failures_ = few_failures;
   }
 
-  /// Whether a search below the full load has come far enough for predictions. Forces that depend on the path
-  /// remember every level, and of equal levels the first decides how many there are. Where many levels have
-  /// failed, one that is further from equilibrium than by the increment of the load would mislead the next.
+  /// Whether a search below the full load is accurate enough for predictions. Forces that depend on the path
+  /// remember every level, and the first of equal levels determines their number. After many failures, a
+  /// level that is farther from equilibrium than the increment of the load would mislead the next one.
   bool far_enough(const Equilibrium<Real>& search) const {
     constexpr double residual = 0.1, reduction = 0.03, residual_of_first = 1e-3;
     if (equal_ && last_.load == 0.0) return search.residual() < residual_of_first;
@@ -234,25 +234,24 @@ class LoadLevels {
   }
 
  private:
-  /// The change of displacement gradients that the first level may have.
+  /// The largest change of displacement gradients in the first level.
   static constexpr double largest_first_gradient = 0.4;
 
   static constexpr int more_than_asked = 1000;
 
-  /// An increment below the rounding of single precision, in which the multigrid method computes, changes
-  /// nothing.
+  /// An increment below the rounding of single precision, the multigrid method's, changes nothing.
   static constexpr double least_increment = 1e-9;
 
-  /// The strain, in the present configuration, up to which levels are extrapolated.
+  /// The strain, relative to the current configuration, up to which levels are extrapolated.
   static constexpr double largest_strain = 0.3;
 
-  /// The load increment may shrink to a few millionths of itself.
+  /// The number of halvings in a row, to a few millionths of the load increment.
   static constexpr int most_in_a_row = 20;
 
-  /// Levels that are solved between failures may come nearer and nearer to a load without ever passing it.
+  /// Levels solved between failures may approach a load without ever passing it.
   static constexpr int most_failures = 200;
 
-  /// After so many failures in all every level is worth more effort.
+  /// After this many failures in all, every level gets more effort.
   static constexpr int few_failures = 4;
 
   struct Solved {
@@ -266,7 +265,7 @@ class LoadLevels {
     std::vector<Real> pressures;
   };
 
-  /// Rotations advance by at most an eighth of a turn: a whole turn at once would look like none.
+  /// Rotations advance by at most an eighth of a turn per level: a whole turn would look like none.
   static double longest_increment(const Scene& scene) {
     double largest = 0.0;
     for (const double angle : scene.angles) largest = std::max(largest, std::abs(angle));
@@ -274,7 +273,7 @@ class LoadLevels {
     return largest > eighth ? eighth / largest : 1.0;
   }
 
-  /// The increment of equal load levels: as many as the user wants, or such that no element's displacement
+  /// The increment of equal load levels: from the user's number, or such that no element's displacement
   /// gradient changes by more than 0.3.
   double choose_increment(const NodalField& u) const {
     if (chosen_ > 0) return 1.0 / chosen_;

@@ -63,7 +63,7 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   const Rows<double>&u = u_, &increment = increment_;
   const NodalMotion motion{by_node(u.data()), by_node(increment.data()), static_cast<double>(state.step)};
   for (const auto& one : forces_of_scene_) one->add_forces(factors_, motion, by_node(forces_.data()));
-  // Dead forces are known everywhere, the others where the rank knows the displacements.
+  // Dead forces are known on all ranks, others on ranks that know the displacements.
   if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
   square_ = 0.0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {

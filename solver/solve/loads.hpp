@@ -23,17 +23,17 @@ class Loads {
   /// The change of the loads (N) to another time and load factor, by row, in the configuration u (m).
   Rows<Real> change_to(double time, double load_factor, const Rows<Real>& u) const;
 
-  /// The energy (J) of which the loads are minus the derivative, at displacements u (m); see
+  /// The potential (J) of the loads at displacements u (m); they are minus its derivative. See
   /// BodyForce::add_potential.
   double potential(const Rows<Real>& u) const;
 
   /// Adds the work of the loads since the last call, from the mean of the forces of both states.
   void add_work(const Rows<Real>& u);
 
-  /// The sum of all that was added, J.
+  /// The sum of all work added, J.
   double work() const;
 
-  /// Makes everything that is kept known to all ranks.
+  /// Makes the complete data known to all ranks.
   void gather();
 
   /// The data that the next work depends on; see checkpoint.hpp.
@@ -68,7 +68,7 @@ class Loads {
   std::vector<bool> owned_;        // by this rank, of these
   std::shared_ptr<const Ranks> ranks_;
   std::vector<int> place_of_node_;  // among the loaded rows; -1 for others
-  bool all_dead_;                   // the motion of the body changes none
+  bool all_dead_;                   // no force depends on the motion of the body
   std::vector<double> factors_;     // of curves
   Rows<double> u_, increment_;      // m, of loaded rows; zero where all are dead
   Rows<double> forces_;             // N, of loaded rows

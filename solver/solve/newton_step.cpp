@@ -10,14 +10,13 @@ namespace sandglass {
 
 namespace {
 
-/// The share of the linear residual at which a step is good enough.
+/// A step is good enough when the linear residual has fallen to this share.
 constexpr double forcing = 0.1;
 
 /// Steps are limited to this change of displacement gradients.
 constexpr double longest = 1.0;
 
-/// The share of the smoother's diagonal that is added to the cycle, which the pressures would make
-/// indefinite.
+/// The share of the smoother's diagonal that is added to the cycle, which pressures could make indefinite.
 constexpr float added_diagonal = 0.5f;
 
 /// The search for one step.
@@ -72,7 +71,7 @@ class NewtonStep {
 
   /// The product of the tangent with a direction, over the norm of the forces.
   Rows<float> product(const MixedVector& direction) {
-    // For forward differences, whose rounding nearly incompressible laws amplify.
+    // The length of forward differences, whose rounding nearly incompressible laws amplify.
     static const double change = std::cbrt(static_cast<double>(std::numeric_limits<Real>::epsilon()));
     const double length = change / mixed_.multigrid().elements().largest_gradient(direction.u);
     mixed_.move(direction, length);
@@ -127,7 +126,7 @@ class NewtonStep {
       const auto length = static_cast<float>(rz / curvature);
       add(length, d, x, blocks());
       add(-length, q, r, blocks());
-      if (dot(r, r, blocks()) < forcing * forcing) break;  // it was one
+      if (dot(r, r, blocks()) < forcing * forcing) break;  // converged
     }
     return x;
   }

@@ -63,7 +63,7 @@ class Search {
     return finish();
   }
 
-  /// The same from displacements near the answer, at the full load; none if they do not lead to it.
+  /// The same from displacements near the answer, at the full load; none if the search fails.
   std::optional<Relaxation> run_near(const NodalField& u) {
     const Frame rest = frame_of(body(), 0.0, no_velocity_);
     load_levels_.skip_to_end();
@@ -85,14 +85,14 @@ class Search {
   /// change at smaller residuals are corrected at the end.
   static constexpr double tolerance_for_adaption = 1e-3;
 
-  /// What an error may be over its estimate, which is a little low in slender bodies.
+  /// The largest error over its estimate, which is slightly low in slender bodies.
   static constexpr double largest_over_estimate = 1.1;
 
-  /// Elements without stiffness against hourglass modes have no stable equilibrium, but on coarse meshes; the
-  /// search for one ends after so many evaluations.
+  /// Elements without stiffness against hourglass modes have a stable equilibrium on coarse meshes only; the
+  /// search for one ends after this many evaluations.
   static constexpr int few_evaluations = 2000;
 
-  /// The saddles that are left one after another.
+  /// The largest number of saddles that are left one after another.
   static constexpr int most_saddles = 5;
 
   static bool without_stiffness(const Model& model) {
@@ -139,27 +139,29 @@ class Search {
     return settings_.tolerance;
   }
 
-  /// Relative time: the length of the load path, plus, at the full load, evaluations over those up to there.
+  /// Relative time: the length of the load path, plus, at the full load, further evaluations over the earlier
+  /// ones.
   double time() const {
     if (!load_levels_.full()) return load_levels_.travelled();
     const auto before = static_cast<double>(std::max(1L, first_evaluation_));
     return load_levels_.way() + static_cast<double>(equilibrium_.evaluations() - first_evaluation_) / before;
   }
 
-  /// Searches the equilibrium at this load; whether it was found, within the tolerance or roundoff, with no
-  /// element inverted. A search that stagnates starts once more, without the roundoff of its earlier steps.
+  /// Searches for the equilibrium at this load; returns whether it was found, within the tolerance or
+  /// roundoff, without inverted elements. A search that stagnates starts once more, without the roundoff of
+  /// its earlier steps.
   bool solve() {
     first_evaluation_ = equilibrium_.evaluations();
     equilibrium_.start(load_levels_.effort());
     return search();
   }
 
-  /// The same from where the search has started.
+  /// The same for a search that has been started.
   bool search() {
     Stagnation stagnation(epsilon, amplification_);
     int stagnations = 0;
     std::optional<std::pair<State<Real>, std::vector<Real>>>
-        best;  // since only rounding is left, in which a search may wander off
+        best;  // since only rounding is left, during which a search may drift
     double least = INFINITY;
     while (!arrived() || settle()) {
       check();
@@ -171,7 +173,7 @@ class Search {
         best.emplace(body().state(), equilibrium_.pressures());
       }
       if (!stagnation.reached()) continue;
-      // In single precision a second attempt comes nearer.
+      // In single precision a second attempt gets closer.
       if (++stagnations > 1 || (std::is_same_v<Real, double> && at_rounding())) {
         if (!settle()) break;
         stagnations = 0;
@@ -192,23 +194,23 @@ class Search {
     return healthy;
   }
 
-  /// Why the tangent does not decide whether an equilibrium is stable; empty if it does.
+  /// The reason why the tangent does not decide whether an equilibrium is stable; empty if it does.
   std::string no_potential() const {
     if (elements_.needs_increment()) return "forces depend on the path";
     for (const auto& force : model_.scene().forces)
       if (!force->traits().no_potential.empty()) return std::string(force->traits().no_potential);
     if (without_stiffness(model_)) return "hourglass modes are not resisted";
     if (method_named(model_.choice().method).is_linear) return "";
-    // Softest motions are sought with less resistance to volume changes, which such a law does not separate:
-    // what is found then depends on the orientation.
+    // Softest motions are computed with less resistance to volume changes. Such a law does not separate it,
+    // so the result would depend on the orientation.
     const auto& materials = model_.scene().materials.list;
     const auto splits = [](const Material& material) { return splits_volume(material.law); };
     return std::all_of(materials.begin(), materials.end(), splits) ? ""
                                                                    : "a law does not split its volume part";
   }
 
-  /// At the full load leaves equilibria at which the tangent has a negative eigenvalue, for minima of the
-  /// potential; false if the run ends.
+  /// At the full load, leaves equilibria whose tangent has a negative eigenvalue, until a minimum of the
+  /// potential is found; false if the run ends.
   bool descend_from_saddles() {
     if (!load_levels_.full() || (result_.stagnated && !result_.rounded)) return true;
     result_.why_not_decided = no_potential();
@@ -222,15 +224,15 @@ class Search {
       if (softest.falling.empty()) {
         result_.stability = Stability::not_decided;
         result_.why_not_decided = fmt::format(
-            "the least eigenvalue, {:.1g} of the initial stiffness, may be rounding", softest.least);
+            "the smallest eigenvalue, {:.1g} of the initial stiffness, may be rounding", softest.least);
         return true;
       }
       result_.stability = Stability::saddle_left;
       if (left == most_saddles || !equilibrium_.leave(softest.falling, left > 0) || (!search() && !ended_)) {
         throw ComputationError(
-            fmt::format("the equilibrium that was found is unstable: over the initial stiffness, the least "
-                        "eigenvalue of the present one is {:.2g}; the way down from it led to no other; "
-                        "remedy: a small force that decides where the body goes, or a motion with damping",
+            fmt::format("the equilibrium found is unstable: the smallest eigenvalue of the current stiffness "
+                        "is {:.2g} of the initial one; descending from it found no other; remedy: a small "
+                        "force that selects a direction, or a damped motion",
                         softest.least),
             Breakdown::no_balance);
       }
@@ -238,9 +240,9 @@ class Search {
     }
   }
 
-  /// Whether what is left of the forces may be rounding, of displacements or of J - 1, and is little beside
-  /// reactions and loads, or these are rounding, too. Whoever asks for a tolerance below that of double
-  /// precision wants to see how far the search comes.
+  /// Whether the residual forces may be rounding, of displacements or of J - 1, and are small compared with
+  /// reactions and loads, or these are rounding too. With a tolerance below that of double precision, the
+  /// search continues as far as it can.
   bool at_rounding() const {
     constexpr double most_residual = 0.01, double_precision = std::numeric_limits<double>::epsilon();
     if (settings_.tolerance < double_precision) return false;
@@ -249,7 +251,7 @@ class Search {
     return equilibrium_.at_rounding() && (residual < most_residual || equilibrium_.bears_nothing());
   }
 
-  /// Whether the search may end. Where an element is inverted it may not: another equilibrium may be near.
+  /// Whether the search may end: not with an inverted element, as another equilibrium may be near.
   bool arrived() { return (near() || (at_rounding() && equilibrium_.bears_nothing())) && is_healthy(body()); }
 
   bool near() const {
@@ -257,10 +259,10 @@ class Search {
                                : load_levels_.far_enough(equilibrium_);
   }
 
-  /// Lets elements choose their levels at the present displacements; whether the search must continue. At the
-  /// full load this is repeated until levels no longer change, first at a moderate residual, then at the
-  /// tolerance, and the error of the whole is as asked. Elements are demoted only the first time; repeated
-  /// promotions must end.
+  /// Chooses the levels of elements at the current displacements; returns whether the search must continue.
+  /// At the full load this is repeated, first at a moderate residual, then at the tolerance, until levels no
+  /// longer change and the error of the whole is as requested. Elements are demoted only the first time, so
+  /// that promotions end.
   bool settle() {
     if (!load_levels_.full()) {
       adaption_.apply(body(), Demotion::reluctant);
@@ -276,8 +278,8 @@ class Search {
     return true;
   }
 
-  /// Promotes elements until fewer may err, where together they err by more than is asked for. Whether it
-  /// did.
+  /// If the error of the whole exceeds the requested accuracy, tightens the elements' share and promotes
+  /// them. Returns whether it did.
   bool promote_for_the_whole() {
     double error = 0.0;
     try {
@@ -290,9 +292,9 @@ class Search {
     constexpr int most_rounds = 10;
     for (int round = 0; round < most_rounds && adaption_.tighten(body(), error); ++round) {
       if (adaption_.apply(body(), Demotion::never).promoted > 0) return true;
-      error *= 1.5;  // no element was near its limit
+      error *= 1.5;  // no element was close to its limit
     }
-    return false;  // as near as is needed, or all that can be done is done
+    return false;  // accurate enough, or nothing more can be done
   }
 
   void finish_load_level() {
@@ -305,10 +307,9 @@ class Search {
     load_levels_.solved(equilibrium_);
     if (!ended_ && !load_levels_.has_more()) {
       throw ComputationError(
-          fmt::format(
-              "more than a thousand load levels beside those asked for; the last equilibrium is at {:.6g} "
-              "of the load; remedy: impose less, or refine the mesh",
-              load_levels_.solved_load()),
+          fmt::format("more than a thousand load levels beyond the requested ones; the last equilibrium is "
+                      "at {:.6g} of the load; remedy: impose less, or refine the mesh",
+                      load_levels_.solved_load()),
           Breakdown::no_balance);
     }
   }
@@ -325,10 +326,9 @@ class Search {
       throw ComputationError(fmt::format("{}; {}", error.what(), where), error.breakdown());
     }
     throw ComputationError(
-        fmt::format(
-            "no equilibrium was found, however small the increment of the load; {}; remedy: impose less, "
-            "or refine the mesh",
-            where),
+        fmt::format("no equilibrium found even with tiny increments of the load; {}; remedy: impose less, "
+                    "or refine the mesh",
+                    where),
         Breakdown::no_balance);
   }
 
@@ -391,7 +391,7 @@ class Search {
   long first_evaluation_ = 0;  // of this load level
   long evaluations_of_estimates_ = 0;
   long next_check_;       // evaluations
-  bool lowered_ = false;  // whether elements had the opportunity to be demoted at the full load
+  bool lowered_ = false;  // whether elements could be demoted at the full load
   bool settled_ = false;  // whether levels no longer changed at a moderate residual
   bool ended_ = false;
 };

@@ -5,11 +5,11 @@
 
 namespace sandglass {
 
-/// Whether an answer at rest is known to be a minimum of the potential.
+/// Whether a static answer is known to be a minimum of the potential.
 enum class Stability {
   not_decided,
   stable,
-  saddle_left  ///< stable, and the search came from an equilibrium that is not
+  saddle_left  ///< stable, after the search left an equilibrium that is not
 };
 
 /// A static answer and the course of the search for it.
@@ -36,20 +36,20 @@ struct Relaxation {
 /// condensed method superposes its answer in one step. Throws ComputationError if an element remains inverted
 /// or no increment is small enough. The search can be resumed from the start of every load level; with
 /// `from`, a checkpoint of the same model, it starts there, and nothing is reported twice. A condensed method
-/// has no checkpoints. With displacements (m) near the answer, of another method or from a coarser mesh, the
-/// search first starts from these, at the full load, where no forces depend on the path.
+/// has no checkpoints. If displacements (m) near the answer are given, from another method or a coarser mesh,
+/// the search first starts from them at the full load, unless forces depend on the path.
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from = nullptr,
                  const NodalField* near = nullptr);
 
-/// Whether the answer is in equilibrium within the tolerance, or within roundoff: the roundoff of the forces
-/// may keep the residual above the tolerance, in single precision often, in double precision where
-/// displacements are large and what the body bears is little, or where it is next to incompressible.
+/// Whether the answer is in equilibrium within the tolerance, or within roundoff. Roundoff may keep the
+/// residual above the tolerance: often in single precision; in double precision if displacements are large
+/// and loads small, or if the body is almost incompressible.
 bool in_equilibrium(const Relaxation& relaxation);
 
-/// Whether the answer is a minimum, in words: "stable", or the reason why that is not known.
+/// Whether the answer is a minimum, as text: "stable", or the reason why that is unknown.
 std::string stability_text(const Relaxation& relaxation);
 
-/// The end of the search in words: "at rest", or the reason why not.
+/// The end of the search as text: "static equilibrium", or the reason why not.
 std::string outcome(const Relaxation& relaxation, Precision precision);
 
 }  // namespace sandglass

@@ -13,27 +13,29 @@ namespace sandglass {
 
 namespace {
 
-/// Volume changes are resisted by no more than this, over the shear modulus: corrections of the multigrid
-/// method keep volumes nearly, and what is left must not hide that the rest has lost its stiffness.
+/// The largest resistance to volume changes, over the shear modulus: corrections of the multigrid method
+/// nearly conserve volumes, and the remaining change must not hide that the body has lost its stiffness.
 constexpr float most_lambda_over_mu = 10.0f;
 
-/// Fewer motions may not have met the softest one.
+/// The least number of motions; fewer may have missed the softest one.
 constexpr long fewest_evaluations = 3, most_evaluations = 100;
 
-/// The motions that are kept, and those that are left of them when there are more.
+/// The largest number of motions kept, and the number to which they are reduced.
 constexpr Eigen::Index most_kept = 12, fewest_kept = 4;
 
-/// A start may have little of some motion by accident. Where the least eigenvalue is not above this, it must
-/// have settled up to a share of itself, and another start follows.
+/// A start may by accident contain little of some motion. If the smallest eigenvalue is below this, it must
+/// have settled to a share of itself, and another start follows.
 constexpr double clearly = 0.1, little = 0.1, first_phase = 1.0, second_phase = 2.3;
 
-/// Motions that fall are good enough where so many steps have not brought the residual to this share.
+/// Motions that lower the potential are accepted if this many steps have not reduced the residual to this
+/// share.
 constexpr int most_stalled = 4;
 constexpr double much_less = 0.7;
 
-/// A method of Davidson for K x = theta A x, K the tangent and A the model problem's, both with the same
-/// limited resistance to volume changes: in the space of the motions so far, the Rayleigh quotient is made
-/// stationary, and the residual of the least one, prepared by a multigrid cycle, is the next motion.
+/// Davidson's method for K x = theta A x, where K is the tangent and A the model problem's matrix, both with
+/// the same limited resistance to volume changes: in the space of the motions so far, the Rayleigh quotient
+/// is made stationary, and the residual of the smallest one, preconditioned by a multigrid cycle, is the next
+/// motion.
 template <class Real>
 class Davidson {
  public:
@@ -46,7 +48,7 @@ class Davidson {
           mixed.pressure_varies() ? t.lambda : std::min(t.lambda, most_lambda_over_mu * t.mu);
       if (t.volume > 0.0f) resistance_[c] = lambda / t.volume;
     }
-    // The rounding of differences, and their second order.
+    // The rounding of differences, and their second-order error.
     length_ = std::pow(static_cast<double>(std::numeric_limits<Real>::epsilon()), 0.4);
     found_.resolved = 2.0 * length_;
   }
@@ -90,9 +92,9 @@ class Davidson {
 
   const MixedBlocks& blocks() const { return elements_.blocks(); }
 
-  /// Sets the least eigenvalue and its error, and `next` to the prepared residual that is largest: of the
-  /// least one alone or, as potentials will be compared along them, of the first two motions that fall.
-  /// Returns its norm, and how many fall.
+  /// Sets the smallest eigenvalue and its error, and `next` to the largest preconditioned residual: of the
+  /// smallest one alone or, because potentials will be compared along them, of the first two motions that
+  /// lower the potential. Returns its norm, and the number of such motions.
   std::pair<double, Eigen::Index> examine(const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& small,
                                           MixedVector& next) {
     const Eigen::VectorXd& values = small.eigenvalues();
@@ -116,8 +118,8 @@ class Davidson {
     return {largest, falling};
   }
 
-  /// Forces of every wave length, which depend on places alone, and the same smoothed: of the answers of the
-  /// model problem to both, the second has the softest motions, the first has some of all.
+  /// Forces of every wavelength, which depend on positions only, and the same forces smoothed. Of the model
+  /// problem's answers, the smoothed one contains the softest motions, the other some of all.
   MixedVector start(double first) {
     const auto [low, high] = bounding_box(points_);
     const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
@@ -149,7 +151,8 @@ class Davidson {
     return smooth;
   }
 
-  /// The norm of the residual of an eigenpair of the small problem; sets `correction` to it, prepared.
+  /// The norm of the residual of an eigenpair of the small problem; sets `correction` to the preconditioned
+  /// residual.
   double correct(double value, const Eigen::VectorXd& shares, MixedVector& correction) {
     MixedVector r = combination(shares, &Motion::resistance);
     add(static_cast<float>(-value), combination(shares, &Motion::model), r, blocks());
@@ -175,7 +178,7 @@ class Davidson {
     return dot(x, forces, blocks());
   }
 
-  /// Adds a motion, as far as it is another than those before; false if it is not.
+  /// Adds the part of a motion that is independent of the earlier ones; false if there is none.
   bool expand(MixedVector x) {
     std::fill(x.p.begin(), x.p.end(), 0.0f);
     Motion motion{x, elements_.zero(), elements_.zero()};
@@ -230,7 +233,7 @@ class Davidson {
   std::vector<Motion> motions_;  // A-orthonormal
   Eigen::MatrixXd stiffness_;    // between them
   double least_residual_ = 0.0;
-  Eigen::Index falling_ = 0;  // motions, of at most two
+  Eigen::Index falling_ = 0;  // motions that lower the potential, at most two
   SoftestMotions found_;
 };
 

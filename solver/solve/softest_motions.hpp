@@ -4,20 +4,20 @@
 
 namespace sandglass {
 
-/// How a body at rest resists small motions.
+/// The softest small motions of a body in static equilibrium.
 struct SoftestMotions {
   double least = 0.0;     ///< the smallest eigenvalue of its tangent over the stiffness of the model problem
-  double error = 0.0;     ///< of it
-  double resolved = 0.0;  ///< below it, an eigenvalue may be rounding
+  double error = 0.0;     ///< of the smallest eigenvalue
+  double resolved = 0.0;  ///< an eigenvalue below this may be rounding
   long evaluations = 0;
   std::vector<MixedVector> falling;  ///< motions along which the potential falls, the steepest first
 
   bool resists() const { return least > resolved && least > 2.0 * error; }
 };
 
-/// Searches the smallest eigenvalue of the tangent stiffness over that of the multigrid method's model
-/// problem, as far as its sign needs. See README.md, "Stability". Forces must have a potential, and the last
-/// evaluation be that of the answer, which stays.
+/// Computes the smallest eigenvalue of the tangent stiffness over the stiffness of the multigrid method's
+/// model problem, as accurately as its sign needs. See README.md, "Stability". Forces must have a potential.
+/// The last evaluation must be the answer, which does not change.
 template <class Real>
 SoftestMotions softest_motions(MixedBody<Real>& mixed, const NodalField& points);
 

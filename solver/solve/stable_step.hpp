@@ -26,13 +26,13 @@ StableStep stable_step(const Model& model, std::span<const double> stiffness_bou
 /// The same at displacements u (m).
 StableStep stable_step(const Model& model, const NodalField& u);
 
-/// Throws ComputationError if a step has collapsed to less than a thousandth of the undeformed body's: one
-/// element takes the steps of the whole body with it, and the motion would not end. `time` (s) and `step` are
-/// the present ones; `part` says what `stable.element` counts.
+/// Throws ComputationError if a step has collapsed to less than a thousandth of the undeformed body's: a
+/// single element shortens the steps of the whole body, and the motion would not end. `time` (s) and `step`
+/// are the current ones; `part` names the thing that `stable.element` counts.
 void require_worthwhile(const StableStep& stable, double undeformed_step, double time, long step,
                         std::string_view part = "element");
 
-/// The stable step (s) of a body whose elements alone have frequencies up to a square (1/s^2).
+/// The stable step (s) of a body, given the largest squared frequency (1/s^2) of its elements.
 double stable_step_of(const Model& model, double square);
 
 }  // namespace sandglass

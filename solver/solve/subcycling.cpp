@@ -15,7 +15,7 @@ namespace sandglass {
 
 namespace {
 
-/// Of each node itself, or the nodes that it follows.
+/// For each node itself, or the nodes that it follows.
 class FreeNodes {
  public:
   explicit FreeNodes(const Scene& scene) : tie_of_(scene.mesh.points.size(), nullptr) {
@@ -38,7 +38,7 @@ class FreeNodes {
   std::vector<const Tie*> tie_of_;
 };
 
-/// The division where elements are small whose stable step is below a limit (s).
+/// The division in which elements with a stable step below a limit (s) are small.
 Division divide(const Scene& scene, const FreeNodes& free, std::span<const double> steps, double limit) {
   const auto& cells = scene.mesh.cells;
   const std::vector<bool> no_elements(cells.size(), false);
@@ -74,8 +74,8 @@ struct Plan {
   }
 };
 
-/// The plan with the least work among those of at most so many small steps; `given` (s) is a step to take, or
-/// 0 for the stable one.
+/// The plan with the least work and at most this many small steps; `given` (s) is a prescribed step, or 0 for
+/// the stable one.
 Plan best_plan(std::span<const double> steps, const Division& division, int most, double given) {
   const StableStep small = smallest(steps, division.in_part);
   const StableStep large = smallest(steps, division.on_large_nodes);
@@ -102,7 +102,7 @@ void require_bare_elements(const MethodChoice& choice, bool needs_increment, boo
   const auto refuse = [&](const char* what) {
     throw InputError(
         fmt::format("dynamics.subcycles: with method '{}' {}; allowed: 1, or a method and laws whose forces "
-                    "depend on displacements alone",
+                    "depend only on displacements",
                     method.name, what));
   };
   if (method.adapts()) refuse("elements change their levels");
@@ -110,7 +110,7 @@ void require_bare_elements(const MethodChoice& choice, bool needs_increment, boo
   if (has_history) refuse("and this law, elements remember steps, or share averages over nodes");
 }
 
-/// Forces that follow the body are evaluated once in a step, which is too long for light nodes.
+/// Forces that follow the body are evaluated once per step, which is too long for light nodes.
 void require_bare_faces(const Scene& scene, const FreeNodes& free, const std::vector<bool>& is_small) {
   for (const auto& force : scene.forces) {
     if (!force->dead_loads().empty()) continue;
@@ -190,7 +190,7 @@ StableStep Subcycling<Real>::choose_substeps(std::span<const double> element_ste
   return plan.stable;
 }
 
-/// Adds the force before the k-th small step to the mean, and what acts beside the part to the force.
+/// Adds the force before the k-th small step to the mean, and the forces from outside the part to the force.
 template <class Real>
 void Subcycling<Real>::add_to_mean(std::size_t k) {
   const auto before = static_cast<Real>(k > 0 ? 1 : 0), share = static_cast<Real>(substeps_.weight(k));

@@ -8,33 +8,33 @@
 
 namespace sandglass {
 
-/// What small elements take small steps with. Nodes and elements depend on the nodes that tied ones follow.
+/// Small elements and the nodes and elements that take small steps with them. They depend on the nodes that
+/// tied nodes follow.
 struct Division {
   std::vector<bool> is_small;        ///< nodes of small elements, none of them tied
   std::vector<bool> in_part;         ///< elements that depend on small nodes
   std::vector<bool> on_large_nodes;  ///< elements that depend on other nodes
 };
 
-/// Small elements take small steps alone, while the others take one large step: the local time stepping of
-/// Diaz and Grote (SIAM J. Sci. Comput. 31, 2009), stabilised as by Grote, Michel and Sauter (Math. Comp. 90,
+/// Only small elements take small steps, while the others take one large step: the local time stepping of
+/// Diaz and Grote (SIAM J. Sci. Comput. 31, 2009), stabilised after Grote, Michel and Sauter (Math. Comp. 90,
 /// 2021).
 ///
-/// In every step, small nodes, those that small elements depend on, move from rest in small steps, while all
-/// others are held. The weighted mean of the forces on the way replaces the force at its start, at all nodes.
-/// It is a function of the displacements alone, so that all else in a step is as without subcycling. See
+/// In every step, small nodes (on which small elements depend) move from zero velocity in small steps, while
+/// all others are held. At all nodes, the weighted mean of the forces on the way replaces the force at its
+/// start. It is a function of the displacements only, so the rest of a step is as without subcycling. See
 /// README.md, "Small steps for small elements".
 template <class Real>
 class Subcycling {
  public:
-  /// Chooses small elements by the stable steps of the undeformed ones, so that a second takes the least
-  /// work, or as a fixed step of the case demands; none if nothing is gained by it. `elements` are those of
-  /// the model, `inverse_masses` (1/kg) are zero where nodes do not move freely. Throws InputError for
-  /// elements whose forces depend on more than the displacements of their nodes, and for forces at small
-  /// elements that are no dead loads.
+  /// Chooses small elements by the undeformed stable steps, so that a second takes the least work, or as a
+  /// fixed step of the case demands; none if there is no gain. `elements` are the model's, `inverse_masses`
+  /// (1/kg) are zero for nodes that do not move freely. Throws InputError for elements whose forces depend on
+  /// more than the displacements of their nodes, and for forces other than dead loads at small elements.
   Subcycling(const Model& model, const InternalForce<Real>& elements, const Rows<Real>& inverse_masses);
 
-  /// Chooses the number of small steps for elements with these stable steps (s): the one that takes the least
-  /// work, or, for a step > 0 that is given, the smallest stable one. Returns the stable step.
+  /// Chooses the number of small steps for elements with these stable steps (s): the one with the least work
+  /// or, for a given step > 0, the smallest stable one. Returns the stable step.
   StableStep choose_substeps(std::span<const double> element_steps, double given_step);
 
   /// Sets the step (s) over which forces are averaged from now on.
@@ -43,8 +43,8 @@ class Subcycling {
   /// The number of small steps in a step.
   int substeps() const { return substeps_.count(); }
 
-  /// Replaces the forces (N) of the displacements u (m), those at tied nodes included, by their mean over the
-  /// small steps. Allocates nothing. The bits do not depend on the number of threads.
+  /// Replaces the forces (N) at displacements u (m), including tied nodes, by their mean over the small
+  /// steps. Allocates nothing. The bits do not depend on the number of threads.
   void average(const Rows<Real>& u, Rows<Real>& force);
 
   /// The data that the next step depends on; see checkpoint.hpp.

@@ -16,7 +16,7 @@ Substeps::Substeps(int p) : coefficients_(static_cast<std::size_t>(p), {0.0, 0.5
     coefficients_[k].keep = k == 0 ? 0.0 : T(degree - 1.0) / T(degree + 1.0);
     coefficients_[k].gain = k == 0 ? once : 2.0 * T(degree) * once;
   }
-  double moves = 0.0;  // the displacement at the end by a change of one in step k
+  double moves = 0.0;  // the final displacement caused by a unit change in step k
   for (std::size_t k = coefficients_.size(); k-- > 0;) {
     moves = 1.0 + (k + 1 < coefficients_.size() ? coefficients_[k + 1].keep : 0.0) * moves;
     coefficients_[k].weight = 2.0 * coefficients_[k].gain * moves;

@@ -17,7 +17,7 @@ namespace sandglass {
 
 namespace {
 
-/// The motion of a method; null where there is none, or it fails.
+/// The motion of a method; null if there is none or it fails.
 const OwnMotion* motion_of(const OwnMotions& motions, const std::string& method) {
   const auto found = motions.find(method);
   return found != motions.end() && found->second.mean_step ? &found->second : nullptr;
@@ -45,13 +45,13 @@ Speed speed_of(const Timing& timing, const BenchRecord& record, const Scene& sce
   return speed;
 }
 
-/// The forces that all variants of a method must find: those of the scalar kernel, where there is one.
+/// The forces with which all variants of a method must agree: the scalar kernel's, if there is one.
 NodalField reference_forces(const Scene& scene, const std::string& method) {
   const auto kernel = has_scalar_kernels() ? KernelWidth::scalar : KernelWidth::pack;
   return make_stepped_model(scene, {.method = method, .kernel = kernel})->forces();
 }
 
-/// Variants that are in memory at the same time.
+/// Variants that are held in memory at the same time.
 struct Group {
   std::deque<std::unique_ptr<SteppedModel>> models;
   std::vector<BenchRecord> records;
@@ -66,7 +66,7 @@ Group make_group(const Scene& scene, const OwnMotions& motions, const std::vecto
   Group group;
   for (; next < variants.size(); ++next) {
     const MethodChoice& choice = variants[next];
-    // Of the model before, since this one is not made yet: variants of a method stand together.
+    // The size of the previous model, since this one is not made yet; variants of a method are neighbours.
     const double model = group.records.empty() ? 0.0 : group.records.back().work.bytes;
     if (taken + 2.0 * model * static_cast<double>(elements) > room) break;
     const OwnMotion* motion = motion_of(motions, choice.method);
@@ -82,14 +82,14 @@ Group make_group(const Scene& scene, const OwnMotions& motions, const std::vecto
   return group;
 }
 
-/// Takes the variants that would take too long to set up out of the list, and makes their records.
+/// Removes variants that would take too long to set up from the list, and makes their records.
 std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>& variants) {
   const std::size_t elements = scene.mesh.cells.size(), nodes = scene.mesh.points.size();
   std::vector<BenchRecord> records;
   if (nodes <= most_condensed_nodes) return records;
   std::erase_if(variants, [&](const MethodChoice& choice) {
     if (!method_named(choice.method).is_condensed) return false;
-    const std::string why = fmt::format("left out: to factorise for {} nodes takes too long; at most {} here",
+    const std::string why = fmt::format("left out: factorising {} nodes takes too long; at most {} are timed",
                                         nodes, most_condensed_nodes);
     records.push_back({scene.description.name, elements, nodes, choice, why, 0.0, 0.0, {}, {}, {}, {}});
     return true;
@@ -97,7 +97,7 @@ std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>
   return records;
 }
 
-/// Whether two records differ in the method alone, or in kernel and precision alone.
+/// Whether two records differ only in the method, or only in kernel and precision.
 bool same_numbers(const MethodChoice& a, const MethodChoice& b) {
   return a.kernel == b.kernel && a.precision == b.precision && a.threads == b.threads;
 }

@@ -17,7 +17,7 @@ namespace sandglass {
 
 std::string_view name_of(KernelWidth kernel);  ///< "pack" or "scalar"
 
-/// What is to be measured.
+/// The variants to measure.
 struct BenchPlan {
   std::vector<std::string> methods;
   std::vector<Precision> precisions;
@@ -25,10 +25,10 @@ struct BenchPlan {
   MeasureSettings settings;
 };
 
-/// Times and what follows from them.
+/// Times and figures derived from them.
 struct Speed {
-  Spread ns;            ///< per element and step, of batches
-  double check_ns;      ///< per element and step, of the checks of a run between steps
+  Spread ns;            ///< per element and step, over batches
+  double check_ns;      ///< of a run's checks between steps, per element and step
   double p50_us;        ///< of single steps
   double p99_us;        ///< of single steps
   double max_us;        ///< of single steps
@@ -36,7 +36,7 @@ struct Speed {
   double gflops;        ///< counted operations over the median
   double peak_share;    ///< of the peak with this number of threads
   double gbs;           ///< estimated bytes over the median
-  double memory_share;  ///< of the triad in memory; above 1 when a mesh stays in a cache
+  double memory_share;  ///< of the triad in memory; above 1 if the mesh fits in a cache
   double roofline_fraction;
   std::optional<double> to_tl_perturbation;  ///< time over that of tl-perturbation, same kernel and numbers
   std::optional<double> speedup;  ///< time of the scalar double kernel over this one, same method and threads
@@ -52,7 +52,7 @@ struct BenchRecord {
   double force_difference;
   double force_limit;
   Work work;                        ///< per element and step
-  std::optional<double> mean_step;  ///< s, of the scene's own motion; none where there is none, or it fails
+  std::optional<double> mean_step;  ///< s, of the scene's own motion; none if there is none or it fails
   Ceiling ceiling;                  ///< of this precision, number of threads and working set
   std::optional<Speed> speed;       ///< none when the result is wrong
 
@@ -60,32 +60,33 @@ struct BenchRecord {
   std::optional<double> per_simulated_second() const;
 };
 
-/// Whether what was computed is wrong.
+/// Whether the result is wrong.
 bool is_wrong(const BenchRecord& record);
 
-/// Upper over lower quartile of the times of a variant above which something else took its processor.
+/// If the upper quartile of a variant's times exceeds the lower one by more than this factor, it was
+/// disturbed.
 inline constexpr double most_spread = 1.3;
 
-/// Whether its times were disturbed, so that it should be measured again on a quiet machine.
+/// Whether its times were disturbed and should be measured again on a quiet machine.
 bool is_disturbed(const BenchRecord& record);
 
-/// Every variant of the plan, and the scalar kernel in double precision where the program has it.
+/// Every variant of the plan, and the scalar kernel in double precision if the program has it.
 std::vector<MethodChoice> variants_of(const BenchPlan& plan);
 
-/// The own motions of a scene by method, of those methods that take steps.
+/// The own motions of a scene, one for each method that takes steps.
 using OwnMotions = std::map<std::string, OwnMotion>;
 
-/// Follows them. Throws ComputationError when told to end.
+/// Computes them. Throws ComputationError if interrupted.
 OwnMotions follow_own_motions(const Scene& scene, const std::vector<std::string>& methods,
                               const Proceed& proceed);
 
-/// Measures all variants on a scene in turn, from where their motions end; without a motion from waves. When
-/// they do not all fit into memory, those that do are measured together and the others after them. Condensed
-/// methods are left out where their factorisation would take too long.
+/// Measures all variants on a scene in turn, starting from the ends of their motions or, without a motion,
+/// from waves. If they do not all fit into memory, they are measured in several groups. Condensed methods are
+/// left out if their factorisation would take too long.
 std::vector<BenchRecord> bench(const Scene& scene, const OwnMotions& motions, const BenchPlan& plan,
                                MachineSpeed& machine, const Proceed& proceed);
 
-/// The figures that follow from the records' times among each other.
+/// Fills in the figures that compare the records' times with each other.
 void compare_among_each_other(std::vector<BenchRecord>& records);
 
 }  // namespace sandglass

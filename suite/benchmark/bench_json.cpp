@@ -28,7 +28,7 @@ Json to_record(const BenchRecord& record) {
           {"precision", name_of(choice.precision)},
           {"threads", choice.threads},
           {"status", record.status},
-          // JSON has no infinity: forces that are not finite differ by null.
+          // JSON has no infinity: the difference of forces that are not finite is null.
           {"force_difference", record.force_difference},
           {"force_limit", record.force_limit},
           {"ns_per_element_step", figure([](const Speed& s) { return s.ns.median; })},

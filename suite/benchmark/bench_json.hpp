@@ -8,8 +8,8 @@
 
 namespace sandglass {
 
-/// Everything measured, as JSON: provenance, machine, peaks and bandwidths by number of threads, records.
-/// Figures of a variant whose result is wrong are null.
+/// All measurements as JSON: provenance, machine, peaks and bandwidths by number of threads, records. Figures
+/// of a variant with a wrong result are null.
 std::string to_json(const Provenance& provenance, const BenchPlan& plan, MachineSpeed& machine,
                     const std::vector<BenchRecord>& records);
 

@@ -43,7 +43,7 @@ class CondensedModelOf final : public SteppedModel {
       return std::all_of(u.begin(), u.end(), [](auto component) { return std::isfinite(component); });
     };
     if (std::all_of(u_.begin(), u_.end(), finite)) return;
-    throw ComputationError(fmt::format("bench of {} with {}: displacements are no numbers",
+    throw ComputationError(fmt::format("bench of {} with {}: displacements are not finite",
                                        model_.scene().description.name, model_.choice().method));
   }
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr int repetitions = 20;
 
-/// A model with the forces it is compared with: its own, which shows that they are numbers.
+/// A model and its reference forces. These are its own, so that the comparison only shows that they are
+/// finite.
 struct Timed {
   std::size_t task;
   std::unique_ptr<SteppedModel> model;
@@ -36,12 +37,12 @@ bool same_work(const MethodChoice& a, const MethodChoice& b) {
          a.threads == b.threads;
 }
 
-/// The model of a task, which has taken a batch of steps without failing. Throws InputError or
+/// The model of a task, after a batch of steps has shown that it works. Throws InputError or
 /// ComputationError.
 Timed make_timed(const CostTask& task, std::size_t number, const Proceed& proceed) {
   const std::size_t nodes = task.scene->mesh.points.size();
   if (method_named(task.choice.method).is_condensed && nodes > most_condensed_nodes) {
-    throw InputError(fmt::format("to factorise for {} nodes takes too long; at most {} here", nodes,
+    throw InputError(fmt::format("factorising {} nodes takes too long; at most {} are timed", nodes,
                                  most_condensed_nodes));
   }
   Timed timed{number, make_stepped_model(*task.scene, task.choice, task.motion), {}};
@@ -52,7 +53,7 @@ Timed make_timed(const CostTask& task, std::size_t number, const Proceed& procee
   return timed;
 }
 
-/// Times models that are in memory together.
+/// Times models that are in memory at the same time.
 void time_together(std::span<const CostTask> tasks, std::vector<Timed>& group, std::vector<Costing>& costings,
                    const Proceed& proceed) {
   std::vector<Entry> entries;

@@ -15,7 +15,7 @@ double relative_difference(const NodalField& f, const NodalField& reference) {
   double largest = 0.0;
   for (std::size_t n = 0; n < f.size(); ++n) {
     const Vector d{f[n][0] - reference[n][0], f[n][1] - reference[n][1], f[n][2] - reference[n][2]};
-    // Component by component: std::hypot of three may answer 0 when one of them is not a number.
+    // Component by component: std::hypot of three may return 0 if one of them is not a number.
     if (!std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2])) return infinity;
     difference = std::max(difference, std::hypot(d[0], d[1], d[2]));
     largest = std::max(largest, std::hypot(reference[n][0], reference[n][1], reference[n][2]));

@@ -22,8 +22,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Independent chains: more than latency times throughput of every processor in use, and with the two factors
-/// still within 16 registers.
+/// Independent chains: more than latency times throughput of common processors, yet, with the two factors,
+/// within 16 registers.
 constexpr std::size_t chains = 12;
 
 /// x := a x + b over and over, in every lane of every chain; the fixed point b / (1 - a) keeps numbers
@@ -54,11 +54,11 @@ double peak_gflops_of(int threads) {
   const auto run = [&](long n) {
     in_parallel(kept.size(), threads, [&](std::size_t t) { kept[t] = run_chains<Real>(n, factor); });
   };
-  run(rounds / 10);  // wakes threads and wide units
+  run(rounds / 10);  // wakes threads and vector units
   const auto start = Clock::now();
   run(rounds);
   const double seconds = seconds_since(start);
-  opaque = kept[0];  // nobody may drop the work
+  opaque = kept[0];  // keeps the compiler from dropping the work
   return 2.0 * static_cast<double>(chains) * native_width<Real> * static_cast<double>(rounds) * threads /
          seconds * 1e-9;
 }
@@ -68,7 +68,7 @@ constexpr int tries = 5;
 }  // namespace
 
 std::size_t last_level_cache() {
-  // The C library may tell the sum over all caches of a socket, of which one processor sees one.
+  // The C library may report the sum of all caches of a socket, although a processor uses one of them.
   std::size_t kibibytes = 0;
   for (const char* index : {"2", "3"}) {
     std::ifstream size(std::string("/sys/devices/system/cpu/cpu0/cache/index") + index + "/size");
@@ -133,7 +133,7 @@ double MachineSpeed::memory_gbs(int threads) {
 }
 
 double MachineSpeed::stream_gbs(std::size_t working_set, int threads) {
-  // Four caches to an array, as STREAM asks; more than 1.5 GiB in all tells nothing new.
+  // Arrays of four times the cache, as STREAM demands; more than 1.5 GiB in all would not change the result.
   constexpr std::size_t enough = std::size_t{3} << 29;
   const std::size_t largest = std::min(12 * last_level_cache(), enough);
   const std::size_t bytes = std::min(std::bit_ceil(working_set), largest);

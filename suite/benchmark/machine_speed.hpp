@@ -11,10 +11,10 @@
 
 namespace sandglass {
 
-/// Bytes of the last cache between a processor and memory, as the system tells it; 32 MiB where it does not.
+/// Bytes of the last cache between a processor and memory according to the system; 32 MiB if unknown.
 std::size_t last_level_cache();
 
-/// Processors on which this process may run.
+/// The number of processors on which this process may run.
 int available_processors();
 
 /// 1e9 operations per second of independent multiplications and additions, as many at a time as a register
@@ -25,10 +25,10 @@ double measure_peak_gflops(Precision precision, int threads);
 /// two reads and a write.
 double measure_triad_gbs(std::span<double> numbers, int threads);
 
-/// The speed of this machine, the best of all that was measured.
+/// The speed of this machine, the best of all measurements.
 class MachineSpeed {
  public:
-  /// Measures all that is known already once more, so that a quiet moment later on counts too.
+  /// Repeats all measurements made so far, to use a quieter moment.
   void measure_again();
 
   double peak_gflops(Precision precision, int threads);
@@ -36,8 +36,8 @@ class MachineSpeed {
   /// Triad over arrays several times larger than the last cache.
   double memory_gbs(int threads);
 
-  /// Triad over arrays as large as a working set, in whole powers of two: what fits in a cache is held
-  /// against that cache.
+  /// Triad over arrays as large as a working set, rounded to a power of two: a working set that fits in a
+  /// cache is compared with that cache.
   double stream_gbs(std::size_t working_set, int threads);
 
   Ceiling ceiling(Precision precision, int threads, std::size_t working_set);
@@ -45,7 +45,7 @@ class MachineSpeed {
  private:
   double triad_gbs(std::size_t bytes, int threads);
 
-  std::vector<double> numbers_;  // of the triad, as many as were needed so far
+  std::vector<double> numbers_;  // of the triad, as many as needed so far
   std::map<std::pair<Precision, int>, double> peaks_;
   std::map<std::pair<std::size_t, int>, double> streams_;
 };

@@ -24,8 +24,7 @@ double time_steps(Candidate& candidate, int steps) {
   return seconds_between(start, Clock::now());
 }
 
-/// To a state, and steps that nobody times: sleeping threads wake, and what each needs comes back into
-/// its caches.
+/// Goes to a state and takes untimed steps, which wake sleeping threads and refill their caches.
 void warm_up(Candidate& candidate, std::size_t state, int steps) {
   candidate.restart(state);
   for (int s = 0; s < steps; ++s) candidate.step();
@@ -39,8 +38,8 @@ int steps_per_batch(Candidate& candidate, double batch_seconds) {
   return std::clamp(static_cast<int>(batch_seconds / all_states), 1, most);
 }
 
-/// In every state one batch as a whole, for its mean; another one step by step, for the spread of single
-/// steps. Two, because reading the clock would be felt in the steps of small meshes.
+/// In every state, times one batch as a whole for the mean, and another one step by step for the spread of
+/// single steps. There are two because reading the clock slows the steps of small meshes.
 void time_batches(const Entry& entry, int steps, Timing& timing) {
   Candidate& candidate = *entry.candidate;
   std::optional<OneProcessor> bound;
@@ -79,7 +78,7 @@ std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSetting
     require_proceed(0.0);
     if (timings[n].status != "ok") continue;
     steps[n] = steps_per_batch(candidate, settings.batch_seconds);
-    time_batches(entries[n], steps[n], timings[n]);  // a rehearsal: every batch goes through the same states
+    time_batches(entries[n], steps[n], timings[n]);  // every batch goes through the same states
     candidate.require_healthy();
     timings[n].seconds_per_step.clear();
     timings[n].seconds_of_a_step.clear();

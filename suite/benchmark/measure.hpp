@@ -10,7 +10,7 @@
 
 namespace sandglass {
 
-/// Something that takes steps: what is timed.
+/// Something that takes steps and is timed.
 class Candidate {
  public:
   Candidate() = default;
@@ -21,51 +21,51 @@ class Candidate {
   /// Forces (N) in the numbering of the mesh, after a few increments that are the same for all candidates.
   virtual NodalField forces() = 0;
 
-  /// States in which it is timed, where steps do not cost the same in all.
+  /// The number of states in which it is timed, if the cost of a step depends on the state.
   virtual std::size_t states() const { return 1; }
 
-  /// Goes to one of these states, where a batch of steps begins.
+  /// Goes to one of these states, from which a batch of steps starts.
   virtual void restart(std::size_t state) = 0;
 
   virtual void step() = 0;
 
-  /// What a run does between some steps: looks whether the body is healthy, and chooses the next step.
+  /// What a run does every few steps: checks that the body is healthy, and chooses the next step.
   virtual void check() = 0;
 
-  /// Throws ComputationError when the state is not one to go on from.
+  /// Throws ComputationError if the state is not valid.
   virtual void require_healthy() = 0;
 };
 
-/// A candidate and what it must compute before it may run.
+/// A candidate and the forces that it must compute before it is timed.
 struct Entry {
   Candidate* candidate;
   const NodalField* reference;  ///< forces, N
   double limit;                 ///< of the relative difference
-  int threads = 1;              ///< of the candidate; with one it stays on one processor
+  int threads = 1;              ///< of the candidate; a single one stays on one processor
 };
 
-/// What was measured of one entry.
+/// The measurements of one entry.
 struct Timing {
-  std::string status;                     ///< "ok", or why there are no times
+  std::string status;                     ///< "ok", or the reason why there are no times
   double force_difference;                ///< relative to the reference
-  std::vector<double> seconds_per_step;   ///< mean of each batch, and over the states of the candidate
+  std::vector<double> seconds_per_step;   ///< mean of each batch over the candidate's states
   std::vector<double> seconds_of_a_step;  ///< single steps
   std::vector<double> seconds_of_a_check;
 };
 
 struct MeasureSettings {
   int repetitions = 100;
-  /// A batch is as many steps as fit, at least one in every state: shorter than the time for which a system
-  /// gives a processor to somebody else, so that most batches run undisturbed on a busy machine too.
+  /// A batch has as many steps as fit, at least one in every state. It is shorter than the time slices of a
+  /// system, so that most batches run undisturbed even on a busy machine.
   double batch_seconds = 5e-4;
 };
 
-/// Called between batches with the share of the work done; returning false ends the work.
+/// Called between batches with the share of the work done; if it returns false, the work ends.
 using Proceed = std::function<bool(double share)>;
 
-/// Compares the forces of all entries with their references; then times those that are right, all in turn, a
-/// batch of steps each, in another order in every repetition, so that a disturbance meets all alike. Returns
-/// one timing per entry. Throws ComputationError when told to end.
+/// Compares the forces of all entries with their references; then times the correct ones in turn, a batch of
+/// steps each, in another order in every repetition, so that disturbances affect all alike. Returns one
+/// timing per entry. Throws ComputationError if interrupted.
 std::vector<Timing> measure(std::span<const Entry> entries, const MeasureSettings& settings,
                             const Proceed& proceed);
 

@@ -4,8 +4,8 @@
 
 namespace sandglass {
 
-/// Keeps the calling thread on one processor while it lives: the last one that it may use, as interrupts
-/// mostly come to the first. It changes nothing where the system refuses.
+/// Keeps the calling thread on one processor during its lifetime: the last available one, as most interrupts
+/// go to the first. Does nothing if the system refuses.
 class OneProcessor {
  public:
   OneProcessor();

@@ -16,13 +16,13 @@ namespace sandglass {
 
 namespace {
 
-/// A step is far shorter than the mean below this share of it.
+/// A step below this share of the mean step is far shorter than the mean.
 constexpr double far_shorter = 0.5;
 
-/// Steps over those that the motion would take at the step of the undeformed body, at which it is given up.
+/// A motion is given up after this multiple of the steps that it would take at the undeformed body's step.
 constexpr double most_steps = 100.0;
 
-/// The curve of a load over the share of a motion, in its time.
+/// The curve of a load, given over the share of a motion, in the motion's time.
 LoadCurve stretched(LoadCurve curve, double duration) {
   for (double& time : curve.times) time *= duration;
   if (curve.formula.evaluate) {
@@ -33,7 +33,7 @@ LoadCurve stretched(LoadCurve curve, double duration) {
   return curve;
 }
 
-/// Keeps the step and the levels at every check, and ends a motion whose steps shrink too much.
+/// Records the step and the levels at every check, and ends a motion whose steps shrink too much.
 class StepKeeper final : public Observer {
  public:
   StepKeeper(bool adapts, long most, const Proceed& proceed)
@@ -43,7 +43,7 @@ class StepKeeper final : public Observer {
     if (row.step_size > 0.0) steps_.push_back(row.step_size);
   }
 
-  /// Frames would bring checks of their own, and with them other levels.
+  /// Frames would add checks, and thus other levels.
   void resumable(const std::function<Checkpoint()>& checkpoint) override {
     if (adapts_) levels_.push_back(std::move(checkpoint().arrays.at("element level")));
   }
@@ -57,7 +57,7 @@ class StepKeeper final : public Observer {
   bool interrupted() const { return interrupted_; }
   bool too_many() const { return too_many_; }
 
-  /// Amid `levels_on_the_way` equal numbers of checks, and so of steps.
+  /// In the middle of each of `levels_on_the_way` equal numbers of checks, and so of steps.
   std::vector<std::vector<double>> levels() const {
     std::vector<std::vector<double>> some;
     for (std::size_t k = 0; !levels_.empty() && k < levels_on_the_way; ++k) {
@@ -66,13 +66,13 @@ class StepKeeper final : public Observer {
     return some;
   }
 
-  /// Of states whose steps are far shorter than the mean; empty if there are none.
+  /// A remark on states whose steps are far shorter than the mean; empty if there are none.
   std::string remark(double mean) const {
     const auto last = steps_.end() - (steps_.empty() ? 0 : 1);  // it ends at the duration
     const auto count =
         std::count_if(steps_.begin(), last, [&](double step) { return step < far_shorter * mean; });
     if (count == 0) return "";
-    return fmt::format("{} of {} states need steps of down to {:.2g} ms", count, last - steps_.begin(),
+    return fmt::format("{} of {} states need steps as short as {:.2g} ms", count, last - steps_.begin(),
                        1e3 * *std::min_element(steps_.begin(), last));
   }
 
@@ -108,7 +108,7 @@ Scene in_own_motion(const Scene& scene) {
 
 OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proceed& proceed) {
   const bool adapts = method_named(choice.method).adapts();
-  // In float steps cost two thirds and are as long; but the choice of levels is timed.
+  // Steps in float cost two thirds and are as long; but the choice of levels is timed in double.
   choice.precision = adapts ? Precision::double_precision : Precision::single_precision;
   choice.kernel = KernelWidth::pack;
   choice.threads = 1;

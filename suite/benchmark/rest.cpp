@@ -21,7 +21,7 @@ class Subject final : private Observer {
   Subject(const Scene& scene, const MethodChoice& choice, const Proceed& proceed)
       : scene_(scene), model_(scene_, choice), proceed_(proceed) {}
 
-  /// Relaxes until the case's end, or after `most` evaluations.
+  /// Relaxes until the case's own end, or for `most` evaluations.
   Relaxation run(std::optional<long> most = {}) {
     int& max_steps = scene_.description.relaxation.max_steps;
     const int limit = max_steps;
@@ -32,7 +32,7 @@ class Subject final : private Observer {
     return found;
   }
 
-  /// The share of the work done, to be told from now on.
+  /// Sets the share of the work done that is reported from now on.
   void show(double share) { share_ = share; }
 
   /// Distance from displacements `rest` after `evaluations`, over the unit of displacements.
@@ -43,7 +43,7 @@ class Subject final : private Observer {
  private:
   bool proceed(long /*step*/, double /*share*/, double /*residual*/) override { return proceed_(share_); }
 
-  Scene scene_;  // its own, for the number of evaluations is among the settings of the case
+  Scene scene_;  // a copy, because the number of evaluations is a setting of the case
   Model model_;
   const Proceed& proceed_;
   double share_ = 0.0;

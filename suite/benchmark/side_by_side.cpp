@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int steps_per_frame = 20;
 
-/// The largest difference between the displacements of both ways over the largest displacement.
+/// The largest difference between the displacements of both computations over the largest displacement.
 template <class Real>
 double difference(const std::vector<Simulation<Real>>& simulations, const Batch<Real>& batch) {
   double apart = 0.0, largest = 0.0;
@@ -69,7 +69,7 @@ SideBySide time_bodies(const Case& description, const MethodChoice& choice, std:
   result.one_by_one = spread_of(one_by_one);
   result.batch = spread_of(together);
   result.ratio = result.batch.median / result.one_by_one.median;
-  // Sums in another order, carried on by as many steps as were taken.
+  // Sums in another order, whose rounding accumulates over all steps.
   const double steps = static_cast<double>(repetitions) * steps_per_frame;
   const double limit = 100.0 * steps * static_cast<double>(std::numeric_limits<Real>::epsilon());
   if (const double apart = difference(simulations, batch); !(apart < limit)) {

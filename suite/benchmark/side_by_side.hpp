@@ -22,10 +22,10 @@ struct SideBySide {
   double ratio;        ///< of the medians, batch over one by one
 };
 
-/// Moves `bodies` bodies of a case with imposed displacements, each a little farther than the last, by both
-/// ways in turn, in frames of 20 steps; what a step needs besides its forces, such as the checks of health,
-/// is included. Afterwards all displacements are compared. Throws InputError for a case that a batch does not
-/// support, ComputationError when told to end.
+/// Moves `bodies` bodies of a case with imposed displacements, each a little farther than the last, one by
+/// one and as a batch in turn, in frames of 20 steps, including checks of health. Afterwards all
+/// displacements are compared. Throws InputError for a case that a batch does not support, ComputationError
+/// if interrupted.
 SideBySide time_side_by_side(const Case& description, const MethodChoice& choice, std::size_t bodies,
                              int repetitions, const Proceed& proceed);
 

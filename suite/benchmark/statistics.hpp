@@ -4,11 +4,11 @@
 
 namespace sandglass {
 
-/// The value below which a share `p` in [0, 1] of the samples lies, linear between neighbours. Throws
-/// std::invalid_argument without samples.
+/// The value below which a share `p` in [0, 1] of the samples lies, linear between neighbouring samples.
+/// Throws std::invalid_argument without samples.
 double quantile(std::vector<double> samples, double p);
 
-/// Samples in five figures.
+/// A summary of samples in five figures.
 struct Spread {
   double best;
   double lower_quartile;

@@ -38,7 +38,7 @@ class SteppedModelOf final : public SteppedModel {
     Adaption<Real>(model_, body).apply(body, Demotion::never);
     body.evaluate_forces();
     Rows<Real>& increment = body.state().increment;
-    std::fill(increment.begin(), increment.end(), Row<Real>{});  // it stands still
+    std::fill(increment.begin(), increment.end(), Row<Real>{});  // zero velocity
     starts_.assign(1, body.state());
     if (arrived && !motion->levels.empty()) set_levels(motion->levels);
     constexpr double step_fraction = 0.9, damping = 0.02;  // over the stable step; c dt / 2
@@ -68,7 +68,7 @@ class SteppedModelOf final : public SteppedModel {
     try {
       sandglass::require_healthy(leapfrog_.body(), 0);
     } catch (const ComputationError& error) {
-      throw ComputationError(fmt::format("bench of {} with {}: the waves of the start were too much: {}",
+      throw ComputationError(fmt::format("bench of {} with {}: the initial waves were too large: {}",
                                          model_.scene().description.name, model_.choice().method,
                                          error.what()));
     }
@@ -80,7 +80,7 @@ class SteppedModelOf final : public SteppedModel {
   }
 
  private:
-  /// Starts with other levels of the elements instead of the present ones.
+  /// Starts with other levels of the elements instead of the current ones.
   void set_levels(const std::vector<std::vector<double>>& levels) {
     starts_.assign(levels.size(), starts_.front());
     for (std::size_t n = 0; n < levels.size(); ++n) elements_.set_levels(starts_[n], levels[n]);
@@ -165,7 +165,7 @@ double element_size(const Scene& scene) {
 
 NodalField wavy_field(const Scene& scene) {
   const double h = element_size(scene);
-  // Lengths that have no common multiple with each other or with the mesh: no element stays at rest.
+  // Lengths without a common multiple with each other or the mesh: every element is strained.
   const double k = 2.0 * std::numbers::pi / h;
   const std::array<Vector, 3> waves{Vector{k / 3.7, k / 5.3, k / 4.1}, Vector{k / 4.7, k / 3.3, k / 6.1},
                                     Vector{k / 5.9, k / 4.3, k / 3.1}};

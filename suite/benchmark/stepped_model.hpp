@@ -9,33 +9,33 @@
 
 namespace sandglass {
 
-/// A box of about this number of elements with the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3),
-/// clamped at z = 0 and moved at its other end. The elements are cubes, or, for `Shapes::any`, cubes whose
-/// nodes inside the box have moved by up to a tenth of an edge.
+/// A box of about this number of elements of the paper's soft tissue (E = 3000 Pa, nu = 0.49, 1000 kg/m^3),
+/// clamped at z = 0 and moved at its other end. The elements are cubes or, for `Shapes::any`, cubes whose
+/// inner nodes have moved by up to a tenth of an edge.
 Scene box_scene(int elements, Shapes shapes = Shapes::any);
 
 /// The shortest distance between two nodes of an element, m.
 double element_size(const Scene& scene);
 
-/// Displacements (m) that strain every element by a few percent and wake its hourglass modes, whatever the
-/// mesh: waves of some elements' length, 3 % of the element size high.
+/// Displacements (m) that strain every element of any mesh by a few percent and excite its hourglass modes:
+/// waves some elements long and 3 % of the element size high.
 NodalField wavy_field(const Scene& scene);
 
-/// A model that takes the steps of a dynamic run, from the wavy field on. Steps are 0.9 of the stable one and
-/// damped, so that the motion stays bounded for good. What a condensed method repeats is its update instead:
-/// displacements of all nodes and forces on the driven sets. The scene must outlive it.
+/// A model that takes the steps of a dynamic run, starting from these waves. Steps are 0.9 of the stable one
+/// and damped, so that the motion stays bounded. A condensed method repeats its update instead: displacements
+/// of all nodes and forces on the driven sets. The scene must outlive it.
 class SteppedModel : public Candidate {
  public:
   /// Operations and bytes of a step, per element.
   virtual Work work() const = 0;
 };
 
-/// Forces (N) on the way to a field of displacements (m), in three steps that are the same for all.
+/// Forces (N) after three steps to a field of displacements (m), the same for all.
 template <class Real>
 NodalField forces_on_the_way(const InternalForce<Real>& elements, const NodalField& field);
 
-/// With a motion that did not fail, steps start from its end, under the full load, instead of from the waves:
-/// once at each of its levels. A condensed method has no steps and needs neither.
+/// After a motion that did not fail, steps start from its end, under the full load, instead of from the
+/// waves, once with each of its sets of levels. A condensed method has no steps and needs neither.
 std::unique_ptr<SteppedModel> make_stepped_model(const Scene& scene, const MethodChoice& choice,
                                                  const OwnMotion* motion = nullptr);
 

@@ -15,7 +15,7 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
-/// Keeps the displacements at some times and the last energies; asks another whether to go on.
+/// Keeps the displacements at some times and the last energies; asks another observer whether to continue.
 class Sampler final : public Observer {
  public:
   Sampler(std::vector<double> times, Observer& other) : times_(std::move(times)), other_(other) {}

@@ -74,7 +74,7 @@ Expectation read_expectation(TableReader table) {
   expected.reason = table.required<std::string>("reason");
   table.finish();
   if (expected.below.has_value() == expected.above.has_value()) {
-    table.fail("below", "or above must be given, one of the two");
+    table.fail("below", "or above must be given, but not both");
   }
   return expected;
 }
@@ -121,8 +121,8 @@ std::string describe_comparison_keys() {
 [comparison] kappas = [numbers], golden = "FILE.h5", truth = "FILE.h5"
 [[published]] set = NAME, component = "x", ... or "around-x", ..., value in m or rad: mean displacement or
   rotation of the set, source: a text
-[[published.programs]] program: its name and element, values = [numbers] of the same motion, elements = [per
-  side of the mesh of each, as variants are named] (left out: one value, converged or of a mesh that the source does not tell), source
+[[published.programs]] program: its name and element, values = [numbers] of the same motion, elements = [number
+  per side of each mesh, as in the variants' names] (without it: one value, converged or on an unknown mesh), source
 [[expect]] method, kappa (number, "auto" or "best"), reference ("golden", "truth" or "published"),
   figure, below or above, reason
 )";

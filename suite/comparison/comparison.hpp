@@ -12,9 +12,9 @@ namespace sandglass {
 /// The method of the golden's element: eight points and one pressure. Every other method is compared with it.
 inline constexpr std::string_view golden_method = "tl-mean-dilatation";
 
-/// What another program finds, on one mesh or on several.
+/// The values of another program on one or several meshes.
 struct ProgramValues {
-  std::string program;         ///< and its element
+  std::string program;         ///< program and element
   std::vector<int> elements;   ///< per side of the mesh of each value, as variants are named; empty: unknown
   std::vector<double> values;  ///< m or rad
   std::string source;
@@ -48,9 +48,8 @@ struct Expectation {
   std::string reason;
 };
 
-/// What a case file says about answers and their limits: the tables [profile], [comparison], [[published]]
-/// and
-/// [[expect]], which the library does not read.
+/// The tables of a case file about answers and their limits, which the library does not read: [profile],
+/// [comparison], [[published]] and [[expect]].
 struct Comparison {
   std::optional<Profile> profile;
   std::vector<double> kappas;  ///< the curve that `sandglass verify` computes in addition to `auto`
@@ -60,14 +59,14 @@ struct Comparison {
   std::filesystem::path truth;
 };
 
-/// Reads the comparison of a case from its file, as strictly as the library reads the case. A case without a
-/// file has an empty one. Throws InputError that names file, line, key, value and rule.
+/// Reads the comparison of a case from its file, as strictly as the library reads the case; it is empty for a
+/// case without a file. Throws InputError that names file, line, key, value and rule.
 Comparison read_comparison(const Case& description);
 
-/// The same for the case of a scene; sets named in it must exist in the scene.
+/// The same for the case of a scene, in which all named sets must exist.
 Comparison read_comparison(const Scene& scene);
 
-/// The keys of these tables, for people.
+/// A description of the keys of these tables.
 std::string describe_comparison_keys();
 
 }  // namespace sandglass

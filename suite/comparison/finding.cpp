@@ -59,7 +59,7 @@ HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u) {
     const NodalVectors<double> X = gather(mesh.points, cell), v = gather(u, cell);
     const MeanGradient mean = mean_gradient(X);
     const Matrix<double, 4, 3> q = transpose(hourglass_shape_vectors(X, mean.h)) * v;
-    // An eighth each: Gamma^T Gamma = 8 I, so that sum_I |v_I|^2 is an eighth of the squares of all modes.
+    // An eighth of each: Gamma^T Gamma = 8 I, so sum_I |v_I|^2 is an eighth of the squares of all modes.
     hourglass += mean.volume * double_dot(q, q) / 64.0;
     total += mean.volume * double_dot(v, v) / 8.0;
     volume += mean.volume;

@@ -10,16 +10,16 @@
 
 namespace sandglass {
 
-/// What became of a run, in the words of the failure map.
+/// The outcome of a run, as in the failure maps.
 enum class Finding {
-  good,          ///< as near the golden as the limit asks
-  not_judged,    ///< farther, but no farther than the golden is from the truth: too far to judge by it
-  inaccurate,    ///< farther, in none of the ways below
+  good,          ///< within the limit from the golden
+  not_judged,    ///< farther, but closer than the truth is: such a golden cannot judge
+  inaccurate,    ///< farther, for none of the reasons below
   hourglassing,  ///< farther, because nodes zigzag
   locking,       ///< farther, because the elements are too stiff
   inverted,      ///< an element turned inside out
-  unstable,      ///< displacements grew until they were no numbers
-  not_at_rest    ///< no balance of forces was found
+  unstable,      ///< displacements grew until they were not finite
+  not_at_rest    ///< no static equilibrium was found
 };
 
 /// All of them, from the best to the worst.
@@ -30,53 +30,52 @@ inline constexpr std::array all_findings{Finding::good,         Finding::not_jud
 /// The word for a finding: "good", "not at rest", ...
 std::string_view name_of(Finding finding);
 
-/// The finding that a computation which broke down leaves.
+/// The finding for a computation that broke down.
 Finding finding_of(Breakdown breakdown);
 
-/// What tells the ways to be wrong from each other.
+/// The figures that distinguish the kinds of failure.
 struct Symptoms {
   double error = 0.0;          ///< max over all nodes of the distance from the golden, over the unit
-  double zigzag_share = 0.0;   ///< share of the squared error that stands in hourglass modes
+  double zigzag_share = 0.0;   ///< share of the squared error in hourglass modes
   double bending_ratio = 1.0;  ///< hourglass amplitudes over those of the golden
-  /// Strain energy over that of the golden's element at the golden; the inverse where loads move the body,
-  /// for there the stiffer one stores less.
+  /// Strain energy over that of the golden's element at the golden; the inverse if loads move the body,
+  /// because then the stiffer body stores less.
   double stiffness_ratio = 1.0;
 };
 
-/// Hourglass amplitudes and displacements of a field, root mean squares over the volume (m): of gamma^T u and
-/// of u. Linear fields have none of the first.
+/// Root mean squares over the volume (m) of a field's hourglass amplitudes gamma^T u, which are zero for
+/// linear fields, and of its displacements u.
 struct HourglassContent {
   double hourglass;
   double total;
 };
 HourglassContent hourglass_content(const Mesh& mesh, const NodalField& u);
 
-/// The symptoms of displacements u (m) with strain and hourglass energy `energy` (J) compared with the
-/// golden; `unit` is the length that errors are fractions of.
+/// The symptoms of displacements u (m) with strain and hourglass energy `energy` (J), compared with the
+/// golden; errors are fractions of `unit` (m).
 Symptoms symptoms(const Scene& scene, const NodalField& u, double energy, const NodalField& golden,
                   double unit);
 
-/// The same of an answer at several times: at the worst of them. In motion the energy is that of another
-/// state than the golden's, so that locking is not told.
+/// The same for an answer at several times: the symptoms at the worst of them. In motion the energy belongs
+/// to another state than the golden's, so locking is not detected.
 Symptoms symptoms(const Scene& scene, const Displacements& u, double energy, const Displacements& golden,
                   double unit);
 
-/// No run with a larger error is good, whatever the golden is worth.
+/// No run with a larger error is good, however inaccurate the golden is.
 inline constexpr double largest_good_limit = 0.1;
 
-/// Error up to which a run is good: 1 %, or the golden's own distance from the truth where that is more,
-/// because nearer to the golden is not nearer to the truth; at most `largest_good_limit`.
+/// The largest error of a good run: 1 %, or the golden's own distance from the truth if that is larger,
+/// because closer to the golden is not closer to the truth; at most `largest_good_limit`.
 double good_limit(const std::optional<double>& golden_to_truth);
 
-/// Good up to `limit`. Beyond it hourglassing when the hourglass amplitudes are 1.5 times the golden's or
-/// more and a tenth of the squared error or more stands in them; locking when the body takes 3 % more energy
-/// to deform than the golden, or more, and bends at most 1.2 times as much; else inaccurate.
+/// Good up to `limit`. Beyond it: hourglassing if the hourglass amplitudes are at least 1.5 times the
+/// golden's and hold at least a tenth of the squared error; locking if deforming the body takes at least 3 %
+/// more energy than the golden and it bends at most 1.2 times as much; else inaccurate.
 Finding diagnose(const Symptoms& symptoms, double limit);
 
-/// The finding of a run that is compared with a stored golden, whose own distance from the truth is given
-/// where it is known. Where that is more than `largest_good_limit`, the golden cannot judge a run that is
-/// farther from it than this limit but nearer than the truth: such a run may be better than the golden or
-/// worse.
+/// The finding of a run compared with a stored golden, whose own distance from the truth is given if known.
+/// If that is more than `largest_good_limit`, the golden cannot judge a run that is farther from it than this
+/// limit but closer than the truth: such a run may be better or worse than the golden.
 Finding judge(const Symptoms& symptoms, const std::optional<double>& golden_to_truth);
 
 }  // namespace sandglass

@@ -10,7 +10,7 @@ double scaled_jacobian(const NodalVectors<double>& X);
 /// The quality of the elements of a mesh: the distribution of their scaled Jacobians.
 struct QualityTable {
   struct Element {
-    std::size_t number;      ///< in the mesh, from 0 on
+    std::size_t number;      ///< in the mesh, from 0
     double scaled_jacobian;  ///< of its worst corner
     Vector centre;           ///< mean of its nodes, m
   };

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t first_width = 32;
 constexpr std::size_t width = 10;
 
-/// Puts meshes in order by their elements per side; last come those whose name is no number.
+/// Orders meshes by their elements per side; names that are not numbers come last.
 struct IsCoarser {
   static double size(const std::string& mesh) {
     const double elements = std::strtod(mesh.c_str(), nullptr);
@@ -27,7 +27,7 @@ struct IsCoarser {
   }
 };
 
-/// What is written where.
+/// The texts of the cells.
 class Cells {
  public:
   void add(const std::string& row, const std::string& mesh, const std::string& text) {

@@ -33,7 +33,7 @@ std::vector<Column> columns_of(const std::vector<const Verdict*>& family) {
   return columns;
 }
 
-/// The names of the variants above their columns, a line for each axis; a name stands where it begins.
+/// The names of the variants above their columns, a line for each axis; each name is above its first column.
 std::string header(const std::vector<Column>& columns, std::size_t width) {
   std::string text;
   const auto& axes = columns.front().verdict->variants;

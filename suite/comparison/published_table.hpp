@@ -7,10 +7,9 @@
 
 namespace sandglass {
 
-/// For people: a table for every case file that has published values, a row for each method and a column for
-/// each variant, of computed over published values; where there are truths, a second one of computed over
-/// true values; where other programs are listed, their tables (`program_tables`). Verdicts without published
-/// values are passed over.
+/// As text: for every case file with published values, a table of computed over published values with a row
+/// for each method and a column for each variant; with truths, a second one of computed over true values;
+/// with other programs, their tables (`program_tables`). Verdicts without published values are skipped.
 std::string published_tables(const std::vector<Verdict>& verdicts);
 
 }  // namespace sandglass

@@ -18,19 +18,19 @@ void require_hash(const Hdf5File& file, const std::string& attribute, const std:
   const std::string found = file.read_text_attribute("/", attribute);
   if (found == expected) return;
   throw InputError(
-      fmt::format("{}: {} is {}, but the case {} has {}; the file was made for another {}. Make it anew: "
+      fmt::format("{}: {} is {}, but the case {} has {}; the file was made for another {}. Regenerate it: "
                   "reference/regenerate {}",
                   file.path().string(), attribute, found, scene.description.file.string(), expected,
                   attribute == "mesh_hash" ? "mesh" : "case", scene.description.name));
 }
 
-/// Throws InputError unless the answers of a motion are told at the times of the scene's frames.
+/// Throws InputError unless the answers of a motion are stored for the times of the scene's frames.
 void require_times(const Hdf5File& file, const std::vector<double>& expected, const Scene& scene) {
   const auto found = file.read<double>("/times");
   const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-12 * b; };
   if (std::equal(found.entries.begin(), found.entries.end(), expected.begin(), expected.end(), same)) return;
   throw InputError(
-      fmt::format("{}: has {} times, which are not the ends of the {} frames of {}: make it anew: "
+      fmt::format("{}: has {} times, which are not the ends of the {} frames of {}. Regenerate it: "
                   "reference/regenerate {}",
                   file.path().string(), found.entries.size(), expected.size(),
                   scene.description.file.string(), scene.description.name));
@@ -40,7 +40,7 @@ void require_times(const Hdf5File& file, const std::vector<double>& expected, co
 
 OwnError read_own_error(const std::filesystem::path& path) {
   const auto file = Hdf5File::open(path);
-  if (!file.has_attribute("/", "own_error_max")) return {{}, "its file does not say it"};
+  if (!file.has_attribute("/", "own_error_max")) return {{}, "not stored in its file"};
   const double largest = file.read_number_attribute("/", "own_error_max");
   return {std::isfinite(largest) ? std::optional(largest) : std::nullopt,
           file.read_text_attribute("/", "own_error_note")};

@@ -17,7 +17,7 @@ namespace sandglass {
 
 namespace {
 
-/// The elements that are refined at once make this share of the sum of all indicators. A larger share wastes
+/// Each refinement splits elements with this share of the sum of all indicators. A larger share wastes
 /// elements, a smaller one needs more searches.
 constexpr double refined_share = 0.6;
 
@@ -25,18 +25,18 @@ constexpr double refined_share = 0.6;
 /// which lies between the orders of singular edges (about 1) and of smooth answers (2).
 constexpr double left_of_change = 0.7;
 
-/// The residual at which searches end, over the accuracy that is asked for; displacements are then about as
-/// many per cent of the largest one from equilibrium as the residual is of the loads.
+/// The residual at which searches end, over the requested accuracy. The relative distance of displacements
+/// from equilibrium is about as large as the residual.
 constexpr double tolerance_over_accuracy = 0.1;
 
-/// The accuracy of answers for an estimate: errors that are estimated are larger.
+/// The accuracy of answers for an estimate, below the errors that are estimated.
 constexpr double accuracy_of_estimate = 1e-3;
 
-/// Evaluations after which a search that starts near an answer is given up, if it had to go back to rest: one
-/// that succeeds takes ten or twenty, or a hundred from rest.
+/// Evaluations after which a search that starts near an answer is given up: a successful one takes ten or
+/// twenty, or a hundred from the undeformed state.
 constexpr int most_evaluations_near = 500;
 
-/// Means of the elements' displacement gradients, weighted by volume, at the nodes of one material.
+/// Volume-weighted means of the elements' displacement gradients at the nodes of one material.
 class RecoveredGradients {
  public:
   explicit RecoveredGradients(std::size_t nodes) : sums_(nodes), weights_(nodes, 0.0) {}
@@ -49,7 +49,7 @@ class RecoveredGradients {
     }
   }
 
-  /// Divides by the weights, after tied nodes have handed theirs on to those they follow.
+  /// Divides by the weights, after tied nodes have passed theirs to the nodes that they follow.
   void finish(const Ties& ties) {
     for (const auto& [node, mean_of] : ties) {
       for (const auto& [free, weight] : mean_of) {
@@ -78,7 +78,7 @@ class RecoveredGradients {
   std::vector<double> weights_;
 };
 
-/// The mean-dilatation element's answer (m), searched for near u (m) if that is given, and then not for long.
+/// The mean-dilatation element's answer (m); if u (m) is given, a short search near it.
 NodalField find_answer(Scene scene, const NodalField* u, int threads) {
   int& most = scene.description.relaxation.max_steps;
   if (u != nullptr) most = std::min(most, most_evaluations_near);
@@ -143,7 +143,7 @@ void RefinedAnswer::refine() {
   try {
     before_ = std::exchange(u_, find_answer(finer, &guess, threads_));
   } catch (const ComputationError& error) {
-    throw ComputationError(fmt::format("no answer was found on the refined mesh of {} elements: {}",
+    throw ComputationError(fmt::format("no answer found on the refined mesh of {} elements: {}",
                                        finer.mesh.cells.size(), error.what()),
                            error.breakdown());
   }
@@ -162,9 +162,9 @@ AccurateMesh refine_until_within(double accuracy, const Scene& scene, int thread
   const auto start = std::chrono::steady_clock::now();
   RefinedAnswer answer(scene, accuracy, threads);
   const double unit = displacement_unit(scene, answer.u());
-  std::string nearest = "how far its answer is from the exact one is not known";
+  std::string nearest = "the error of its answer is unknown";
   const auto fail = [&](const std::string& why) {
-    return ComputationError(fmt::format("{}: a mesh of {} elements is not refined further, and {}: {}",
+    return ComputationError(fmt::format("{}: the mesh of {} elements is not refined further, and {}: {}",
                                         scene.description.name, answer.scene().mesh.cells.size(), nearest,
                                         why));
   };
@@ -184,7 +184,7 @@ AccurateMesh refine_until_within(double accuracy, const Scene& scene, int thread
     };
     if (error(before.u) <= accuracy) return {std::move(before.scene), std::move(before.u), limit, took()};
     if (error(answer.u()) <= accuracy) return {answer.scene(), answer.u(), limit, took()};
-    nearest = fmt::format("its answer is {:.3g} % from the exact one, as estimated, instead of {:.3g} %",
+    nearest = fmt::format("the estimated error of its answer is {:.3g} %, not {:.3g} %",
                           100.0 * error(answer.u()), 100.0 * accuracy);
   }
 }

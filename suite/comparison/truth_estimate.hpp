@@ -4,13 +4,13 @@
 
 namespace sandglass {
 
-/// An indicator (m^3) for each element of how much it contributes to the squared error of an answer u (m). It
-/// is the volume times the mean, over the corners, of the squared distance between the element's mean
-/// displacement gradient and the recovered gradient at the corner, which is the mean over all elements of the
-/// same material that share the node (Zienkiewicz and Zhu 1987).
+/// An indicator (m^3) of each element's contribution to the squared error of an answer u (m): its volume
+/// times the mean, over the corners, of the squared distance between the element's mean displacement gradient
+/// and the recovered gradient at the corner, which is the mean over all elements of the same material at that
+/// node (Zienkiewicz and Zhu 1987).
 std::vector<double> error_indicators(const Scene& scene, const NodalField& u);
 
-/// The fewest elements that together have `share` of the sum of all indicators, by their numbers (Doerfler
+/// The numbers of the fewest elements that together have `share` of the sum of all indicators (Doerfler
 /// 1996).
 std::vector<int> largest_share(const std::vector<double>& indicators, double share);
 
@@ -18,19 +18,18 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
 class RefinedAnswer {
  public:
   /// Starts on the mesh of a quasi-static scene, near u (m) if that is given. Searches end at a residual of a
-  /// tenth of `accuracy`, unless that of the case is larger: more would be lost in the error. Throws
+  /// tenth of `accuracy`, or the case's own if larger; a smaller residual would not reduce the error. Throws
   /// ComputationError if there is no answer.
   RefinedAnswer(Scene scene, double accuracy, int threads, const NodalField* near = nullptr);
 
-  /// Refines the mesh once more. Throws ComputationError if the finer mesh has no answer; nothing has changed
-  /// then.
+  /// Refines the mesh once more. Throws ComputationError and changes nothing if the finer mesh has no answer.
   void refine();
 
   const Scene& scene() const { return scene_; }
   const NodalField& u() const { return u_; }
 
   /// The exact displacements (m) at the original nodes, which come first on every mesh, extrapolated from the
-  /// last two answers. Only after a refinement.
+  /// last two answers. Needs at least one refinement.
   NodalField limit() const;
 
  private:
@@ -40,23 +39,23 @@ class RefinedAnswer {
   NodalField u_, before_;  // on the last mesh, and on the one before
 };
 
-/// A mesh that is fine enough for an accuracy, and what is known of the answer on it.
+/// A mesh that is fine enough for an accuracy, and the answer on it.
 struct AccurateMesh {
   Scene scene;
   NodalField u;      ///< the mean-dilatation element's answer, m
   NodalField limit;  ///< the estimate of the exact displacements at the original nodes, m
-  double seconds;    ///< wall time that it took to find
+  double seconds;    ///< wall time to find it
 };
 
-/// Refines the mesh of a quasi-static scene until the mean-dilatation element's answer is nowhere at the
-/// original nodes farther from the exact one, as estimated, than `accuracy` times the unit of errors
-/// (`displacement_unit`). A mesh that is fine enough as it is stays. Searches for rest on the mesh end at a
-/// residual of a tenth of `accuracy`, for more is lost in the error. Throws ComputationError, with the
-/// nearest estimate, if a mesh of more than `most_elements` elements would be refined, or one has no answer.
+/// Refines the mesh of a quasi-static scene until the estimated error of the mean-dilatation element's answer
+/// at every original node is at most `accuracy` times the unit of errors (`displacement_unit`). A mesh that
+/// is fine enough is not refined. Searches for equilibrium end at a residual of a tenth of `accuracy`; a
+/// smaller one would not reduce the error. Throws ComputationError, with the best estimate, if a mesh of more
+/// than `most_elements` elements would be refined or a mesh has no answer.
 AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
                                  std::size_t most_elements = 1'000'000);
 
-/// The distance of an answer from the exact one on the same body, the limit of ever finer meshes.
+/// The distance of an answer from the exact one, the limit of ever finer meshes.
 struct TruthEstimate {
   double largest = 0.0;      ///< over all nodes, m
   double rms = 0.0;          ///< m

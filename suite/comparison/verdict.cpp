@@ -42,7 +42,8 @@ bool concerns(const Expectation& expected, const Verdict& verdict) {
   return !verdict.kappa_is_auto && fmt::to_string(*verdict.kappa) == expected.kappa;
 }
 
-/// Computes the answer of a scene and fills in what a verdict says of the way there. Throws ComputationError.
+/// Computes the answer of a scene and fills in the verdict's figures about its computation. Throws
+/// ComputationError.
 Answer fill_answer(const Scene& scene, const MethodChoice& choice, Verdict& verdict) {
   const Model model(scene, choice);
   verdict.stable_step = stable_step(model, NodalField(scene.mesh.points.size())).step;
@@ -106,7 +107,7 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
   } catch (const ComputationError& error) {
     const std::string_view text(error.what());
     verdict.status = fmt::format("failed: {}", text.substr(0, text.find('\n')));
-    // Without a breakdown the method does not take the case, which says nothing about its answers.
+    // Without a breakdown the method does not support the case, which says nothing about its answers.
     if (error.breakdown() != Breakdown::other) verdict.finding = finding_of(error.breakdown());
     return verdict;
   }
@@ -134,7 +135,7 @@ std::vector<LimitCheck> check_limits(const std::string& case_name,
       if (!figure || (check.figure && *check.figure <= *figure)) continue;
       check.figure = figure;
       check.kappa = verdict.kappa;
-      // A run that did not come to rest may show that a method fails, never that it is accurate.
+      // A run without equilibrium may show that a method fails, never that it is accurate.
       check.holds = expected.below ? verdict.ok() && *figure <= *expected.below : *figure > *expected.above;
     }
     checks.push_back(check);

@@ -13,38 +13,38 @@
 
 namespace sandglass {
 
-/// What a scene is compared with; stored answers are absent when the case has none.
+/// The references of a scene; stored answers are absent if the case has none.
 struct References {
   Comparison comparison;
   std::optional<Displacements> golden;
   std::optional<Displacements> truth;
 };
 
-/// Reads the comparison of a scene, and its golden and truth where they exist. Throws InputError when one
-/// exists but belongs to another case.
+/// Reads the comparison of a scene, and its golden and truth if they exist. Throws InputError if one exists
+/// but belongs to another case.
 References read_references(const Scene& scene);
 
-/// The accuracy figures of displacements u of a scene against one of its references, if there is one; of a
-/// motion the largest over time.
+/// The accuracy of displacements u of a scene against one of its references, if there is one; for a motion
+/// the largest errors over time.
 std::optional<Accuracy> accuracy_of(const Scene& scene, const Comparison& comparison, const Displacements& u,
                                     const std::optional<Displacements>& reference);
 
-/// Error of the golden itself, max over all nodes, where there is a truth to tell it by.
+/// The error of the golden itself, max over all nodes; none without a truth.
 std::optional<double> golden_to_truth(const Scene& scene, const References& references);
 
-/// What it took to find a static equilibrium.
+/// The cost of finding a static equilibrium.
 struct SearchCost {
-  double seconds = 0.0;  ///< wall time, other runs beside
+  double seconds = 0.0;  ///< wall time, while other runs share the machine
   long evaluations = 0;  ///< of the internal forces
 };
 
-/// What it took to follow a motion.
+/// The cost of computing a motion.
 struct MotionCost {
-  double seconds = 0.0;  ///< wall time, other runs beside
+  double seconds = 0.0;  ///< wall time, while other runs share the machine
   long steps = 0;
 };
 
-/// What came of one method on one case.
+/// The result of one method on one case.
 struct Verdict {
   std::string case_name;
   std::size_t elements = 0;  ///< of the case's mesh
@@ -55,18 +55,18 @@ struct Verdict {
   std::string status;  ///< "ok" or "failed: why"
   std::optional<Accuracy> golden;
   std::optional<Accuracy> truth;
-  std::optional<Accuracy> twin;  ///< where there is no golden: against its explicit twin, computed for it
+  std::optional<Accuracy> twin;  ///< without a golden: against tl-mean-dilatation, computed here
   std::optional<Finding>
-      finding;  ///< of the worst time; none without a golden, or if the method does not take the case
-  std::optional<Symptoms> symptoms;  ///< what it was found by; none for a computation that broke down
-  double stable_step = 0.0;          ///< s, at rest; 0 where unknown
+      finding;  ///< at the worst time; none without a golden, or if the method does not support the case
+  std::optional<Symptoms> symptoms;  ///< the basis of the finding; none for a computation that broke down
+  double stable_step = 0.0;          ///< s, of the undeformed body; 0 if unknown
   long operations = 0;               ///< per element and step
   double residual = 0.0;
   double hourglass_energy_ratio = 0.0;          ///< hourglass over strain energy
   std::optional<SearchCost> search = {};        ///< of a quasi-static case
   std::optional<MotionCost> motion = {};        ///< of a dynamic case
-  std::optional<StepCost> step_cost = {};       ///< measured apart, by benchmark/cost.hpp; else none
-  std::string family = {};                      ///< what the case shares with its variants
+  std::optional<StepCost> step_cost = {};       ///< measured separately by benchmark/cost.hpp; else none
+  std::string family = {};                      ///< the name that the case shares with its variants
   std::vector<std::string> variants = {};       ///< of the case
   std::vector<PublishedResult> published = {};  ///< one for each published value of the case
 
@@ -74,7 +74,7 @@ struct Verdict {
 };
 
 /// Computes the scene with a method and compares. A failed computation becomes a status, not an exception.
-/// `u` receives the displacements when there are any.
+/// `u` receives the displacements, if there are any.
 Verdict run_and_compare(const Scene& scene, const References& references, const MethodChoice& choice,
                         Displacements& u);
 
@@ -82,12 +82,12 @@ Verdict run_and_compare(const Scene& scene, const References& references, const 
 struct LimitCheck {
   std::string case_name;
   Expectation expectation;
-  std::optional<double> figure;  ///< none when no run gave it
-  std::optional<double> kappa;   ///< at which it was found, for "best"
+  std::optional<double> figure;  ///< none if no run provides it
+  std::optional<double> kappa;   ///< that gave the figure, for "best"
   bool holds = false;
 };
 
-/// Compares the verdicts of a case with its expectations, which are for double precision: verdicts in single
+/// Compares the verdicts of a case with its expectations. These are for double precision; verdicts in single
 /// precision are ignored.
 std::vector<LimitCheck> check_limits(const std::string& case_name,
                                      const std::vector<Expectation>& expectations,

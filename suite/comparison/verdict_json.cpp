@@ -27,7 +27,7 @@ Json to_record(const std::optional<Symptoms>& symptoms) {
           {"stiffness_ratio", symptoms->stiffness_ratio}};
 }
 
-/// The three kinds of cost; what is not known or does not apply is null.
+/// The three kinds of cost; unknown and inapplicable figures are null.
 void add_cost(Json& record, const Verdict& verdict) {
   const auto& search = verdict.search;
   const auto& motion = verdict.motion;

@@ -21,7 +21,7 @@ struct Operations {
 };
 
 /// A number that counts its operations: run a kernel on it and read the tally. Constants have no tally, so
-/// that operations between constants, which a compiler folds, cost nothing; changes of sign are free.
+/// operations between constants, which a compiler folds, cost nothing; changes of sign are free.
 class Counted {
  public:
   Counted() = default;

@@ -12,12 +12,12 @@ struct OperationCount {
   Operations gradient;   ///< from nodal displacements to displacement gradients and volume changes
   Operations law;        ///< from displacement gradients to stresses
   Operations force;      ///< from stresses to nodal forces
-  Operations hourglass;  ///< of the hourglass control: the difference from the same element without it
+  Operations hourglass;  ///< of the hourglass control: the difference from the element without it
   Operations total;
   long bytes = 0;  ///< in double: constants and four places of nodes read, history read and written
 };
 
-/// The memory traffic of a step, counted once per pass over the elements: a row that two strips share is
+/// The memory traffic of a step, counted once per pass over the elements: a row shared by two strips is
 /// assumed to come from a cache the second time. In numbers of the run's precision unless noted.
 struct Traffic {
   std::size_t constants;       ///< per element
@@ -35,7 +35,7 @@ constexpr Traffic traffic_of() {
   }
   if constexpr (Kernel::needs_increment) ++traffic.rows_of_motion;
   if constexpr (Kernel::needs_coordinates) ++traffic.rows_of_motion;
-  // Displacements again, and the volumes that the first pass writes and the second reads.
+  // Displacements again, and volumes, which the first pass writes and the second reads.
   if constexpr (Kernel::averages_over_nodes) traffic.rows_of_motion += 3;
   return traffic;
 }

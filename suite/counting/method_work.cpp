@@ -13,7 +13,7 @@ MethodWork work_with(const Law& law) {
           traffic_of<FormulationOf<Method, Law>>()};
 }
 
-/// With the law behind calls, so that each method is compiled for two laws and not for all.
+/// The law is behind calls, so that each method is compiled for two laws instead of all.
 template <class Method>
 MethodWork work_of_form(const KernelLaw& law) {
   const auto* viscoelastic = std::get_if<Viscoelastic<CalledLaw>>(&law);

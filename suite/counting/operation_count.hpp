@@ -91,7 +91,7 @@ auto counted_constants(const Law& law, Operations& tally) {
   }
 }
 
-/// The modes of an element in a strip: those of its lower face are known from the previous element.
+/// The modes of an element in a strip; the lower face's are known from the previous element.
 inline Modes<Counted> modes_in_strip(const FaceModes<Counted>& lower, Operations& tally, double value) {
   const auto upper = counted<FaceVectors<Counted>>(tally, value);
   return modes_between(lower, to_face_modes(upper));

@@ -6,7 +6,7 @@
 namespace sandglass {
 
 /// f = k gamma gamma^T u (eq. 14) as the paper writes it, two dense products: 360 operations. The kernel,
-/// `OnePoint::force`, computes the same with fewer; this form serves tests and the operation count.
+/// `OnePoint::force`, needs fewer; this form is for tests and the operation count.
 template <class T>
 NodalVectors<T> paper_hourglass_force(const NodalVectors<T>& u, const Matrix<T, 8, 4>& gamma, const T& k) {
   const Matrix<T, 4, 3> q = transpose(gamma) * u;

@@ -16,20 +16,20 @@ namespace sandglass {
 
 namespace {
 
-/// Evaluations of the forces after which a trial is not at rest: answers that exist take a few thousand.
+/// Evaluations of the forces after which a trial has no equilibrium: existing answers take a few thousand.
 constexpr int most_evaluations = 20000;
 
 bool has_generator(const Case& description) {
   return std::holds_alternative<AnyGenerator>(description.mesh);
 }
 
-/// What is stretched no longer turns.
+/// A stretched set no longer turns rigidly.
 bool can_be_shaped(const Case& description) {
   return has_generator(description) && description.rotations.empty();
 }
 
 bool has_poisson_ratio(const Case& description) {
-  if (description.materials.size() > 1) return false;  // of which one?
+  if (description.materials.size() > 1) return false;  // ambiguous
   return std::visit(
       []<class Law>(const Law&) {
         return requires(Law law) {
@@ -43,7 +43,7 @@ bool can_move(const Trial& trial) {
   return !method_named(trial.choice.method).is_condensed;
 }
 
-/// Where a damping control resists velocities alone, its strength is nothing to a body at rest.
+/// The strength of a control that resists velocities only does not matter in static equilibrium.
 bool takes_strength(const Trial& trial) {
   const MethodEntry& method = method_named(trial.choice.method);
   return !method.is_condensed && (trial.is_dynamic() ? method.takes_kappa : method.kappa_affects_equilibrium);
@@ -106,7 +106,7 @@ const std::vector<Axis>& list() {
        .matters = takes_strength},
       {.name = "nu",
        .range = Range::between(-1.0, 0.5),
-       .meaning = "Poisson's ratio at rest",
+       .meaning = "initial Poisson's ratio",
        .values = {0.25, 0.4, 0.45, 0.49, 0.499, 0.4999},
        .apply = set_poisson_ratio,
        .possible = has_poisson_ratio,
@@ -140,13 +140,13 @@ const std::vector<Axis>& list() {
        .needs = "a mesh from a generator"},
       {.name = "bytes",
        .range = four_or_eight,
-       .meaning = "of a number: 4 computes in float, 8 in double",
+       .meaning = "bytes of a number: 4 for float, 8 for double",
        .values = {4, 8},
        .whole_numbers = true,
        .apply = set_bytes},
       {.name = "cycles",
        .range = Range::at_least(0.0),
-       .meaning = "times that the load goes back to a tenth and up again",
+       .meaning = "number of times that the load returns to a tenth and rises again",
        .values = {0, 1, 3, 10},
        .whole_numbers = true,
        .apply = set_cycles,
@@ -160,7 +160,7 @@ const std::vector<Axis>& list() {
       {.name = "noise",
        .range = Range::positive(),
        .meaning = "dynamic: initial zigzag of velocities over the speed of shear waves, good up to a tenth "
-                  "of its free way",
+                  "of its free path",
        .values = {0.001, 0.01, 0.1, 0.3},
        .apply = set_noise,
        .matters = can_move}};
@@ -210,7 +210,7 @@ Map parse_map(const std::string& text) {
   const auto names = split(text);
   if (names.size() > 2 || (names.size() == 2 && names[0] == names[1])) {
     throw InputError(
-        fmt::format("--map = '{}' must be one axis or two different ones with a comma between", text));
+        fmt::format("--map = '{}' must be one axis, or two different ones separated by a comma", text));
   }
   const Axis& x = find_axis(names[0]);
   if (names.size() == 1) return {&x, nullptr, x.values};
@@ -232,7 +232,7 @@ void set_values(const std::string& text, std::vector<Map>& maps) {
   const std::size_t sign = text.find('=');
   if (sign == std::string::npos) {
     throw InputError(
-        fmt::format("--values = '{}' must be an axis, '=', and values with commas between", text));
+        fmt::format("--values = '{}' must be an axis, '=', and values separated by commas", text));
   }
   const Axis& axis = find_axis(text.substr(0, sign));
   std::vector<double> values;

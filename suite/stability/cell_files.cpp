@@ -50,7 +50,7 @@ std::optional<Finding> finding_named(const Json& name) {
   throw InputError(fmt::format("finding '{}' is not known", name.get<std::string>()));
 }
 
-/// A number that JSON had to write as null.
+/// A number; JSON writes NaN and infinity as null.
 double number(const Json& value) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
@@ -97,8 +97,8 @@ std::optional<Cell> CellFiles::read(const Map& map, const std::string& method, d
     if (record.at("case_hash") != case_hash_ || record.at("limit") != limit_) return std::nullopt;
     return to_cell(record);
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: no cell of a map ({}); remove it, and it is computed again",
-                                 file.string(), error.what()));
+    throw InputError(fmt::format("{}: not a cell of a map ({}); remove it to compute it again", file.string(),
+                                 error.what()));
   }
 }
 

@@ -7,18 +7,17 @@
 
 namespace sandglass {
 
-/// Finished cells on disk, one file each, so that work which was broken off, or is shared out to many
-/// processes, goes on where it is. A cell belongs to a case, as its hash tells, and to the limit it was
-/// judged by.
+/// Finished cells on disk, one file each, so that interrupted work can be resumed and many processes can
+/// share it. A cell belongs to a case, identified by its hash, and to a limit.
 class CellFiles {
  public:
   CellFiles(const std::filesystem::path& folder, const Case& description, double limit,
             Provenance provenance);
 
-  /// The cell of a map, where it is finished. Throws InputError for a file that is not one of ours.
+  /// The cell of a map, if it is finished. Throws InputError for a file that is not a cell.
   std::optional<Cell> read(const Map& map, const std::string& method, double x, double y) const;
 
-  /// Keeps a cell: written to a temporary, then renamed. Throws InputError when that cannot be done.
+  /// Stores a cell: writes a temporary file, then renames it. Throws InputError if that fails.
   void write(const Map& map, const Cell& cell) const;
 
  private:

@@ -10,13 +10,13 @@
 
 namespace sandglass {
 
-/// Computes a trial. What goes wrong becomes part of the answer, not an exception.
+/// Computes a trial. An error becomes part of the answer, not an exception.
 Answer compute(const Trial& trial);
 
-/// Answers that several cells need, each computed once, by whoever asks first. May be shared by threads.
+/// Answers that several cells need, each computed once, at the first request. May be shared by threads.
 class Answers {
  public:
-  /// The answer of a trial; waits where somebody else is at it.
+  /// The answer of a trial; waits if another thread is computing it.
   std::shared_ptr<const Answer> of(const Trial& trial);
 
  private:

@@ -1,6 +1,6 @@
-# arm64 from another machine: Debian's cross compiler, its programs under QEMU. Of other libraries there are only the headers of this
-# machine, which are the same for all. Symbols that no test uses, above all HDF5's, stay unresolved. The dynamic loader does not
-# always accept that, so programs are linked statically.
+# arm64 on another machine: Debian's cross compiler, with programs under QEMU. Other libraries provide only this machine's headers, which
+# are the same for all processors. Symbols that no test uses, above all HDF5's, stay unresolved. The dynamic loader does not always accept
+# that, so programs are linked statically.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

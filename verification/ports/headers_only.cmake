@@ -1,4 +1,4 @@
-# Answers find_package with headers alone: of /usr/include by links in a folder, as the compiler has a C library of its own.
+# Answers find_package with headers only, by links to /usr/include in a folder, as the compiler has its own C library.
 # GoogleTest is compiled from its packaged sources.
 set(HEADERS ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${HEADERS})
@@ -16,7 +16,7 @@ endfunction()
 
 macro(provide_headers method name)
   if(${name} MATCHES "^(fmt|Eigen3|HDF5|muparser|OpenMP|Threads|SUNDIALS|GTest)$")
-    set(${name}_FOUND TRUE)  # others are looked for as usual
+    set(${name}_FOUND TRUE)  # others are searched as usual
   endif()
   if(${name} STREQUAL fmt)
     headers_only(fmt::fmt)

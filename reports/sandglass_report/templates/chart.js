@@ -4,7 +4,7 @@ const HINT = "Point at a mark, or tap it, for its details.";
 // Why an option has no data for a case.
 const WHY = {
   golden: "none for this case", truth: "none for this case", max: "not known", rms: "not known", profile: "no profile line",
-  simulated: "not measured", step: "not measured", equilibrium: "no search: the case moves",
+  simulated: "not measured", step: "not measured", equilibrium: "none: a dynamic case",
 };
 const digits = (v) => (v >= 1000 || v === 0 ? String(Math.round(v)) : String(+v.toPrecision(3)));
 const percent = (f) => (100 * f < 1e-4 && f > 0 ? `${(100 * f).toExponential(0)}\u00a0%` : `${digits(100 * f)}\u00a0%`);
@@ -32,7 +32,7 @@ function startChart(Plotly) {
   const group = (p) => p.group ?? p.method;
   const leads = (p) => p.as_it_comes && !p.elsewhere; // into the headline and the table
 
-  // What a user chose, kept for cases that have it; which points have an option's data.
+  // The user's choices, kept for cases that have their data; which points have an option's data.
   const wish = { reference: "golden", figure: "max", cost: "simulated" };
   const labels = Object.fromEntries(Object.keys(wish).map((name) => [name, [...get(name).options].map((o) => o.textContent)]));
   const has = {
@@ -40,7 +40,7 @@ function startChart(Plotly) {
     figure: (p, value) => p[get("reference").value]?.[value] !== undefined,
     cost: (p, value) => p[value] > 0,
   };
-  /** Disables the options that a case has no data for, with the reason, and takes others where those were chosen. */
+  /** Disables the options for which a case has no data, with the reason; replaces them if they were chosen. */
   function settle() {
     let points = data.points.filter((p) => p.case === get("case").value);
     const stand = standIn(get("case").value);
@@ -191,7 +191,7 @@ function startChart(Plotly) {
     const silent = data.points.filter((p) => p.case === view.case && !p.ok && p.mesh === data.own_mesh && p.as_it_comes);
     const untimed = data.points.filter((p) => p.case === view.case && errorOf(p, view) !== undefined && !(p[view.cost] > 0));
     tools.querySelector(".silent").textContent = [
-      silent.length ? `No answer at rest: ${silent.map((p) => `${p.method} (${p.finding.split(";")[0]})`).join("; ")}.` : "",
+      silent.length ? `No answer: ${silent.map((p) => `${p.method} (${p.finding.split(";")[0]})`).join("; ")}.` : "",
       untimed.length ? `${untimed.length} without this time, not drawn: ${[...new Set(untimed.map((p) => p.method))].join(", ")}.` : "",
     ].join(" ").trim();
     tools.querySelector(".meaning").textContent = data.costs[view.cost].definition;

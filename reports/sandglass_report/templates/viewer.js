@@ -28,7 +28,7 @@
     return decoded.get(name);
   }
   function answer(body, name) {
-    if (name === "at rest") return { points: body.rest };
+    if (name === "undeformed") return { points: body.rest };
     if (!body.decoded.has(name)) {
       const raw = body.answers[name];
       const levels = Object.fromEntries(Object.keys(data.scales).filter((k) => raw[k]).map((k) => [k, bytes(raw[k])]));
@@ -139,7 +139,7 @@
   }
 
   function caption(body, name, key) {
-    if (name === "at rest") return "at rest";
+    if (name === "undeformed") return name;
     const shown = answer(body, name);
     const largest = shown.largest === null || name === "golden" ? "" : `: up to ${number(100 * shown.largest)}\u00a0% from the golden`;
     const missing = shown.levels[key] ? "" : ` (grey: it has no ${data.scales[key].words})`;
@@ -166,7 +166,7 @@
 
   function choose() {
     const body = open(get("case").value);
-    const names = [...Object.keys(body.answers), "at rest"];
+    const names = [...Object.keys(body.answers), "undeformed"];
     for (const [side, wish] of [["left", "tl-perturbation"], ["right", "golden"]]) {
       const select = get(side);
       const kept = select.value || wish;
