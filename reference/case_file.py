@@ -209,7 +209,9 @@ def _motion(path, tables, velocities):
     for key, names in (("gravity", CURVE), ("support", ("damping",))):
         for where, table in entries(path, tables, key) if key in tables else ():
             if set(names) & set(table):
-                raise InputError(f"{where}: {' and '.join(names)}: not supported by goldens of motion")
+                raise InputError(
+                    f"{where}: {' and '.join(names)}: not supported by goldens of motion"
+                )
     table = entry(path, tables, "dynamics", dict)
     keys = {"duration": float, "ramp_time": 0.0, "damping": 0.0, "frames": 20}
     found = _read(f"{path}: dynamics", table, *table, **keys)
