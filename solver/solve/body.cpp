@@ -22,14 +22,14 @@ std::array<Real, 3> rounded(const std::array<double, 3>& values) {
 /// Throws InputError for what is not yet divided among ranks.
 void require_divisible(const Model& model) {
   if (model.choice().ranks->count() == 1) return;
-  const auto& dynamics = model.scene().description.dynamics;
+  const auto& dynamics = model.scene().settings.dynamics;
   const char* what = !model.scene().ties.empty()    ? "ties and hanging nodes are"
                      : dynamics.subcycles > 1       ? "dynamics.subcycles > 1 is"
                      : dynamics.body_frequency != 0 ? "dynamics.body_frequency = 1 is"
                                                     : nullptr;
   if (what == nullptr) return;
   throw InputError(fmt::format("{}: {} not divided among ranks; allowed: one rank with more threads",
-                               model.scene().description.file.string(), what));
+                               model.scene().settings.file.string(), what));
 }
 
 /// The smallest of the steps of all ranks; of equal ones that of the first element.
@@ -236,7 +236,7 @@ StableStep Body<Real>::stable_step(const Model& model, const Rows<Real>& inverse
   elements_.stiffness_bounds(state_, per_element_);
   if (subcycling_) return subcycling_->choose_substeps(stable_steps(model, bounds), given_step);
   StableStep stable = smallest_of(ranks(), sandglass::stable_step(model, bounds));
-  if (model.scene().description.dynamics.body_frequency == 0) return stable;
+  if (model.scene().settings.dynamics.body_frequency == 0) return stable;
   const double square = largest_frequency_.square(model.scene().mesh, elements_, ties_, inverse_masses,
                                                   state_, bounds, std::pow(2.0 / stable.step, 2));
   if (std::isfinite(square)) stable.step = std::max(stable.step, stable_step_of(model, square));

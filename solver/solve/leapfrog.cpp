@@ -22,7 +22,7 @@ void require_steps(const Model& model) {
   throw InputError(fmt::format(
       "{}: method '{}' has no dynamics: it superposes static answers; use it on quasi-static cases, or "
       "method '{}'",
-      model.scene().description.file.string(), model.choice().method, "linear"));
+      model.scene().settings.file.string(), model.choice().method, "linear"));
 }
 
 template <class Real>

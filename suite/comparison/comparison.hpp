@@ -62,7 +62,7 @@ struct Comparison {
 
 /// Reads the comparison of a case from its file, as strictly as the library reads the case. A case without a
 /// file has an empty one. Throws InputError that names file, line, key, value and rule.
-Comparison read_comparison(const Case& description);
+Comparison read_comparison(const CaseSettings& settings);
 
 /// The same for the case of a scene; sets named in it must exist in the scene.
 Comparison read_comparison(const Scene& scene);

@@ -12,7 +12,7 @@ namespace sandglass {
 
 /// The times (s) at which the answer of a case is told: the ends of the frames of a motion; of an answer at
 /// rest one, where the load is full.
-std::vector<double> answer_times(const Case& description);
+std::vector<double> answer_times(const CaseSettings& settings);
 
 /// Displacements (m) of a stored golden or truth at the nodes of the scene and the times of its answer.
 /// Throws InputError when the file is missing or broken, and when its hashes or times are not those of the

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "problem/model.hpp"
+#include "problem/make_scene.hpp"
 
 namespace sandglass {
 
@@ -17,15 +17,16 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
 /// The mean-dilatation element's answers on a mesh and on meshes that are refined where it errs most.
 class RefinedAnswer {
  public:
-  /// Starts on the mesh of a quasi-static scene, near u (m) if that is given. Searches end at a residual of a
+  /// Starts on the mesh of a quasi-static case, near u (m) if that is given. Searches end at a residual of a
   /// tenth of `accuracy`, unless that of the case is larger: more would be lost in the error. Throws
   /// ComputationError if there is no answer.
-  RefinedAnswer(Scene scene, double accuracy, int threads, const NodalField* near = nullptr);
+  RefinedAnswer(CaseOnMesh problem, double accuracy, int threads, const NodalField* near = nullptr);
 
   /// Refines the mesh once more. Throws ComputationError if the finer mesh has no answer; nothing has changed
   /// then.
   void refine();
 
+  const CaseOnMesh& problem() const { return problem_; }
   const Scene& scene() const { return scene_; }
   const NodalField& u() const { return u_; }
 
@@ -36,24 +37,26 @@ class RefinedAnswer {
  private:
   int threads_;
   std::size_t original_nodes_;
+  CaseOnMesh problem_;
   Scene scene_;
   NodalField u_, before_;  // on the last mesh, and on the one before
 };
 
 /// A mesh that is fine enough for an accuracy, and what is known of the answer on it.
 struct AccurateMesh {
+  CaseOnMesh problem;
   Scene scene;
   NodalField u;      ///< the mean-dilatation element's answer, m
   NodalField limit;  ///< the estimate of the exact displacements at the original nodes, m
   double seconds;    ///< wall time that it took to find
 };
 
-/// Refines the mesh of a quasi-static scene until the mean-dilatation element's answer is nowhere at the
+/// Refines the mesh of a quasi-static case until the mean-dilatation element's answer is nowhere at the
 /// original nodes farther from the exact one, as estimated, than `accuracy` times the unit of errors
 /// (`displacement_unit`). A mesh that is fine enough as it is stays. Searches for rest on the mesh end at a
 /// residual of a tenth of `accuracy`, for more is lost in the error. Throws ComputationError, with the
 /// nearest estimate, if a mesh of more than `most_elements` elements would be refined, or one has no answer.
-AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
+AccurateMesh refine_until_within(double accuracy, const CaseOnMesh& problem, int threads,
                                  std::size_t most_elements = 1'000'000);
 
 /// The distance of an answer from the exact one on the same body, the limit of ever finer meshes.
@@ -67,6 +70,6 @@ struct TruthEstimate {
 /// The estimate for a quasi-static answer u (m) of any method. The mean-dilatation element is solved on the
 /// mesh and on two meshes that are refined where its error indicators are largest; its answer is extrapolated
 /// from the last two. Throws ComputationError if it has no answer on the first of the refined meshes.
-TruthEstimate estimate_truth_error(const Model& model, const NodalField& u);
+TruthEstimate estimate_truth_error(const CaseOnMesh& problem, int threads, const NodalField& u);
 
 }  // namespace sandglass

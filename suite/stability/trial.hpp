@@ -4,7 +4,7 @@
 #include <string>
 
 #include "comparison/accuracy.hpp"
-#include "problem/model.hpp"
+#include "problem/make_scene.hpp"
 
 namespace sandglass {
 
@@ -12,6 +12,7 @@ namespace sandglass {
 struct Trial {
   Case description;
   MethodChoice choice;
+  double load = 1.0;                 ///< times that of the case
   double aspect = 1.0;               ///< z of mesh and imposed motions times this
   double skew = 0.0;                 ///< and x plus this times z
   std::optional<double> step = {};   ///< dynamic: stable steps per step; none: static
