@@ -140,7 +140,7 @@ std::string rest_table(const Scene& scene, const std::vector<RestRecord>& record
   for (const auto& record : records) longest = std::max(longest, record.choice.method.size());
   std::string table = fmt::format(
       "{}: {} elements, {} nodes\n{:<{}}  {:<6}  {:>3}{:>11}{:>13}{:>19}{:>8}{:>10}\n",
-      scene.description.name, scene.mesh.cells.size(), scene.mesh.points.size(), "method", longest, "number",
+      scene.settings.name, scene.mesh.cells.size(), scene.mesh.points.size(), "method", longest, "number",
       "thr", "to 1 %, s", "to 0.1 %, s", "to equilibrium, s", "evals", "residual");
   for (const auto& record : records) {
     const MethodChoice& choice = record.choice;

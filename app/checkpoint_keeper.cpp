@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 /// settings, and roundoff in a mesh.
 std::string input_hash(const Scene& scene) {
   std::ostringstream bytes;
-  bytes << std::ifstream(scene.description.file, std::ios::binary).rdbuf() << scene.description.name;
+  bytes << std::ifstream(scene.settings.file, std::ios::binary).rdbuf() << scene.settings.name;
   const auto& [points, cells] = scene.mesh;
   bytes.write(reinterpret_cast<const char*>(points.data()),
               static_cast<std::streamsize>(points.size() * sizeof points[0]));
@@ -35,7 +35,7 @@ std::string input_hash(const Scene& scene) {
 Identity identity_of(const Model& model) {
   const Scene& scene = model.scene();
   const MethodChoice& choice = model.choice();
-  Identity identity{{"case", scene.description.name},
+  Identity identity{{"case", scene.settings.name},
                     {"case_hash", scene.case_hash},
                     {"mesh_hash", scene.mesh_hash},
                     {"input_hash", input_hash(scene)},

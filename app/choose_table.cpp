@@ -34,7 +34,7 @@ std::string head_text(const Scene& scene, const Choice& choice) {
   const Demand& demand = choice.demand;
   std::string text = line(
       fmt::format("{}: at most {} of the imposed displacement from the {}{}, at every node{}{}",
-                  scene.description.name, percent(demand.tolerance), choice.reference.name,
+                  scene.settings.name, percent(demand.tolerance), choice.reference.name,
                   demand.against.empty() ? " element's answer on the same mesh" : "",
                   demand.real_time ? ", in real time" : "",
                   demand.budget ? fmt::format(", {:.3g} ms a step or answer", 1e3 * *demand.budget) : ""));
@@ -66,7 +66,7 @@ std::string meshes_text(const Scene& scene, const Choice& choice) {
   for (const auto& [mesh, evaluation, kept] : choice.others) {
     if (!kept) add("-", mesh, evaluation);
   }
-  if (std::holds_alternative<MeshFile>(scene.description.mesh)) {
+  if (std::holds_alternative<MeshFile>(choice.meshes.front().problem.description.mesh)) {
     text += "the mesh comes from a file: no coarser one was tried\n";
   }
   return text;

@@ -101,7 +101,7 @@ int run_bench(const BenchOptions& options) {
       Progress progress("bench");
       const auto proceed = [&](double share) {
         progress.show((static_cast<double>(n) + share) / static_cast<double>(subjects.size()),
-                      fmt::format("{}, {} elements", scene.description.name, scene.mesh.cells.size()));
+                      fmt::format("{}, {} elements", scene.settings.name, scene.mesh.cells.size()));
         return !interrupted();
       };
       OwnMotions motions;  // boxes have none
@@ -141,7 +141,7 @@ int run_rest(const BenchOptions& options) {
       "static equilibrium to time");
   if (options.names.empty()) {  // small cases with published values test accuracy, not time
     std::erase_if(scenes,
-                  [](const Scene& scene) { return !read_comparison(scene.description).published.empty(); });
+                  [](const Scene& scene) { return !read_comparison(scene.settings).published.empty(); });
   }
   watch_for_interrupt();
   std::vector<RestRecord> records;
@@ -153,7 +153,7 @@ int run_rest(const BenchOptions& options) {
         found.push_back(time_to_rest(scene, choice, [&](double share) {
           const auto done = static_cast<double>(records.size() + found.size()) + share;
           progress.show(done / static_cast<double>(scenes.size() * variants.size()),
-                        fmt::format("{}, {}", scene.description.name, choice.method));
+                        fmt::format("{}, {}", scene.settings.name, choice.method));
           return !interrupted();
         }));
       }

@@ -45,9 +45,9 @@ double parse_budget(const std::string& text) {
       text, decimal_comma_hint(text)));
 }
 
-void write_chosen(const Scene& scene, const Choice& choice, const std::string& output) {
+void write_chosen(const Case& description, const Choice& choice, const std::string& output) {
   const Rung& rung = choice.attempts[*choice.chosen].rung;
-  write_text_file(output, case_text(scene.description, rung.choice, rung.mesh->scene.description, output));
+  write_text_file(output, case_text(description, rung.choice, rung.mesh->problem.description, output));
   fmt::print("wrote {}\n", output);
 }
 
@@ -61,15 +61,16 @@ int run_choose(const ChooseOptions& options) {
                 .all = options.all};
   if (!options.budget.empty()) demand.budget = parse_budget(options.budget);
   require_threads(options.threads);
-  const Scene scene = read_scene(find_case(options.name));
+  const CaseOnMesh problem = with_mesh(find_case(options.name));
+  const Scene scene = make_scene(problem);
   for (const auto& place : {options.output, options.json}) {
-    if (!place.empty()) require_place(place, files_of(scene.description));
+    if (!place.empty()) require_place(place, problem.description.files);
   }
   watch_for_interrupt();
   std::optional<Choice> choice;
   {
     Progress progress("choose");
-    choice = choose(scene, demand, [&](double share, const std::string& remark) {
+    choice = choose(problem, demand, [&](double share, const std::string& remark) {
       progress.show(share, remark);
       return !interrupted();
     });
@@ -81,7 +82,7 @@ int run_choose(const ChooseOptions& options) {
   }
   if (!options.json.empty()) write_text_file(options.json, to_json(build_provenance(), scene, *choice));
   if (!choice->chosen) return 1;
-  if (!options.output.empty()) write_chosen(scene, *choice, options.output);
+  if (!options.output.empty()) write_chosen(problem.description, *choice, options.output);
   return 0;
 }
 

@@ -83,7 +83,7 @@ void add_mesh_command(CLI::App& app) {
       ->needs(deck);
   command->callback([options] {
     const Scene scene = read_scene(find_case(options->name));
-    require_place(options->output, files_of(scene.description));
+    require_place(options->output, scene.settings.files);
     write(scene, *options);
     const QualityTable quality = quality_table(scene.mesh);
     fmt::print("{}: {} nodes, {} elements, smallest scaled Jacobian {:.3f}\n", options->output,

@@ -59,7 +59,8 @@ Provenance provenance(const Model& model) {
 }
 
 /// Prints the requested error estimate: against the golden's element on the same mesh, or against the truth.
-void print_estimate_of(const std::string& against, const Model& model, const NodalField& u) {
+void print_estimate_of(const std::string& against, const CaseOnMesh& problem, const Model& model,
+                       const NodalField& u) {
   const double unit = displacement_unit(model.scene(), u);
   const auto print = [&](std::string_view what, double largest, double rms, const std::string& how) {
     print_estimate(what, model.scene(), unit, largest, rms, how);
@@ -69,7 +70,7 @@ void print_estimate_of(const std::string& against, const Model& model, const Nod
     print(golden_method, estimate.largest, estimate.rms,
           fmt::format("after {} evaluations", estimate.evaluations));
   } else if (against == "truth") {
-    const TruthEstimate estimate = estimate_truth_error(model, u);
+    const TruthEstimate estimate = estimate_truth_error(problem, model.choice().threads, u);
     print("the truth", estimate.largest, estimate.rms,
           fmt::format("from meshes of up to {} elements", estimate.elements));
     if (!estimate.remark.empty()) fmt::print("note: refined once instead of twice: {}\n", estimate.remark);
@@ -97,10 +98,10 @@ Given parse(const RunOptions& options) {
 
 /// The method of the options, completed by the case's [method]. The case's kappa belongs to the case's own
 /// method, and is ignored if an option names another.
-MethodChoice choose_method(const RunOptions& options, const Given& given, const Case& description) {
-  MethodChoice choice = method_of(description, options.method);
+MethodChoice choose_method(const RunOptions& options, const Given& given, const CaseSettings& settings) {
+  MethodChoice choice = method_of(settings, options.method);
   // The mesh is refined for this method, which also computes the answer by default.
-  if (!options.against.empty() && !options.method && !description.method) choice.method = golden_method;
+  if (!options.against.empty() && !options.method && !settings.method) choice.method = golden_method;
   choice.kappa = given.kappa.value_or(choice.kappa);
   choice.kappa_modulus = given.kappa_modulus.value_or(choice.kappa_modulus);
   choice.precision = given.precision.value_or(choice.precision);
@@ -147,11 +148,11 @@ void require_sensible(const RunOptions& options) {
 }
 
 /// Throws InputError for options that are for quasi-static cases only.
-void require_quasi_static(const RunOptions& options, const Case& description) {
-  if (description.quasi_static) return;
+void require_quasi_static(const RunOptions& options, const CaseSettings& settings) {
+  if (settings.quasi_static) return;
   const auto refuse = [&](const char* option, const char* what) {
     throw InputError(
-        fmt::format("{}: '{}' is a dynamic case; {} quasi-static cases", option, description.name, what));
+        fmt::format("{}: '{}' is a dynamic case; {} quasi-static cases", option, settings.name, what));
   };
   if (!options.estimate.empty()) refuse("--estimate", "errors are estimated for");
   if (!options.against.empty()) refuse("--against", "meshes are refined for");
@@ -177,9 +178,9 @@ struct Refined {
 
 /// The refined mesh of a run with --against truth, else none.
 std::optional<Refined> refine_as_requested(const RunOptions& options, const Given& given,
-                                           const Scene& scene) {
+                                           const CaseOnMesh& problem, const Scene& scene) {
   if (options.against.empty()) return std::nullopt;
-  return Refined{scene, refine_until_within(*given.accuracy, scene, options.threads), *given.accuracy};
+  return Refined{scene, refine_until_within(*given.accuracy, problem, options.threads), *given.accuracy};
 }
 
 /// Prints how far an answer u (m) on a refined mesh is from the exact one. Returns whether it is near enough.
@@ -211,7 +212,7 @@ Answer static_answer(const Model& model, const std::optional<double>& sleep, Run
   Relaxation found = relax_as_requested(model, sleep, observer, from, near);
   observer.end();
   const Precision precision = model.choice().precision;
-  print_static_ending(found, precision, model.scene().description.relaxation.tolerance, from != nullptr);
+  print_static_ending(found, precision, model.scene().settings.relaxation.tolerance, from != nullptr);
   const bool rests = in_equilibrium(found);
   return {.u = std::move(found.u),
           .status = rests ? "complete" : outcome(found, precision),
@@ -224,7 +225,7 @@ Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoin
   Motion found = integrate(model, observer, from);
   observer.end();
   const Scene& scene = model.scene();
-  print_dynamic_ending(found, scene.description.dynamics.subcycles, scene.mesh.cells.size(), from != nullptr);
+  print_dynamic_ending(found, scene.settings.dynamics.subcycles, scene.mesh.cells.size(), from != nullptr);
   return {.u = std::move(found.u),
           .status = found.interrupted ? fmt::format("interrupted at step {}", found.steps) : "complete",
           .seconds = found.seconds,
@@ -232,10 +233,10 @@ Answer dynamic_answer(const Model& model, RunObserver& observer, const Checkpoin
 }
 
 /// Computes and prints an answer; `refined`, `writer` and `keeper` may be null.
-Answer compute(const RunOptions& options, const Given& given, const Model& model, const Refined* refined,
-               ResultWriter* writer, CheckpointKeeper* keeper) {
+Answer compute(const RunOptions& options, const Given& given, const CaseOnMesh& problem, const Model& model,
+               const Refined* refined, ResultWriter* writer, CheckpointKeeper* keeper) {
   const Scene& scene = model.scene();
-  const bool quasi_static = scene.description.quasi_static;
+  const bool quasi_static = scene.settings.quasi_static;
   const Checkpoint* from = keeper != nullptr ? keeper->from() : nullptr;
   if (from != nullptr) fmt::print("resumed from {}\n", options.checkpoint);
   RunObserver observer(model, writer, keeper);
@@ -250,7 +251,7 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
     } else {
       print_accuracy(scene, answer.u, true);
     }
-    print_estimate_of(options.estimate, model, answer.u);
+    print_estimate_of(options.estimate, problem, model, answer.u);
   }
   if (options.ranks->count() > 1) print_traffic(*options.ranks);
   if (options.ranks->rank() == 0) warn_of_suspect(model, observer.found());
@@ -258,8 +259,8 @@ Answer compute(const RunOptions& options, const Given& given, const Model& model
 }
 
 /// Throws InputError unless the output files can be written; a run never overwrites its own input.
-void require_places(const RunOptions& options, const Case& description) {
-  const auto inputs = files_of(description);
+void require_places(const RunOptions& options, const CaseSettings& settings) {
+  const auto& inputs = settings.files;
   if (!options.checkpoint.empty()) require_place(options.checkpoint, inputs);
   if (options.output.empty()) return;
   const std::filesystem::path output(options.output);
@@ -275,18 +276,19 @@ int run_case(const RunOptions& options) {
   const Given given = parse(options);
   require_sensible(options);
   warn_if_bound(*options.ranks, options.threads);
-  const Scene scene = read_scene(find_case(options.name));
-  require_quasi_static(options, scene.description);
-  require_places(options, scene.description);
+  const CaseOnMesh problem = with_mesh(find_case(options.name));
+  const Scene scene = make_scene(problem);
+  require_quasi_static(options, scene.settings);
+  require_places(options, scene.settings);
   if (!options.sleep) {  // --sleep computes a part
     require_memory(static_cast<double>(scene.mesh.cells.size()),
-                   scene.description.quasi_static ? MeshUse::equilibrium : MeshUse::motion);
+                   scene.settings.quasi_static ? MeshUse::equilibrium : MeshUse::motion);
   }
-  const MethodChoice choice = choose_method(options, given, scene.description);
+  const MethodChoice choice = choose_method(options, given, scene.settings);
   const Model own(scene, choice);
-  if (!scene.description.quasi_static) require_steps(own);
-  print_problem(scene);  // the input has been checked by now
-  const auto refined = refine_as_requested(options, given, scene);
+  if (!scene.settings.quasi_static) require_steps(own);
+  print_problem(problem.description, scene);  // the input has been checked by now
+  const auto refined = refine_as_requested(options, given, problem, scene);
   std::optional<Model> on_refined;
   if (refined) on_refined.emplace(refined->mesh.scene, choice);
   const Model& model = on_refined ? *on_refined : own;
@@ -299,8 +301,8 @@ int run_case(const RunOptions& options) {
   std::fflush(stdout);  // visible while it computes
   Answer answer;
   try {
-    answer = compute(options, given, model, refined ? &*refined : nullptr, writer ? &*writer : nullptr,
-                     keeper ? &*keeper : nullptr);
+    answer = compute(options, given, refined ? refined->mesh.problem : problem, model,
+                     refined ? &*refined : nullptr, writer ? &*writer : nullptr, keeper ? &*keeper : nullptr);
   } catch (const ComputationError& error) {
     if (!writer || writer->frames() < 2) throw;
     writer->commit("failed");
@@ -315,7 +317,7 @@ int run_case(const RunOptions& options) {
     fmt::print("nothing stored; -o FILE.h5 stores displacements, stresses, reactions and energies\n");
   }
   if (answer.status != "complete") {
-    throw ComputationError(fmt::format("{}: {}; results so far are {}", scene.description.name, answer.status,
+    throw ComputationError(fmt::format("{}: {}; results so far are {}", scene.settings.name, answer.status,
                                        writer ? "in " + options.output : "not stored (no --output)"));
   }
   if (keeper) keeper->finish();

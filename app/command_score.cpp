@@ -66,7 +66,7 @@ Displacements twin_of(const Scene& scene) {
   Observer silent;
   Answer answer = compute_answer(scene, {.method = std::string(golden_method)}, silent);
   if (answer.refused || answer.failure) {
-    throw ComputationError(fmt::format("{}: {} found no answer to compare with: {}", scene.description.name,
+    throw ComputationError(fmt::format("{}: {} found no answer to compare with: {}", scene.settings.name,
                                        golden_method, answer.status));
   }
   return std::move(answer.u);
@@ -84,14 +84,14 @@ Verdict score(const Scene& scene, const ScoreOptions& options) {
   const References references = read_references(scene);
   const Displacements answer{read_foreign_displacement(options.file, scene, options.matching)};
   Verdict verdict{
-      .case_name = scene.description.name,
+      .case_name = scene.settings.name,
       .method = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name,
       .precision = "double",
       .status = "ok",
       .golden = accuracy_of(scene, references.comparison, answer, references.golden),
       .truth = accuracy_of(scene, references.comparison, answer, references.truth),
-      .family = scene.description.family,
-      .variants = scene.description.variants};
+      .family = scene.settings.family,
+      .variants = scene.settings.variants};
   if (references.golden) {
     verdict.finding = finding_of(scene, references, answer);
   } else {
@@ -147,12 +147,11 @@ int run(const ScoreOptions& options) {
   }
   if (options.name.find('/') != std::string::npos) throw InputError("--name must have no '/'");
   const Scene scene = read_scene(find_case(options.case_name));
-  if (!scene.description.quasi_static) {
-    throw InputError(
-        fmt::format("{}: a dynamic case has no answer to score", scene.description.file.string()));
+  if (!scene.settings.quasi_static) {
+    throw InputError(fmt::format("{}: a dynamic case has no answer to score", scene.settings.file.string()));
   }
   if (!options.json.empty()) {
-    auto inputs = files_of(scene.description);
+    auto inputs = scene.settings.files;
     inputs.emplace_back(options.file);
     require_place(options.json, inputs);
   }

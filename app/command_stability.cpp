@@ -127,7 +127,7 @@ void describe_axes() {
 
 int map_stability(const StabilityOptions& options) {
   const Case description = find_case(options.name);
-  if (!options.json.empty()) require_place(options.json, files_of(description));
+  if (!options.json.empty()) require_place(options.json, description.files);
   if (!description.quasi_static) {
     throw InputError(
         fmt::format("{}: is a dynamic case; all maps, even of motion, start from a quasi-static case",

@@ -67,7 +67,7 @@ std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision prec
   std::vector<Task> tasks;
   for (const auto& subject : subjects) {
     for (const MethodEntry& method : methods()) {
-      if (method.is_condensed && !subject.scene.description.quasi_static) continue;  // it has no motion
+      if (method.is_condensed && !subject.scene.settings.quasi_static) continue;  // it has no motion
       tasks.push_back({&subject, {std::string(method.name), {}, precision}});
       // A condensed method has the curve of the method that it condenses.
       if (!method.kappa_affects_equilibrium || method.is_condensed) continue;
@@ -83,9 +83,8 @@ std::vector<Task> make_tasks(const std::deque<Subject>& subjects, Precision prec
 void write_result(const Task& task, const Displacements& u, const std::string& folder) {
   const Model model(task.subject->scene, task.choice);
   const std::string kappa = task.choice.kappa ? fmt::format(".{}", *task.choice.kappa) : "";
-  const auto path =
-      std::filesystem::path(folder) /
-      fmt::format("{}.{}{}.h5", task.subject->scene.description.name, task.choice.method, kappa);
+  const auto path = std::filesystem::path(folder) /
+                    fmt::format("{}.{}{}.h5", task.subject->scene.settings.name, task.choice.method, kappa);
   ResultWriter writer(model, path, build_provenance());
   writer.frame(static_frame(model, 0.0, NodalField(u.back().size())));
   writer.frame(static_frame(model, 1.0, u.back()));
@@ -217,7 +216,7 @@ int verify(const VerifyOptions& options) {
   watch_for_interrupt();
   const auto subjects = read_subjects(options.names);
   for (const auto& subject : subjects) {
-    if (!options.json.empty()) require_place(options.json, files_of(subject.scene.description));
+    if (!options.json.empty()) require_place(options.json, subject.scene.settings.files);
   }
   if (!options.results.empty()) make_folder(options.results);
   const auto tasks = make_tasks(subjects, precision);
@@ -228,7 +227,7 @@ int verify(const VerifyOptions& options) {
   for (const auto& subject : subjects) {
     if (precision != Precision::double_precision) break;
     const auto checks =
-        check_limits(subject.scene.description.name, subject.references.comparison.expectations, verdicts);
+        check_limits(subject.scene.settings.name, subject.references.comparison.expectations, verdicts);
     limits.insert(limits.end(), checks.begin(), checks.end());
   }
   print_verdicts(verdicts);

@@ -19,16 +19,15 @@ constexpr std::string_view one_point = "tl-perturbation";
 
 /// Throws InputError for anything that no deck can express.
 void require_expressible(const Scene& scene) {
-  const Case& description = scene.description;
   const auto refuse = [&](std::string_view what) {
-    throw InputError(fmt::format("{}: {}", description.file.string(), what));
+    throw InputError(fmt::format("{}: {}", scene.settings.file.string(), what));
   };
   if (const BodyForce* other = first_not_dead(scene.forces))
     refuse(fmt::format("a deck cannot hold a {}; allowed are dead loads", other->traits().name));
   if (!scene.ties.empty()) refuse("a deck cannot hold hanging nodes, which refinement and ties make");
-  if (description.quasi_static) return;
+  if (scene.settings.quasi_static) return;
   if (!scene.initial_velocities.empty()) refuse("a deck cannot hold initial velocities");
-  if (!description.rotations.empty()) refuse("a deck cannot hold rotations of a dynamic case");
+  if (scene.angles.size() > 1) refuse("a deck cannot hold rotations of a dynamic case");
   for (const auto& load : dead_loads(scene.forces)) {
     if (load.curve != 0) refuse("a deck cannot hold load curves of a dynamic case");
   }
@@ -87,8 +86,8 @@ void write_motion(const Scene& scene, Hdf5File& file) {
   const Model model(scene, {.method = std::string(one_point)});
   const double stable = stable_step(model, NodalField(scene.mesh.points.size())).step;
   file.write_attribute("/", "stable_step", stable);
-  if (scene.description.quasi_static) return;
-  const DynamicsSettings& given = scene.description.dynamics;
+  if (scene.settings.quasi_static) return;
+  const DynamicsSettings& given = scene.settings.dynamics;
   const double step = given.time_step > 0.0 ? given.time_step : given.step_fraction * stable;
   file.write_attribute("/", "time_step", step);
   file.write_attribute("/", "duration", given.duration);

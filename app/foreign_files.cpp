@@ -13,7 +13,7 @@ namespace sandglass {
 void write_foreign_mesh(const Scene& scene, const std::filesystem::path& path, const std::string& format) {
   if (!scene.ties.empty()) {
     throw InputError(fmt::format("{}: a refined mesh has hanging nodes, which only .h5 can hold",
-                                 scene.description.file.string()));
+                                 scene.settings.file.string()));
   }
   NewFile output(path);
   const TemporaryFolder folder;

@@ -20,10 +20,10 @@ class RunObserver final : public Observer {
  public:
   /// `writer` and `keeper` may be null. The result of a resumed run begins with its earlier part.
   RunObserver(const Model& model, ResultWriter* writer, CheckpointKeeper* keeper)
-      : quasi_static_(model.scene().description.quasi_static),
-        duration_(model.scene().description.dynamics.duration),
+      : quasi_static_(model.scene().settings.quasi_static),
+        duration_(model.scene().settings.dynamics.duration),
         writer_(writer) {
-    if (model.choice().ranks->rank() == 0) progress_.emplace(model.scene().description.name);
+    if (model.choice().ranks->rank() == 0) progress_.emplace(model.scene().settings.name);
     if (keeper != nullptr) {
       for (const auto& told : keeper->run().frames) frame(told);
       for (const auto& row : keeper->run().history) history(row);

@@ -56,7 +56,7 @@ std::string force_text(const Vector& force) {
 /// The automatic kappa of a model's method; none for a method without one.
 std::optional<double> automatic_kappa(const Model& model) {
   const MethodChoice& choice = model.choice();
-  const CalledLaw law = elastic_law(kernel_law(model.scene().description.materials.front().law));
+  const CalledLaw law = elastic_law(kernel_law(model.scene().materials.list.front().law));
   return method_named(choice.method).auto_kappa(law, choice.kappa_modulus);
 }
 
@@ -78,7 +78,7 @@ std::string parts_text(const Scene& scene) {
 
 }  // namespace
 
-void print_problem(const Scene& scene) {
+void print_problem(const Case& description, const Scene& scene) {
   const Mesh& mesh = scene.mesh;
   double volume = 0.0, mass = 0.0;
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
@@ -87,14 +87,14 @@ void print_problem(const Scene& scene) {
     mass += scene.materials.list[scene.materials.of(e)].density * V;
   }
   const auto [low, high] = bounding_box(mesh.points);
-  fmt::print("{}: {} x {} x {}, {}, {}; {}, {}{}\n", scene.description.name, length_text(high[0] - low[0]),
+  fmt::print("{}: {} x {} x {}, {}, {}; {}, {}{}\n", scene.settings.name, length_text(high[0] - low[0]),
              length_text(high[1] - low[1]), length_text(high[2] - low[2]),
              volume < 1e-3 ? fmt::format("{:.3g} cm^3", 1e6 * volume) : fmt::format("{:.3g} m^3", volume),
              mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass),
              plural(static_cast<long>(mesh.cells.size()), "element"),
              plural(static_cast<long>(mesh.points.size()), "node"), parts_text(scene));
   const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-  if (std::holds_alternative<MeshFile>(scene.description.mesh) && longest > most_length) {
+  if (std::holds_alternative<MeshFile>(description.mesh) && longest > most_length) {
     fmt::print(
         stderr,
         "warning: the mesh is {} long, and files are read in m: if it is in mm, multiply its points by "
@@ -203,7 +203,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
                *std::min_element(volume_ratios.begin(), volume_ratios.end()));
   }
   fmt::print("{}", parts_text(scene));
-  const bool quasi_static = scene.description.quasi_static;
+  const bool quasi_static = scene.settings.quasi_static;
   const double share = history.hourglass_share(quasi_static);
   if (share > 0.0) fmt::print("; hourglass energy {:.3g} % of strain energy", 100.0 * share);
   const HistoryRow& row = history.last();
@@ -212,7 +212,7 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
   if (!quasi_static) {
     fmt::print(", kinetic {:.6g}, external work {:.6g}", row.kinetic, row.external_work);
     if (row.adaption != 0.0) fmt::print(", added by changes of levels {:.3g}", row.adaption);
-    const double damping = scene.description.dynamics.damping;
+    const double damping = scene.settings.dynamics.damping;
     fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",
                100.0 * history.unexplained_share(damping), damping > 0.0 ? ", after damping" : "");
   }
@@ -221,9 +221,9 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
 }
 
 void warn_of_suspect(const Model& model, const HistoryReport& history) {
-  const Case& description = model.scene().description;
+  const CaseSettings& settings = model.scene().settings;
   const std::string& method = model.choice().method;
-  const double share = history.hourglass_share(description.quasi_static);
+  const double share = history.hourglass_share(settings.quasi_static);
   if (share > much_hourglass) {
     fmt::print(
         stderr,
@@ -238,8 +238,8 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
         "{}\n",
         method, golden_method);
   }
-  if (description.quasi_static) return;
-  const double damping = description.dynamics.damping, unexplained = history.unexplained_share(damping);
+  if (settings.quasi_static) return;
+  const double damping = settings.dynamics.damping, unexplained = history.unexplained_share(damping);
   const double much = damping > 0.0 ? much_unexplained_if_damped : much_unexplained;
   if (unexplained > much || (unexplained < -much && !dissipates(model))) {
     fmt::print(

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include "problem/make_scene.hpp"
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
-#include "problem/scene.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/relaxation.hpp"
 
@@ -14,7 +14,7 @@
 namespace sandglass {
 
 /// Prints size, mass and stiffness of the body with units, so that a wrong unit shows.
-void print_problem(const Scene& scene);
+void print_problem(const Case& description, const Scene& scene);
 
 /// Prints the method, its kappa and the stable step of the undeformed body.
 void print_method(const Model& model);

@@ -21,13 +21,13 @@ namespace {
 /// The motion that a run has already computed.
 OwnMotion motion_of(const VerifiedRun& run) {
   const auto& [seconds, steps] = *run.verdict->motion;
-  return {.mean_step = run.scene->description.dynamics.duration / static_cast<double>(steps),
+  return {.mean_step = run.scene->settings.dynamics.duration / static_cast<double>(steps),
           .end = run.answer->back()};
 }
 
 OwnMotion own_motion_of(const VerifiedRun& run) {
   if (method_named(run.choice.method).is_condensed) return {};
-  if (run.scene->description.quasi_static || method_named(run.choice.method).adapts()) {
+  if (run.scene->settings.quasi_static || method_named(run.choice.method).adapts()) {
     return follow_own_motion(*run.scene, run.choice, [](double) { return !interrupted(); });
   }
   return run.verdict->motion ? motion_of(run) : OwnMotion{.remark = run.verdict->status};
@@ -69,7 +69,7 @@ void add_step_costs(const std::vector<VerifiedRun>& runs, int threads) {
     std::size_t last = first;
     while (last < main_runs.size() && main_runs[last].scene == main_runs[first].scene) ++last;
     progress.show(static_cast<double>(first) / static_cast<double>(main_runs.size()),
-                  main_runs[first].scene->description.name);
+                  main_runs[first].scene->settings.name);
     time_steps(main_runs, motions, first, last);
     first = last;
   }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "problem/model.hpp"
+#include "problem/make_scene.hpp"
 
 namespace sandglass {
 

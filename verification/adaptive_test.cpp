@@ -17,7 +17,7 @@ namespace sandglass::verification {
 namespace {
 
 /// A block of distorted elements, large enough for several chunks, pressed hard on a part of its top.
-Scene pressed_block(double press, const std::array<int, 3>& elements = {6, 6, 8}) {
+CaseOnMesh pressed_block_case(double press, const std::array<int, 3>& elements = {6, 6, 8}) {
   Case description = plain_case(level_law());
   Mesh mesh = box({0.06, 0.06, 0.08}, elements);
   RandomGeometry random(3);
@@ -30,7 +30,11 @@ Scene pressed_block(double press, const std::array<int, 3>& elements = {6, 6, 8}
       {"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
       {"pressed", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.079 && X[0] < 0.025; })}};
   description.displacements = {{"foot", {}}, {"pressed", {0.0, 0.0, -press}}};
-  return make_scene(description, mesh, sets);
+  return {description, mesh, sets};
+}
+
+Scene pressed_block(double press, const std::array<int, 3>& elements = {6, 6, 8}) {
+  return make_scene(pressed_block_case(press, elements));
 }
 
 NodalField some_displacements(const Mesh& mesh) {
@@ -285,7 +289,7 @@ TEST(Adaptive, answers_rest_at_their_levels) {
   elements.set_levels(body.state(), told.frames.back().levels);
   body.impose(1.0);
   body.evaluate_forces();
-  EXPECT_LT(body.residual(), 1.01 * scene.description.relaxation.tolerance);
+  EXPECT_LT(body.residual(), 1.01 * scene.settings.relaxation.tolerance);
   EXPECT_GT(std::count(told.frames.back().levels.begin(), told.frames.back().levels.end(), 2.0), 0);
   EXPECT_EQ(Adaption<double>(model, body).apply(body, Demotion::never).promoted, 0U);
 }
@@ -348,11 +352,10 @@ TEST(Adaptive, floats_settle_too) {
 
 /// Imposed by forces alone, the largest displacement there is stands for the imposed one.
 TEST(Adaptive, forces_alone_wake_elements_too) {
-  Scene scene = pressed_block(0.0);
-  Case description = scene.description;
-  description.displacements.pop_back();
-  description.forces.of<DeadForce>() = {{"pressed", {0.0, 0.0, -0.25}, {}}};
-  scene = make_scene(description, scene.mesh, scene.sets);
+  CaseOnMesh problem = pressed_block_case(0.0);
+  problem.description.displacements.pop_back();
+  problem.description.forces.of<DeadForce>() = {{"pressed", {0.0, 0.0, -0.25}, {}}};
+  const Scene scene = make_scene(problem);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
   const double unit = displacement_unit(scene, exact);
   const NodalField u = at_rest(scene, {.method = "tl-adaptive", .accuracy = 0.002}).u;

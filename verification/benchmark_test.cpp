@@ -217,7 +217,7 @@ TYPED_TEST(SteppedModelTest, every_variant_has_the_forces_of_the_scalar_double_k
   ASSERT_EQ(variants.size(), 6U);
   for (const auto& choice : variants) {
     EXPECT_LT(relative_difference(make_stepped_model(scene, choice)->forces(), reference),
-              force_limit(choice.precision, scene.description.materials.front().law))
+              force_limit(choice.precision, scene.materials.list.front().law))
         << name_of(choice.kernel) << " " << name_of(choice.precision) << " " << choice.threads;
   }
 }
@@ -293,7 +293,7 @@ TEST(Rest, seconds_are_in_order_and_a_failure_is_a_status) {
   EXPECT_GT(record.times->to_1_percent, 0.0);
   EXPECT_LE(record.times->to_1_percent, record.times->to_0_1_percent);
   EXPECT_LT(record.times->to_0_1_percent, record.times->to_rest);
-  scene.description.relaxation.max_steps = 5;
+  scene.settings.relaxation.max_steps = 5;
   const RestRecord failed = time_to_rest(scene, {"tl-perturbation", {}}, [](double) { return true; });
   EXPECT_EQ(failed.status.rfind("failed: no equilibrium after ", 0), 0U) << failed.status;
   EXPECT_FALSE(failed.times);

@@ -57,7 +57,7 @@ const std::string moving = with("\"quasi-static\"", "\"dynamic\"") + "[dynamics]
 TEST(CaseFile, good_case_is_read_as_written) {
   const TemporaryFolder folder;
   const Scene scene = read_scene(folder.write("good.toml", good));
-  const Case& c = scene.description;
+  const Case c = read_case_file(folder / "good.toml");
   EXPECT_EQ(c.name, "good");
   EXPECT_TRUE(c.quasi_static);
   EXPECT_EQ(scene.mesh.cells.size(), 6U);
@@ -500,7 +500,7 @@ TEST(CaseFile, inverted_elements_of_a_mesh_file_are_named) {
 TEST(CaseFile, empty_sets_of_a_mesh_file_move_nothing) {
   const TemporaryFolder folder;
   Scene scene = read_scene(folder.write("good.toml", good));
-  const std::string set = scene.description.displacements.front().set;
+  const std::string set = scene.driven.front().name;
   scene.sets.at(set).clear();
   write_mesh_file(scene, folder / "mesh.h5");
   const auto file = folder.write("bad.toml", with_mesh_file());

@@ -16,7 +16,7 @@ namespace sandglass::verification {
 namespace {
 
 /// A block on its foot, whose head is moved and whose side is loaded.
-Scene loaded_block(const AnyLaw& law, bool quasi_static) {
+CaseOnMesh loaded_block_case(const AnyLaw& law, bool quasi_static) {
   Case description = plain_case(law);
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
@@ -33,7 +33,11 @@ Scene loaded_block(const AnyLaw& law, bool quasi_static) {
   description.dynamics.damping = 2.0;
   description.dynamics.frames = 6;
   description.velocities = {{.value = {0.0, 0.05, 0.0}}};
-  return make_scene(description, mesh, sets);
+  return {description, mesh, sets};
+}
+
+Scene loaded_block(const AnyLaw& law, bool quasi_static) {
+  return make_scene(loaded_block_case(law, quasi_static));
 }
 
 /// How a run ended: the bits, and what it says of itself. One that breaks down says that, and is compared all
@@ -48,7 +52,7 @@ Ending run(const Scene& scene, const MethodChoice& choice, KeepingRecorder& reco
            const Checkpoint* from = nullptr) {
   const Model model(scene, choice);
   try {
-    if (scene.description.quasi_static) {
+    if (scene.settings.quasi_static) {
       const Relaxation answer = relax(model, recorder, from);
       return {bits_of(recorder.run(), answer.u),
               fmt::format("{} {} {}", answer.steps, answer.residual, outcome(answer, choice.precision))};
@@ -81,7 +85,7 @@ void expect_same_from_everywhere(const Scene& scene, MethodChoice choice, std::s
         << "from the point after " << kept.history.size() << " rows of history";
     ASSERT_EQ(goes_on.kept().size(), uninterrupted.kept().size() -
                                          static_cast<std::size_t>(&kept - uninterrupted.kept().data()) -
-                                         (scene.description.quasi_static ? 0 : 1));
+                                         (scene.settings.quasi_static ? 0 : 1));
     if (::testing::Test::HasFailure()) return;
   }
 }
@@ -125,12 +129,12 @@ TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
 
 /// Load levels that failed and were retried at half the distance are part of the resumed state.
 TEST(Checkpoint, goes_on_after_levels_that_failed) {
-  Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
-  scene.description.displacements[1].value = {0.0, 0.0, -0.17};
-  scene.description.forces.of<DeadForce>().clear();
-  scene.description.relaxation.levels = 1;
-  scene.description.relaxation.max_steps = 2000;
-  scene = make_scene(scene.description, scene.mesh, scene.sets);
+  CaseOnMesh problem = loaded_block_case(sample_law<NeoHookean>(0.45), true);
+  problem.description.displacements[1].value = {0.0, 0.0, -0.17};
+  problem.description.forces.of<DeadForce>().clear();
+  problem.description.relaxation.levels = 1;
+  problem.description.relaxation.max_steps = 2000;
+  const Scene scene = make_scene(problem);
   KeepingRecorder recorder;
   run(scene, {"tl-perturbation", {}}, recorder);
   ASSERT_GT(recorder.kept().back().point.arrays.at("failures").front(), 0.0) << "no level failed";
@@ -140,7 +144,7 @@ TEST(Checkpoint, goes_on_after_levels_that_failed) {
 /// A load that reverses is part of the resumed state, in each of its phases.
 TEST(Checkpoint, goes_on_in_every_cycle) {
   Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
-  scene.description.relaxation.cycles = 2;
+  scene.settings.relaxation.cycles = 2;
   KeepingRecorder recorder;
   run(scene, {"ul-perturbation", {}}, recorder);
   ASSERT_EQ(recorder.kept().back().point.arrays.at("leg").front(), 5.0) << "not on the last way up";

@@ -47,7 +47,12 @@ Case pushed_cube(double depth) {
 }
 
 Scene scene_of_case(const Case& description) {
-  return make_scene(description, generate_mesh(std::get<AnyGenerator>(description.mesh)));
+  return make_scene(with_mesh(description));
+}
+
+/// A rung's mesh that is the user's own.
+LadderMesh own_mesh(const Case& description, Displacements reference = {}) {
+  return {{}, with_mesh(description), scene_of_case(description), std::move(reference)};
 }
 
 bool go_on(double /*share*/) {
@@ -55,14 +60,14 @@ bool go_on(double /*share*/) {
 }
 
 Choice choose_quietly(const Case& description, const Demand& demand) {
-  return choose(scene_of_case(description), demand, [](double, const std::string&) { return true; });
+  return choose(with_mesh(description), demand, [](double, const std::string&) { return true; });
 }
 
 /// Every method of the list is there in both precisions, or told to be unfit; one with a kappa that matters
 /// with other strengths, too.
 TEST(Ladder, has_every_method) {
   std::deque<LadderMesh> meshes;
-  meshes.push_back({{}, scene_of_case(cantilever(0.1)), {}});
+  meshes.push_back(own_mesh(cantilever(0.1)));
   const auto rungs = make_ladder(meshes, {});
   for_each_type(Methods{}, [&]<class Method>() {
     int in_double = 0, in_float = 0, unfit = 0, automatic = 0;
@@ -144,10 +149,9 @@ TEST(Choose, predicts_what_a_run_gives) {
 /// Against the truth, the mesh of a column and coarser ones are refined until the golden's own element is
 /// near enough; rungs on what suffices are tried, and a mesh with more elements than that is not.
 TEST(Choose, refines_meshes_against_the_truth) {
-  const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "column.toml");
-  const Choice choice =
-      choose(scene, {.tolerance = 0.003, .against = "truth", .methods = {"tl-mean-dilatation"}},
-             [](double, const std::string&) { return true; });
+  const auto file = std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "column.toml";
+  const Choice choice = choose_quietly(
+      read_case_file(file), {.tolerance = 0.003, .against = "truth", .methods = {"tl-mean-dilatation"}});
   ASSERT_TRUE(choice.chosen);
   const Attempt& chosen = choice.attempts[*choice.chosen];
   EXPECT_TRUE(contains(chosen.rung.mesh->name(), "refined to"));
@@ -285,19 +289,19 @@ TEST(LongerSteps, soften_what_can_be_softened) {
   Case description = cantilever(0.1);
   description.quasi_static = false;
   description.materials.front().law = NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49};
-  const auto longer = longer_steps(scene_of_case(description));
+  const auto longer = longer_steps(with_mesh(description));
   ASSERT_EQ(longer.size(), 5u);
-  for (const auto& [difference, scene] : longer) EXPECT_EQ(scene.description.dynamics.body_frequency, 1);
-  const auto& law = std::get<NeoHookean>(longer[3].scene.description.materials.front().law);
+  for (const auto& [difference, steps] : longer) EXPECT_EQ(steps.description.dynamics.body_frequency, 1);
+  const auto& law = std::get<NeoHookean>(longer[3].problem.description.materials.front().law);
   EXPECT_NEAR(law.poisson_ratio, 0.45, 1e-15);
   EXPECT_NEAR(law.young_modulus, 3000.0 * std::sqrt(1.49 / 1.45), 1e-9);
   description.dynamics.body_frequency = 1;
-  EXPECT_EQ(longer_steps(scene_of_case(description)).size(), 4u);  // it has these steps
+  EXPECT_EQ(longer_steps(with_mesh(description)).size(), 4u);  // it has these steps
   description.dynamics.body_frequency = 0;
   description.materials.front().law = Ogden{.mu1 = 800.0, .alpha1 = 3.0, .K = 5e4};
-  EXPECT_EQ(longer_steps(scene_of_case(description)).size(), 1u);
+  EXPECT_EQ(longer_steps(with_mesh(description)).size(), 1u);
   description.dynamics.subcycles = 2;
-  EXPECT_TRUE(longer_steps(scene_of_case(description)).empty());
+  EXPECT_TRUE(longer_steps(with_mesh(description)).empty());
 }
 
 TEST(Choose, refuses_what_it_cannot_do) {
@@ -306,7 +310,7 @@ TEST(Choose, refuses_what_it_cannot_do) {
   const auto without = [] { choose_quietly(cantilever(0.1), {.against = "truth"}); };
   EXPECT_FALSE(input_error(without).empty());
   const auto stop = [](double, const std::string&) { return false; };
-  EXPECT_THROW(choose(scene_of_case(cantilever(0.1)), {}, stop), ComputationError);
+  EXPECT_THROW(choose(with_mesh(cantilever(0.1)), {}, stop), ComputationError);
 }
 
 /// The evaluator with one method on the user's mesh.
@@ -316,7 +320,7 @@ class EvaluatorTest : public ::testing::Test {
     const Scene scene = scene_of_case(description);
     const Proceed proceed = go_on;
     const Reference reference = make_reference(scene, "", proceed);
-    const LadderMesh own{{}, scene, reference.u};
+    const LadderMesh own = own_mesh(description, reference.u);
     return Evaluator(scene, reference, tolerance, proceed).evaluate({choice, &own});
   }
 
@@ -354,7 +358,7 @@ TEST_F(EvaluatorTest, asks_nobody_for_what_the_golden_has_not) {
   const Scene scene = scene_of_case(description);
   const Proceed proceed = go_on;
   const Reference reference{"none", {NodalField(scene.mesh.points.size())}, 1.0, {}};
-  const LadderMesh own{{}, scene, reference.u};
+  const LadderMesh own = own_mesh(description, reference.u);
   Evaluator evaluator(scene, reference, 10.0, proceed);
   const Evaluation found = evaluator.evaluate({{.method = "linear-condensed"}, &own});
   EXPECT_EQ(found.reason, "");
@@ -371,7 +375,8 @@ TEST_F(EvaluatorTest, names_locking_and_hourglassing) {
 
 /// A truth that is known to a percent cannot show that anything is within a tenth of that.
 TEST(Reference, that_is_stored_tells_its_own_error) {
-  const Scene scene = read_scene(fs::path(SANDGLASS_SOURCE) / "cases" / "column.toml");
+  const CaseOnMesh problem = with_mesh(read_case_file(fs::path(SANDGLASS_SOURCE) / "cases" / "column.toml"));
+  const Scene scene = make_scene(problem);
   const Reference truth = make_reference(scene, "truth", go_on);
   ASSERT_TRUE(truth.own.largest);
   EXPECT_GT(*truth.own.largest, 1e-5);
@@ -384,7 +389,7 @@ TEST(Reference, that_is_stored_tells_its_own_error) {
   EXPECT_LT(largest_distance(computed.u.front(), golden.u.front()), 1e-6 * golden.unit);
   EXPECT_NEAR(*computed.own.largest, *golden.own.largest, 1e-6);  // by the triangle's inequality
   Demand demand{.tolerance = 0.5 * *truth.own.largest, .against = "truth", .methods = {"tl-mean-dilatation"}};
-  const Choice choice = choose(scene, demand, [](double, const std::string&) { return true; });
+  const Choice choice = choose(problem, demand, [](double, const std::string&) { return true; });
   EXPECT_FALSE(choice.chosen);
   EXPECT_TRUE(contains(remarks(choice).front(), "nothing can be shown"));
   EXPECT_TRUE(contains(remarks(choice).back(), "no method can be nearer"));

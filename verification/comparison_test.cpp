@@ -194,7 +194,7 @@ TEST(Golden, column) {
   EXPECT_LT(controlled.golden->max_relative_error, 0.002);  // the case's own limit
   const auto automatic = [&](KappaModulus modulus) {
     return method_named("tl-perturbation")
-        .auto_kappa(elastic_law(kernel_law(scene.description.materials.front().law)), modulus);
+        .auto_kappa(elastic_law(kernel_law(scene.materials.list.front().law)), modulus);
   };
   EXPECT_EQ(controlled.kappa, automatic(KappaModulus::p_wave));
   const MethodChoice by_shear{.method = "tl-perturbation", .kappa_modulus = KappaModulus::shear};

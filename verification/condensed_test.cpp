@@ -191,8 +191,8 @@ TEST(CondensedTest, driven_nodes_may_move_each_by_itself) {
   const auto twist = [](const Vector& X) {
     return X[2] > 0.2 ? Vector{-0.3 * X[1], 0.3 * X[0], 2.0 * X[0] * X[1]} : Vector{};
   };
-  Case description = plain_case(bar.description.materials.front().law);
-  description.relaxation = bar.description.relaxation;
+  Case description = plain_case(bar.materials.list.front().law);
+  description.relaxation = bar.settings.relaxation;
   NodeSets sets;
   std::vector<Vector> d;
   std::vector<int> driven;
@@ -281,15 +281,13 @@ TEST(CondensedTest, loads_have_factors_of_their_own) {
 
 /// A node of two sets moves with the first.
 TEST(CondensedTest, nodes_of_two_sets_follow_the_first) {
-  Scene scene = distorted_bar({0.0, 0.0, 0.02});
-  NodeSets sets = scene.sets;
-  const int shared = sets.at("head").front();
-  sets["one"] = {shared};
-  Case description = scene.description;
-  description.displacements.push_back({"one", {0.0, 0.0, 0.02}});
-  scene = make_scene(description, scene.mesh, sets);
+  CaseOnMesh bar = distorted_bar_case({0.0, 0.0, 0.02});
+  const int shared = bar.sets.at("head").front();
+  bar.sets["one"] = {shared};
+  bar.description.displacements.push_back({"one", {0.0, 0.0, 0.02}});
+  const Scene scene = make_scene(bar);
   const Handles handles = handles_of_sets(scene);
-  ASSERT_EQ(handles.count, 3U);
+  ASSERT_EQ(handles.count, 2U);
   for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
     if (scene.constraints[k].node == shared) {
       EXPECT_EQ(handles.of_constraint[k], 1) << k;
@@ -308,8 +306,8 @@ TEST(CondensedTest, scenes_that_it_cannot_answer_are_refused) {
   EXPECT_TRUE(contains(text, "displacement"));
 
   Scene moving = distorted_bar({0.0, 0.0, 0.01});
-  moving.description.quasi_static = false;
-  moving.description.dynamics.duration = 0.1;
+  moving.settings.quasi_static = false;
+  moving.settings.dynamics.duration = 0.1;
   const std::string still = input_error([&] { integrate(Model(moving, condensed_method), silent); });
   EXPECT_TRUE(contains(still, "no dynamics"));
   EXPECT_TRUE(contains(still, "'linear'"));

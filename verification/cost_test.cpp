@@ -131,7 +131,7 @@ TEST(OwnMotion, keeps_levels_on_the_way) {
                       .seconds_of_a_step = {},
                       .seconds_of_a_check = {2.0}};
   EXPECT_DOUBLE_EQ(checks_per_step(timing, scene, &motion),
-                   2.0 / scene.description.dynamics.check_interval + motion.adaption);
+                   2.0 / scene.settings.dynamics.check_interval + motion.adaption);
   const OwnMotion plain = follow_own_motion(scene, {"tl-perturbation"}, proceed);
   EXPECT_EQ(make_stepped_model(scene, {"tl-perturbation"}, &plain)->states(), 1U);
 }
@@ -179,8 +179,8 @@ TEST(OwnMotion, ends_when_told) {
 /// A dynamic case is its own motion.
 TEST(OwnMotion, of_a_dynamic_case_is_the_case) {
   Scene scene = scene_of(pressed(0.02));
-  scene.description.quasi_static = false;
-  scene.description.dynamics = {.duration = 0.05, .time_step = 1e-4};
+  scene.settings.quasi_static = false;
+  scene.settings.dynamics = {.duration = 0.05, .time_step = 1e-4};
   EXPECT_NEAR(*follow_own_motion(scene, {"tl-perturbation"}, proceed).mean_step, 1e-4, 1e-13);
 }
 

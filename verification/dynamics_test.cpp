@@ -69,8 +69,8 @@ TYPED_TEST(DynamicsTest, one_element_oscillates_with_its_frequency) {
   Scene scene = breathing_cube(law, h, speed);
   const double omega = std::sqrt(6 * law.bulk_modulus() / (density * h * h));
   const double dt = 0.3 / omega;
-  scene.description.dynamics = settings(40 * dt, dt);
-  scene.description.dynamics.frames = 1000;  // more than steps: a frame each
+  scene.settings.dynamics = settings(40 * dt, dt);
+  scene.settings.dynamics.frames = 1000;  // more than steps: a frame each
   const Model model(scene, {this->method(), {}});
   Recorder recorder;
   const Motion motion = integrate(model, recorder);
@@ -104,7 +104,7 @@ TYPED_TEST(DynamicsTest, tells_displacements_at_any_time) {
   Scene scene = breathing_cube(law, h, speed);
   const double omega = std::sqrt(6 * law.bulk_modulus() / (density * h * h));
   const double dt = 0.3 / omega;
-  scene.description.dynamics = settings(20 * dt, dt);
+  scene.settings.dynamics = settings(20 * dt, dt);
   for (const double n : {0.4, 0.7, 3.0, 7.5, 12.25, 12.75, 20.0}) asking.times.push_back(n * dt);
   integrate(Model(scene, {this->method(), {}}), asking);
   ASSERT_EQ(asking.told.size(), asking.times.size());
@@ -148,7 +148,7 @@ TYPED_TEST(DynamicsTest, converges_with_second_order_in_displacement_and_velocit
   for (std::size_t level = 0; level < 3; ++level) {
     const int steps = 64 << level;
     Scene scene = breathing_cube(law, h, speed);
-    scene.description.dynamics = settings(duration, duration / steps);
+    scene.settings.dynamics = settings(duration, duration / steps);
     const Model model(scene, {this->method(), {}});
     Observer silent;
     const Motion motion = integrate(model, silent);
@@ -199,7 +199,7 @@ TYPED_TEST(DynamicsTest, energy_is_conserved_to_second_order) {
     Scene scene = make_scene(description, mesh, sets);
     const Model probe(scene, {this->method(), {}});
     const double dt = fraction * stable_step(probe, NodalField(mesh.points.size())).step;
-    scene.description.dynamics = settings(0.6, dt);
+    scene.settings.dynamics = settings(0.6, dt);
     const Model model(scene, {this->method(), {}});
     Recorder recorder;
     integrate(model, recorder);
@@ -233,8 +233,8 @@ TYPED_TEST(DynamicsTest, work_of_driven_nodes_balances_energies) {
     Scene scene = make_scene(description, mesh, sets);
     const Model probe(scene, {this->method(), {}});
     const double dt = fraction * stable_step(probe, NodalField(mesh.points.size())).step;
-    scene.description.dynamics = settings(0.15, dt);
-    scene.description.dynamics.ramp_time = 0.1;  // fast enough that waves run
+    scene.settings.dynamics = settings(0.15, dt);
+    scene.settings.dynamics.ramp_time = 0.1;  // fast enough that waves run
     const Model model(scene, {this->method(), {}});
     Recorder recorder;
     integrate(model, recorder);

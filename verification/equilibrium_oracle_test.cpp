@@ -119,7 +119,7 @@ void expect_the_oracles_balance(const Scene& scene, const Law& law) {
 State<double> relaxed_state(const Model& model, const InternalForce<double>& elements) {
   Equilibrium<double> search(model, elements);
   LoadLevels<double> levels(model, search.body(), elements.needs_increment());
-  const double tolerance = model.scene().description.relaxation.tolerance;
+  const double tolerance = model.scene().settings.relaxation.tolerance;
   for (;;) {
     levels.predict(search);
     search.start(levels.effort());

@@ -174,9 +174,9 @@ TEST(LargestFrequency, allows_stable_motions) {
     const auto* method = methods[static_cast<std::size_t>(number) % methods.size()];
     RandomScene random(seed, number);
     Scene scene = random.scene();
-    DynamicsSettings& settings = scene.description.dynamics;
+    DynamicsSettings& settings = scene.settings.dynamics;
     settings.body_frequency = static_cast<int>(from_environment("SANDGLASS_BODY_FREQUENCY", 1));
-    scene.description.quasi_static = false;
+    scene.settings.quasi_static = false;
     const NodalField rest(scene.mesh.points.size());
     settings.duration = 1.3 * static_cast<double>(steps) * stable_step(Model(scene, {method}), rest).step;
     settings.ramp_time = 0.5 * settings.duration;
@@ -206,8 +206,8 @@ TEST(LargestFrequency, allows_stable_motions) {
 TEST(LargestFrequency, steps_that_prove_too_long_are_taken_again) {
   RandomScene random(20, 37);
   Scene scene = random.scene();
-  scene.description.quasi_static = false;
-  DynamicsSettings& settings = scene.description.dynamics;
+  scene.settings.quasi_static = false;
+  DynamicsSettings& settings = scene.settings.dynamics;
   settings.body_frequency = 1;
   const NodalField rest(scene.mesh.points.size());
   settings.duration = 1.3e4 * stable_step(Model(scene, {"tl-mean-dilatation"}), rest).step;

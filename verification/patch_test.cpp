@@ -103,7 +103,7 @@ class PatchTest : public ::testing::Test {
   /// Relaxes and expects the exact answer.
   static void expect_exact(const Tensor<double>& H) {
     Scene scene = patch(H);
-    scene.description.relaxation.tolerance = 1e-12;
+    scene.settings.relaxation.tolerance = 1e-12;
     const Model model(scene, method());
     Recorder recorder;
     const Relaxation answer = relax(model, recorder);
@@ -141,7 +141,7 @@ TYPED_TEST(PatchTest, finite_strain_is_exact) {
 TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
   const double factor = 1e-4;  // strain 1e-7
   Scene scene = this->patch(macneal_harder_gradient(factor));
-  scene.description.relaxation.tolerance = 1e-10;
+  scene.settings.relaxation.tolerance = 1e-10;
   const Model model(scene, this->method());
   Observer silent;
   const Relaxation answer = relax(model, silent);
@@ -173,10 +173,10 @@ TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
   for (const auto& H : {macneal_harder_gradient(), finite_gradient}) {
     if (!this->is_stable(H)) continue;
     Scene scene = this->patch(H);
-    scene.description.quasi_static = false;
-    scene.description.dynamics.duration = 40.0;
-    scene.description.dynamics.ramp_time = 5.0;
-    scene.description.dynamics.damping = 2.2;
+    scene.settings.quasi_static = false;
+    scene.settings.dynamics.duration = 40.0;
+    scene.settings.dynamics.ramp_time = 5.0;
+    scene.settings.dynamics.damping = 2.2;
     const Model model(scene, this->method());
     Observer silent;
     if (is_condensed<typename TypeParam::Method>) {

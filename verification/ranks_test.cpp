@@ -19,18 +19,22 @@ namespace sandglass::verification {
 namespace {
 
 /// A block between two plates under a pressure from one side.
-Scene block(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elements) {
+CaseOnMesh block_case(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elements) {
   Case description = plain_case(law);
   description.forces.of<Pressure>() = {{.set = "side", .value = 50.0}};
   description.relaxation.max_steps = 12;
   return block_between_plates(std::move(description), quasi_static, elements);
 }
 
+Scene block(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elements) {
+  return make_scene(block_case(law, quasi_static, elements));
+}
+
 /// The bits of everything that a run tells.
 std::vector<std::uint64_t> told_by(const Scene& scene, const MethodChoice& choice) {
   KeepingRecorder told;
   const Model model(scene, choice);
-  const NodalField u = scene.description.quasi_static ? relax(model, told).u : integrate(model, told).u;
+  const NodalField u = scene.settings.quasi_static ? relax(model, told).u : integrate(model, told).u;
   return bits_of(told.run(), u);
 }
 
@@ -71,23 +75,23 @@ TYPED_TEST(RanksTest, motion_with_a_law_that_remembers) {
 /// Three ranks: one has neighbours on both sides.
 TEST(Ranks, between_others) {
   Scene motion = block(sample_law<NeoHookean>(0.45), false, {8, 8, 192});
-  motion.description.dynamics.duration = 0.005;
+  motion.settings.dynamics.duration = 0.005;
   expect_same_bits(motion, "tl-perturbation", 3, 2);
   Scene rest = block(sample_law<NeoHookean>(0.45), true, {8, 8, 192});
-  rest.description.relaxation.max_steps = 5;
+  rest.settings.relaxation.max_steps = 5;
   expect_same_bits(rest, "tl-perturbation", 3, 2);
 }
 
 /// The mesh before refinement takes the displacements of all ranks.
 TEST(Ranks, relaxation_of_a_refined_body) {
-  const Scene plain = block(sample_law<NeoHookean>(0.45), true, {2, 2, 12});
-  Case description = plain.description;
+  CaseOnMesh refined = block_case(sample_law<NeoHookean>(0.45), true, {2, 2, 12});
+  Case& description = refined.description;
   description.displacements[1].value = {0.1, 0.0, 0.2};
   description.relaxation.max_steps = 40;
-  std::vector<int> all(plain.mesh.cells.size());
+  std::vector<int> all(refined.mesh.cells.size());
   std::iota(all.begin(), all.end(), 0);
   description.refinements = {{.around = {}, .elements = {}, .numbers = all}};
-  expect_same_bits(make_scene(description, plain.mesh, plain.sets), "tl-perturbation", 2);
+  expect_same_bits(make_scene(refined), "tl-perturbation", 2);
 }
 
 /// Sums of numbers of single precision, which depend on their order, for every division of nine pairs of
@@ -131,11 +135,11 @@ TEST(Ranks, sum_over_chunks_in_one_order) {
 TEST(Ranks, a_step_takes_one_exchange) {
   Scene scene = block(sample_law<NeoHookean>(0.45), false, {8, 8, 192});
   scene.forces.clear();
-  scene.description.dynamics.check_interval = 1000000;
-  scene.description.dynamics.frames = 1;
+  scene.settings.dynamics.check_interval = 1000000;
+  scene.settings.dynamics.frames = 1;
   const auto traffic_of = [&](double duration) {
-    scene.description.dynamics.duration = duration;
-    scene.description.dynamics.ramp_time = 1.0;
+    scene.settings.dynamics.duration = duration;
+    scene.settings.dynamics.ramp_time = 1.0;
     ThreadRanks ranks(3);
     const auto steps = ranks.run([&](std::shared_ptr<const Ranks> own) {
       Observer silent;
@@ -175,7 +179,7 @@ TEST(Ranks, too_many_are_refused) {
 
 TEST(Ranks, what_is_not_divided_is_refused) {
   Scene scene = block(sample_law<NeoHookean>(0.45), false, {4, 4, 18});
-  scene.description.dynamics.subcycles = 4;
+  scene.settings.dynamics.subcycles = 4;
   const auto messages = ThreadRanks(2).run([&](std::shared_ptr<const Ranks> ranks) -> std::string {
     Observer silent;
     try {

@@ -143,7 +143,7 @@ Verdict case_file(const Problem& problem, const Answer& own, RandomGeometry& /*r
   const Answer other = attempt([&] {
     const Scene scene = read_scene(*text, MeshWithSets{problem.mesh, problem.sets, problem.element_sets});
     Observer silent;
-    return run(scene, method_of(scene.description), silent);
+    return run(scene, method_of(scene.settings), silent);
   });
   return compare(problem, own, other, allowed_for_rounding(problem));
 }

@@ -125,7 +125,7 @@ TYPED_TEST(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
   const Model model(scene, this->method());
   Recorder recorder;
   const Relaxation answer = relax(model, recorder);
-  const auto& law = std::get<NeoHookean>(scene.description.materials.front().law);
+  const auto& law = std::get<NeoHookean>(scene.materials.list.front().law);
   const double stiffness = law.bulk_modulus() * 0.1 * 0.1 * 0.2;  // J for a strain of one
   const double energy = answer.energies.strain + answer.energies.hourglass;
   const double work = recorder.rows.back().external_work;
@@ -172,10 +172,10 @@ TYPED_TEST(RotationTest, work_in_motion_balances_energies) {
   const auto imbalance = [&](double fraction) {
     Scene scene =
         turned_block({.set = "head", .axis = {0, 0, 1}, .angle = 0.8, .displacement = {0, 0, 0.01}});
-    scene.description.quasi_static = false;
+    scene.settings.quasi_static = false;
     const double dt =
         fraction * stable_step(Model(scene, this->method()), NodalField(scene.mesh.points.size())).step;
-    scene.description.dynamics = {
+    scene.settings.dynamics = {
         .duration = 0.15, .ramp_time = 0.1, .time_step = dt, .check_interval = 1, .frames = 1};
     const Model model(scene, this->method());
     Recorder recorder;
@@ -193,8 +193,8 @@ TEST(Rotation, velocities_are_those_of_a_rigid_body_at_the_frames_time) {
   const double angle = 2.5, duration = 0.2;
   Scene scene = turned_block(
       {.set = "all", .axis = oblique, .angle = angle, .center = center, .displacement = beside}, false);
-  scene.description.quasi_static = false;
-  scene.description.dynamics = {.duration = duration, .check_interval = 1, .frames = 1000};
+  scene.settings.quasi_static = false;
+  scene.settings.dynamics = {.duration = duration, .check_interval = 1, .frames = 1000};
   const Model model(scene, {"tl-full", {}});
   Recorder recorder;
   integrate(model, recorder);
@@ -301,7 +301,7 @@ std::string with(const std::string& old, const std::string& replacement) {
 TEST(RotationInput, good_file_is_read_as_written) {
   const TemporaryFolder folder;
   const Scene scene = read_scene(folder.write("turn.toml", good));
-  const ImposedRotation& rotation = scene.description.rotations.at(0);
+  const ImposedRotation rotation = read_case_file(folder / "turn.toml").rotations.at(0);
   EXPECT_EQ(rotation.set, "top");
   EXPECT_EQ(rotation.axis, (Vector{0.0, 0.0, 1.0}));
   EXPECT_DOUBLE_EQ(rotation.angle, pi / 2);

@@ -221,9 +221,7 @@ void expect_settled(const char* method, const std::string& driven, double factor
   simulation.advance(0.05);
   simulation.impose(factor);
   EXPECT_GT(simulation.settle(), 3);
-  Scene scene = read_scene(text_of(driven), checked(block()));
-  scale_load(scene.description, factor);
-  scene = make_scene(scene.description, scene.mesh, scene.sets);
+  const Scene scene = scaled(read_scene(text_of(driven), checked(block())), factor);
   Observer silent;
   const bool single = std::is_same_v<Real, float>;
   const Relaxation expected =

@@ -91,6 +91,7 @@ TEST(MeshPart, half_of_a_box) {
 /// A block on a fixed base, elements of a millimetre; four of its upper faces in the middle go down by
 /// `depth`.
 struct Touched {
+  CaseOnMesh problem;
   Scene scene;
 
   explicit Touched(const std::array<int, 3>& n, double depth, double poisson_ratio = 0.45) {
@@ -106,7 +107,8 @@ struct Touched {
     touched.displacements = {{"base", {}}, {"touched", {0, 0, -depth}}};
     touched.relaxation.tolerance = 1e-6;
     touched.relaxation.check_interval = 2;
-    scene = make_scene(std::move(touched), std::move(mesh), std::move(sets));
+    problem = {std::move(touched), std::move(mesh), std::move(sets)};
+    scene = make_scene(problem);
   }
 
   NodalField whole(const std::string& method) const {
@@ -202,10 +204,9 @@ TEST(Sleep, listeners_hear_of_the_whole_mesh) {
 /// A force pushes as well as a displacement; what may be neglected is a share of the largest displacement.
 TEST(Sleep, wakes_where_a_force_pushes) {
   Touched touched({48, 48, 3}, 0.5e-3);
-  Case pushed = touched.scene.description;
-  pushed.displacements.pop_back();
-  pushed.forces.of<DeadForce>() = {{"touched", {0, 0, -0.002}}};
-  const Scene scene = make_scene(pushed, touched.scene.mesh, touched.scene.sets);
+  touched.problem.description.displacements.pop_back();
+  touched.problem.description.forces.of<DeadForce>() = {{"touched", {0, 0, -0.002}}};
+  const Scene scene = make_scene(touched.problem);
   Observer nobody;
   const MethodChoice choice{.method = "tl-perturbation"};
   const NodalField u = relax(Model(scene, choice), nobody).u;

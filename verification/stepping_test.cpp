@@ -88,7 +88,7 @@ TYPED_TEST(StepperTest, relaxation_returns_where_it_is_when_steps_run_out) {
   const Relaxation answer = relax(model, silent);
   double before = std::numeric_limits<double>::infinity();
   for (const long share : {0L, 50L, 75L, 95L}) {
-    scene.description.relaxation.max_steps = static_cast<int>(answer.steps * share / 100);
+    scene.settings.relaxation.max_steps = static_cast<int>(answer.steps * share / 100);
     const Relaxation part = relax(model, silent);
     EXPECT_FALSE(part.converged);
     const double distance = largest_distance(part.u, answer.u);
@@ -96,7 +96,7 @@ TYPED_TEST(StepperTest, relaxation_returns_where_it_is_when_steps_run_out) {
     EXPECT_LT(distance, before);
     before = distance;
   }
-  scene.description.relaxation.max_steps = static_cast<int>(answer.steps);
+  scene.settings.relaxation.max_steps = static_cast<int>(answer.steps);
   EXPECT_EQ(relax(model, silent).u, answer.u);
 }
 
@@ -105,11 +105,11 @@ TYPED_TEST(StepperTest, relaxation_returns_where_it_is_when_steps_run_out) {
 TYPED_TEST(StepperTest, relaxed_answer_does_not_depend_on_the_settings) {
   if (zero_energy_modes<TypeParam>() > 6) return;
   Scene scene = driven_block({0.01, 0.0, 0.01});
-  scene.description.relaxation.tolerance = 1e-10;
+  scene.settings.relaxation.tolerance = 1e-10;
   Observer silent;
   const NodalField once = relax(Model(scene, this->method()), silent).u;
-  scene.description.relaxation.levels = 7;
-  scene.description.relaxation.check_interval = 17;
+  scene.settings.relaxation.levels = 7;
+  scene.settings.relaxation.check_interval = 17;
   const NodalField again = relax(Model(scene, this->method()), silent).u;
   // A residual of 1e-10 allows errors of 1e-10 times the condition of the free block, a few hundred.
   EXPECT_LT(largest_distance(once, again), 1e-7 * 0.01);
@@ -121,8 +121,8 @@ TYPED_TEST(StepperTest, the_same_input_gives_the_same_bits) {
   const NodalField once = relax(Model(scene, this->method()), silent).u;
   EXPECT_EQ(relax(Model(scene, this->method()), silent).u, once);
   Scene dynamic = driven_block({0.04, 0.0, 0.03});
-  dynamic.description.quasi_static = false;
-  dynamic.description.dynamics.duration = 0.1;
+  dynamic.settings.quasi_static = false;
+  dynamic.settings.dynamics.duration = 0.1;
   const Motion motion = integrate(Model(dynamic, this->method()), silent);
   const Motion same = integrate(Model(dynamic, this->method()), silent);
   EXPECT_EQ(motion.u, same.u);
@@ -133,7 +133,7 @@ TYPED_TEST(StepperTest, the_same_input_gives_the_same_bits) {
 /// any number of threads. The block is long enough that elements and rows are cut up for them.
 TYPED_TEST(StepperTest, relaxation_gives_the_same_bits_for_any_number_of_threads) {
   Scene scene = long_block();
-  scene.description.relaxation.tolerance = 1e-3;  // bits that differ would do so early
+  scene.settings.relaxation.tolerance = 1e-3;  // bits that differ would do so early
   Observer silent;
   for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
     MethodChoice choice = this->method();
@@ -172,7 +172,7 @@ TYPED_TEST(StepperTest, single_precision_ends_where_its_rounding_begins) {
 /// A tolerance below the rounding of double precision is not reached, and that is not called rest.
 TYPED_TEST(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
   Scene scene = driven_block({0.01, 0.0, 0.01});
-  scene.description.relaxation.tolerance = 1e-300;
+  scene.settings.relaxation.tolerance = 1e-300;
   Observer silent;
   const MethodChoice choice = this->method();
   const Relaxation answer = relax(Model(scene, choice), silent);
@@ -198,7 +198,7 @@ TYPED_TEST(StepperTest, residual_at_the_tolerance_is_not_yet_rest) {
   Observer silent;
   const Relaxation answer = relax(Model(scene, this->method()), silent);
   ASSERT_TRUE(answer.converged);
-  scene.description.relaxation.tolerance = answer.residual;
+  scene.settings.relaxation.tolerance = answer.residual;
   const Relaxation further = relax(Model(scene, this->method()), silent);
   EXPECT_LT(further.residual, answer.residual);
   EXPECT_GT(further.steps, answer.steps);
@@ -206,11 +206,11 @@ TYPED_TEST(StepperTest, residual_at_the_tolerance_is_not_yet_rest) {
 
 TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
   Scene scene = driven_block({0.0, 0.0, 0.01});
-  scene.description.quasi_static = false;
-  scene.description.dynamics.duration = 0.1;
+  scene.settings.quasi_static = false;
+  scene.settings.dynamics.duration = 0.1;
   Observer silent;
   const StableStep stable = stable_step(Model(scene, this->method()), NodalField(scene.mesh.points.size()));
-  scene.description.dynamics.time_step = 1.001 * stable.step;
+  scene.settings.dynamics.time_step = 1.001 * stable.step;
   try {
     integrate(Model(scene, this->method()), silent);
     FAIL() << "a step above the stable one was accepted";
@@ -219,7 +219,7 @@ TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
     EXPECT_TRUE(contains(error.what(), "element " + std::to_string(stable.element)));
     EXPECT_TRUE(contains(error.what(), "made-in-a-test.toml"));
   }
-  scene.description.dynamics.time_step = 0.5 * stable.step;
+  scene.settings.dynamics.time_step = 0.5 * stable.step;
   EXPECT_NO_THROW(integrate(Model(scene, this->method()), silent));
 }
 
@@ -227,10 +227,10 @@ TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
 /// linear method does not know that, and keeps its step.
 TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
   Scene scene = driven_block({0.0, 0.0, -0.1}, 0.3);
-  scene.description.quasi_static = false;
-  scene.description.dynamics.duration = 2.0;
+  scene.settings.quasi_static = false;
+  scene.settings.dynamics.duration = 2.0;
   const StableStep stable = stable_step(Model(scene, this->method()), NodalField(scene.mesh.points.size()));
-  scene.description.dynamics.time_step = 0.999 * stable.step;
+  scene.settings.dynamics.time_step = 0.999 * stable.step;
   Observer silent;
   if (is_linear<TypeParam>) {
     EXPECT_EQ(integrate(Model(scene, this->method()), silent).v.size(), scene.mesh.points.size());
@@ -244,7 +244,7 @@ TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
     EXPECT_TRUE(contains(error.what(), "set by element"));
     EXPECT_TRUE(contains(error.what(), "at step "));
   }
-  scene.description.dynamics.time_step = 0.0;  // the program's own choice follows the stiffening
+  scene.settings.dynamics.time_step = 0.0;  // the program's own choice follows the stiffening
   const Motion motion = integrate(Model(scene, this->method()), silent);
   EXPECT_LT(motion.smallest_step, 0.9 * stable.step);
 }
@@ -272,8 +272,8 @@ TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   } catch (const ComputationError& error) {
     expect_helpful(error.what());
   }
-  scene.description.quasi_static = false;
-  scene.description.dynamics.duration = 0.5;
+  scene.settings.quasi_static = false;
+  scene.settings.dynamics.duration = 0.5;
   try {
     integrate(Model(scene, this->method()), silent);
     FAIL() << "integration returned an inverted body";
@@ -306,7 +306,7 @@ TYPED_TEST(StepperTest, an_observer_may_end_the_run) {
   Scene scene = driven_block({0.04, 0.0, 0.03});
   Recorder impatient;
   impatient.last_step = 5;
-  scene.description.relaxation.check_interval = 5;
+  scene.settings.relaxation.check_interval = 5;
   const Relaxation relaxation = relax(Model(scene, this->method()), impatient);
   EXPECT_TRUE(relaxation.interrupted);
   EXPECT_FALSE(relaxation.converged);
@@ -314,8 +314,8 @@ TYPED_TEST(StepperTest, an_observer_may_end_the_run) {
   if (!pressure_varies<TypeParam>) {  // else a step takes many evaluations
     EXPECT_EQ(relaxation.steps, 5);
   }
-  scene.description.quasi_static = false;
-  scene.description.dynamics.duration = 10.0;
+  scene.settings.quasi_static = false;
+  scene.settings.dynamics.duration = 10.0;
   const Motion motion = integrate(Model(scene, this->method()), impatient);
   EXPECT_TRUE(motion.interrupted);
   EXPECT_LT(motion.time, 10.0);
@@ -323,7 +323,7 @@ TYPED_TEST(StepperTest, an_observer_may_end_the_run) {
 
 TYPED_TEST(StepperTest, too_few_steps_are_told_and_not_called_rest) {
   Scene scene = driven_block({0.04, 0.0, 0.03});
-  scene.description.relaxation.max_steps = 5;
+  scene.settings.relaxation.max_steps = 5;
   Observer silent;
   const Relaxation answer = relax(Model(scene, this->method()), silent);
   EXPECT_FALSE(answer.converged);
@@ -379,8 +379,8 @@ Answers answers(Scene scene) {
   const MethodChoice method{std::string(Method::name), {}};
   Answers result;
   if (zero_energy_modes<Method>() == 6) result.fields.push_back(relax(Model(scene, method), silent).u);
-  scene.description.quasi_static = false;
-  scene.description.dynamics.duration = 0.02;
+  scene.settings.quasi_static = false;
+  scene.settings.dynamics.duration = 0.02;
   const Motion motion = integrate(Model(scene, method), silent);
   result.fields.push_back(motion.u);
   result.fields.push_back(motion.v);

@@ -202,7 +202,7 @@ TEST(Reactions, sum_to_minus_the_loads) {
   Case description = plain_case(sample_law<NeoHookean>(0.45));
   description.forces.of<DeadForce>() = {{.set = "side", .total = {0.02, 0.3, 0.1}}};
   description.relaxation.tolerance = 1e-10;
-  const Scene scene = block_between_plates(description, true, {2, 2, 8});
+  const Scene scene = make_scene(block_between_plates(description, true, {2, 2, 8}));
   for (const char* method : {"tl-perturbation", "tl-adaptive", "t4-anp", "linear-condensed"}) {
     Recorder recorder;
     relax(Model(scene, {.method = method}), recorder);
@@ -217,7 +217,8 @@ TEST(Reactions, sum_to_minus_the_loads) {
 /// In motion, what drives the sets and the loads accelerate the free nodes: at every frame the rows tell the
 /// forces of the frame.
 TEST(Reactions, of_a_motion_are_those_of_its_frames) {
-  const Scene scene = block_between_plates(plain_case(sample_law<NeoHookean>(0.45)), false, {2, 2, 8});
+  const Scene scene =
+      make_scene(block_between_plates(plain_case(sample_law<NeoHookean>(0.45)), false, {2, 2, 8}));
   const Model model(scene, {.method = "tl-perturbation"});
   Recorder recorder;
   integrate(model, recorder);

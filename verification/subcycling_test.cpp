@@ -75,7 +75,7 @@ Operator operator_of(const Scene& scene) {
   Leapfrog<double> motion(model, elements, 0.0);
   motion.subcycle(model);
   Body<double>& body = motion.body();
-  const double given = scene.description.dynamics.time_step, stable = motion.stable_step(model, given).step;
+  const double given = scene.settings.dynamics.time_step, stable = motion.stable_step(model, given).step;
   EXPECT_LE(given, stable);
   const double step = given > 0.0 ? given : stable;
   body.set_step(step);
@@ -124,9 +124,9 @@ Case subcycled_case(const RefinedMesh& refined, double times) {
 /// without.
 TEST(Subcycling, averaged_forces_are_of_a_symmetric_operator_in_the_stable_range) {
   const auto check = [](Scene scene, double times) {
-    scene.description.dynamics.subcycles = 1;
-    scene.description.dynamics.time_step = times * operator_of(scene).step;
-    scene.description.dynamics.subcycles = 16;
+    scene.settings.dynamics.subcycles = 1;
+    scene.settings.dynamics.time_step = times * operator_of(scene).step;
+    scene.settings.dynamics.subcycles = 16;
     const Operator found = operator_of(scene);
     EXPECT_LT((found.matrix - found.matrix.transpose()).norm(), 1e-14 * found.matrix.norm()) << times;
     const Eigen::VectorXd squares = found.step * found.step * eigenvalues_of(found);
@@ -213,7 +213,7 @@ TEST(Subcycling, keeps_energy_over_a_hundred_thousand_steps) {
   const auto held = nodes_where(refined.mesh().points, [](const Vector& X) { return X[2] > 0.299; });
   for (const double times : {2.0, 3.59}) {
     const Scene scene = scene_on(refined, subcycled_case(refined, times), held);
-    const double step = scene.description.dynamics.time_step;
+    const double step = scene.settings.dynamics.time_step;
     const Model model(scene, {"linear"});
     Leapfrog<double> motion(model, *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force()),
                             0.0);

@@ -214,8 +214,7 @@ TEST(TetrahedraTest, forces_turn_with_the_mesh) {
 /// of an element, whose error is 1e-10 of K.
 double largest_frequency_square(const Model& model, NodalField u) {
   const std::size_t size = 3 * u.size();
-  const double h =
-      1e-5 * std::cbrt(model.element_masses()[0] / model.scene().description.materials.front().density);
+  const double h = 1e-5 * std::cbrt(model.element_masses()[0] / model.scene().materials.list.front().density);
   std::vector<double> K(size * size);
   for (std::size_t n = 0; n < size; ++n) {
     double& x = u[n / 3][n % 3];

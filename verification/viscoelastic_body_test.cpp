@@ -169,8 +169,8 @@ TYPED_TEST(ViscoelasticBodyTest, oscillation_is_damped_as_in_closed_form) {
   for (std::size_t level = 0; level < error.size(); ++level) {
     Scene scene = sliding_bar(law, box({h, h, h}, {1, 1, 1}), speed);
     const int steps = 32 << level;
-    scene.description.dynamics.duration = duration;
-    scene.description.dynamics.time_step = duration / steps;
+    scene.settings.dynamics.duration = duration;
+    scene.settings.dynamics.time_step = duration / steps;
     Observer silent;
     const Motion motion = integrate(this->model(scene), silent);
     ASSERT_EQ(motion.steps, steps);
@@ -191,8 +191,8 @@ Law quick_law() {
 Scene plane_waves() {
   Scene scene = sliding_bar(quick_law(), box({0.05, 0.05, 0.2}, {1, 1, 4}), 0.5);
   const Model probe(scene, {"tl-full"});
-  scene.description.dynamics.time_step = 0.1 * stable_step(probe, NodalField(scene.mesh.points.size())).step;
-  scene.description.dynamics.duration = 2000 * scene.description.dynamics.time_step;
+  scene.settings.dynamics.time_step = 0.1 * stable_step(probe, NodalField(scene.mesh.points.size())).step;
+  scene.settings.dynamics.duration = 2000 * scene.settings.dynamics.time_step;
   return scene;
 }
 
@@ -385,7 +385,7 @@ TEST(ViscoelasticCase, wrong_parameters_are_refused_with_their_line) {
 /// follows.
 TEST(ViscoelasticCase, held_brain_tissue_loses_the_energy_of_its_relaxation_times) {
   const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "brain-hold.toml");
-  const Law law = std::get<Law>(scene.description.materials.front().law);
+  const Law law = std::get<Law>(scene.materials.list.front().law);
   Recorder recorder;
   integrate(Model(scene, {"tl-perturbation"}), recorder);
   const auto springs = [&](double t) {

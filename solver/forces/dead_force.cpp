@@ -7,11 +7,6 @@ std::optional<BrokenRule> DeadForce::broken_rule() const {
   return BrokenRule{"moment", "acts on faces: it cannot be on = 'nodes'"};
 }
 
-void DeadForce::scale(double factor) {
-  for (double& f : total) f *= factor;
-  for (double& m : moment) m *= factor;
-}
-
 void DeadForce::resolve(ForceResolver& resolver) const {
   resolver.sizes_of_dead.push_back({length(total), length(moment)});
   if (on == Carrier::nodes) {

@@ -4,10 +4,6 @@
 
 namespace sandglass {
 
-void Gravity::scale(double factor) {
-  for (double& g : value) g *= factor;
-}
-
 void Gravity::resolve(ForceResolver& resolver) const {
   const std::vector<double>&masses = resolver.masses, &of_elements = resolver.element_masses;
   resolver.sizes_of_dead.push_back(

@@ -21,7 +21,6 @@ struct Gravity {
   }
 
   bool holds() const { return false; }
-  void scale(double factor);
   void resolve(ForceResolver& resolver) const;
 };
 

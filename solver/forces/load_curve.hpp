@@ -19,7 +19,7 @@ struct LoadCurve {
   std::vector<double> times = {};  ///< s, increasing
   std::vector<double> factors = {};
   Formula formula = {};
-  double share = 1.0;  ///< of the load factor of the case that it follows
+  double share = 1.0;  ///< of all this
 
   static constexpr auto parameters() {
     using C = LoadCurve;
@@ -56,14 +56,14 @@ struct LoadCurve {
 
   /// The factor of the load, where `load_factor` is that of the case.
   double at(double time, double load_factor) const {
-    if (formula.evaluate) return formula.evaluate(time);
+    if (formula.evaluate) return share * formula.evaluate(time);
     if (times.empty()) return share * load_factor;
     const auto above = std::upper_bound(times.begin(), times.end(), time);
-    if (above == times.begin()) return factors.front();
-    if (above == times.end()) return factors.back();
+    if (above == times.begin()) return share * factors.front();
+    if (above == times.end()) return share * factors.back();
     const auto n = static_cast<std::size_t>(above - times.begin());
     const double part = (time - times[n - 1]) / (times[n] - times[n - 1]);
-    return factors[n - 1] + part * (factors[n] - factors[n - 1]);
+    return share * (factors[n - 1] + part * (factors[n] - factors[n - 1]));
   }
 
   /// The largest absolute value; of a formula that of 1001 times in equal distances from 0 to `end`.
@@ -73,7 +73,7 @@ struct LoadCurve {
     for (int k = 0; formula.evaluate && k <= 1000; ++k)
       most = std::max(most, std::abs(formula.evaluate(end * k / 1000)));
     for (const double factor : factors) most = std::max(most, std::abs(factor));
-    return most;
+    return std::abs(share) * most;
   }
 };
 

@@ -27,7 +27,6 @@ struct Pressure {
   }
 
   bool holds() const { return false; }
-  void scale(double factor) { value *= factor; }
   void resolve(ForceResolver& resolver) const;
 };
 

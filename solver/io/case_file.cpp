@@ -199,6 +199,16 @@ void read_header(TableReader table, Case& description) {
   table.finish();
 }
 
+/// The files that a case was read from.
+std::vector<std::filesystem::path> files_of(const Case& description) {
+  std::vector<std::filesystem::path> files{description.file};
+  if (const auto* mesh = std::get_if<MeshFile>(&description.mesh)) files.push_back(mesh->path);
+  for (const CaseMaterial& material : description.materials) {
+    if (const auto* listed = std::get_if<ListedFibres>(&material.fibres)) files.push_back(listed->file);
+  }
+  return files;
+}
+
 MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
   try {
     if (is_foreign_mesh(file.path)) return read_foreign_mesh(file);
@@ -258,6 +268,7 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   if (auto method = reader.table("method")) description.method = read_method(*method);
   for (const auto& name : tables_not_read) reader.leave(name);
   reader.finish();
+  description.files = files_of(description);
   bool held = !(description.displacements.empty() && description.rotations.empty());
   description.forces.for_each([&](const auto& force) { held = held || force.holds(); });
   if (description.quasi_static && !held) {
@@ -285,40 +296,38 @@ Case read_case_file(const std::filesystem::path& path) {
   return std::move(cases.front());
 }
 
-std::vector<std::filesystem::path> files_of(const Case& description) {
-  std::vector<std::filesystem::path> files{description.file};
-  if (const auto* mesh = std::get_if<MeshFile>(&description.mesh)) files.push_back(mesh->path);
-  for (const CaseMaterial& material : description.materials) {
-    if (const auto* listed = std::get_if<ListedFibres>(&material.fibres)) files.push_back(listed->file);
+CaseOnMesh with_mesh(Case description) {
+  if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
+    auto [mesh, sets, element_sets] = read_mesh_of(description, *file);
+    return {std::move(description), std::move(mesh), std::move(sets), std::move(element_sets)};
   }
-  return files;
+  Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
+  return {std::move(description), std::move(mesh)};
+}
+
+CaseOnMesh with_mesh(const std::string& text, MeshWithSets mesh) {
+  const std::string name = "case text";
+  const auto in_memory = [&](TableReader& /*reader*/, Case& description) {
+    description.mesh = MeshFile{"in memory"};
+  };
+  return {read_case(parse_case_text(text, name), name, in_memory), std::move(mesh.mesh), std::move(mesh.sets),
+          std::move(mesh.element_sets)};
 }
 
 Scene read_scene(Case description) {
-  if (const auto* file = std::get_if<MeshFile>(&description.mesh)) {
-    MeshWithSets read = read_mesh_of(description, *file);
-    return make_scene(std::move(description), std::move(read.mesh), std::move(read.sets),
-                      std::move(read.element_sets));
-  }
-  Mesh mesh = generate_mesh(std::get<AnyGenerator>(description.mesh));
-  return make_scene(std::move(description), std::move(mesh));
+  return make_scene(with_mesh(std::move(description)));
+}
+
+Scene read_scene(const std::string& text, MeshWithSets mesh) {
+  return make_scene(with_mesh(text, std::move(mesh)));
 }
 
 Scene read_scene(const std::filesystem::path& path) {
   return read_scene(read_case_file(path));
 }
 
-Scene read_scene(const std::string& text, MeshWithSets mesh) {
-  const std::string name = "case text";
-  const auto in_memory = [&](TableReader& /*reader*/, Case& description) {
-    description.mesh = MeshFile{"in memory"};
-  };
-  return make_scene(read_case(parse_case_text(text, name), name, in_memory), std::move(mesh.mesh),
-                    std::move(mesh.sets), std::move(mesh.element_sets));
-}
-
-MethodChoice method_of(const Case& description, const std::optional<std::string>& named) {
-  MethodChoice choice = description.method.value_or(MethodChoice{.method = "tl-perturbation"});
+MethodChoice method_of(const CaseSettings& settings, const std::optional<std::string>& named) {
+  MethodChoice choice = settings.method.value_or(MethodChoice{.method = "tl-perturbation"});
   if (named && *named != choice.method) choice = {.method = *named, .precision = choice.precision};
   return choice;
 }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "io/mesh_file.hpp"
-#include "problem/model.hpp"
+#include "problem/make_scene.hpp"
 
 namespace sandglass {
 
@@ -21,21 +21,19 @@ std::vector<Case> read_cases(const std::filesystem::path& path);
 /// The same of a file that must not have variants.
 Case read_case_file(const std::filesystem::path& path);
 
-/// The files that a case was read from: its own, and those of mesh and fibres.
-std::vector<std::filesystem::path> files_of(const Case& description);
+/// A case with its mesh, generated or read.
+CaseOnMesh with_mesh(Case description);
 
-/// The scene of a case: its mesh generated or read, its sets, constraints and loads made.
+/// A case that is a text, the text of a file without [mesh] and variants, with a mesh of its own.
+CaseOnMesh with_mesh(const std::string& text, MeshWithSets mesh);
+
+/// The scenes of these, and of a case file without variants.
 Scene read_scene(Case description);
-
-/// The scene of a case file without variants.
-Scene read_scene(const std::filesystem::path& path);
-
-/// The scene of a case that is a text, the text of a file without [mesh] and variants, with a mesh of its
-/// own.
 Scene read_scene(const std::string& text, MeshWithSets mesh);
+Scene read_scene(const std::filesystem::path& path);
 
 /// What a case says of its method, or tl-perturbation where it says nothing. Of another method, where one is
 /// named, it says no more than the precision.
-MethodChoice method_of(const Case& description, const std::optional<std::string>& named = {});
+MethodChoice method_of(const CaseSettings& settings, const std::optional<std::string>& named = {});
 
 }  // namespace sandglass

@@ -89,7 +89,7 @@ void write_mesh(const Scene& scene, Hdf5File& file) {
     file.write("/mesh/axes", {axes.size(), 3, 3},
                std::span<const double>(axes.front().entries.data(), 9 * axes.size()));
   }
-  file.write_attribute("/", "case", scene.description.name);
+  file.write_attribute("/", "case", scene.settings.name);
   file.write_attribute("/", "case_hash", scene.case_hash);
   file.write_attribute("/", "mesh_hash", scene.mesh_hash);
 }

@@ -120,13 +120,13 @@ void ResultWriter::write_history() {
     file_.write("/history/" + name, {values.size()}, std::span<const double>(values));
     file_.write_attribute("/history/" + name, "unit", unit);
   };
-  column("time", model_.scene().description.quasi_static ? "ramp" : "s", &HistoryRow::time);
+  column("time", model_.scene().settings.quasi_static ? "ramp" : "s", &HistoryRow::time);
   column("kinetic_energy", "J", &HistoryRow::kinetic);
   column("strain_energy", "J", &HistoryRow::strain);
   column("hourglass_energy", "J", &HistoryRow::hourglass);
   column("external_work", "J", &HistoryRow::external_work);
   column("residual", "-", &HistoryRow::residual);
-  column("step_size", model_.scene().description.quasi_static ? "ramp" : "s", &HistoryRow::step_size);
+  column("step_size", model_.scene().settings.quasi_static ? "ramp" : "s", &HistoryRow::step_size);
   column("adaption_energy", "J", &HistoryRow::adaption);
   write_reactions(file_, "/history", history_);
 }
@@ -166,7 +166,7 @@ std::string ResultWriter::xdmf() const {
       text += attribute(group + "/stress", "stress [Pa]", "Tensor", "Cell", fmt::format("{} 3 3", n_cells));
     }
     for (const auto& driven : model_.scene().driven) {
-      text += attribute(reaction_of(group, driven.first), fmt::format("reaction at {} [N]", driven.first),
+      text += attribute(reaction_of(group, driven.name), fmt::format("reaction at {} [N]", driven.name),
                         "Vector", "Grid", "3");
     }
     text += "      </Grid>\n";

@@ -152,19 +152,4 @@ std::set<std::string> used_node_sets(const Case& description) {
   return names;
 }
 
-void scale_load(Case& description, double factor) {
-  for (auto& displacement : description.displacements) {
-    for (double& d : displacement.value) d *= factor;
-  }
-  for (auto& rotation : description.rotations) {
-    rotation.angle *= factor;
-    for (double& d : rotation.displacement) d *= factor;
-  }
-  description.forces.for_each([&](auto& force) { force.scale(factor); });
-  for (auto& start : description.velocities) {
-    for (double& v : start.value) v *= factor;
-    for (double& w : start.spin) w *= factor;
-  }
-}
-
 }  // namespace sandglass

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -73,13 +72,7 @@ struct InitialVelocity {
 };
 
 /// Everything a case file says, checked key by key; what is inside is plain data.
-struct Case {
-  std::filesystem::path file;
-  std::string name;                   ///< with the names of its variant, "-" between them
-  std::string family;                 ///< the name that all variants of a file share
-  std::vector<std::string> variants;  ///< its variant on each axis of the file; empty without variants
-  std::string requirement;
-  bool quasi_static = true;  ///< else dynamic
+struct Case : CaseSettings {
   std::variant<AnyGenerator, MeshFile> mesh;
   std::vector<CaseMaterial> materials = std::vector<CaseMaterial>(1);
   std::vector<NodeSetRule> sets;
@@ -90,9 +83,6 @@ struct Case {
   std::vector<ImposedRotation> rotations;
   ForceTables<Forces> forces;
   std::vector<InitialVelocity> velocities;
-  RelaxationSettings relaxation;
-  DynamicsSettings dynamics;
-  std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
 };
 
 /// A hash of what decides the answer: mesh recipe, laws, sets, imposed displacements, rotations and forces;
@@ -102,8 +92,5 @@ std::string case_hash(const Case& description);
 
 /// The names of the node sets on which its tables act, or which they refine around or tie.
 std::set<std::string> used_node_sets(const Case& description);
-
-/// Multiplies imposed displacements, angles, forces and initial velocities by `factor`.
-void scale_load(Case& description, double factor);
 
 }  // namespace sandglass

@@ -13,7 +13,7 @@ namespace {
 std::vector<LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& element_masses) {
   if (first_not_dead(scene.forces) == nullptr) return {};
   const std::vector<double> masses = lumped_masses(scene.mesh, element_masses);
-  const double end = scene.description.quasi_static ? 1.0 : scene.description.dynamics.duration;
+  const double end = scene.settings.quasi_static ? 1.0 : scene.settings.dynamics.duration;
   std::vector<double> largest;
   for (const LoadCurve& curve : scene.curves) largest.push_back(curve.largest(end));
   std::vector<LoadRates> at_nodes(masses.size());

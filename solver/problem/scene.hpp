@@ -1,13 +1,18 @@
 #pragma once
 
 #include <algorithm>
-#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "forces/body_force.hpp"
+#include "forces/load_curve.hpp"
+#include "material/materials.hpp"
+#include "mesh/mesh_part.hpp"
+#include "mesh/node_set.hpp"
 #include "mesh/refinement.hpp"
-#include "problem/case.hpp"
 #include "problem/imposed_path.hpp"
+#include "problem/settings.hpp"
 
 namespace sandglass {
 
@@ -16,34 +21,45 @@ struct Constraint {
   int node;
   int component;
   ImposedPath path;
+  int group = -1;  ///< the number of the imposed displacement that moves it with others; -1 for none
 };
 
-/// The mesh of a case with its sets and materials; shared by all methods.
+/// A node set that is driven.
+struct DrivenSet {
+  std::string name;
+  std::vector<std::size_t> constraints;  ///< those of its nodes
+};
+
+/// The problem that solvers take: a case resolved on its mesh. `make_scene` makes it from a case, the
+/// functions below from another scene.
 struct Scene {
-  Case description;
+  CaseSettings settings;
+  std::string case_hash;  ///< of the case whose answer it has; empty where no case has it
+  std::string mesh_hash;
   Mesh mesh;
-  Ties ties = {};                            ///< of nodes, to such as are not tied
-  std::vector<CoarserMesh> coarser = {};     ///< the meshes before each refinement, the last first
-  std::vector<Quadrilateral> boundary = {};  ///< faces on the boundary of the body
-  NodeSets sets = {};
-  ElementSets element_sets = {};
-  Materials materials = {};
-  std::vector<Constraint> constraints = {};                     ///< sorted by node, then component
-  std::map<std::string, std::vector<std::size_t>> driven = {};  ///< sets that the case drives -> constraints
-  std::vector<double> angles = {};     ///< rad, of paths; the first is zero, for those that do not turn
-  std::vector<LoadCurve> curves = {};  ///< of forces; the first is that of the case
-  BodyForces forces = {};
-  NodalField initial_velocities = {};  ///< m/s; empty: at rest. Imposed components do not obey them
-  std::string case_hash = {};
-  std::string mesh_hash = {};
+  Ties ties;                            ///< of nodes, to such as are not tied
+  std::vector<CoarserMesh> coarser;     ///< the meshes before each refinement, the last first
+  std::vector<Quadrilateral> boundary;  ///< faces on the boundary of the body
+  NodeSets sets;
+  ElementSets element_sets;
+  Materials materials;
+  std::vector<Constraint> constraints;  ///< sorted by node, then component
+  std::vector<DrivenSet> driven;        ///< sets with an imposed displacement, then those that are rotated
+  std::vector<double> angles;           ///< rad, of paths; the first is zero, for those that do not turn
+  std::vector<LoadCurve> curves;        ///< of forces; the first is that of the case
+  BodyForces forces;
+  NodalField initial_velocities;  ///< m/s; empty: at rest. Imposed components do not obey them
 };
 
-/// Sets by their rules, materials of the elements, constraints from the imposed displacements and rotations,
-/// forces, initial velocities. Throws InputError for an inverted element, an empty
-/// set, an element that has no material or two, a node to which two different paths are imposed, a load on a
-/// set without boundary faces, and a wave along an axis on which its set has no extent.
-Scene make_scene(Case description, Mesh mesh, NodeSets sets_of_file = {},
-                 ElementSets element_sets_of_file = {});
+/// The scene on a part of its mesh, fixed at the rim. The mesh must not have ties.
+Scene on_part(const Scene& whole, const MeshPart& part);
+
+/// The scene whose full load is that of another one at a time (s) and load factor, with imposed displacements
+/// of its own: a value (m) for each constraint.
+Scene with_load(Scene scene, const std::vector<double>& imposed, double time, double load_factor);
+
+/// The scene with imposed displacements, angles, forces and initial velocities multiplied by a factor.
+Scene scaled(Scene scene, double factor);
 
 /// Calls use(k, n) for every constraint k of the n-th of some nodes.
 template <class Use>
@@ -57,16 +73,13 @@ void for_each_constraint(const std::vector<Constraint>& constraints, const std::
   }
 }
 
-/// The mesh of a case whose mesh comes from a generator.
-Mesh generate_mesh(const AnyGenerator& generator);
-
 /// The nodes, or elements, of a set that `key` of a case names. Throws InputError that names the file and the
 /// key if there is no such set, or if it is empty.
 const std::vector<int>& node_set(const Scene& scene, const std::string& key, const std::string& name);
 const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name);
 
-/// Largest imposed displacement, m: of a set that turns, the largest on its way, where a displacement besides
-/// the rotation counts in full; zero when the case is driven by forces alone.
+/// Largest imposed displacement of a node, m: of one that turns, the largest on its way, where a displacement
+/// besides the rotation counts in full; zero when the case is driven by forces alone.
 double largest_imposed(const Scene& scene);
 
 /// The final displacement (m) of a constraint, where the load factor is one.

@@ -11,8 +11,8 @@ namespace sandglass {
 namespace {
 
 /// The material of each element. Throws InputError for an element that has none or two.
-Materials assigned_materials(const Scene& scene) {
-  const auto& regions = scene.description.materials;
+Materials assigned_materials(const Case& description, const Scene& scene) {
+  const auto& regions = description.materials;
   Materials materials;
   for (const auto& region : regions) materials.list.push_back(region);
   if (regions.size() == 1 && regions.front().elements.empty()) return materials;
@@ -31,7 +31,7 @@ Materials assigned_materials(const Scene& scene) {
       std::uint16_t& material = of_element[at(e)];
       if (material != none) {
         throw InputError(fmt::format("{}: element {} is in '{}' and in '{}'; an element has one material",
-                                     scene.description.file.string(), e, regions[material].elements, name));
+                                     scene.settings.file.string(), e, regions[material].elements, name));
       }
       material = m;
     }
@@ -41,7 +41,7 @@ Materials assigned_materials(const Scene& scene) {
     throw InputError(
         fmt::format("{}: materials: {} of the {} elements have none, the first is element {}; one "
                     "of [[materials]] may leave out its elements and be that of all others",
-                    scene.description.file.string(), left, of_element.size(),
+                    scene.settings.file.string(), left, of_element.size(),
                     std::find(of_element.begin(), of_element.end(), none) - of_element.begin()));
   }
   std::replace(of_element.begin(), of_element.end(), none, other);
@@ -50,9 +50,9 @@ Materials assigned_materials(const Scene& scene) {
 
 }  // namespace
 
-Materials make_materials(const Scene& scene) {
-  Materials materials = assigned_materials(scene);
-  const auto& regions = scene.description.materials;
+Materials make_materials(const Case& description, const Scene& scene) {
+  Materials materials = assigned_materials(description, scene);
+  const auto& regions = description.materials;
   const auto plain = [](const CaseMaterial& region) {
     return std::holds_alternative<std::monostate>(region.fibres);
   };
@@ -62,14 +62,14 @@ Materials make_materials(const Scene& scene) {
     const auto* listed = std::get_if<ListedFibres>(&region.fibres);
     if (listed == nullptr || listed->fibres.size() == elements) continue;
     throw InputError(fmt::format("{}: fibres.file has {} rows; it must have one for each of the {} elements",
-                                 scene.description.file.string(), listed->fibres.size(), elements));
+                                 scene.settings.file.string(), listed->fibres.size(), elements));
   }
   for (std::size_t e = 0; e < elements; ++e) {
     try {
       materials.axes.push_back(axes_by(regions[materials.of(e)].fibres, scene.mesh, e));
     } catch (const InputError& error) {
       throw InputError(
-          fmt::format("{}: fibres: element {}: {}", scene.description.file.string(), e, error.what()));
+          fmt::format("{}: fibres: element {}: {}", scene.settings.file.string(), e, error.what()));
     }
   }
   return materials;

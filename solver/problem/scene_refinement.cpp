@@ -29,7 +29,7 @@ void mark_edge(const Scene& scene, const RefinedMesh& refined, const std::string
     throw InputError(fmt::format(
         "{}: refine.around = '{}' has no edge: its nodes must be on the boundary, and some at faces that "
         "are not within it; elements = NAME refines an element set",
-        scene.description.file.string(), name));
+        scene.settings.file.string(), name));
   }
   Distances(refined.mesh()).mark(std::move(margin), marked);
 }
@@ -42,7 +42,7 @@ void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined
       if (at(e) >= marked.size()) {
         throw InputError(fmt::format(
             "{}: refine.numbers = {} must be below {}, the number of elements of the mesh after {} splits",
-            scene.description.file.string(), e, marked.size(), splits));
+            scene.settings.file.string(), e, marked.size(), splits));
       }
       marked[at(e)] = true;
     }
@@ -55,16 +55,21 @@ void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined
   }
 }
 
-}  // namespace
-
-void refine(Scene& scene) {
-  const auto& rules = scene.description.refinements;
-  if (rules.empty()) return;
-  RefinedMesh refined(scene.mesh);
+/// How often the mesh is split.
+int most_splits(const std::vector<Refinement>& rules) {
   int most = 0;
   for (const Refinement& rule : rules)
     most = std::max(most, rule.numbers.empty() ? rule.depth : rule.after + 1);
-  for (int splits = 0; splits < most; ++splits) {
+  return most;
+}
+
+}  // namespace
+
+void refine(const Case& description, Scene& scene) {
+  const auto& rules = description.refinements;
+  if (rules.empty()) return;
+  RefinedMesh refined(scene.mesh);
+  for (int splits = 0; splits < most_splits(rules); ++splits) {
     std::vector<bool> marked(refined.mesh().cells.size(), false);
     for (const Refinement& rule : rules) mark(scene, rule, refined, splits, marked);
     refined.split(std::move(marked));
@@ -78,31 +83,12 @@ void refine(Scene& scene) {
   for (auto& [name, set] : scene.element_sets) set = refined.elements_of(set);
 }
 
-Scene remade(const Scene& scene, Case description) {
-  if (scene.coarser.empty())
-    return make_scene(std::move(description), scene.mesh, scene.sets, scene.element_sets);
-  const Mesh& original = scene.coarser.back().mesh;
-  NodeSets sets = scene.sets;
-  for (auto& [name, nodes] : sets) {
-    std::erase_if(nodes, [&](int node) { return at(node) >= original.points.size(); });
-  }
-  ElementSets element_sets = scene.element_sets;
-  for (auto& [name, elements] : element_sets) {
-    for (int& e : elements) {
-      for (const CoarserMesh& coarser : scene.coarser) e = coarser.element_of[at(e)];
-    }
-    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
-  }
-  return make_scene(std::move(description), original, std::move(sets), std::move(element_sets));
-}
-
-Scene refined(const Scene& scene, std::vector<int> elements) {
-  Case description = scene.description;
+Case refined(Case description, std::vector<int> elements) {
   Refinement split;
   split.numbers = std::move(elements);
-  split.after = static_cast<int>(scene.coarser.size());
+  split.after = most_splits(description.refinements);
   description.refinements.push_back(std::move(split));
-  return remade(scene, std::move(description));
+  return description;
 }
 
 NodalField prolonged(const CoarserMesh& coarser, NodalField u) {

@@ -19,7 +19,7 @@ constexpr double tolerance = 1e-6;
 [[noreturn]] void refuse(const Scene& scene, const NodeTie& rule, int node, const std::string& what) {
   const Vector& X = scene.mesh.points[at(node)];
   throw InputError(fmt::format("{}: tie.set = '{}': the node {} at ({}, {}, {}) m {}",
-                               scene.description.file.string(), rule.set, node, X[0], X[1], X[2], what));
+                               scene.settings.file.string(), rule.set, node, X[0], X[1], X[2], what));
 }
 
 /// The corners that a point of an element follows. Points on a face follow that face's alone.
@@ -65,8 +65,7 @@ void add_ties(const Scene& scene, const NodeTie& rule, std::map<int, Tie>& ties)
 
 }  // namespace
 
-void tie(Scene& scene) {
-  const Case& description = scene.description;
+void tie(const Case& description, Scene& scene) {
   if (description.ties.empty()) return;
   if (!description.refinements.empty()) {
     throw InputError(fmt::format("{}: tie: a mesh with tied parts cannot be refined; leave out refine",

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <tuple>
+#include <vector>
 
+#include "assembly/internal_force.hpp"
 #include "base/parameter.hpp"
 
 namespace sandglass {
@@ -79,6 +83,20 @@ struct DynamicsSettings {
     return BrokenRule{"body_frequency",
                       "= 1 is for steps that all elements share; it must be 0 with subcycles"};
   }
+};
+
+/// What a case says that does not depend on its mesh: its name, and how it is answered.
+struct CaseSettings {
+  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;  ///< all that it was read from, with those of mesh and fibres
+  std::string name;                          ///< with the names of its variant, "-" between them
+  std::string family;                        ///< the name that all variants of a file share
+  std::vector<std::string> variants;         ///< its variant on each axis of the file; empty without variants
+  std::string requirement;
+  bool quasi_static = true;  ///< else dynamic
+  RelaxationSettings relaxation;
+  DynamicsSettings dynamics;
+  std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
 };
 
 }  // namespace sandglass

@@ -22,14 +22,14 @@ void require_supported(const Scene& scene) {
   const auto refuse_if = [&](bool condition, std::string_view rule) {
     if (!condition) return;
     throw InputError(
-        fmt::format("{}: {}, or simulate one body at a time", scene.description.file.string(), rule));
+        fmt::format("{}: {}, or simulate one body at a time", scene.settings.file.string(), rule));
   };
   const bool remembers = std::ranges::any_of(scene.materials.list, is_viscoelastic, &Material::law);
   refuse_if(remembers || !scene.materials.axes.empty(), "a batch takes isotropic elastic laws; choose one");
   if (const BodyForce* other = first_not_dead(scene.forces))
     refuse_if(true, fmt::format("a batch takes dead loads only; remove [[{}]]", other->traits().name));
   refuse_if(!scene.ties.empty(), "a batch takes no ties; choose a mesh without them");
-  refuse_if(scene.description.dynamics.subcycles > 1 || scene.description.dynamics.body_frequency > 0,
+  refuse_if(scene.settings.dynamics.subcycles > 1 || scene.settings.dynamics.body_frequency > 0,
             "a batch takes the step of its stiffest element; set subcycles = 1 and body_frequency = 0");
 }
 
@@ -122,7 +122,7 @@ class Batch<Real>::Parts {
 
   void advance(double seconds) {
     require_in_range("seconds", seconds, Range::positive());
-    const long interval = scene().description.dynamics.check_interval;
+    const long interval = scene().settings.dynamics.check_interval;
     double left = seconds;
     while (left > 0.0) {
       std::vector<Step> steps;

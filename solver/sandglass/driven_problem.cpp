@@ -31,10 +31,10 @@ const typename Sets::mapped_type& find(const Sets& sets, const std::string& name
   throw InputError(fmt::format("set '{}' {}; {}", name, rule, suggestion(name, names_in(sets))));
 }
 
-MethodChoice choice_of(const Case& description, const SimulationSettings& settings, Precision precision) {
+MethodChoice choice_of(const CaseSettings& of_case, const SimulationSettings& settings, Precision precision) {
   require_in_range("step_fraction", settings.step_fraction, {.low = 0.0, .high = 1.0, .high_open = false});
   require_in_range("damping", settings.damping.value_or(0.0), Range::at_least(0.0));
-  MethodChoice choice = method_of(description, settings.method);
+  MethodChoice choice = method_of(of_case, settings.method);
   if (settings.kappa) choice.kappa = settings.kappa;
   choice.precision = precision;
   choice.threads = settings.threads;
@@ -45,9 +45,9 @@ MethodChoice choice_of(const Case& description, const SimulationSettings& settin
 
 DrivenProblem::DrivenProblem(Scene scene, const SimulationSettings& settings, Precision precision)
     : scene_(std::move(scene)),
-      model_(scene_, choice_of(scene_.description, settings, precision)),
+      model_(scene_, choice_of(scene_.settings, settings, precision)),
       driven_(driven_sets(scene_)),
-      damping_(settings.damping.value_or(scene_.description.dynamics.damping)),
+      damping_(settings.damping.value_or(scene_.settings.dynamics.damping)),
       step_fraction_(settings.step_fraction) {
   require_steps(model_);
 }

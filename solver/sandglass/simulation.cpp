@@ -67,7 +67,7 @@ class Simulation<Real>::Parts {
   }
 
   long settle() {
-    const Scene present = scene_at_present();
+    const Scene present = with_load(scene(), to_, time(), factor_to_);
     const Model at_present(present, model().choice());
     LevelsObserver observer;
     const Relaxation answer = relax(at_present, observer);
@@ -106,23 +106,6 @@ class Simulation<Real>::Parts {
     return *std::get<std::unique_ptr<InternalForce<Real>>>(model().internal_force());
   }
 
-  /// The scene whose full load is where driven nodes and forces are to be.
-  Scene scene_at_present() const {
-    Scene present = scene();
-    present.angles = {0.0};
-    std::map<int, Vector> displacements;  // of driven nodes
-    for (std::size_t k = 0; k < to_.size(); ++k) {
-      Constraint& constraint = present.constraints[k];
-      constraint.path = {{to_[k]}};
-      displacements[constraint.node][at(constraint.component)] = to_[k];
-    }
-    present.description.rotations.clear();
-    present.description.displacements.clear();
-    for (const auto& [node, d] : displacements) present.description.displacements.push_back({"driven", d});
-    for (LoadCurve& curve : present.curves) curve = {.share = curve.at(leapfrog_.time(), factor_to_)};
-    return present;
-  }
-
   void arrive() {
     from_ = to_;
     factor_from_ = factor_to_;
@@ -135,7 +118,7 @@ class Simulation<Real>::Parts {
     for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
     factor_ = share * factor_to_ + rest * factor_from_;
     leapfrog_.advance(step, [&](Body<Real>& body) { body.impose(imposed_, factor_, leapfrog_.time()); });
-    return leapfrog_.step() % scene().description.dynamics.check_interval != 0 || check();
+    return leapfrog_.step() % scene().settings.dynamics.check_interval != 0 || check();
   }
 
   /// False as for `take`.

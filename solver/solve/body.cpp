@@ -14,14 +14,14 @@ namespace {
 /// Throws InputError for what is not yet divided among ranks.
 void require_divisible(const Model& model) {
   if (model.choice().ranks->count() == 1) return;
-  const auto& dynamics = model.scene().description.dynamics;
+  const auto& dynamics = model.scene().settings.dynamics;
   const char* what = !model.scene().ties.empty()    ? "ties and hanging nodes are"
                      : dynamics.subcycles > 1       ? "dynamics.subcycles > 1 is"
                      : dynamics.body_frequency != 0 ? "dynamics.body_frequency = 1 is"
                                                     : nullptr;
   if (what == nullptr) return;
   throw InputError(fmt::format("{}: {} not divided among ranks; allowed: one rank with more threads",
-                               model.scene().description.file.string(), what));
+                               model.scene().settings.file.string(), what));
 }
 
 }  // namespace

@@ -109,8 +109,7 @@ class Body {
   /// Lets small elements take small steps alone from the next evaluation on, if the case asks for it; see
   /// Subcycling.
   void subcycle(const Model& model, const Rows<Real>& inverse_masses) {
-    if (model.scene().description.dynamics.subcycles > 1)
-      subcycling_.emplace(model, elements_, inverse_masses);
+    if (model.scene().settings.dynamics.subcycles > 1) subcycling_.emplace(model, elements_, inverse_masses);
   }
 
   /// What lets small elements take small steps; null unless the case asks for it.

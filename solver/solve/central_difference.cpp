@@ -85,7 +85,7 @@ class CentralDifference {
  public:
   CentralDifference(const Model& model, const InternalForce<Real>& elements)
       : model_(model),
-        settings_(model.scene().description.dynamics),
+        settings_(model.scene().settings.dynamics),
         undeformed_step_(sandglass::stable_step(model, NodalField(model.masses().size())).step),
         leapfrog_(model, elements, settings_.damping),
         steady_step_(settings_.damping),
@@ -282,7 +282,7 @@ class CentralDifference {
         "dynamics.time_step = {:.6g} s is above the stable step {:.6g} s, set by element {} at step {}; "
         "allowed: at most the stable step, or 0 to let the program choose",
         settings_.time_step, stable.step, stable.element, step());
-    if (step() == 0) throw InputError(fmt::format("{}: {}", model_.scene().description.file.string(), text));
+    if (step() == 0) throw InputError(fmt::format("{}: {}", model_.scene().settings.file.string(), text));
     throw ComputationError(text);
   }
 
@@ -302,7 +302,7 @@ class CentralDifference {
 template <class Real>
 Motion integrate_body(const Model& model, const InternalForce<Real>& elements, Observer& observer,
                       const Checkpoint* from) {
-  const DynamicsSettings& settings = model.scene().description.dynamics;
+  const DynamicsSettings& settings = model.scene().settings.dynamics;
   CentralDifference<Real> scheme(model, elements);
   Body<Real>& body = scheme.body();
   Adaption<Real> adaption(model, body);

@@ -14,11 +14,15 @@ namespace sandglass {
 
 namespace {
 
+bool moves_without_handle(const Handles& handles) {
+  return std::ranges::any_of(handles.of_constraint, [](int handle) { return handle < 0; });
+}
+
 /// The forces (N) on other nodes caused by rotated sets, which no handle moves, at their final positions.
 NodalField forces_of_rotations(const Model& model, const Handles& handles) {
   const Scene& scene = model.scene();
   NodalField u(scene.mesh.points.size());
-  if (scene.description.rotations.empty()) return u;
+  if (!moves_without_handle(handles)) return u;
   for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
     const Constraint& c = scene.constraints[k];
     if (handles.of_constraint[k] >= 0) continue;
@@ -49,7 +53,7 @@ Rows<Real> superposed(const Model& model, const Layout& layout) {
   const Handles handles = handles_of_sets(scene);
   std::vector<NodalField> loads;
   const std::vector<NodalLoad> dead = dead_loads(scene.forces);
-  if (!dead.empty() || !scene.description.rotations.empty()) {
+  if (!dead.empty() || moves_without_handle(handles)) {
     loads.push_back(forces_of_rotations(model, handles));
     for (const auto& [node, force, curve] : dead) {
       const double factor = scene.curves[curve].at(1.0, 1.0);
@@ -57,11 +61,9 @@ Rows<Real> superposed(const Model& model, const Layout& layout) {
     }
   }
   const CondensedResponse<Real> response(model, handles, all_nodes(scene), loads);
-  std::vector<Vector> d;
-  for (const auto& displacement : scene.description.displacements) d.push_back(displacement.value);
   std::vector<typename CondensedResponse<Real>::Displacement> u(layout.nodes);
   const std::vector<double> full_loads(loads.size(), 1.0);
-  response.displacements(d, u, model.choice().threads, full_loads);
+  response.displacements(final_displacements(scene, handles), u, model.choice().threads, full_loads);
   Rows<Real> rows(layout.rows());
   for (std::size_t r = 0; r < layout.nodes; ++r) {
     const auto& value = u[at(layout.node_of_row[r])];
@@ -82,7 +84,7 @@ double work_of(const Scene& scene, const std::vector<double>& reactions) {
 template <class Real>
 Relaxation answer_of(const Model& model, const InternalForce<Real>& elements, Observer& observer) {
   const Scene& scene = model.scene();
-  const RelaxationSettings& settings = scene.description.relaxation;
+  const RelaxationSettings& settings = scene.settings.relaxation;
   const NodalField no_velocity(scene.mesh.points.size());
   Body<Real> body(model, elements);
   observer.frame(frame_of(body, 0.0, no_velocity));

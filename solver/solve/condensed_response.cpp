@@ -78,8 +78,8 @@ class FreeStiffness {
     std::vector<std::vector<int>> layers;
     std::vector<int> sizes;
     double least = INFINITY;
-    for (const auto& set : imposed_sets(scene.description)) {
-      auto found = layers_from(nodes_next_to(scene, set, components), neighbours);
+    for (const DrivenSet& set : scene.driven) {
+      auto found = layers_from(nodes_next_to(scene, set.name, components), neighbours);
       std::vector<int> found_sizes;
       double work = 0.0;
       for (const auto& layer : found) {
@@ -122,13 +122,6 @@ class FreeStiffness {
                     1e-9 * bytes, 1e-9 * most));
   }
 
-  static std::vector<std::string> imposed_sets(const Case& description) {
-    std::vector<std::string> sets;
-    for (const auto& displacement : description.displacements) sets.push_back(displacement.set);
-    for (const auto& turned : description.rotations) sets.push_back(turned.set);
-    return sets;
-  }
-
   /// The free nodes that share an element with a set.
   static std::vector<int> nodes_next_to(const Scene& scene, const std::string& set,
                                         const std::vector<int>& components) {
@@ -167,19 +160,10 @@ NodalField difference(NodalField a, const NodalField& b) {
 }  // namespace
 
 Handles handles_of_sets(const Scene& scene) {
-  const auto& displacements = scene.description.displacements;
-  std::map<std::pair<int, int>, int> handle;
-  for (std::size_t h = 0; h < displacements.size(); ++h) {
-    for (const int node : scene.sets.at(displacements[h].set)) {
-      for (int i = 0; i < 3; ++i) {
-        if (displacements[h].components[at(i)]) handle.try_emplace({node, i}, static_cast<int>(h));
-      }
-    }
-  }
-  Handles handles{displacements.size(), {}};
-  for (const auto& c : scene.constraints) {
-    const auto found = handle.find({c.node, c.component});
-    handles.of_constraint.push_back(found == handle.end() ? -1 : found->second);
+  Handles handles;
+  for (const Constraint& c : scene.constraints) {
+    handles.of_constraint.push_back(c.group);
+    handles.count = std::max(handles.count, static_cast<std::size_t>(c.group + 1));
   }
   return handles;
 }
@@ -193,6 +177,13 @@ Handles handles_of_nodes(const Scene& scene) {
     handles.of_constraint.push_back(static_cast<int>(handles.count) - 1);
   }
   return handles;
+}
+
+std::vector<Vector> final_displacements(const Scene& scene, const Handles& handles) {
+  std::vector<Vector> d(handles.count);
+  for_each_held(scene, handles,
+                [&](const Constraint& c, std::size_t row) { d[row / 3][row % 3] = final_value(scene, c); });
+  return d;
 }
 
 std::vector<int> all_nodes(const Scene& scene) {
@@ -212,7 +203,7 @@ CondensedResponse<Real>::CondensedResponse(const Model& model, const Handles& ha
   const Scene& scene = model.scene();
   if (scene.constraints.empty()) {
     throw InputError(fmt::format("{}: method '{}' needs an imposed displacement; add a [[displacement]]",
-                                 scene.description.file.string(), model.choice().method));
+                                 scene.settings.file.string(), model.choice().method));
   }
   const Model exact(scene, {.method = model.choice().method, .kappa = model.choice().kappa});
   FreeStiffness K_ff(exact);

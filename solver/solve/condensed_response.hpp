@@ -20,6 +20,9 @@ Handles handles_of_sets(const Scene& scene);
 /// One handle for each node that has a constraint, in the order of the nodes.
 Handles handles_of_nodes(const Scene& scene);
 
+/// The displacements (m) of handles at the full load; components that nothing imposes are zero.
+std::vector<Vector> final_displacements(const Scene& scene, const Handles& handles);
+
 /// Static condensation of a linear model to its driven nodes (Bro-Nielsen and Cotin 1996): with free and
 /// driven components f and d, u_f = -K_ff^-1 K_fd u_d, and the forces on the driven components are S u_d with
 /// S = K_dd - K_df K_ff^-1 K_fd. All answers of the body are superpositions of a few columns, three per

@@ -30,7 +30,7 @@ ErrorEstimate estimate_error(const Model& model, const NodalField& u) {
   }
   search.take_own_pressures();
   search.start(Effort::full);
-  const double enough = std::max(share_left * search.residual(), scene.description.relaxation.tolerance);
+  const double enough = std::max(share_left * search.residual(), scene.settings.relaxation.tolerance);
   while (search.residual() > enough) {
     if (!search.step()) {
       throw ComputationError(

@@ -38,7 +38,7 @@ void require_steps(const Model& model) {
   throw InputError(fmt::format(
       "{}: method '{}' has no dynamics: it superposes static answers; use it on quasi-static cases, or "
       "method '{}'",
-      model.scene().description.file.string(), model.choice().method, "linear"));
+      model.scene().settings.file.string(), model.choice().method, "linear"));
 }
 
 template <class Real>
@@ -56,7 +56,7 @@ StableStep Leapfrog<Real>::stable_step(const Model& model, double given_step) {
     return subcycling->choose_substeps(stable_steps(model, std::move(bounds)), given_step);
   }
   StableStep stable = smallest_of(*body_.layout().team.ranks, sandglass::stable_step(model, bounds));
-  if (model.scene().description.dynamics.body_frequency == 0) return stable;
+  if (model.scene().settings.dynamics.body_frequency == 0) return stable;
   const double square =
       largest_frequency_.square(model.scene().mesh, body_.elements(), body_.ties(), inverse_masses_,
                                 body_.state(), bounds, std::pow(2.0 / stable.step, 2));

@@ -76,10 +76,10 @@ class LoadLevels {
   /// Starts from an undeformed body.
   LoadLevels(const Model& model, const Body<Real>& undeformed, bool forces_depend_on_path)
       : model_(model),
-        chosen_(model.scene().description.relaxation.levels),
+        chosen_(model.scene().settings.relaxation.levels),
         depends_on_path_(forces_depend_on_path),
         equal_(chosen_ > 0 || forces_depend_on_path),
-        turns_(turning_loads(model.scene().description.relaxation.cycles)),
+        turns_(turning_loads(model.scene().settings.relaxation.cycles)),
         longest_(longest_increment(model.scene())),
         load_(equal_ ? first_load(model) : longest_),
         increment_(load_),

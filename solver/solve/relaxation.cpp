@@ -28,7 +28,7 @@ class Search {
   Search(const Model& model, const InternalForce<Real>& elements, Observer& observer)
       : model_(model),
         elements_(elements),
-        settings_(model.scene().description.relaxation),
+        settings_(model.scene().settings.relaxation),
         most_evaluations_(without_stiffness(model) ? std::min(few_evaluations, settings_.max_steps)
                                                    : settings_.max_steps),
         amplification_(largest_amplification(model.scene().materials)),

@@ -39,44 +39,6 @@ std::vector<int> pushed_nodes(const Scene& scene) {
   return nodes;
 }
 
-/// The scene on a part of its mesh, fixed at the rim.
-Scene scene_of(const Scene& whole, const MeshPart& part) {
-  Scene scene = {.description = whole.description,
-                 .mesh = part.mesh,
-                 .materials = materials_of(whole.materials, part.element_of),
-                 .angles = whole.angles,
-                 .curves = whole.curves,
-                 .case_hash = whole.case_hash,
-                 .mesh_hash = whole.mesh_hash};
-  for (const auto& constraint : whole.constraints) {
-    const int node = part.part_of[at(constraint.node)];
-    if (node >= 0 && !part.on_the_rim[at(node)]) {
-      scene.constraints.push_back({node, constraint.component, constraint.path});
-    }
-  }
-  for (std::size_t n = 0; n < part.on_the_rim.size(); ++n) {
-    for (int i = 0; i < 3 && part.on_the_rim[n]; ++i) {
-      scene.constraints.push_back({static_cast<int>(n), i, {}});
-    }
-  }
-  std::sort(scene.constraints.begin(), scene.constraints.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.node, a.component) < std::pair(b.node, b.component);
-  });
-  for (const auto& set : whole.driven) {
-    std::vector<int> nodes;
-    for (const std::size_t k : set.second) {
-      const int node = part.part_of[at(whole.constraints[k].node)];
-      if (node >= 0 && (nodes.empty() || nodes.back() != node)) nodes.push_back(node);
-    }
-    for_each_constraint(scene.constraints, nodes,
-                        [&](std::size_t k, std::size_t /*n*/) { scene.driven[set.first].push_back(k); });
-  }
-  for (const auto& force : whole.forces) {
-    if (auto restricted = force->restricted_to(part)) scene.forces.push_back(std::move(restricted));
-  }
-  return scene;
-}
-
 NodalField on_the_whole(const NodalField& field, const MeshPart& part) {
   NodalField whole(part.part_of.size());
   for (std::size_t n = 0; n < field.size(); ++n) whole[at(part.node_of[n])] = field[n];
@@ -213,7 +175,7 @@ class FirstMotion {
   void find() {
     const NodalField before = u_;
     const MeshPart part = part_of_mesh(scene_.mesh, awake_);
-    const Scene scene = scene_of(scene_, part);
+    const Scene scene = on_part(scene_, part);
     evaluations_ += find_first_answer(Model(scene, choice_), part, u_);
     const double change = largest_distance(u_, before);
     const double falls = std::min(slowest, change / change_), factor = std::max(falls, falls_);
@@ -244,8 +206,11 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
   }
   if (!scene.ties.empty()) {
     throw InputError(
-        "sleep: distances are counted in elements, which in a refined mesh differ in size; allowed: "
-        "a mesh without [[refine]]");
+        scene.coarser.empty()
+            ? "sleep: distances are counted in elements that share nodes, which tied parts do not; allowed: "
+              "a mesh without [[tie]]"
+            : "sleep: distances are counted in elements, which in a refined mesh differ in size; allowed: "
+              "a mesh without [[refine]]");
   }
   if (pushed_nodes(scene).empty()) {
     throw InputError("sleep: everything would sleep; impose a displacement or a force");
@@ -257,7 +222,7 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
   long evaluations = first.evaluations();
   for (double held = 0.5 * share;; held *= 0.6) {
     const MeshPart part = part_of_mesh(scene.mesh, first.around_what_moves(held * unit));
-    const Scene awake = scene_of(scene, part);
+    const Scene awake = on_part(scene, part);
     const Model model(awake, choice);
     if (part.element_of.size() < first.elements()) {
       NodalField neglecting(motion.size());

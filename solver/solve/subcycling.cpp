@@ -129,7 +129,7 @@ void require_bare_faces(const Scene& scene, const FreeNodes& free, const std::ve
 template <class Real>
 Subcycling<Real>::Subcycling(const Model& model, const InternalForce<Real>& elements,
                              const Rows<Real>& inverse_masses)
-    : most_substeps_(model.scene().description.dynamics.subcycles) {
+    : most_substeps_(model.scene().settings.dynamics.subcycles) {
   const Scene& scene = model.scene();
   const State<Real> undeformed = elements.undeformed();
   require_bare_elements(model.choice(), elements.needs_increment(), !undeformed.history.empty());
@@ -138,7 +138,7 @@ Subcycling<Real>::Subcycling(const Model& model, const InternalForce<Real>& elem
   const std::vector<double> steps = stable_steps(model, bounds);
   const FreeNodes free(scene);
   const auto plan_of = [&](const Division& division) {
-    return best_plan(steps, division, most_substeps_, scene.description.dynamics.time_step);
+    return best_plan(steps, division, most_substeps_, scene.settings.dynamics.time_step);
   };
   division_ = divide(scene, free, steps, 0.0);
   Plan best = plan_of(division_);

@@ -71,9 +71,9 @@ Group make_group(const Scene& scene, const OwnMotions& motions, const std::vecto
     if (taken + 2.0 * model * static_cast<double>(elements) > room) break;
     const OwnMotion* motion = motion_of(motions, choice.method);
     group.models.push_back(make_stepped_model(scene, choice, motion));
-    BenchRecord record{scene.description.name, elements, nodes, choice, {}, 0.0, 0.0, {}, {}, {}, {}};
+    BenchRecord record{scene.settings.name, elements, nodes, choice, {}, 0.0, 0.0, {}, {}, {}, {}};
     const SteppedModel& made = *group.models.back();
-    record.force_limit = force_limit(choice.precision, scene.description.materials.front().law);
+    record.force_limit = force_limit(choice.precision, scene.materials.list.front().law);
     record.work = made.work();
     if (motion != nullptr) record.mean_step = motion->mean_step;
     taken += record.work.bytes * static_cast<double>(elements);
@@ -91,7 +91,7 @@ std::vector<BenchRecord> leave_out(const Scene& scene, std::vector<MethodChoice>
     if (!method_named(choice.method).is_condensed) return false;
     const std::string why = fmt::format("left out: factorising {} nodes takes too long; at most {} are timed",
                                         nodes, most_condensed_nodes);
-    records.push_back({scene.description.name, elements, nodes, choice, why, 0.0, 0.0, {}, {}, {}, {}});
+    records.push_back({scene.settings.name, elements, nodes, choice, why, 0.0, 0.0, {}, {}, {}, {}});
     return true;
   });
   return records;

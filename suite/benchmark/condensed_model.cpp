@@ -18,11 +18,9 @@ class CondensedModelOf final : public SteppedModel {
   CondensedModelOf(const Scene& scene, const MethodChoice& choice)
       : model_(scene, choice),
         response_(model_, handles_of_sets(scene), all_nodes(scene)),
-        d_(response_.handles()),
+        d_(final_displacements(scene, handles_of_sets(scene))),
         f_(d_.size()),
-        u_(scene.mesh.points.size()) {
-    for (std::size_t h = 0; h < d_.size(); ++h) d_[h] = scene.description.displacements[h].value;
-  }
+        u_(scene.mesh.points.size()) {}
 
   NodalField forces() override {
     const auto& elements = *std::get<std::unique_ptr<InternalForce<Real>>>(model_.internal_force());
@@ -44,7 +42,7 @@ class CondensedModelOf final : public SteppedModel {
     };
     if (std::all_of(u_.begin(), u_.end(), finite)) return;
     throw ComputationError(fmt::format("bench of {} with {}: displacements are not finite",
-                                       model_.scene().description.name, model_.choice().method));
+                                       model_.scene().settings.name, model_.choice().method));
   }
 
   Work work() const override {

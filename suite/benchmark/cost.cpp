@@ -75,7 +75,7 @@ void time_together(std::span<const CostTask> tasks, std::vector<Timed>& group, s
 
 double checks_per_step(const Timing& timing, const Scene& scene, const OwnMotion* motion) {
   const double check = spread_of(timing.seconds_of_a_check).median;
-  return check / scene.description.dynamics.check_interval + (motion != nullptr ? motion->adaption : 0.0);
+  return check / scene.settings.dynamics.check_interval + (motion != nullptr ? motion->adaption : 0.0);
 }
 
 std::vector<Costing> measure_costs(std::span<const CostTask> tasks, const Proceed& proceed) {

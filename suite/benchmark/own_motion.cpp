@@ -89,7 +89,7 @@ class StepKeeper final : public Observer {
 
 double crossing_time(const Scene& scene) {
   double slowest = std::numeric_limits<double>::infinity();  // m/s
-  for (const auto& material : scene.description.materials) {
+  for (const auto& material : scene.materials.list) {
     const double mu = std::visit([](const auto& law) { return law.shear_modulus(); }, material.law);
     slowest = std::min(slowest, std::sqrt(mu / material.density));
   }
@@ -98,10 +98,10 @@ double crossing_time(const Scene& scene) {
 
 Scene in_own_motion(const Scene& scene) {
   Scene moving = scene;
-  if (!scene.description.quasi_static) return moving;
+  if (!scene.settings.quasi_static) return moving;
   const double crossing = crossing_time(scene), duration = own_motion_crossings * crossing;
-  moving.description.quasi_static = false;
-  moving.description.dynamics = {.duration = duration, .damping = own_motion_damping / crossing, .frames = 1};
+  moving.settings.quasi_static = false;
+  moving.settings.dynamics = {.duration = duration, .damping = own_motion_damping / crossing, .frames = 1};
   for (auto& curve : moving.curves) curve = stretched(std::move(curve), duration);
   return moving;
 }
@@ -113,7 +113,7 @@ OwnMotion follow_own_motion(const Scene& scene, MethodChoice choice, const Proce
   choice.kernel = KernelWidth::pack;
   choice.threads = 1;
   const Scene moving = in_own_motion(scene);
-  const DynamicsSettings& dynamics = moving.description.dynamics;
+  const DynamicsSettings& dynamics = moving.settings.dynamics;
   const Model model(moving, choice);
   const double at_rest =
       dynamics.step_fraction * stable_step(model, NodalField(moving.mesh.points.size())).step;

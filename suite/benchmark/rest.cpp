@@ -23,7 +23,7 @@ class Subject final : private Observer {
 
   /// Relaxes until the case's own end, or for `most` evaluations.
   Relaxation run(std::optional<long> most = {}) {
-    int& max_steps = scene_.description.relaxation.max_steps;
+    int& max_steps = scene_.settings.relaxation.max_steps;
     const int limit = max_steps;
     if (most) max_steps = static_cast<int>(*most);
     Relaxation found = relax(model_, *this);
@@ -61,7 +61,7 @@ long first_below(long last, double limit, const std::function<double(long)>& err
 }
 
 RestRecord time_to_rest(const Scene& scene, const MethodChoice& choice, const Proceed& proceed) {
-  RestRecord record{scene.description.name, choice, "ok"};
+  RestRecord record{scene.settings.name, choice, "ok"};
   Subject subject(scene, choice, proceed);
   Relaxation rest;
   std::vector<double> seconds;

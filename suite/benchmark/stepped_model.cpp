@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "benchmark/condensed_model.hpp"
 #include "benchmark/work.hpp"
+#include "problem/make_scene.hpp"
 #include "solve/adaption.hpp"
 #include "solve/health.hpp"
 #include "solve/leapfrog.hpp"
@@ -69,13 +70,13 @@ class SteppedModelOf final : public SteppedModel {
       sandglass::require_healthy(leapfrog_.body(), 0);
     } catch (const ComputationError& error) {
       throw ComputationError(fmt::format("bench of {} with {}: the initial waves were too large: {}",
-                                         model_.scene().description.name, model_.choice().method,
+                                         model_.scene().settings.name, model_.choice().method,
                                          error.what()));
     }
   }
 
   Work work() const override {
-    return work_of(model_.choice(), model_.scene().description.materials.front().law, elements_.layout(),
+    return work_of(model_.choice(), model_.scene().materials.list.front().law, elements_.layout(),
                    model_.scene().mesh);
   }
 

@@ -31,21 +31,21 @@ void require_methods(const Demand& demand) {
 /// answer on. All others that are looked at are told.
 class Meshes {
  public:
-  Meshes(const Scene& scene, Choice& choice, Evaluator& evaluator)
+  Meshes(CaseOnMesh problem, const Scene& scene, Choice& choice, Evaluator& evaluator)
       : scene_(scene), choice_(choice), evaluator_(evaluator) {
-    choice_.meshes.push_back({{}, scene, choice.reference.u});
-    auto& most = choice_.meshes.front().scene.description.relaxation.max_steps;
+    int& most = problem.description.relaxation.max_steps;
     most = std::min(most, most_evaluations);
+    choice_.meshes.push_back({{}, problem, make_scene(problem), choice.reference.u});
   }
 
   void add_coarser() {
-    const auto* generator = std::get_if<AnyGenerator>(&scene_.description.mesh);
+    const auto* generator = std::get_if<AnyGenerator>(&own().mesh);
     if (generator == nullptr) return;
     for (const auto& coarser : coarser_meshes(*generator)) {
       const std::string difference = counts_text(coarser);
       try {
-        Scene scene = scene_on(coarser, choice_.meshes.front().scene.description);
-        if (!try_out_mesh(difference, scene)) too_coarse_.emplace_back(difference, std::move(scene));
+        const CaseOnMesh problem = on_mesh(coarser, own());
+        if (!try_out_mesh(difference, problem)) too_coarse_.emplace_back(difference, problem);
       } catch (const InputError& error) {
         choice_.others.push_back({difference, {{}, {}, {}, error.what()}});
       }
@@ -55,9 +55,9 @@ class Meshes {
   /// For a motion: each mesh with longer steps, as long as the golden's own element is near enough.
   void add_longer_steps() {
     for (std::size_t n = 0, count = choice_.meshes.size(); n < count; ++n) {
-      for (auto& [steps, scene] : longer_steps(choice_.meshes[n].scene)) {
+      for (const auto& [steps, problem] : longer_steps(choice_.meshes[n].problem)) {
         const LadderMesh& mesh = choice_.meshes[n];
-        if (!try_out({mesh.difference, std::move(scene), mesh.reference, steps})) break;
+        if (!try_out({mesh.difference, problem, make_scene(problem), mesh.reference, steps})) break;
       }
     }
   }
@@ -70,8 +70,8 @@ class Meshes {
     for (const LadderMesh& mesh : choice_.meshes) {
       if (!mesh.own() || own_suffices) enough_elements_ = std::min(enough_elements_, elements_of(mesh.scene));
     }
-    if (!own_suffices) too_coarse_.emplace_front("", own.scene);
-    for (const auto& [difference, scene] : too_coarse_) refine_until_near(difference, scene);
+    if (!own_suffices) too_coarse_.emplace_front("", own.problem);
+    for (const auto& [difference, problem] : too_coarse_) refine_until_near(difference, problem);
   }
 
  private:
@@ -79,8 +79,10 @@ class Meshes {
   static constexpr int most_refinements = 5;
 
   /// Whether the golden's own element can answer on another mesh.
-  bool try_out_mesh(const std::string& difference, const Scene& scene) {
-    return try_out({difference, scene, interpolate(scene_.mesh, choice_.reference.u, scene.mesh.points)});
+  bool try_out_mesh(const std::string& difference, const CaseOnMesh& problem) {
+    Scene scene = make_scene(problem);
+    auto reference = interpolate(scene_.mesh, choice_.reference.u, scene.mesh.points);
+    return try_out({difference, problem, std::move(scene), std::move(reference)});
   }
 
   /// Whether the golden's own element can answer on a mesh; if so, rungs stand on it.
@@ -94,7 +96,7 @@ class Meshes {
 
   /// Ends, too, where a refinement no longer brings the answer nearer by a tenth: the error is the shape's
   /// then.
-  void refine_until_near(const std::string& difference, const Scene& start) {
+  void refine_until_near(const std::string& difference, const CaseOnMesh& start) {
     std::string name = difference;
     const auto done = [&](const auto& search) {
       try {
@@ -113,7 +115,7 @@ class Meshes {
       const std::size_t elements = elements_of(answer->scene());
       if (elements >= enough_elements_) return;
       name = fmt::format("{}{}refined to {} elements", difference, difference.empty() ? "" : ", ", elements);
-      if (try_out_mesh(name, answer->scene())) {
+      if (try_out_mesh(name, answer->problem())) {
         enough_elements_ = elements;
         return;
       }
@@ -123,12 +125,15 @@ class Meshes {
     }
   }
 
+  /// The user's case, for fewer evaluations.
+  const Case& own() const { return choice_.meshes.front().problem.description; }
+
   static std::size_t elements_of(const Scene& scene) { return scene.mesh.cells.size(); }
 
   const Scene& scene_;
   Choice& choice_;
   Evaluator& evaluator_;
-  std::deque<std::pair<std::string, Scene>> too_coarse_;  // by their differences from the user's
+  std::deque<std::pair<std::string, CaseOnMesh>> too_coarse_;  // by their differences from the user's
   std::size_t enough_elements_ = std::numeric_limits<std::size_t>::max();
 };
 
@@ -241,17 +246,18 @@ std::string_view name_of(Outcome outcome) {
   return "not tried";
 }
 
-Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress) {
+Choice choose(const CaseOnMesh& problem, const Demand& demand, const ProgressOf& progress) {
   require_methods(demand);
+  const Scene scene = make_scene(problem);
   std::string stage = "reference";
   const Proceed proceed = [&](double share) { return progress(share, stage); };
   Choice choice{.demand = demand, .reference = make_reference(scene, demand.against, proceed), .meshes = {}};
   Evaluator evaluator(scene, choice.reference, demand.tolerance, proceed);
   stage = "other meshes";
-  Meshes meshes(scene, choice, evaluator);
+  Meshes meshes(problem, scene, choice, evaluator);
   meshes.add_coarser();
-  if (!scene.description.quasi_static) meshes.add_longer_steps();
-  if (demand.against == "truth" && scene.description.quasi_static) meshes.add_refined();
+  if (!scene.settings.quasi_static) meshes.add_longer_steps();
+  if (demand.against == "truth" && scene.settings.quasi_static) meshes.add_refined();
   stage = "time of steps";
   auto rungs = make_ladder(choice.meshes, {demand.methods, demand.tolerance, demand.threads});
   const auto costings = measure_costs(rungs, proceed);

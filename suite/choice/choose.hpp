@@ -54,16 +54,16 @@ struct Choice {
 /// Told what is being done, and asked whether to go on.
 using ProgressOf = std::function<bool(double share, const std::string& remark)>;
 
-/// The cheapest way to compute a scene that is near enough to the reference at every node, within the limits
+/// The cheapest way to compute a case that is near enough to the reference at every node, within the limits
 /// of time on this machine, and with a reserve of load. Coarser meshes are looked at first, with the golden's
 /// own element: an answer that is nearer than its mesh allows is so by luck, and not taken. For a static
 /// answer that is measured against the truth, meshes that are too coarse are refined where that element errs,
 /// until it is near enough. For a motion, meshes are tried with longer steps in the same way
 /// (longer_steps.hpp). Then the rungs are timed, put in the order of their cost per simulated second at
-/// the mean step of the scene's own motion (own_motion.hpp), and climbed. Throws InputError for an unknown
+/// the mean step of the case's own motion (own_motion.hpp), and climbed. Throws InputError for an unknown
 /// method and a stored reference that is not there, ComputationError where the reference finds no answer or
 /// when told to end.
-Choice choose(const Scene& scene, const Demand& demand, const ProgressOf& progress);
+Choice choose(const CaseOnMesh& problem, const Demand& demand, const ProgressOf& progress);
 
 /// Why nothing suffices, in sentences; or what is to be known of the choice.
 std::vector<std::string> remarks(const Choice& choice);

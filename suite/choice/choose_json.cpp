@@ -44,7 +44,7 @@ std::string to_json(const Provenance& provenance, const Scene& scene, const Choi
   Json document;
   for (const auto& [name, value] : provenance) document[name] = value;
   const Demand& demand = choice.demand;
-  document["case"] = scene.description.name;
+  document["case"] = scene.settings.name;
   document["tolerance"] = demand.tolerance;
   document["real_time"] = demand.real_time;
   document["budget_seconds"] = or_null(demand.budget);
@@ -53,7 +53,7 @@ std::string to_json(const Provenance& provenance, const Scene& scene, const Choi
                            {"own_error", or_null(choice.reference.own.largest)},
                            {"note", choice.reference.own.note}};
   document["answers_per_second"] = answers_per_second;
-  const DynamicsSettings motion = in_own_motion(scene).description.dynamics;
+  const DynamicsSettings motion = in_own_motion(scene).settings.dynamics;
   document["own_motion"] = {{"duration", motion.duration}, {"damping", motion.damping}};
   document["chosen"] = or_null(choice.chosen);
   document["remarks"] = remarks(choice);

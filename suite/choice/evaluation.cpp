@@ -13,7 +13,6 @@
 #include "comparison/comparison.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/interpolation.hpp"
-#include "problem/scene_refinement.hpp"
 
 namespace sandglass {
 
@@ -46,13 +45,6 @@ Answer find_answer(const Scene& scene, const MethodChoice& choice, const Proceed
 
 MethodChoice golden_element(int threads) {
   return {.method = std::string(golden_method), .threads = threads};
-}
-
-/// The same scene with a tenth more load.
-Scene with_margin(const Scene& scene) {
-  Case description = scene.description;
-  scale_load(description, margin);
-  return remade(scene, std::move(description));
 }
 
 double smallest_jacobian(const Model& model, const Displacements& history) {
@@ -136,7 +128,7 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
       throw ComputationError(
           fmt::format("{}: the reference, {}, finds no answer: {}; remedy: impose less, refine the mesh, or "
                       "name a stored one with --against",
-                      scene.description.name, reference.name, answer.status));
+                      scene.settings.name, reference.name, answer.status));
     }
     reference.u = std::move(answer.u);
   }
@@ -173,8 +165,8 @@ Evaluation Evaluator::evaluate_answer(const Rung& rung) {
   if (answer.refused || answer.u.empty()) return {.reason = failure_reason(answer)};
   Evaluation found;
   found.smallest_jacobian = smallest_jacobian(Model(scene, rung.choice), answer.u);
-  if (!scene.description.quasi_static)
-    found.per_simulated_second = answer.seconds / scene.description.dynamics.duration;
+  if (!scene.settings.quasi_static)
+    found.per_simulated_second = answer.seconds / scene.settings.dynamics.duration;
   const Displacements u = rung.mesh->own() ? answer.u : interpolate(scene.mesh, answer.u, scene_.mesh.points);
   found.error = accuracy(u, reference_.u, nullptr, reference_.unit).max_relative_error;
   if (answer.failure) {
@@ -192,7 +184,7 @@ Evaluation Evaluator::evaluate_answer(const Rung& rung) {
 
 std::string Evaluator::margin_reason(const Rung& rung) {
   const auto survives = [&](const MethodChoice& choice) {
-    const Scene harder = with_margin(rung.mesh->scene);
+    const Scene harder = scaled(rung.mesh->scene, margin);
     return find_answer(harder, choice, proceed_);
   };
   const Answer beyond = survives(rung.choice);
@@ -208,11 +200,11 @@ Displacements interpolate(const Mesh& mesh, const Displacements& history, const 
   return there;
 }
 
-Scene scene_on(const AnyGenerator& mesh, Case description) {
+CaseOnMesh on_mesh(const AnyGenerator& mesh, Case description) {
   const auto used = used_node_sets(description);
   std::erase_if(description.sets, [&](const NodeSetRule& rule) { return !used.contains(rule.name); });
   description.mesh = mesh;
-  return make_scene(std::move(description), generate_mesh(mesh));
+  return {std::move(description), generate_mesh(mesh)};
 }
 
 }  // namespace sandglass

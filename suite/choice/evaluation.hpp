@@ -61,8 +61,8 @@ class Evaluator {
 /// Displacements (m) on a mesh at other points of the same body, at all times.
 Displacements interpolate(const Mesh& mesh, const Displacements& history, const NodalField& points);
 
-/// The scene of a coarser mesh of the same case. What only tables and pictures need is left out. Throws
-/// InputError where a set of the case finds no node on it.
-Scene scene_on(const AnyGenerator& mesh, Case description);
+/// The same case on a coarser mesh, without the sets that only tables and pictures need, which may have no
+/// node there.
+CaseOnMesh on_mesh(const AnyGenerator& mesh, Case description);
 
 }  // namespace sandglass

@@ -28,14 +28,14 @@ std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const Ladder
     for (const MethodEntry& method : methods()) {
       if (!asked(method.name)) continue;
       MethodChoice plain{.method = std::string(method.name), .threads = plan.threads};
-      if (const std::string_view why = unfit(method, mesh.scene.description.quasi_static); !why.empty()) {
+      if (const std::string_view why = unfit(method, mesh.scene.settings.quasi_static); !why.empty()) {
         if (mesh.own() && mesh.steps.empty()) rungs.push_back({plain, &mesh, std::string(why)});
         continue;
       }
       for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
         plain.precision = precision;
         for (auto& choice :
-             choices_of(method, plain, mesh.scene.description.materials.front().law, plan.tolerance)) {
+             choices_of(method, plain, mesh.scene.materials.list.front().law, plan.tolerance)) {
           rungs.push_back({std::move(choice), &mesh});
         }
       }

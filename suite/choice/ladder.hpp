@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "comparison/accuracy.hpp"
+#include "problem/make_scene.hpp"
 #include "problem/model.hpp"
 
 namespace sandglass {
@@ -13,7 +14,8 @@ namespace sandglass {
 /// The user's own mesh, or another one of the same body, with the steps of the user's case or longer ones.
 struct LadderMesh {
   std::string difference = {};  ///< the counts of elements of a coarser one, what one is refined to, or both
-  Scene scene;
+  CaseOnMesh problem;
+  Scene scene;              ///< of this
   Displacements reference;  ///< the reference's displacements at its nodes, m
   std::string steps = {};   ///< how a motion takes longer steps; empty: it does not
 

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "problem/scene_refinement.hpp"
-
 namespace sandglass {
 
 namespace {
@@ -28,22 +26,22 @@ bool soften(Law& law, double factor) {
 
 }  // namespace
 
-std::vector<LongerSteps> longer_steps(const Scene& scene) {
-  Case description = scene.description;
-  if (description.dynamics.subcycles > 1) return {};
+std::vector<LongerSteps> longer_steps(const CaseOnMesh& problem) {
+  CaseOnMesh longer = problem;
+  if (longer.description.dynamics.subcycles > 1) return {};
   std::vector<LongerSteps> found;
-  if (description.dynamics.body_frequency == 0) {
-    description.dynamics.body_frequency = 1;
-    found.push_back({"body_frequency", remade(scene, description)});
+  if (int& body_frequency = longer.description.dynamics.body_frequency; body_frequency == 0) {
+    body_frequency = 1;
+    found.push_back({"body_frequency", longer});
   }
   for (const double factor : {1.5, 2.5, 5.0, 10.0}) {
-    Case softer = description;
+    CaseOnMesh softer = longer;
     bool softened = false;
-    for (auto& material : softer.materials) {
+    for (auto& material : softer.description.materials) {
       softened |= std::visit([&](auto& law) { return soften(law, factor); }, material.law);
     }
     if (!softened) break;
-    found.push_back({fmt::format("body_frequency, bulk / {:.2g}", factor), remade(scene, std::move(softer))});
+    found.push_back({fmt::format("body_frequency, bulk / {:.2g}", factor), std::move(softer)});
   }
   return found;
 }

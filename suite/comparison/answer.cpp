@@ -39,7 +39,7 @@ class Sampler final : public Observer {
 };
 
 Answer moving_answer(const Model& model, Observer& observer) {
-  Sampler sampler(answer_times(model.scene().description), observer);
+  Sampler sampler(answer_times(model.scene().settings), observer);
   const Motion motion = integrate(model, sampler);
   return {.u = std::move(sampler.u),
           .energies = sampler.energies,
@@ -63,8 +63,8 @@ Answer resting_answer(const Model& model, Observer& observer) {
 }  // namespace
 
 Answer compute_answer(const Model& model, Observer& observer) {
-  return model.scene().description.quasi_static ? resting_answer(model, observer)
-                                                : moving_answer(model, observer);
+  return model.scene().settings.quasi_static ? resting_answer(model, observer)
+                                             : moving_answer(model, observer);
 }
 
 Answer compute_answer(const Scene& scene, const MethodChoice& choice, Observer& observer) {

@@ -89,16 +89,16 @@ void read_comparison_table(TableReader table, const fs::path& folder, Comparison
 
 }  // namespace
 
-Comparison read_comparison(const Case& description) {
+Comparison read_comparison(const CaseSettings& settings) {
   Comparison comparison;
   std::error_code ignored;
-  if (!fs::exists(description.file, ignored)) return comparison;
-  const CaseTables tables = read_case_tables(description.file, description.variants);
-  TableReader reader(tables.root, description.file, "");
-  const fs::path folder = description.file.parent_path();
-  const char* golden = description.quasi_static ? "golden" : "motion";
-  comparison.golden = folder / ".." / "reference" / golden / (description.name + ".h5");
-  comparison.truth = folder / ".." / "reference" / "truth" / (description.name + ".h5");
+  if (!fs::exists(settings.file, ignored)) return comparison;
+  const CaseTables tables = read_case_tables(settings.file, settings.variants);
+  TableReader reader(tables.root, settings.file, "");
+  const fs::path folder = settings.file.parent_path();
+  const char* golden = settings.quasi_static ? "golden" : "motion";
+  comparison.golden = folder / ".." / "reference" / golden / (settings.name + ".h5");
+  comparison.truth = folder / ".." / "reference" / "truth" / (settings.name + ".h5");
   if (auto profile = reader.table("profile")) comparison.profile = read_profile(*profile);
   if (auto table = reader.table("comparison")) read_comparison_table(*table, folder, comparison);
   for (const auto& table : reader.tables("published")) comparison.published.push_back(read_published(table));
@@ -108,7 +108,7 @@ Comparison read_comparison(const Case& description) {
 }
 
 Comparison read_comparison(const Scene& scene) {
-  Comparison comparison = read_comparison(scene.description);
+  Comparison comparison = read_comparison(scene.settings);
   const auto require_set = [&](const char* key, const std::string& set) { node_set(scene, key, set); };
   if (comparison.profile) require_set("profile.set", comparison.profile->set);
   for (const auto& published : comparison.published) require_set("published.set", published.set);

@@ -61,7 +61,7 @@ struct Comparison {
 
 /// Reads the comparison of a case from its file, as strictly as the library reads the case; it is empty for a
 /// case without a file. Throws InputError that names file, line, key, value and rule.
-Comparison read_comparison(const Case& description);
+Comparison read_comparison(const CaseSettings& settings);
 
 /// The same for the case of a scene, in which all named sets must exist.
 Comparison read_comparison(const Scene& scene);

@@ -85,7 +85,7 @@ Symptoms symptoms(const Scene& scene, const Displacements& u, double energy, con
                   double unit) {
   const std::size_t worst = worst_time(u, golden);
   Symptoms told = symptoms(scene, u[worst], energy, golden[worst], unit);
-  if (!scene.description.quasi_static) told.stiffness_ratio = 1.0;
+  if (!scene.settings.quasi_static) told.stiffness_ratio = 1.0;
   return told;
 }
 

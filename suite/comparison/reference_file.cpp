@@ -20,8 +20,8 @@ void require_hash(const Hdf5File& file, const std::string& attribute, const std:
   throw InputError(
       fmt::format("{}: {} is {}, but the case {} has {}; the file was made for another {}. Regenerate it: "
                   "reference/regenerate {}",
-                  file.path().string(), attribute, found, scene.description.file.string(), expected,
-                  attribute == "mesh_hash" ? "mesh" : "case", scene.description.name));
+                  file.path().string(), attribute, found, scene.settings.file.string(), expected,
+                  attribute == "mesh_hash" ? "mesh" : "case", scene.settings.name));
 }
 
 /// Throws InputError unless the answers of a motion are stored for the times of the scene's frames.
@@ -32,8 +32,8 @@ void require_times(const Hdf5File& file, const std::vector<double>& expected, co
   throw InputError(
       fmt::format("{}: has {} times, which are not the ends of the {} frames of {}. Regenerate it: "
                   "reference/regenerate {}",
-                  file.path().string(), found.entries.size(), expected.size(),
-                  scene.description.file.string(), scene.description.name));
+                  file.path().string(), found.entries.size(), expected.size(), scene.settings.file.string(),
+                  scene.settings.name));
 }
 
 }  // namespace
@@ -46,11 +46,11 @@ OwnError read_own_error(const std::filesystem::path& path) {
           file.read_text_attribute("/", "own_error_note")};
 }
 
-std::vector<double> answer_times(const Case& description) {
-  if (description.quasi_static) return {1.0};
-  const DynamicsSettings& settings = description.dynamics;
+std::vector<double> answer_times(const CaseSettings& settings) {
+  if (settings.quasi_static) return {1.0};
   std::vector<double> times;
-  for (int n = 1; n <= settings.frames; ++n) times.push_back(settings.duration * n / settings.frames);
+  const DynamicsSettings& motion = settings.dynamics;
+  for (int n = 1; n <= motion.frames; ++n) times.push_back(motion.duration * n / motion.frames);
   return times;
 }
 
@@ -58,10 +58,10 @@ Displacements read_reference(const std::filesystem::path& path, const Scene& sce
   const auto file = Hdf5File::open(path);
   require_hash(file, "case_hash", scene.case_hash, scene);
   require_hash(file, "mesh_hash", scene.mesh_hash, scene);
-  if (scene.description.quasi_static) {
+  if (scene.settings.quasi_static) {
     return {read_nodal_field(file, "/displacement", scene.mesh.points.size())};
   }
-  const std::vector<double> times = answer_times(scene.description);
+  const std::vector<double> times = answer_times(scene.settings);
   require_times(file, times, scene);
   Displacements u;
   for (std::size_t t = 0; t < times.size(); ++t) {

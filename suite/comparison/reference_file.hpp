@@ -12,7 +12,7 @@ namespace sandglass {
 
 /// The times (s) for which the answer of a case is stored: the ends of the frames of a motion; for a static
 /// answer only the full load.
-std::vector<double> answer_times(const Case& description);
+std::vector<double> answer_times(const CaseSettings& settings);
 
 /// Displacements (m) of a stored golden or truth at the nodes of the scene and the times of its answer.
 /// Throws InputError if the file is missing or broken, or if its hashes or times differ from the scene's; the

@@ -80,7 +80,7 @@ class RecoveredGradients {
 
 /// The mean-dilatation element's answer (m); if u (m) is given, a short search near it.
 NodalField find_answer(Scene scene, const NodalField* u, int threads) {
-  int& most = scene.description.relaxation.max_steps;
+  int& most = scene.settings.relaxation.max_steps;
   if (u != nullptr) most = std::min(most, most_evaluations_near);
   const Model model(scene, {.method = std::string(estimate_method), .threads = threads});
   Observer quiet;
@@ -129,16 +129,21 @@ std::vector<int> largest_share(const std::vector<double>& indicators, double sha
   return elements;
 }
 
-RefinedAnswer::RefinedAnswer(Scene scene, double accuracy, int threads, const NodalField* near)
-    : threads_(threads), original_nodes_(scene.mesh.points.size()), scene_(std::move(scene)) {
-  RelaxationSettings& settings = scene_.description.relaxation;
+RefinedAnswer::RefinedAnswer(CaseOnMesh problem, double accuracy, int threads, const NodalField* near)
+    : threads_(threads), problem_(std::move(problem)) {
+  RelaxationSettings& settings = problem_.description.relaxation;
   settings.tolerance = std::max(settings.tolerance, tolerance_over_accuracy * accuracy);
   settings.check_interval = 1;
+  scene_ = make_scene(problem_);
+  original_nodes_ = scene_.mesh.points.size();
   u_ = before_ = find_answer(scene_, near, threads);
 }
 
 void RefinedAnswer::refine() {
-  Scene finer = refined(scene_, largest_share(error_indicators(scene_, u_), refined_share));
+  CaseOnMesh problem = problem_;
+  problem.description =
+      refined(problem.description, largest_share(error_indicators(scene_, u_), refined_share));
+  Scene finer = make_scene(problem);
   const NodalField guess = prolonged(finer.coarser.front(), u_);
   try {
     before_ = std::exchange(u_, find_answer(finer, &guess, threads_));
@@ -147,6 +152,7 @@ void RefinedAnswer::refine() {
                                        finer.mesh.cells.size(), error.what()),
                            error.breakdown());
   }
+  problem_ = std::move(problem);
   scene_ = std::move(finer);
 }
 
@@ -157,21 +163,21 @@ NodalField RefinedAnswer::limit() const {
   return limit;
 }
 
-AccurateMesh refine_until_within(double accuracy, const Scene& scene, int threads,
+AccurateMesh refine_until_within(double accuracy, const CaseOnMesh& problem, int threads,
                                  std::size_t most_elements) {
   const auto start = std::chrono::steady_clock::now();
-  RefinedAnswer answer(scene, accuracy, threads);
-  const double unit = displacement_unit(scene, answer.u());
+  RefinedAnswer answer(problem, accuracy, threads);
+  const double unit = displacement_unit(answer.scene(), answer.u());
   std::string nearest = "the error of its answer is unknown";
   const auto fail = [&](const std::string& why) {
     return ComputationError(fmt::format("{}: the mesh of {} elements is not refined further, and {}: {}",
-                                        scene.description.name, answer.scene().mesh.cells.size(), nearest,
+                                        problem.description.name, answer.scene().mesh.cells.size(), nearest,
                                         why));
   };
   while (true) {
     if (answer.scene().mesh.cells.size() > most_elements)
       throw fail(fmt::format("it has more than {} elements", most_elements));
-    AccurateMesh before{answer.scene(), answer.u(), {}, 0.0};
+    AccurateMesh before{answer.problem(), answer.scene(), answer.u(), {}, 0.0};
     try {
       answer.refine();
     } catch (const ComputationError& error) {
@@ -182,16 +188,20 @@ AccurateMesh refine_until_within(double accuracy, const Scene& scene, int thread
     const auto took = [&] {
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    if (error(before.u) <= accuracy) return {std::move(before.scene), std::move(before.u), limit, took()};
-    if (error(answer.u()) <= accuracy) return {answer.scene(), answer.u(), limit, took()};
+    if (error(before.u) <= accuracy) {
+      before.limit = limit;
+      before.seconds = took();
+      return before;
+    }
+    if (error(answer.u()) <= accuracy) return {answer.problem(), answer.scene(), answer.u(), limit, took()};
     nearest = fmt::format("the estimated error of its answer is {:.3g} %, not {:.3g} %",
                           100.0 * error(answer.u()), 100.0 * accuracy);
   }
 }
 
-TruthEstimate estimate_truth_error(const Model& model, const NodalField& u) {
+TruthEstimate estimate_truth_error(const CaseOnMesh& problem, int threads, const NodalField& u) {
   constexpr int times = 2;
-  RefinedAnswer refined(model.scene(), accuracy_of_estimate, model.choice().threads, &u);
+  RefinedAnswer refined(problem, accuracy_of_estimate, threads, &u);
   TruthEstimate estimate;
   for (int n = 0; n < times; ++n) {
     try {

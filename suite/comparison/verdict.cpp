@@ -52,7 +52,7 @@ Answer fill_answer(const Scene& scene, const MethodChoice& choice, Verdict& verd
   const StrainEnergies energies = answer.energies;
   verdict.status =
       answer.failure ? fmt::format("failed: {}, residual {:.1e}", answer.status, answer.residual) : "ok";
-  if (scene.description.quasi_static) {
+  if (scene.settings.quasi_static) {
     verdict.search = SearchCost{answer.seconds, answer.steps};
   } else {
     verdict.motion = MotionCost{answer.seconds, answer.steps};
@@ -87,17 +87,17 @@ std::optional<double> golden_to_truth(const Scene& scene, const References& refe
 Verdict run_and_compare(const Scene& scene, const References& references, const MethodChoice& choice,
                         Displacements& u) {
   const MethodEntry& method = method_named(choice.method);
-  const KernelLaw law = kernel_law(scene.description.materials.front().law);
+  const KernelLaw law = kernel_law(scene.materials.list.front().law);
   Verdict verdict{
-      .case_name = scene.description.name,
+      .case_name = scene.settings.name,
       .elements = scene.mesh.cells.size(),
       .method = choice.method,
       .kappa = choice.kappa ? choice.kappa : method.auto_kappa(elastic_law(law), choice.kappa_modulus),
       .kappa_is_auto = method.takes_kappa && !choice.kappa,
       .precision = std::string(name_of(choice.precision)),
       .operations = work_of(method, law, shapes_in(scene.mesh)).operations.total.total(),
-      .family = scene.description.family,
-      .variants = scene.description.variants,
+      .family = scene.settings.family,
+      .variants = scene.settings.variants,
       .published = published_results(scene, references.comparison.published, last(references.truth))};
   StrainEnergies energies;
   try {

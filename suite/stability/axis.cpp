@@ -62,7 +62,7 @@ void set_poisson_ratio(Trial& trial, double value) {
 }
 
 void set_load(Trial& trial, double value) {
-  scale_load(trial.description, value);
+  trial.load = value;
 }
 
 void set_aspect(Trial& trial, double value) {

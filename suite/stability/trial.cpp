@@ -46,16 +46,16 @@ Scene scene_of(const Trial& trial) {
   description.element_sets.clear();
   for (auto& X : mesh.points) shape(X);
   for (auto& displacement : description.displacements) shape(displacement.value);
-  if (trial.noise) scale_load(description, 0.0);
-  Scene scene = make_scene(std::move(description), std::move(mesh), std::move(sets), std::move(element_sets));
+  Scene scene = scaled(make_scene(description, std::move(mesh), std::move(sets), std::move(element_sets)),
+                       trial.noise ? 0.0 : trial.load);
   if (!trial.is_dynamic()) return scene;
-  scene.description.quasi_static = false;
+  scene.settings.quasi_static = false;
   const double crossing = crossing_time(scene);
-  scene.description.dynamics = {.duration = (trial.noise ? 10.0 : 4.0) * crossing,
-                                .ramp_time = 2.0 * crossing,
-                                .step_fraction = trial.step.value_or(usual_step),
-                                .damping = trial.noise ? 0.0 : 4.0 / crossing,
-                                .frames = 1};
+  scene.settings.dynamics = {.duration = (trial.noise ? 10.0 : 4.0) * crossing,
+                             .ramp_time = 2.0 * crossing,
+                             .step_fraction = trial.step.value_or(usual_step),
+                             .damping = trial.noise ? 0.0 : 4.0 / crossing,
+                             .frames = 1};
   if (trial.noise) {
     const double v = noise_velocity(trial);
     for (const int sign : zigzag(scene.mesh)) scene.initial_velocities.push_back({sign * v, 0.0, 0.0});
@@ -64,7 +64,7 @@ Scene scene_of(const Trial& trial) {
 }
 
 double unit_of(const Trial& trial, const Scene& scene, const Displacements& golden) {
-  if (trial.noise) return noise_velocity(trial) * scene.description.dynamics.duration;
+  if (trial.noise) return noise_velocity(trial) * scene.settings.dynamics.duration;
   return displacement_unit(scene, golden);
 }
 
@@ -87,11 +87,12 @@ std::string key_of(const Trial& trial) {
   const auto or_none = [](const std::optional<double>& value) {
     return value ? fmt::to_string(*value) : std::string("none");
   };
-  const auto& [description, choice, aspect, skew, step, noise] = trial;
-  return fmt::format("{} {} kappa {} {} aspect {} skew {} step {} noise {} cycles {} tolerance {} at most {}",
-                     case_hash(description), choice.method, or_none(choice.kappa), name_of(choice.precision),
-                     aspect, skew, or_none(step), or_none(noise), description.relaxation.cycles,
-                     description.relaxation.tolerance, description.relaxation.max_steps);
+  const auto& [description, choice, load, aspect, skew, step, noise] = trial;
+  return fmt::format(
+      "{} {} kappa {} {} load {} aspect {} skew {} step {} noise {} cycles {} tolerance {} at most {}",
+      case_hash(description), choice.method, or_none(choice.kappa), name_of(choice.precision), load, aspect,
+      skew, or_none(step), or_none(noise), description.relaxation.cycles, description.relaxation.tolerance,
+      description.relaxation.max_steps);
 }
 
 }  // namespace sandglass

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "comparison/accuracy.hpp"
-#include "problem/model.hpp"
+#include "problem/make_scene.hpp"
 
 namespace sandglass {
 
@@ -12,6 +12,7 @@ namespace sandglass {
 struct Trial {
   Case description;
   MethodChoice choice;
+  double load = 1.0;                 ///< factor of the case's loads
   double aspect = 1.0;               ///< factor of z of mesh and imposed motions
   double skew = 0.0;                 ///< this times z is added to x
   std::optional<double> step = {};   ///< dynamic: stable steps per step; none: static

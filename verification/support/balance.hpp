@@ -18,7 +18,7 @@ class Balance {
 
   Balance(const Scene& scene, const Law& law)
       : scene_(scene),
-        assembly_(scene.mesh, law, {.kappa = {}, .density = scene.description.materials.front().density}),
+        assembly_(scene.mesh, law, {.kappa = {}, .density = scene.materials.list.front().density}),
         from_(assembly_.numbers(), 0.0),
         histories_(assembly_.template rest<double>()) {
     std::vector<bool> is_free(assembly_.numbers(), true);

@@ -11,8 +11,8 @@
 namespace sandglass::verification {
 
 /// A bar of distorted elements between a foot and a head that moves by d; `fineness` times 3 x 3 x 8 of them.
-inline Scene distorted_bar(const Vector& d, std::array<bool, 3> components = {true, true, true},
-                           int fineness = 1) {
+inline CaseOnMesh distorted_bar_case(const Vector& d, std::array<bool, 3> components = {true, true, true},
+                                     int fineness = 1) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
   Mesh mesh = box({0.1, 0.1, 0.3}, {3 * fineness, 3 * fineness, 8 * fineness});
   const NodeSets sets{{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })},
@@ -23,7 +23,12 @@ inline Scene distorted_bar(const Vector& d, std::array<bool, 3> components = {tr
   }
   description.displacements = {{"foot", {}}, {"head", d, components}};
   description.relaxation.tolerance = 1e-12;
-  return make_scene(description, mesh, sets);
+  return {description, mesh, sets};
+}
+
+inline Scene distorted_bar(const Vector& d, std::array<bool, 3> components = {true, true, true},
+                           int fineness = 1) {
+  return make_scene(distorted_bar_case(d, components, fineness));
 }
 
 inline NodalField relaxed(const Scene& scene, const MethodChoice& choice) {

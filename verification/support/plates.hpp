@@ -8,7 +8,8 @@ namespace sandglass::verification {
 
 /// A block between two plates, one of which moves; `elements` along the axes. With enough of them along z it
 /// is cut up among threads and ranks.
-inline Scene block_between_plates(Case description, bool quasi_static, const std::array<int, 3>& elements) {
+inline CaseOnMesh block_between_plates(Case description, bool quasi_static,
+                                       const std::array<int, 3>& elements) {
   const Mesh mesh = box({0.1, 0.1, 0.4}, elements);
   const auto where = [&](const auto& holds) { return nodes_where(mesh.points, holds); };
   const NodeSets sets{{"foot", where([](const Vector& X) { return X[2] == 0.0; })},
@@ -20,7 +21,7 @@ inline Scene block_between_plates(Case description, bool quasi_static, const std
   description.dynamics.duration = 0.01;
   description.dynamics.check_interval = 4;
   description.dynamics.frames = 2;
-  return make_scene(description, mesh, sets);
+  return {std::move(description), mesh, sets};
 }
 
 }  // namespace sandglass::verification

@@ -101,7 +101,7 @@ inline Answer run(const Scene& scene, const MethodChoice& choice, Observer& obse
                   const Checkpoint* from = nullptr, const NodalField* near = nullptr) {
   return attempt([&]() -> Answer {
     const Model model(scene, choice);
-    if (scene.description.quasi_static) {
+    if (scene.settings.quasi_static) {
       Relaxation found = relax(model, observer, from, near);
       return {.u = std::move(found.u),
               .failure = in_equilibrium(found) ? "" : "no rest",

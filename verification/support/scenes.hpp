@@ -9,6 +9,7 @@
 
 #include "element/methods.hpp"
 #include "mesh/lattice.hpp"
+#include "problem/make_scene.hpp"
 #include "problem/model.hpp"
 #include "problem/observer.hpp"
 #include "support/sample_law.hpp"

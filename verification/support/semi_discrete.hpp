@@ -21,7 +21,7 @@ class SemiDiscrete {
  public:
   SemiDiscrete(const Scene& scene, const Law& law)
       : scene_(scene),
-        assembly_(scene.mesh, law, {.kappa = {}, .density = scene.description.materials.front().density}),
+        assembly_(scene.mesh, law, {.kappa = {}, .density = scene.materials.list.front().density}),
         masses_(assembly_.numbers() / 3, 0.0),
         load_(assembly_.numbers(), 0.0),
         final_(assembly_.numbers(), 0.0),
@@ -31,8 +31,7 @@ class SemiDiscrete {
       for (const auto& xi : gauss_points()) {
         volume += determinant(parent_jacobian(gather(scene.mesh.points, cell), xi));
       }
-      for (const int node : cell)
-        masses_[index(node)] += scene.description.materials.front().density * volume / 8.0;
+      for (const int node : cell) masses_[index(node)] += scene.materials.list.front().density * volume / 8.0;
     }
     for (const auto& [node, force, curve] : dead_loads(scene.forces)) {
       for (std::size_t i = 0; i < 3; ++i) load_[3 * index(node) + i] = force[i];
@@ -56,7 +55,7 @@ class SemiDiscrete {
     std::fill_n(scale.begin() + static_cast<std::ptrdiff_t>(n), n, displacement * frequency);
     const std::vector<double> v = flat(scene_.initial_velocities);
     std::copy(v.begin(), v.end(), y.begin() + static_cast<std::ptrdiff_t>(n));
-    const double duration = scene_.description.dynamics.duration;
+    const double duration = scene_.settings.dynamics.duration;
     y = solved_in_time([this](double t, const std::vector<double>& at) { return rate(t, at); }, std::move(y),
                        duration, tolerance, scale);
     return motion(duration, y);
@@ -68,7 +67,7 @@ class SemiDiscrete {
   double lightest() const { return *std::min_element(masses_.begin(), masses_.end()); }
 
   double relative_time(double t) const {
-    const auto& dynamics = scene_.description.dynamics;
+    const auto& dynamics = scene_.settings.dynamics;
     return std::min(1.0, t / (dynamics.ramp_time > 0.0 ? dynamics.ramp_time : dynamics.duration));
   }
 
@@ -107,7 +106,7 @@ class SemiDiscrete {
       if (!free_[k]) continue;
       result[k] = v[k];
       result[n + k] =
-          (loading(t) * load_[k] - f[k]) / masses_[k / 3] - scene_.description.dynamics.damping * v[k];
+          (loading(t) * load_[k] - f[k]) / masses_[k / 3] - scene_.settings.dynamics.damping * v[k];
     }
     const std::vector<double> history_rates = assembly_.history_rates(u, v, histories);
     result.insert(result.end(), history_rates.begin(), history_rates.end());

@@ -95,7 +95,7 @@ double true_over_bound(const Sample& sample, const typename Pair::Law& law,
   const Model model(scene, {std::string(Pair::Method::name), kappa});
   const double dt = stable_step(model, sample.u).step;
   const MeshTangent<Kernel, typename Pair::Law> tangent(
-      scene.mesh, law, {.kappa = kappa, .density = scene.description.materials.front().density}, sample.u);
+      scene.mesh, law, {.kappa = kappa, .density = scene.materials.list.front().density}, sample.u);
   const auto K = tangent.over_masses(model.masses(), 2.0 / dt);
   const int size = 3 * static_cast<int>(sample.u.size());
   const double truth = Kernel::remembers ? largest_eigenvalue_magnitude(K.data(), size)

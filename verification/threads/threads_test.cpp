@@ -18,7 +18,7 @@ namespace {
 Scene block(const AnyLaw& law, bool quasi_static) {
   Case description = plain_case(law);
   description.relaxation.max_steps = 8;
-  return block_between_plates(std::move(description), quasi_static, {4, 4, 18});
+  return make_scene(block_between_plates(std::move(description), quasi_static, {4, 4, 18}));
 }
 
 template <class Method>
@@ -27,7 +27,7 @@ class ThreadsTest : public ::testing::Test {
   static NodalField answer(const Scene& scene, int threads) {
     Observer silent;
     const Model model(scene, {.method = std::string(Method::name), .threads = threads});
-    return scene.description.quasi_static ? relax(model, silent).u : integrate(model, silent).u;
+    return scene.settings.quasi_static ? relax(model, silent).u : integrate(model, silent).u;
   }
 
   template <class Law>

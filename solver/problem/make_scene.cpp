@@ -1,0 +1,239 @@
+#include "problem/make_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "mesh/hash.hpp"
+#include "mesh/hexahedron.hpp"
+#include "mesh/quality.hpp"
+#include "problem/masses.hpp"
+#include "problem/scene_materials.hpp"
+#include "problem/scene_refinement.hpp"
+#include "problem/scene_ties.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// The paths of the three components of a node at X that turns about a center: with its arm r about the axis
+/// a, (R - 1)(X - c) = -(1 - cos) r + sin a x r.
+std::array<ImposedPath, 3> turning_paths(const ImposedRotation& turned, const Vector& X, const Vector& center,
+                                         std::size_t angle) {
+  const Vector& a = turned.axis;
+  Vector r{};
+  double along = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) along += a[i] * (X[i] - center[i]);
+  for (std::size_t i = 0; i < 3; ++i) r[i] = X[i] - center[i] - along * a[i];
+  std::array<ImposedPath, 3> paths;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    paths[i].share = {turned.displacement[i], -r[i], a[j] * r[k] - a[k] * r[j]};
+    const bool turns = angle > 0 && (paths[i].share[1] != 0.0 || paths[i].share[2] != 0.0);
+    paths[i] = turns ? ImposedPath{paths[i].share, angle} : ImposedPath{{turned.displacement[i]}};
+  }
+  return paths;
+}
+
+std::string described(const ImposedPath& path, const std::vector<double>& angles) {
+  if (path.angle == 0) return fmt::to_string(path.share[0]);
+  return fmt::format("{} turning by {:.6g} rad", path.share[0], angles[path.angle]);
+}
+
+/// Node and component -> path; a second path must equal the first.
+class ImposedPaths {
+ public:
+  ImposedPaths(const Case& description, const std::vector<double>& angles)
+      : description_(description), angles_(angles) {}
+
+  /// `group` as in Constraint.
+  void add(int node, std::size_t component, const ImposedPath& path, const std::string& set, int group = -1) {
+    const Origin origin{path, set, group};
+    const Origin& first = imposed_.try_emplace({node, static_cast<int>(component)}, origin).first->second;
+    if (first.path == path) return;
+    throw InputError(fmt::format(
+        "{}: node {} is given two displacements in {}: {} by set '{}' and {} by set '{}'; a node may be in "
+        "two sets only if both impose the same value",
+        description_.file.string(), node, "xyz"[component], described(first.path, angles_), first.set,
+        described(path, angles_), set));
+  }
+
+  std::vector<Constraint> constraints() const {
+    std::vector<Constraint> all;
+    for (const auto& [key, origin] : imposed_)
+      all.push_back({key.first, key.second, origin.path, origin.group});
+    return all;
+  }
+
+ private:
+  struct Origin {
+    ImposedPath path;
+    std::string set;
+    int group;
+  };
+  const Case& description_;
+  const std::vector<double>& angles_;
+  std::map<std::pair<int, int>, Origin> imposed_;
+};
+
+/// Sets the constraints, their angles and the driven sets.
+void make_constraints(const Case& description, Scene& scene) {
+  const NodalField& points = scene.mesh.points;
+  std::vector<double>& angles = scene.angles;
+  ImposedPaths imposed(description, angles);
+  const auto drive = [&](const std::string& set) {
+    if (std::ranges::find(scene.driven, set, &DrivenSet::name) == scene.driven.end())
+      scene.driven.push_back({set, {}});
+  };
+  int group = 0;
+  for (const auto& displacement : description.displacements) {
+    for (const int node : node_set(scene, "displacement.set", displacement.set)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!displacement.components[i]) continue;
+        imposed.add(node, i, {{displacement.value[i]}}, displacement.set, group);
+      }
+    }
+    drive(displacement.set);
+    ++group;
+  }
+  for (const auto& turned : description.rotations) {
+    const auto& nodes = node_set(scene, "rotation.set", turned.set);
+    const Vector center = turned.center.value_or(mean_at(nodes, points));
+    const auto known = std::find(angles.begin(), angles.end(), turned.angle);
+    const auto angle = static_cast<std::size_t>(known - angles.begin());
+    if (known == angles.end()) angles.push_back(turned.angle);
+    for (const int node : nodes) {
+      const auto paths = turning_paths(turned, points[at(node)], center, angle);
+      for (std::size_t i = 0; i < 3; ++i) imposed.add(node, i, paths[i], turned.set);
+    }
+    drive(turned.set);
+  }
+  scene.constraints = imposed.constraints();
+  std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
+  for (auto& [set, constraints] : scene.driven) {
+    for_each_constraint(scene.constraints, scene.sets.at(set),
+                        [&](std::size_t k, std::size_t /*n*/) { constraints.push_back(k); });
+  }
+}
+
+/// Adds to `sums` what an initial velocity gives to its nodes at X (m): its value, as a wave where there is
+/// one, and spin x (X - centre of mass), m/s.
+void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::vector<int>& nodes,
+                const std::vector<double>& masses, NodalField& sums) {
+  const NodalField& points = scene.mesh.points;
+  Vector centre{};
+  double mass = 0.0;
+  for (const int node : nodes) {
+    mass += masses[at(node)];
+    for (std::size_t i = 0; i < 3; ++i) centre[i] += masses[at(node)] * points[at(node)][i];
+  }
+  for (double& x : centre) x /= mass;
+  const auto [low, high] = bounding_box(values_at(nodes, points));
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (velocity.half_waves[i] == 0 || low[i] < high[i]) continue;
+    throw InputError(
+        fmt::format("{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
+                    "one, 0 stands for no wave",
+                    scene.settings.file.string(), velocity.half_waves[i], "xyz"[i],
+                    velocity.set.value_or("of all nodes"), "xyz"[i]));
+  }
+  for (const int node : nodes) {
+    const Vector& X = points[at(node)];
+    double wave = 1.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int n = velocity.half_waves[i];
+      if (n != 0) wave *= std::cos(std::numbers::pi * n * (X[i] - low[i]) / (high[i] - low[i]));
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      sums[at(node)][i] += wave * velocity.value[i] + velocity.spin[j] * (X[k] - centre[k]) -
+                           velocity.spin[k] * (X[j] - centre[j]);
+    }
+  }
+}
+
+/// Resolves the forces of the case, whose curves become those of the scene.
+void make_forces(const Case& description, Scene& scene, const std::vector<double>& element_masses,
+                 const std::vector<double>& masses) {
+  ForceResolver resolver{.file = scene.settings.file.string(),
+                         .points = scene.mesh.points,
+                         .boundary = scene.boundary,
+                         .sets = scene.sets,
+                         .element_masses = element_masses,
+                         .masses = masses};
+  description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
+  scene.forces = resolver.all();
+  scene.curves = std::move(resolver.curves);
+}
+
+/// The sum of all initial velocities at each node, from their masses (kg); empty where a case has none.
+NodalField make_initial_velocities(const Case& description, const Scene& scene,
+                                   const std::vector<double>& masses) {
+  if (description.velocities.empty()) return {};
+  std::vector<int> body(masses.size());
+  std::iota(body.begin(), body.end(), 0);
+  NodalField sums(masses.size());
+  for (const auto& velocity : description.velocities) {
+    const auto& nodes = velocity.set ? node_set(scene, "velocity.set", *velocity.set) : body;
+    add_motion(scene, velocity, nodes, masses, sums);
+  }
+  return sums;
+}
+
+}  // namespace
+
+Mesh generate_mesh(const AnyGenerator& generator) {
+  return std::visit([](const auto& g) { return g.build(); }, generator);
+}
+
+Scene make_scene(const CaseOnMesh& on_mesh) {
+  const auto& [description, mesh, sets, element_sets] = on_mesh;
+  return make_scene(description, mesh, sets, element_sets);
+}
+
+Scene make_scene(const Case& description, Mesh mesh, NodeSets sets_of_file,
+                 ElementSets element_sets_of_file) {
+  const std::string file = description.file.string();
+  Scene scene;
+  scene.settings = description;
+  scene.case_hash = case_hash(description);
+  scene.mesh = std::move(mesh);
+  scene.sets = std::move(sets_of_file);
+  scene.element_sets = std::move(element_sets_of_file);
+  scene.angles = {0.0};
+  try {
+    require_positive_jacobians(scene.mesh);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+  scene.boundary = boundary_faces(scene.mesh.cells);
+  const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
+  for (const auto& rule : description.sets) {
+    auto nodes = select_nodes(scene.mesh, on_boundary, rule);
+    if (nodes.empty()) {
+      throw InputError(fmt::format(
+          "{}: sets.{} selects no node; its rule must hold for at least one of the {} nodes of the mesh",
+          file, rule.name, scene.mesh.points.size()));
+    }
+    scene.sets[rule.name] = std::move(nodes);
+  }
+  for (const auto& rule : description.element_sets) {
+    scene.element_sets[rule.name] = select_elements(scene.mesh, rule);
+  }
+  scene.materials = make_materials(description, scene);
+  refine(description, scene);
+  make_constraints(description, scene);
+  tie(description, scene);
+  const auto of_elements = element_masses(scene.mesh, scene.materials);
+  const auto masses = lumped_masses(scene.mesh, of_elements);
+  make_forces(description, scene, of_elements, masses);
+  scene.initial_velocities = make_initial_velocities(description, scene, masses);
+  scene.mesh_hash = mesh_hash(scene.mesh, scene.sets, scene.materials.of_element);
+  return scene;
+}
+
+}  // namespace sandglass
