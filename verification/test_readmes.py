@@ -270,7 +270,6 @@ WAYS = {
     "hourglass control": ("solver/element/README.md", "A new hourglass control"),
     "number type": ("solver/math/README.md", "A new number type"),
     "exact solution": ("verification/README.md", "A new exact solution"),
-    "benchmark": ("bench/README.md", "A new benchmark"),
 }
 
 
