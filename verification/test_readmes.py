@@ -268,6 +268,7 @@ WAYS = {
     "case": ("cases/README.md", "A new case"),
     "material law": ("solver/material/README.md", "A new law"),
     "hourglass control": ("solver/element/README.md", "A new hourglass control"),
+    "kind of force": ("solver/forces/README.md", "A new kind of force"),
     "number type": ("solver/math/README.md", "A new number type"),
     "exact solution": ("verification/README.md", "A new exact solution"),
 }

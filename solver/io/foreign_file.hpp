@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/mesh_file.hpp"
+#include "problem/case.hpp"
 
 namespace sandglass {
 

@@ -127,9 +127,9 @@ Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) cons
     for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value;
   }
   ties_.clear(rows);
-  for (const auto& [node, component, path] : scene_.constraints) {
-    const int row = layout.row_of_node[at(node)];
-    rows[at(row)][at(component)] = Real(0);
+  for (const Constraint& constraint : scene_.constraints) {
+    const int row = layout.row_of_node[at(constraint.node)];
+    rows[at(row)][at(constraint.component)] = Real(0);
   }
   return rows;
 }

@@ -225,9 +225,10 @@ class CentralDifference {
   /// Velocities (m/s) at the time of the displacements; those of driven nodes follow from their paths.
   NodalField velocities() const {
     NodalField v = leapfrog_.free_velocities();
-    for (const auto& [node, component, path] : model_.scene().constraints) {
+    for (const Constraint& constraint : model_.scene().constraints) {
+      const ImposedPath& path = constraint.path;
       const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], loading(time())));
-      v[at(node)][at(component)] = loading_rate(time()) * by_factor;
+      v[at(constraint.node)][at(constraint.component)] = loading_rate(time()) * by_factor;
     }
     follow(model_.scene().ties, v);
     return v;

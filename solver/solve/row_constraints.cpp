@@ -16,7 +16,7 @@ RowConstraints<Real>::RowConstraints(const Scene& scene, const Layout& layout)
     : scene_(scene), ranks_(*layout.team.ranks), terms_(scene.angles.size()) {
   const Blocks::Range local = layout.row_blocks.local();
   for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
-    const auto& [node, component, path] = scene.constraints[k];
+    const auto& [node, component, path, group] = scene.constraints[k];
     const auto row = at(layout.row_of_node[at(node)]);
     if (layout.owns(node)) own_.push_back(k);
     if (4 * row < local.first || 4 * row >= local.last) continue;
