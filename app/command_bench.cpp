@@ -173,7 +173,7 @@ int run_rest(const BenchOptions& options) {
 std::vector<MethodChoice> variants_of_bodies(BenchOptions options) {
   if (options.methods.empty()) {
     for (const MethodEntry& method : methods()) {
-      if (method.assemble_batch_double != nullptr) options.methods.emplace_back(method.name);
+      if (method.packed_double.assemble_batch != nullptr) options.methods.emplace_back(method.name);
     }
   }
   return packed_variants(std::move(options));

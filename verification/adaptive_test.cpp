@@ -83,7 +83,7 @@ TEST(Adaptive, every_level_by_itself_is_its_method) {
   const Model adaptive(scene, {"tl-adaptive"});
   const auto& elements = elements_of(adaptive);
   double level = 0.0;
-  for_each_type(TlAdaptive::Levels{}, [&]<class Method>() {
+  for_each_type(LevelsOf<TlAdaptive>{}, [&]<class Method>() {
     SCOPED_TRACE(Method::name);
     const Model fixed(scene, {std::string(Method::name)});
     State<double> state = state_at(elements, u), expected = state_at(elements_of(fixed), u);

@@ -278,7 +278,7 @@ TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing
 /// A number that would be ignored is refused.
 TYPED_TEST(AssemblyTest, kappa_is_taken_or_refused) {
   const MethodChoice choice{std::string(TypeParam::name), 0.037};
-  if (TypeParam::Hourglass::takes_kappa) {
+  if (TypeParam::Hourglass::traits.takes_kappa) {
     EXPECT_NO_THROW(make_internal_force(box({1, 1, 1}, {1, 1, 1}), law, choice));
   } else {
     EXPECT_THROW(make_internal_force(Mesh{}, law, choice), InputError);

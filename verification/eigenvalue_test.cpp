@@ -169,7 +169,8 @@ TYPED_TEST(EigenvalueTest, bending_and_torsion_energies) {
       EXPECT_GT(torsion, 0.05);
       if constexpr (integration_points<Method> == 8) {
         const double mu = law.shear_modulus();
-        const double lambda = Method::Kinematics::averages_pressure ? -2.0 / 3.0 * mu : lame_lambda(law);
+        const double lambda =
+            Method::Kinematics::traits.averages_pressure ? -2.0 / 3.0 * mu : lame_lambda(law);
         const double normal = lambda + 2 * mu;  // l_j = l_k = 1/2, l_i = length/2, all over l_j
         const double expected =
             (normal + mu * length * length - lambda * lambda / (normal + mu)) / young_modulus_of(law);
@@ -228,7 +229,7 @@ TYPED_TEST(EigenvalueTest, step_is_safe_for_bent_cubes) {
 /// A user's kappa may let the hourglass modes set the step of deformed elements.
 TYPED_TEST(EigenvalueTest, step_is_safe_with_a_stiff_hourglass_control) {
   using Law = typename TypeParam::Law;
-  if (!TypeParam::Method::Hourglass::takes_kappa) return;
+  if (!TypeParam::Method::Hourglass::traits.takes_kappa) return;
   for (int n = 0; n < 60; ++n) {
     const Sample sample = random_sample<TypeParam>(this->random, {1, 1, 1}, shapes[index(n) % shapes.size()],
                                                    strongly_deformed);

@@ -195,7 +195,7 @@ TYPED_TEST(FormulationTest, node_ordering_does_not_matter) {
 TYPED_TEST(FormulationTest, kappa_scales_the_hourglass_energy) {
   using Formulation = typename TypeParam::Formulation;
   using Method = typename TypeParam::Method;
-  if constexpr (Method::Hourglass::takes_kappa) {
+  if constexpr (Method::Hourglass::traits.takes_kappa) {
     const auto s = this->sample(0);
     const auto u = this->large_displacements(s.X);
     const auto energy = [&](const HourglassSettings& settings) {

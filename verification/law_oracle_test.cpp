@@ -148,8 +148,8 @@ TYPED_TEST(LawOracleTest, agrees_with_the_textbook_form_in_long_double) {
       const double oracle_error = 1e-18 * (law.bulk_modulus() + law.shear_modulus());
       EXPECT_LT(difference(law.piola(H), whole), 64 * eps * size * law.bulk_modulus() + oracle_error);
       // What is isochoric is as stiff as it is sheared; without the split K times |H|^2 stays.
-      const double stiffness =
-          tangent_bound(law, H).gradient + (TypeParam::splits_volume ? 0.0 : size * law.bulk_modulus());
+      const double stiffness = tangent_bound(law, H).gradient +
+                               (TypeParam::traits.splits_volume ? 0.0 : size * law.bulk_modulus());
       EXPECT_LT(difference(law.isochoric_piola(H), isochoric),
                 64 * eps * size * stiffness + 4 * oracle_error);
     }
@@ -274,7 +274,7 @@ TEST(StVenantKirchhoff, uniaxial_strain) {
       EXPECT_NEAR(P(1, 1), lambda * (s * s - 1) / 2, tolerance(law, H));
     }
     // It gives way at the stretch that it declares: the tangent of that stress is zero there.
-    const auto H = diagonal_gradient(StVenantKirchhoff::softening_stretch, 1.0, 1.0);
+    const auto H = diagonal_gradient(StVenantKirchhoff::traits.softening_stretch, 1.0, 1.0);
     EXPECT_NEAR(slope(law.piola(along(H, unit<3, 3>(0))))(0, 0), 0.0, 1e-14 * p_wave_modulus(law));
   }
 }

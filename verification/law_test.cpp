@@ -86,7 +86,7 @@ TYPED_TEST(LawTest, energy_splits_into_isochoric_and_volumetric) {
     EXPECT_LT(largest_entry(law.piola(H) - stress), this->tolerance(law, H));
     // An isochoric energy does not see a change of size: F and 1.3 F have the same. A law that does not split
     // calls isochoric what is so at rest only.
-    if (!TypeParam::splits_volume) continue;
+    if (!TypeParam::traits.splits_volume) continue;
     const auto larger = 1.3 * (identity<double>() + H) - identity<double>();
     EXPECT_NEAR(law.isochoric_energy(larger), law.isochoric_energy(H), this->tolerance(law, H));
   }
@@ -282,7 +282,7 @@ TYPED_TEST(LawTest, kirchhoff_stress_is_that_of_piola) {
       const auto expected = law.weighted_piola(V, H, change, p) * transpose(identity<double>() + H);
       const auto difference = law.weighted_kirchhoff(V, H, change, p) - expected;
       // Without the bulk modulus, which may hide nothing; a law that does not split has it times |H|^2.
-      const double unsplit = TypeParam::splits_volume ? 0.0 : size * size * law.bulk_modulus();
+      const double unsplit = TypeParam::traits.splits_volume ? 0.0 : size * size * law.bulk_modulus();
       EXPECT_LT(largest_entry(difference), 256 * eps * (size * tangent_bound(law, H).gradient + unsplit));
     }
   }

@@ -122,7 +122,7 @@ TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
 /// A body that is turned with its fibres is the same body: its forces turn along, and its elements have the
 /// same energies and bounds, and the same levels. Fibres that stay behind make it another one.
 TYPED_TEST(MaterialsTest, fibres_turn_with_the_body) {
-  if (TestFixture::Method::Kinematics::needs_coordinates || is_linear<typename TestFixture::Method>) {
+  if (TestFixture::Method::Kinematics::traits.needs_coordinates || is_linear<typename TestFixture::Method>) {
     GTEST_SKIP() << "the method is not objective";
   }
   const Mesh mesh = box({0.1, 0.12, 0.2}, {3, 4, 5});

@@ -203,7 +203,7 @@ Verdict simulation(const Problem& problem, const Answer& own, RandomGeometry& /*
 /// batches.
 Verdict batch(const Problem& given, const Answer& /*own*/, RandomGeometry& random) {
   Problem problem = given;
-  while (problem.method().assemble_batch_double == nullptr) {
+  while (problem.method().packed_double.assemble_batch == nullptr) {
     const double place = random.uniform(0.0, static_cast<double>(methods().size()));
     problem.choice = {.method = std::string(methods()[static_cast<std::size_t>(place)].name)};
   }

@@ -20,7 +20,7 @@ TYPED_TEST_SUITE(StiffeningTest, LawTypes, EntryName);
 /// along changes of shape in a rotated frame: a trace does not depend on it. Differences of the stress and of
 /// the energy err by some 1e-5 of their sums.
 TYPED_TEST(StiffeningTest, is_the_mean_curvature_of_the_energy) {
-  if (!TypeParam::splits_volume) return;
+  if (!TypeParam::traits.splits_volume) return;
   const double s = std::sqrt(0.5), t = std::sqrt(1.0 / 6.0), step = 1e-4;
   const std::vector<Tensor<double>> changes{{{s, 0, 0, 0, -s, 0, 0, 0, 0}},
                                             {{t, 0, 0, 0, t, 0, 0, 0, -2 * t}},

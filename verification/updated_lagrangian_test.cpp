@@ -212,7 +212,7 @@ TYPED_TEST(UpdatedLagrangianTest, node_ordering_does_not_matter) {
 TYPED_TEST(UpdatedLagrangianTest, bound_of_the_stable_step_holds) {
   using DualElement = SingleElement<typename TestFixture::Kernel, NeoHookean, D>;
   for (const double kappa : {0.1, 1.0}) {
-    if (!TypeParam::Hourglass::takes_kappa && kappa != 0.1) continue;
+    if (!TypeParam::Hourglass::traits.takes_kappa && kappa != 0.1) continue;
     double mean = 0.0;
     constexpr int samples = 100;
     for (int n = 0; n < samples; ++n) {
@@ -220,7 +220,7 @@ TYPED_TEST(UpdatedLagrangianTest, bound_of_the_stable_step_holds) {
       const double density = 1000.0;
       const auto sample = sample_law<NeoHookean>(poisson_ratios[index(n) % poisson_ratios.size()]);
       HourglassSettings settings{.density = density};
-      if (TypeParam::Hourglass::takes_kappa) settings.kappa = kappa;
+      if (TypeParam::Hourglass::traits.takes_kappa) settings.kappa = kappa;
       const auto constants = TestFixture::Kernel::precompute(X, sample, settings);
       typename TestFixture::Element at_rest(X, sample, constants);
       at_rest.to({});

@@ -254,7 +254,7 @@ struct SameStiffness {
 template <class Method>
 SameStiffness same_stiffness(const Law& law) {
   SameStiffness kappa;
-  if constexpr (Method::Hourglass::takes_kappa) {
+  if constexpr (Method::Hourglass::traits.takes_kappa) {
     const NeoHookean relaxed = long_term_law(law);
     kappa.relaxed = Method::Hourglass::auto_kappa(relaxed);
     kappa.viscoelastic = *kappa.relaxed * p_wave_modulus(relaxed) / p_wave_modulus(law);
@@ -265,7 +265,7 @@ SameStiffness same_stiffness(const Law& law) {
 /// Whether two laws can be compared at strains that are not uniform: not where a control follows the
 /// instantaneous moduli and nothing can be done about it.
 template <class Method>
-inline constexpr bool comparable = !Method::Hourglass::active || Method::Hourglass::takes_kappa;
+inline constexpr bool comparable = !Method::Hourglass::traits.active || Method::Hourglass::traits.takes_kappa;
 
 Scene bent_block(const AnyLaw& law) {
   Case description = plain_case(law);

@@ -217,7 +217,7 @@ TYPED_TEST(ViscoelasticTest, stored_energy_is_that_of_the_springs) {
     const double W = elastic.isochoric_energy(H);
     EXPECT_NEAR((point.energy(H) - elastic.volumetric_energy(jacobian_minus_one(H))) / W, share, 1e-6);
   }
-  if (!TypeParam::splits_volume) return;  // its isochoric part alone may be negative
+  if (!TypeParam::traits.splits_volume) return;  // its isochoric part alone may be negative
   point = {law};
   for (int n = 0; n < 200; ++n) {
     const auto large = this->large_gradient();

@@ -64,15 +64,10 @@ def why_empty(subject, reference):
 
 
 def solver_methods(header=METHODS_HEADER):
-    """Names of the solver's methods in the order of its list, as in the verdicts."""
-    header = Path(header)
-    text = header.read_text(encoding="utf-8")
-    each = "".join(
-        file.read_text(encoding="utf-8") for file in header.with_suffix("").glob("*.hpp")
-    )
-    names = dict(re.findall(r'struct (\w+) \{[^}]*?\bname = "([^"]+)"', each))
-    listed = re.search(r"using Methods = TypeList<([^>]*)>", text)[1]
-    return tuple(names[word] for word in re.findall(r"\w+", listed))
+    """Names of the solver's methods in the order of its list, as in the verdicts: TlNone is tl-none."""
+    listed = re.search(r"using Methods =\s*TypeList<([^>]*)>", Path(header).read_text(encoding="utf-8"))
+    types = re.findall(r"\w+", listed[1])
+    return tuple(re.sub(r"(?<=.)(?=[A-Z])", "-", name).lower() for name in types)
 
 
 class Palette:

@@ -4,7 +4,6 @@
 #include "assembly/method_entry.hpp"
 #include "mesh/quality.hpp"
 
-/// The definition of `assemble`, for the source files of each method; see CMakeLists.txt.
 namespace sandglass {
 
 /// The elements of a mesh in the form of the method itself.
@@ -28,6 +27,7 @@ ForceOf<Number> assemble_form(const Mesh& mesh, const Materials& materials, cons
   return std::make_unique<Loop>(mesh, materials, std::get<std::vector<CalledLaw>>(laws), settings, team);
 }
 
+/// The elements of a mesh, for `MethodEntry`.
 template <class Method, class Number>
 ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
                          const Team& team) {
@@ -37,12 +37,6 @@ ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const Hou
     }
   }
   return assemble_form<Method, Number>(mesh, materials, settings, team);
-}
-
-template <class Method>
-ForceOf<double> assemble_scalar(const Mesh& mesh, const Materials& materials,
-                                const HourglassSettings& settings, const Team& team) {
-  return assemble<Method, double>(mesh, materials, settings, team);
 }
 
 }  // namespace sandglass

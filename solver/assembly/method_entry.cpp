@@ -10,9 +10,39 @@
 
 namespace sandglass {
 
+namespace {
+
+template <class Method>
+MethodEntry entry_of() {
+  using Hourglass = typename Method::Hourglass;
+  using Owner = KernelOwner<Method>;
+  Kernels<double> (*const scalar)() = &scalar_kernels<Owner>;
+  return {.name = Method::name,
+          .summary = Method::summary,
+          .integration_points = integration_points<Method>,
+          .controls_hourglass = integration_points<Method> > 1 || Hourglass::traits.active,
+          .damps_only = DampsOnly<Hourglass>,
+          .takes_kappa = Hourglass::traits.takes_kappa,
+          .kappa_affects_equilibrium = kappa_affects_equilibrium<Method>,
+          .pressure_varies = pressure_varies<Method>,
+          .is_linear = is_linear<Method>,
+          .is_condensed = is_condensed<Method>,
+          .knows_viscoelasticity = knows_law<Method, Viscoelastic<CalledLaw>>,
+          .levels = level_names<Method>(),
+          .packed_double = kernels<Owner, Pack<double>>(),
+          .packed_float = kernels<Owner, Pack<float>>(),
+          .scalar_double = scalar != nullptr ? scalar() : Kernels<double>{},
+          .auto_kappa = [](const CalledLaw& law, KappaModulus modulus) -> std::optional<double> {
+            if constexpr (Hourglass::traits.takes_kappa) return Hourglass::auto_kappa(law, modulus);
+            return std::nullopt;
+          }};
+}
+
+}  // namespace
+
 const std::vector<MethodEntry>& methods() {
   static const std::vector<MethodEntry> entries = []<class... Method>(TypeList<Method...>) {
-    return std::vector<MethodEntry>{method_entry<Method>()...};
+    return std::vector<MethodEntry>{entry_of<Method>()...};
   }(Methods{});
   return entries;
 }

@@ -25,9 +25,15 @@ template <class Number>
 using AssembleBatch = std::unique_ptr<BatchForce<Number>>(const Mesh&, const Materials&,
                                                           const HourglassSettings&);
 
-/// A method at run time. Its definition at compile time is in `element/methods/`; its kernels are called
-/// through the functions here and compiled in source files of their own, so that a change of one method
-/// recompiles nothing else.
+/// What a method computes with on a number type.
+template <class Number>
+struct Kernels {
+  Assemble<Number>* assemble = nullptr;
+  AssembleBatch<Number>* assemble_batch = nullptr;  ///< none unless the method states `Batches`
+};
+
+/// A method at run time. Its definition at compile time is in `element/methods/`; its kernels are compiled in
+/// source files of their own, so that a change of one method recompiles no other.
 struct MethodEntry {
   std::string_view name;
   std::string_view summary;
@@ -43,12 +49,9 @@ struct MethodEntry {
   std::vector<std::string_view> levels =
       {};  ///< of an adaptive method, methods from the cheapest on; else none
 
-  Assemble<Pack<double>>* assemble_packed_double = nullptr;
-  Assemble<Pack<float>>* assemble_packed_float = nullptr;
-  Assemble<double>* assemble_scalar_double = nullptr;  ///< none unless a program links `sandglass_scalar`
-
-  AssembleBatch<Pack<double>>* assemble_batch_double = nullptr;  ///< none unless the method declares it
-  AssembleBatch<Pack<float>>* assemble_batch_float = nullptr;
+  Kernels<Pack<double>> packed_double = {};
+  Kernels<Pack<float>> packed_float = {};
+  Kernels<double> scalar_double = {};  ///< none unless a program links `sandglass_scalar`
 
   /// The value of `auto` for kappa; none if the method takes no kappa.
   std::optional<double> (*auto_kappa)(const CalledLaw&, KappaModulus) = nullptr;
@@ -57,25 +60,14 @@ struct MethodEntry {
   bool adapts() const { return !levels.empty(); }
 };
 
-/// The elements of a mesh with a method, for `MethodEntry`. Defined in `assembly/assemble.hpp`.
+/// The kernels of a method, none if they are those of another one. Defined in `assembly/kernels.hpp`.
 template <class Method, class Number>
-ForceOf<Number> assemble(const Mesh& mesh, const Materials& materials, const HourglassSettings& settings,
-                         const Team& team);
+Kernels<Number> kernels();
 
-/// The same, one element at a time, to compare with. Weak: null in a program without `sandglass_scalar`, for
-/// these kernels serve tests and benchmarks alone. Defined in `assembly/assemble.hpp`.
+/// The same for one element at a time, to compare with. Weak: null in a program without `sandglass_scalar`,
+/// for these kernels serve tests and benchmarks alone.
 template <class Method>
-[[gnu::weak]] ForceOf<double> assemble_scalar(const Mesh& mesh, const Materials& materials,
-                                              const HourglassSettings& settings, const Team& team);
-
-/// The elements of bodies side by side, for `MethodEntry`. Defined in `assembly/batch_force.hpp`.
-template <class Method, class Number>
-std::unique_ptr<BatchForce<Number>> assemble_batch(const Mesh& mesh, const Materials& materials,
-                                                   const HourglassSettings& settings);
-
-/// The entry of a method. Defined in `assembly/method_entry_of.hpp`.
-template <class Method>
-MethodEntry method_entry();
+[[gnu::weak]] Kernels<double> scalar_kernels();
 
 /// All methods, in the order of the list in `element/methods.hpp`.
 const std::vector<MethodEntry>& methods();

@@ -53,10 +53,7 @@ struct EightPoint {
     T V;                      ///< reference volume, m^3
   };
 
-  static constexpr int points = 8;
-  static constexpr bool needs_increment = false;
-  static constexpr bool needs_coordinates = false;
-  static constexpr bool averages_pressure = Pressure::shared;
+  static constexpr KinematicsTraits traits{.points = 8, .averages_pressure = Pressure::shared};
   using NoControl = NoHourglassControl;
 
   static Element<double> precompute(const NodalVectors<double>& X) { return geometry(to_modes(X)); }

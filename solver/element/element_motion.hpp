@@ -1,12 +1,13 @@
 #pragma once
 
 #include "element/modes.hpp"
+#include "element/traits.hpp"
 
 namespace sandglass {
 
 /// The motion of an element's nodes, in modes. A Total Lagrangian element needs only the displacements;
-/// kinematics that need more declare `needs_increment`, `needs_coordinates` or `averages_over_nodes`, and
-/// only what is declared is gathered.
+/// kinematics that need more state `needs_increment`, `needs_coordinates` or `averages_over_nodes`, and only
+/// what they need is gathered.
 template <class T>
 struct ElementMotion {
   Modes<T> u;                   ///< displacements, m

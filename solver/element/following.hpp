@@ -7,24 +7,20 @@
 
 namespace sandglass {
 
-/// A control that follows the mean deformation declares `follows_deformation = true`. Its energy E0 at small
+/// A control that follows the mean deformation states `follows_deformation`. Its energy E0 at small
 /// displacements, which must be quadratic, becomes
 ///   E(q, F) = phi E0(r),  r_a = F^-1 q_a,  phi = J^(-2/3) tr(F^T F) / 3.
 /// Here r is q in base vectors that move with the body: the volume change due to the fluctuation is tr(F^-1
 /// grad w) = sum_a r_a . grad w_a, so that a nearly incompressible element behaves as when undeformed,
 /// however far it is deformed and rotated. phi is the growth of the isochoric neo-Hookean energy of
 /// fluctuations: the mean of its exact second variation over all fluctuations F^-1 grad w of one size is phi
-/// times the mean in the undeformed state. A control whose energy grows in this way declares
-/// `grows_with_deformation = true`; for others phi = 1. Forces are the derivatives of E, so that momentum and
+/// times the mean in the undeformed state. A control whose energy grows in this way states
+/// `grows_with_deformation`; for others phi = 1. Forces are the derivatives of E, so that momentum and
 /// angular momentum are balanced.
 template <class Hourglass>
-concept FollowsDeformation = requires {
-  requires Hourglass::follows_deformation;
-};
+concept FollowsDeformation = Hourglass::traits.follows_deformation;
 template <class Hourglass>
-concept GrowsWithDeformation = FollowsDeformation<Hourglass> && requires {
-  requires Hourglass::grows_with_deformation;
-};
+concept GrowsWithDeformation = FollowsDeformation<Hourglass> && Hourglass::traits.grows_with_deformation;
 
 /// The mean deformation in the form that a control uses to follow it.
 template <class T>

@@ -11,16 +11,6 @@
 
 namespace sandglass {
 
-/// The number of integration points of a kinematics: `points`, or one if it is not declared.
-template <class Kinematics>
-constexpr int integration_points_of() {
-  if constexpr (requires { Kinematics::points; }) {
-    return Kinematics::points;
-  } else {
-    return 1;
-  }
-}
-
 /// The constants of an element, which do not depend on the law's type.
 template <class Kinematics, class Hourglass, class T>
 struct ElementConstants {
@@ -42,35 +32,29 @@ struct Formulation {
   template <class T>
   struct History {
     [[no_unique_address]] typename Hourglass::template History<T> hourglass;
-    [[no_unique_address]] PointMemories<MemoryOf<Law, T>, integration_points_of<Kinematics>()> law;
+    [[no_unique_address]] PointMemories<MemoryOf<Law, T>, Kinematics::traits.points> law;
   };
 
   static constexpr bool remembers = !std::is_empty_v<History<double>>;
-  static constexpr bool needs_increment = Kinematics::needs_increment;
-  static constexpr bool needs_coordinates = Kinematics::needs_coordinates;
+  static constexpr bool needs_increment = Kinematics::traits.needs_increment;
+  static constexpr bool needs_coordinates = Kinematics::traits.needs_coordinates;
 
   /// Whether the force needs the dilatation around each node: the assembly then makes two passes over the
-  /// elements, the first for their `nodal_volumes`. False unless the kinematics declare it.
-  static constexpr bool averages_over_nodes = [] {
-    if constexpr (requires { Kinematics::averages_over_nodes; }) return Kinematics::averages_over_nodes;
-    return false;
-  }();
+  /// elements, the first for their `nodal_volumes`.
+  static constexpr bool averages_over_nodes = Kinematics::traits.averages_over_nodes;
 
   /// The number of passes over the elements in a step.
   static constexpr int passes = averages_over_nodes ? 2 : 1;
 
   /// Whether the element accepts the reference coordinates X (m) of a hexahedron with a positive measure at
-  /// all Gauss points. True unless the kinematics declare a condition.
+  /// all Gauss points. True unless the kinematics state a condition.
   static bool accepts(const NodalVectors<double>& X) {
-    if constexpr (requires { Kinematics::accepts(X); }) return Kinematics::accepts(X);
+    if constexpr (!demand.empty()) return Kinematics::accepts(X);
     return true;
   }
 
   /// The condition of `accepts` as text.
-  static constexpr std::string_view demand = [] {
-    if constexpr (requires { Kinematics::demand; }) return Kinematics::demand;
-    return std::string_view{};
-  }();
+  static constexpr std::string_view demand = Kinematics::traits.demand;
 
   /// The constants of an element with reference coordinates X (m), whose law may have its own axes.
   template <class SetupLaw>
@@ -126,10 +110,10 @@ struct Formulation {
     return Kinematics::volume(motion, element.body);
   }
 
-  /// The smallest det F at the integration points: the volume ratio unless the kinematics declare it.
+  /// The smallest det F at the integration points; at a single one the volume ratio.
   template <class T>
   static T smallest_jacobian(const ElementMotion<T>& motion, const Element<T>& element) {
-    if constexpr (requires { Kinematics::smallest_jacobian(motion, element.body); }) {
+    if constexpr (Kinematics::traits.points > 1) {
       return Kinematics::smallest_jacobian(motion, element.body);
     } else {
       return mean_jacobian(motion, element);
@@ -149,9 +133,7 @@ struct Formulation {
   template <class T, class LawAtStep>
   static Tensor<T> mean_stress(const ElementMotion<T>& motion, const Modes<T>& X, const Element<T>& element,
                                History<T> history, const LawAtStep& law) {
-    constexpr bool small_strain = requires {
-      Kinematics::small_strain;
-    };
+    constexpr bool small_strain = Kinematics::traits.small_strain;
     const auto now = Kinematics::template deformation<NoHourglassControl>(motion, element.body);
     const auto moment = [&](const auto& point_law) {
       const NoHourglassControl::Element<T> control{};

@@ -25,8 +25,7 @@ namespace sandglass {
 /// mirror maps a cuboid to itself and its alternate corners to the others, nor can it rotate with an element
 /// of equal edges.
 struct FourPoint : OnePoint {
-  static constexpr int points = 4;
-  static constexpr bool averages_pressure = true;
+  static constexpr KinematicsTraits traits{.points = 4, .averages_pressure = true};
 
   /// What is constant in time: the data of one point, and the side of the points.
   template <class T>
@@ -102,9 +101,9 @@ struct FourPoint : OnePoint {
     const Tensor<T> x = P[1] - P[0], y = P[2] - P[3];
     const Tensor<T> along_xi = x + y, along_eta = x - y, along_zeta = upper - lower;
     HourglassModes<T> Q;
-    if constexpr (Hourglass::active) Q = Hourglass::resistance(now.q, control);
+    if constexpr (Hourglass::traits.active) Q = Hourglass::resistance(now.q, control);
     for (int i = 0; i < 3; ++i) {
-      if constexpr (!Hourglass::active) Q(3, i) = T(0);
+      if constexpr (!Hourglass::traits.active) Q(3, i) = T(0);
       Q(0, i) = element.reach * (row_dot(along_eta, i, element, 2) + row_dot(along_zeta, i, element, 1));
       Q(1, i) = element.reach * (row_dot(along_xi, i, element, 2) + row_dot(along_zeta, i, element, 0));
       Q(2, i) = element.reach * (row_dot(along_xi, i, element, 1) + row_dot(along_eta, i, element, 0));
@@ -121,7 +120,7 @@ struct FourPoint : OnePoint {
     T W = T(0);
     for (std::size_t q = 0; q < 4; ++q) W = W + T(0.25) * at_point(law, q).isochoric_energy(now.H[q]);
     ElementEnergy<T> energy{element.V * (W + law.volumetric_energy(mean_dilatation(now.change))), T(0)};
-    if constexpr (Hourglass::active) energy.hourglass = hourglass_energy<Hourglass>(now.q, control);
+    if constexpr (Hourglass::traits.active) energy.hourglass = hourglass_energy<Hourglass>(now.q, control);
     return energy;
   }
 
@@ -151,7 +150,7 @@ struct FourPoint : OnePoint {
       return (h + gamma * fluctuation(p, element)) * inverse(identity<T>() + now.H[p]);
     };
     const T body = point_bound<true>(now.H, dilatation, weight, element.V, spatial_gradient, law);
-    if constexpr (Hourglass::active) return body + Hourglass::stiffness_bound(gamma, control);
+    if constexpr (Hourglass::traits.active) return body + Hourglass::stiffness_bound(gamma, control);
     return body;
   }
 

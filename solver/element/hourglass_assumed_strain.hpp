@@ -16,7 +16,7 @@ namespace sandglass {
 /// numbering of the nodes does not matter. Gradients are mean ones: with gradients at the centre one point
 /// fails the patch test on distorted meshes with every control.
 struct AssumedStrain {
-  static constexpr bool takes_kappa = false;
+  static constexpr HourglassTraits traits{};
 
   template <class T>
   struct Element {

@@ -12,10 +12,7 @@ namespace sandglass {
 /// displacement gradient is mu/2 (g : g + tr(g g) - 2/3 (tr g)^2); its mean over all directions of g is 10/9
 /// of (mu/2) g : g, hence the factor. The control follows the mean deformation.
 struct EnergySamplingControl {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = false;
-  static constexpr bool follows_deformation = true;
-  static constexpr bool grows_with_deformation = true;
+  static constexpr HourglassTraits traits{.follows_deformation = true, .grows_with_deformation = true};
 
   template <class T>
   struct Element {

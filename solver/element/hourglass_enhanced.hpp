@@ -23,7 +23,7 @@ namespace sandglass {
 /// bend as exactly as boxes. Gradients are mean ones: with gradients at the centre one point fails the patch
 /// test on distorted meshes with every control.
 struct EnhancedStrain {
-  static constexpr bool takes_kappa = false;
+  static constexpr HourglassTraits traits{};
 
   template <class T>
   struct Element {

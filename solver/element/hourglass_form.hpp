@@ -59,9 +59,7 @@ Matrix<T, 12, 12> matrix_of(const Stiffness& stiffness) {
 /// follows the mean deformation.
 template <class Form>
 struct ReferenceHourglassControl {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = false;
-  static constexpr bool follows_deformation = true;
+  static constexpr HourglassTraits traits{.follows_deformation = true};
 
   template <class T>
   using Element = typename Form::template Stiffness<T>;

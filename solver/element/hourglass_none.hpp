@@ -8,8 +8,7 @@ namespace sandglass {
 
 /// No hourglass control: the twelve hourglass modes of a one-point element have no energy.
 struct NoHourglassControl {
-  static constexpr bool active = false;
-  static constexpr bool takes_kappa = false;
+  static constexpr HourglassTraits traits{.active = false};
 
   template <class T>
   struct Element {};

@@ -22,8 +22,6 @@ Triple<T> rotated(const Triple<T>& v, const Triple<T>& b, const T& scale) {
 ///   bound()        an upper bound (N/m) of the largest eigenvalue of q -> Q.
 template <class Form>
 struct RateHourglassControl : Form {
-  static constexpr bool active = true;
-
   template <class T>
   using Element = typename Form::template Element<T>;
 

@@ -36,8 +36,7 @@ struct FromGeometry {
 
 /// Hourglass control without a parameter, at the cost of the perturbation control.
 struct ModalSamplingControl : FromGeometry<ModalSamplingControl> {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = false;
+  static constexpr HourglassTraits traits{};
 
   template <class T>
   struct Element {
@@ -75,8 +74,7 @@ struct ModalSamplingControl : FromGeometry<ModalSamplingControl> {
 
 /// The same for the mode xi eta zeta only, for an element whose points resolve the other three.
 struct LastModeControl : FromGeometry<LastModeControl> {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = false;
+  static constexpr HourglassTraits traits{};
 
   template <class T>
   struct Element {

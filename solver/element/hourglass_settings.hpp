@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "element/traits.hpp"
+
 namespace sandglass {
 
 /// The modulus that kappa multiplies: lambda + 2 mu as in the paper (eq. 9), or mu, for which one value of

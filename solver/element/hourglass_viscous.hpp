@@ -25,9 +25,7 @@ namespace sandglass {
 /// kappa is the dimensionless coefficient, QM in LS-DYNA and h in OpenRadioss; `auto` is the default of both,
 /// 0.1.
 struct ViscousHourglassControl {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = true;
-  static constexpr bool damps_only = true;
+  static constexpr HourglassTraits traits{.takes_kappa = true, .damps_only = true};
 
   template <class T>
   struct Element {

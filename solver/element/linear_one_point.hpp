@@ -58,7 +58,7 @@ class SmallStrainLaw {
 /// never fails and would silently return inverted elements, which are as impossible as with any other method;
 /// det(I + H) detects them.
 struct LinearOnePoint : OnePoint {
-  static constexpr bool small_strain = true;  ///< stresses follow from sym(H)
+  static constexpr KinematicsTraits traits{.small_strain = true};
 
   /// As in OnePoint, without the change of volume, which small strains do not need.
   template <class Hourglass, class T>
@@ -66,7 +66,7 @@ struct LinearOnePoint : OnePoint {
     Deformation<T> now;
     now.H = OnePoint::mean_gradient(motion.u, element);
     now.change = {T(0), T(1)};
-    if constexpr (Hourglass::active) {
+    if constexpr (Hourglass::traits.active) {
       now.q = OnePoint::hourglass_displacements(motion.u, now.H, element);
     }
     return now;

@@ -1,66 +1,48 @@
 #pragma once
 
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "base/type_list.hpp"
 #include "element/formulation.hpp"
+#include "element/method.hpp"
 
-/// Properties of methods at compile time. A method's header in `element/methods/` declares name, summary,
-/// Kinematics and Hourglass, and where they apply `zero_energy_modes`, the number of modes without energy by
-/// design; `condensed`; `Levels`, the methods of an adaptive one from the cheapest to the one that it
-/// approximates; `AtSmallStrain`, the quasi-static limit of an Updated Lagrangian method for small strains;
-/// `SharesKernelsOf`, a method with the same element; `KinematicsOnParallelepipeds`, kinematics with the same
-/// forces on meshes of parallelepipeds; `batches`, true for kernels that are also compiled for bodies side by
-/// side.
+/// Properties of methods at compile time, from their options (method.hpp) and the traits of their elements.
 namespace sandglass {
 
-/// An hourglass control that resists only velocities declares `damps_only`: it dissipates energy and gives no
-/// force in quasi-static runs.
+/// Whether an hourglass control resists only velocities: it dissipates energy and gives no force in
+/// quasi-static runs.
 template <class Hourglass>
-concept DampsOnly = requires {
-  requires Hourglass::damps_only;
-};
+concept DampsOnly = Hourglass::traits.damps_only;
 
 /// Whether the strength of a method's hourglass control affects a body in equilibrium.
 template <class Method>
 inline constexpr bool kappa_affects_equilibrium =
-    Method::Hourglass::takes_kappa && !DampsOnly<typename Method::Hourglass>;
+    Method::Hourglass::traits.takes_kappa && !DampsOnly<typename Method::Hourglass>;
 
 /// The number of integration points of a method's elements; of an adaptive one those of the lowest level.
 template <class Method>
-inline constexpr int integration_points = integration_points_of<typename Method::Kinematics>();
+inline constexpr int integration_points = Method::Kinematics::traits.points;
 
 /// Whether a method resists volume changes at several points of an element or around its nodes, and not their
 /// average by one pressure.
 template <class Method>
-inline constexpr bool pressure_varies = requires {
-  requires !Method::Kinematics::averages_pressure || Method::Kinematics::averages_over_nodes;
-};
+inline constexpr bool pressure_varies = integration_points<Method> > 1 &&
+                                        (!Method::Kinematics::traits.averages_pressure ||
+                                         Method::Kinematics::traits.averages_over_nodes);
 
 /// Whether a method's forces are linear in the displacements, f = K u.
 template <class Method>
-inline constexpr bool is_linear = requires {
-  requires Method::Kinematics::small_strain;
-};
+inline constexpr bool is_linear = Method::Kinematics::traits.small_strain;
 
 /// Whether a method superposes its answers from responses that are computed once, instead of taking steps.
 template <class Method>
-inline constexpr bool is_condensed = requires {
-  requires Method::condensed;
-};
+inline constexpr bool is_condensed = states<Method, Condensed>;
 
 /// Whether a method computes bodies side by side; see BatchForce.
 template <class Method>
-inline constexpr bool batches = requires {
-  requires Method::batches;
-};
-
-/// Whether a method chooses a level for each of its elements.
-template <class Method>
-inline constexpr bool is_adaptive = requires {
-  typename Method::Levels;
-};
+inline constexpr bool batches = states<Method, Batches>;
 
 namespace detail {
 
@@ -70,10 +52,10 @@ struct KernelOwner {
 };
 template <class Method>
 requires requires {
-  typename Method::SharesKernelsOf;
+  typename Method::Owner;
 }
 struct KernelOwner<Method> {
-  using type = typename Method::SharesKernelsOf;
+  using type = typename Method::Owner;
 };
 
 template <class Method>
@@ -82,11 +64,11 @@ struct RegularForm {
 };
 template <class Method>
 requires requires {
-  typename Method::KinematicsOnParallelepipeds;
+  typename Method::RegularKinematics;
 }
 struct RegularForm<Method> {
   struct Form : Method {
-    using Kinematics = typename Method::KinematicsOnParallelepipeds;
+    using Kinematics = typename Method::RegularKinematics;
   };
   using type = Form;
 };
@@ -96,25 +78,30 @@ struct LevelsOf {
   using type = TypeList<Method>;
 };
 template <class Method>
-requires is_adaptive<Method>
+requires requires {
+  typename Method::Levels;
+}
 struct LevelsOf<Method> {
   using type = typename Method::Levels;
 };
 
 }  // namespace detail
 
-/// The method whose kernels a method uses: itself, unless it declares `SharesKernelsOf`.
+/// The method whose kernels a method uses: itself, unless it states `SharesKernelsOf`.
 template <class Method>
 using KernelOwner = typename detail::KernelOwner<Method>::type;
 
-/// The form of a method for meshes of parallelepipeds: itself, unless it declares
-/// `KinematicsOnParallelepipeds`.
+/// The form of a method for meshes of parallelepipeds: itself, unless it states `OnParallelepipedsBy`.
 template <class Method>
 using OnParallelepipeds = typename detail::RegularForm<Method>::type;
 
 /// The levels of a method's elements; for a method that is not adaptive, the method itself.
 template <class Method>
 using LevelsOf = typename detail::LevelsOf<Method>::type;
+
+/// Whether a method chooses a level for each of its elements.
+template <class Method>
+inline constexpr bool is_adaptive = !std::is_same_v<LevelsOf<Method>, TypeList<Method>>;
 
 /// The names of an adaptive method's levels, from the cheapest on; none for other methods.
 template <class Method>

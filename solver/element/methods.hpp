@@ -3,6 +3,7 @@
 #include "base/type_list.hpp"
 #include "element/method_traits.hpp"
 #include "element/methods/linear.hpp"
+#include "element/methods/linear_condensed.hpp"
 #include "element/methods/t4.hpp"
 #include "element/methods/t4_anp.hpp"
 #include "element/methods/tl_adaptive.hpp"
@@ -26,9 +27,9 @@ namespace sandglass {
 
 /// The list of methods. A new method is a header in element/methods/ and one entry here; tests, tables,
 /// benchmarks and charts iterate the list.
-using Methods = TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling,
-                         TlStabilizationMatrix, TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous,
-                         UlAssumedStrain, UlEnhanced, TlFull, TlMeanDilatation, T4, T4Anp, LinearPerturbation,
-                         LinearCondensed, TlModalSampling, TlFourPoint, TlAdaptive>;
+using Methods =
+    TypeList<TlNone, TlPerturbation, TlPerturbationCompact, TlEnergySampling, TlStabilizationMatrix,
+             TlAssumedStrain, TlEnhanced, UlPerturbation, UlViscous, UlAssumedStrain, UlEnhanced, TlFull,
+             TlMeanDilatation, T4, T4Anp, Linear, LinearCondensed, TlModalSampling, TlFourPoint, TlAdaptive>;
 
 }  // namespace sandglass

@@ -30,8 +30,7 @@ struct OnePoint {
     T V;                ///< reference volume, m^3
   };
 
-  static constexpr bool needs_increment = false;
-  static constexpr bool needs_coordinates = false;
+  static constexpr KinematicsTraits traits{};
 
   static Element<double> precompute(const NodalVectors<double>& X) { return geometry(to_modes(X)); }
 
@@ -111,7 +110,7 @@ struct OnePoint {
     Deformation<T> now;
     now.H = mean_gradient(motion.u, element);
     now.change = volume_change(now.H);
-    if constexpr (Hourglass::active) now.q = hourglass_displacements(motion.u, now.H, element);
+    if constexpr (Hourglass::traits.active) now.q = hourglass_displacements(motion.u, now.H, element);
     if constexpr (FollowsDeformation<Hourglass>) {
       now.followed = followed_deformation<Hourglass>(now.H, now.change);
       now.q = convected(now.q, now.followed);
@@ -144,7 +143,7 @@ struct OnePoint {
       } else {
         return modal_forces(VP, Q, element.c + now.q, element);
       }
-    } else if constexpr (Hourglass::active) {
+    } else if constexpr (Hourglass::traits.active) {
       return modal_forces(VP, Hourglass::resistance(now.q, control), element.c, element);
     } else {
       return body_forces(VP, element);
@@ -157,7 +156,7 @@ struct OnePoint {
                                  const NoHistory<T>& /*history*/, const Law& law) {
     const Tensor<T> H = mean_gradient(motion.u, element);
     ElementEnergy<T> energy{element.V * law.energy(H), T(0)};
-    if constexpr (Hourglass::active) {
+    if constexpr (Hourglass::traits.active) {
       const HourglassModes<T> q = hourglass_displacements(motion.u, H, element);
       if constexpr (FollowsDeformation<Hourglass>) {
         const auto followed = followed_deformation<Hourglass>(H, volume_change(H));
@@ -200,7 +199,7 @@ struct OnePoint {
       const HourglassModes<T> r = convected(hourglass_displacements(motion.u, H, element), followed);
       const Matrix<T, 8, 4> current_gamma = gamma(h, element) - h * transpose(r);
       return body + following_bound<Hourglass>(current_gamma, g, r, H, followed, control);
-    } else if constexpr (Hourglass::active) {
+    } else if constexpr (Hourglass::traits.active) {
       return body + Hourglass::stiffness_bound(gamma(h, element), control);
     }
     return body;

@@ -38,8 +38,7 @@ struct OnePointForm {
 /// OnePoint that loads only coordinates and recomputes its geometry in every step, which saves time if memory
 /// is slower than arithmetic.
 struct CompactOnePoint : OnePointForm<CompactOnePoint> {
-  static constexpr bool needs_increment = false;
-  static constexpr bool needs_coordinates = true;
+  static constexpr KinematicsTraits traits{.needs_coordinates = true};
 
   /// Nothing constant in time is stored.
   template <class T>
@@ -77,8 +76,7 @@ struct CompactOnePoint : OnePointForm<CompactOnePoint> {
 /// OnePoint on parallelepipeds: c = 0, the gradients of the hourglass modes are zero, gamma = Gamma and
 /// q = Gamma^T u. Only for controls that do not follow the deformation.
 struct ParallelepipedOnePoint : OnePointForm<ParallelepipedOnePoint> {
-  static constexpr bool needs_increment = false;
-  static constexpr bool needs_coordinates = false;
+  static constexpr KinematicsTraits traits{};
 
   template <class T>
   struct Element {
@@ -125,7 +123,7 @@ struct ParallelepipedOnePoint : OnePointForm<ParallelepipedOnePoint> {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> hS = element.h * transpose(law.weighted_piola(element.V, now.H, now.change, p));
     HourglassModes<T> Q{};
-    if constexpr (Hourglass::active) Q = Hourglass::resistance(now.q, control);
+    if constexpr (Hourglass::traits.active) Q = Hourglass::resistance(now.q, control);
     Modes<T> f;
     for (int i = 0; i < 3; ++i) {
       for (int m = 0; m < 3; ++m) f(m, i) = hS(m, i);

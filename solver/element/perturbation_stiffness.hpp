@@ -8,8 +8,7 @@ namespace sandglass {
 
 /// The stiffness parameter of both forms of the perturbation control, Total and Updated Lagrangian.
 struct PerturbationStiffness {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = true;
+  static constexpr HourglassTraits traits{.takes_kappa = true};
 
   /// The modulus that kappa multiplies, Pa: rho c_D^2 = lambda + 2 mu (eq. 9), or mu.
   template <class Law>

@@ -31,10 +31,7 @@ T block_row_sum_bound(const Matrix<T, 12, 12>& A) {
 /// the law's isochoric stiffness. At small displacements one point with this matrix is identical to the
 /// mean-dilatation element, for any shape. The control follows the mean deformation.
 struct StabilizationMatrixControl {
-  static constexpr bool active = true;
-  static constexpr bool takes_kappa = false;
-  static constexpr bool follows_deformation = true;
-  static constexpr bool grows_with_deformation = true;
+  static constexpr HourglassTraits traits{.follows_deformation = true, .grows_with_deformation = true};
 
   template <class T>
   struct Element {

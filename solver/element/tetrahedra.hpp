@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string_view>
-
 #include "element/corner_gradients.hpp"
 #include "element/hourglass_none.hpp"
 #include "element/one_point.hpp"
@@ -26,11 +24,10 @@ struct Tetrahedra {
   template <class T>
   using Element = TetrahedronConstants<T>;
 
-  static constexpr int points = static_cast<int>(tetrahedron_count);
-  static constexpr bool needs_increment = false;
-  static constexpr bool needs_coordinates = false;
-  static constexpr bool averages_over_nodes = Pressure::averages_over_nodes;
-  static constexpr bool averages_pressure = averages_over_nodes;
+  static constexpr KinematicsTraits traits{.points = static_cast<int>(tetrahedron_count),
+                                           .averages_over_nodes = Pressure::averages_over_nodes,
+                                           .averages_pressure = Pressure::averages_over_nodes,
+                                           .demand = "all its tetrahedra must have a positive volume"};
   using NoControl = NoHourglassControl;
 
   static Element<double> precompute(const NodalVectors<double>& X) {
@@ -42,9 +39,6 @@ struct Tetrahedra {
     }
     return element;
   }
-
-  /// The condition of `accepts` in words.
-  static constexpr std::string_view demand = "all its tetrahedra must have a positive volume";
 
   static bool accepts(const NodalVectors<double>& X) {
     const auto jacobians = parent_gradients(to_modes(X));

@@ -15,8 +15,7 @@ namespace sandglass {
 ///   stiffness_bound(body, gamma, now, control, history)  a bound (N/m) of the element's tangent, given the
 ///   body's bound.
 struct UpdatedOnePoint {
-  static constexpr bool needs_increment = true;
-  static constexpr bool needs_coordinates = true;
+  static constexpr KinematicsTraits traits{.needs_increment = true, .needs_coordinates = true};
 
   /// The constants: none.
   template <class T>
@@ -39,7 +38,7 @@ struct UpdatedOnePoint {
   template <class Hourglass, class T>
   static Deformation<T> deformation(const ElementMotion<T>& motion, const Element<T>& /*element*/) {
     // Initialised in place: assignments would copy from temporaries. Without a control no rates are needed.
-    constexpr bool rates = Hourglass::active;
+    constexpr bool rates = Hourglass::traits.active;
     Deformation<T> now{.x = motion.X + motion.u,
                        .current = OnePoint::geometry(now.x),
                        .H = displacement_gradient(motion.u, now.current),
@@ -58,7 +57,7 @@ struct UpdatedOnePoint {
                         typename Hourglass::template History<T>& history, const Law& law) {
     const T p = law.pressure(now.change.J_minus_one);
     const Tensor<T> S = law.weighted_kirchhoff(reference_volume(now), now.H, now.change, p);
-    if constexpr (Hourglass::active) {
+    if constexpr (Hourglass::traits.active) {
       return OnePoint::modal_forces(S, Hourglass::resistance(now, control, history), now.current.c,
                                     now.current);
     } else {
@@ -72,7 +71,7 @@ struct UpdatedOnePoint {
                                  const typename Hourglass::template History<T>& history, const Law& law) {
     const auto now = deformation<Hourglass>(motion, element);
     ElementEnergy<T> energy{reference_volume(now) * law.energy(now.H), T(0)};
-    if constexpr (Hourglass::active) energy.hourglass = Hourglass::energy(now, control, history);
+    if constexpr (Hourglass::traits.active) energy.hourglass = Hourglass::energy(now, control, history);
     return energy;
   }
 
@@ -105,7 +104,7 @@ struct UpdatedOnePoint {
         reference_volume(now) * (max(bound.volumetric, T(0)) * sqrt(double_dot(h, h) * double_dot(G, G)) +
                                  bound.gradient * largest_eigenvalue_bound(transpose(h) * h)) +
         bending_bound(now, law);
-    if constexpr (Hourglass::active) {
+    if constexpr (Hourglass::traits.active) {
       return Hourglass::stiffness_bound(body, OnePoint::gamma(h, now.current), now, control, history);
     }
     return body;

@@ -23,6 +23,8 @@ class OrientedLaw;
 /// defines them; the library instantiates them for the number types of its kernels, see CMakeLists.txt.
 class CalledLaw : public SumOfParts<CalledLaw> {
  public:
+  static constexpr LawTraits traits{.isotropic = false};  // known at run time
+
   template <class Law>
   explicit CalledLaw(const Law& law, VolumetricPart volume = {})
       : law_(law), volume_(volume), shear_modulus_(law.shear_modulus()), bulk_modulus_(law.bulk_modulus()) {}
@@ -130,6 +132,8 @@ class CalledLaw : public SumOfParts<CalledLaw> {
 template <class T>
 class OrientedLaw : public VolumeOfElastic<OrientedLaw<T>> {
  public:
+  static constexpr LawTraits traits = CalledLaw::traits;
+
   OrientedLaw(const CalledLaw& law, const MaterialAxes<T>* axes) : law_(law), axes_(axes) {}
 
   const CalledLaw& elastic() const { return law_; }

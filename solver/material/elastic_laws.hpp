@@ -15,11 +15,11 @@ namespace sandglass {
 /// The list of material laws. A new law is one header and one entry here; it is available in two forms,
 /// elastic and viscoelastic.
 ///
-/// Each law has name, summary, parameters(), the initial shear_modulus() and bulk_modulus(), and, templated
-/// on the number type, isochoric_energy, volumetric_energy, pressure, bulk_tangent, isochoric_piola, energy,
-/// piola, isochoric_tangent_bound, and for the kernels weighted_piola and weighted_kirchhoff. QuadraticVolume
-/// provides the common parts. A law that is not isotropic also has small_strain_stress; a law with rules
-/// between its parameters has broken_rule.
+/// Each law has name, summary, traits, parameters(), the initial shear_modulus() and bulk_modulus(), and,
+/// templated on the number type, isochoric_energy, volumetric_energy, pressure, bulk_tangent,
+/// isochoric_piola, energy, piola, isochoric_tangent_bound, and for the kernels weighted_piola and
+/// weighted_kirchhoff. QuadraticVolume provides the common parts. A law that is not isotropic also has
+/// small_strain_stress; a law with rules between its parameters has broken_rule.
 using ElasticLaws = TypeList<NeoHookean, StVenantKirchhoff, MooneyRivlin, Yeoh, Ogden, FibreNeoHookean,
                              Guccione, HolzapfelOgden>;
 

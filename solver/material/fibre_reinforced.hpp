@@ -29,6 +29,8 @@ Tensor<T> isochoric_green_strain(const Tensor<T>& H, const VolumeChange<T>& chan
 /// that is linear in E; it inherits the functions below.
 template <class Law>
 struct FibreReinforced : QuadraticVolume<Law> {
+  static constexpr LawTraits traits{.isotropic = false};
+
   /// V P (J), the first Piola-Kirchhoff stress times its reference volume V (m^3), for a pressure p (Pa,
   /// tension positive) that may differ from the law's. Fibres add
   ///   J^(-2/3) F S - (S : Cbar) / (3 J) cof F,  S = dpsi/dE,  Cbar = I + 2 E.

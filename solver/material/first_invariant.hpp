@@ -94,6 +94,8 @@ TangentBound<T> first_invariant_tangent_bound(const T& mu, const T& second_deriv
 /// current_modulus(H, change), the shear modulus 2 w'(I1bar) in Pa; it inherits the functions below.
 template <class Law>
 struct FirstInvariant : QuadraticVolume<Law> {
+  static constexpr LawTraits traits{};
+
   /// V P (J), the first Piola-Kirchhoff stress times its reference volume V (m^3), for a pressure p (Pa,
   /// tension positive) that may differ from the law's.
   template <class T>

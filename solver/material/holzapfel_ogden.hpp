@@ -20,9 +20,7 @@ struct HolzapfelOgden : FibreReinforced<HolzapfelOgden> {
   static constexpr std::string_view name = "holzapfel-ogden";
   static constexpr std::string_view summary =
       "exponential matrix with fibres and sheets that resist only stretch: heart muscle";
-
-  /// Fibres do not resist shortening: the stress has a kink at their undeformed length.
-  static constexpr bool slackens = true;
+  static constexpr LawTraits traits{.isotropic = false, .slackens = true};
 
   double a = 0.0;
   double b = 0.0;

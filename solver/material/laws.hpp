@@ -35,7 +35,7 @@ inline bool has_fibres(const AnyLaw& any_law) {
 
 /// Whether its energy is a function of J^(-1/3) F plus one of J.
 inline bool splits_volume(const AnyLaw& any_law) {
-  return std::visit([]<class Law>(const Law&) { return Law::splits_volume; }, any_law);
+  return std::visit([]<class Law>(const Law&) { return Law::traits.splits_volume; }, any_law);
 }
 
 /// The name of a law chosen at run time.

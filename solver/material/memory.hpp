@@ -7,10 +7,10 @@
 #include "material/point_load.hpp"
 #include "material/quadratic_volume.hpp"
 
-/// Laws with memory. Such a law has a `Memory<T>`, its state at each integration point, and becomes a law
-/// that elements use like an elastic one in two steps: `at_step(dt)` gives the law for a step of time, and
-/// `recalling(memory)` of the result gives the law at a point. The functions here do this for any law; a law
-/// without memory is returned unchanged.
+/// Laws with memory. Such a law states `remembers` and has a `Memory<T>`, its state at each integration
+/// point, and becomes a law that elements use like an elastic one in two steps: `at_step(dt)` gives the law
+/// for a step of time, and `recalling(memory)` of the result gives the law at a point. The functions here do
+/// this for any law; a law without memory is returned unchanged.
 namespace sandglass {
 
 /// The memory of a law that has none.
@@ -24,10 +24,7 @@ struct MemoryOf {
   using type = NoMemory<T>;
 };
 template <class Law, class T>
-requires requires {
-  typename Law::template Memory<T>;
-}
-struct MemoryOf<Law, T> {
+requires(Law::traits.remembers) struct MemoryOf<Law, T> {
   using type = typename Law::template Memory<T>;
 };
 
@@ -39,17 +36,16 @@ using MemoryOf = typename detail::MemoryOf<Law, T>::type;
 
 /// Whether a law's stress depends on more than the deformation.
 template <class Law>
-inline constexpr bool law_remembers = !std::is_empty_v<MemoryOf<Law, double>>;
+inline constexpr bool law_remembers = Law::traits.remembers;
 
 /// The memories of all points of an element; empty for a law without memory.
-template <class Memory, int points>
+template <class Memory, int count>
 struct PointMemories {
-  std::array<Memory, static_cast<std::size_t>(points)> point;
+  static constexpr auto points = static_cast<std::size_t>(count);
+  std::array<Memory, points> point;
 };
-template <class Memory, int points>
-requires std::is_empty_v<Memory>
-struct PointMemories<Memory, points> {
-};
+template <class T, int count>
+struct PointMemories<NoMemory<T>, count> {};
 
 /// The law for a step of `seconds`, infinite in quasi-static runs. Everything that depends on the step alone
 /// is computed here, once for all elements.
@@ -65,8 +61,6 @@ constexpr auto at_step(const Law& law, double seconds) {
 /// A law at a step with the memories of an element of several points.
 template <class LawAtStep, class Memories>
 class RecallingLaw : public VolumeOfElastic<RecallingLaw<LawAtStep, Memories>> {
-  static constexpr std::size_t points = std::tuple_size_v<decltype(Memories::point)>;
-
  public:
   RecallingLaw(const LawAtStep& law, Memories& memories) : law_(law), memories_(memories) {}
 
@@ -79,10 +73,10 @@ class RecallingLaw : public VolumeOfElastic<RecallingLaw<LawAtStep, Memories>> {
   template <class T>
   requires TakesAllPoints<typename LawAtStep::Elastic, T>
   void weighted_piola(std::size_t count, const PointLoad<T>* at, const Tensor<T>* H, Tensor<T>* VP) const {
-    std::array<PointLoad<T>, points> alone;  // the isochoric stress of the elastic law, Pa
-    for (std::size_t q = 0; q < points; ++q) alone[q] = {T(1), at[q].change, T(0)};
+    std::array<PointLoad<T>, Memories::points> alone;  // the isochoric stress of the elastic law, Pa
+    for (std::size_t q = 0; q < Memories::points; ++q) alone[q] = {T(1), at[q].change, T(0)};
     law_.elastic().weighted_piola(count, alone.data(), H, VP);
-    for (std::size_t q = 0; q < points; ++q) {
+    for (std::size_t q = 0; q < Memories::points; ++q) {
       VP[q] = at_point(q).decayed_piola(VP[q], at[q].V, H[q], at[q].change, at[q].p);
     }
   }
@@ -98,7 +92,7 @@ template <class LawAtStep, class Memories>
 constexpr decltype(auto) recalling(const LawAtStep& law, Memories& memories) {
   if constexpr (std::is_empty_v<Memories>) {
     return (law);
-  } else if constexpr (sizeof(memories) == sizeof(memories.point[0])) {
+  } else if constexpr (Memories::points == 1) {
     return law.recalling(memories.point[0]);
   } else {
     return RecallingLaw<LawAtStep, Memories>(law, memories);

@@ -16,6 +16,7 @@ namespace sandglass {
 struct MooneyRivlin : QuadraticVolume<MooneyRivlin> {
   static constexpr std::string_view name = "mooney-rivlin";
   static constexpr std::string_view summary = "linear in both isochoric invariants";
+  static constexpr LawTraits traits{};
 
   double c10 = 0.0;
   double c01 = 0.0;

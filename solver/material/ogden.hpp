@@ -24,6 +24,7 @@ namespace sandglass {
 struct Ogden : QuadraticVolume<Ogden> {
   static constexpr std::string_view name = "ogden";
   static constexpr std::string_view summary = "two powers of the isochoric principal stretches";
+  static constexpr LawTraits traits{};
 
   double mu1 = 0.0;
   double alpha1 = 2.0;

@@ -4,11 +4,9 @@
 
 namespace sandglass {
 
-/// Whether a law is isotropic. An anisotropic law defines small_strain_stress(strain).
+/// Whether a law is isotropic.
 template <class Law>
-constexpr bool is_isotropic = !requires(const Law& law) {
-  law.small_strain_stress(Tensor<double>{});
-};
+constexpr bool is_isotropic = Law::traits.isotropic;
 
 /// The stress (Pa) of a law for a small strain e, the symmetric part of the displacement gradient:
 /// K tr(e) I + 2 mu dev(e), or the small-strain stress of an anisotropic law.

@@ -13,8 +13,8 @@ namespace sandglass {
 
 /// The law of St. Venant and Kirchhoff, Hooke's law of the Green strain E = (F^T F - I)/2,
 ///   W = K/2 tr^2 E + mu |dev E|^2.
-/// It is meant for small strains and large rotations. In compression it softens and becomes unstable; see
-/// softening_stretch.
+/// It is meant for small strains and large rotations. In compression it softens, and becomes unstable at the
+/// stretch 1/sqrt(3).
 ///
 /// It is not the sum of an isochoric and a volumetric part. Its isochoric energy here is W - K/2 (J - 1)^2,
 /// whose undeformed tangent is isochoric; elements that average K/2 (J - 1)^2 therefore average the pressure.
@@ -25,11 +25,7 @@ namespace sandglass {
 struct StVenantKirchhoff : QuadraticVolume<StVenantKirchhoff> {
   static constexpr std::string_view name = "st-venant-kirchhoff";
   static constexpr std::string_view summary = "Hooke's law of the Green strain; soft in strong compression";
-  static constexpr bool splits_volume = false;
-
-  /// The stretch below which the law is unstable, 1/sqrt(3): further compression reduces the stress, and its
-  /// largest stiffness need not be positive.
-  static constexpr double softening_stretch = 0.57735026918962576;
+  static constexpr LawTraits traits{.splits_volume = false, .softening_stretch = 0.57735026918962576};
 
   double young_modulus = 0.0;
   double poisson_ratio = 0.0;

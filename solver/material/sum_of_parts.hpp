@@ -4,16 +4,22 @@
 
 namespace sandglass {
 
+/// What a law states about itself, as `traits`; a misspelt statement does not compile.
+struct LawTraits {
+  bool isotropic = true;           ///< else the law defines small_strain_stress(strain)
+  bool splits_volume = true;       ///< its energy is a function of J^(-1/3) F plus a function of J; else its
+                                   ///< isochoric energy is its energy without K/2 (J - 1)^2
+  bool slackens = false;           ///< parts resist stretch alone: its stress has a kink where they slacken
+  bool remembers = false;          ///< it has a memory; see memory.hpp
+  double softening_stretch = 0.0;  ///< below it the law is unstable: compression reduces its stress
+};
+
 /// The common base of all laws: an energy that is the sum of an isochoric and a volumetric part. A law
 /// derives from SumOfParts of itself and defines isochoric_energy(H), weighted_piola(V, H, change, p),
 /// volumetric_energy(J - 1) and pressure(J - 1); it inherits the functions below. The base has no data: the
 /// law remains an aggregate of its parameters.
 template <class Law>
 struct SumOfParts {
-  /// Whether the energy is a function of J^(-1/3) F plus a function of J. A law without this property sets it
-  /// to false; its isochoric energy is then its energy without K/2 (J - 1)^2.
-  static constexpr bool splits_volume = true;
-
   /// The isochoric part of the first Piola-Kirchhoff stress, Pa.
   template <class T>
   Tensor<T> isochoric_piola(const Tensor<T>& H) const {

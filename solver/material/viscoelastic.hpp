@@ -62,8 +62,6 @@ struct ViscousMemory {
 template <class Law, class Memory>
 class ViscoelasticPoint : public VolumeOfElastic<ViscoelasticPoint<Law, Memory>> {
  public:
-  static constexpr bool splits_volume = Law::splits_volume;
-
   ViscoelasticPoint(const Law& elastic, const std::array<ViscousStep, 2>& terms, Memory& memory)
       : elastic_(elastic), terms_(terms), memory_(memory) {}
 
@@ -223,6 +221,11 @@ template <class Law>
 struct Viscoelastic : Law {
   static constexpr std::string_view name = joined_text<viscoelastic_prefix, Law::name>;
   static constexpr std::string_view summary = joined_text<Law::summary, viscoelastic_suffix>;
+  static constexpr LawTraits traits = [] {
+    LawTraits same = Law::traits;
+    same.remembers = true;
+    return same;
+  }();
 
   double relaxation_1 = 0.0;
   double time_1 = 0.0;

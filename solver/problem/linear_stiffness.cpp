@@ -42,7 +42,7 @@ void for_each_stiffness(const Model& model,
       }
     } else {
       throw InputError(fmt::format("method '{}' has no constant stiffness; allowed: the linear methods, '{}'",
-                                   Method::name, LinearPerturbation::name));
+                                   Method::name, Linear::name));
     }
   });
 }

@@ -38,9 +38,9 @@ template <class Number>
 std::unique_ptr<BatchForce<Number>> make_batch_force(const Model& model) {
   const auto kernel = [](const MethodEntry& method) {
     if constexpr (std::is_same_v<Number, Pack<double>>)
-      return method.assemble_batch_double;
+      return method.packed_double.assemble_batch;
     else
-      return method.assemble_batch_float;
+      return method.packed_float.assemble_batch;
   };
   require_supported(model.scene());
   const MethodChoice& choice = model.choice();

@@ -156,7 +156,7 @@ OperationCount count_operations(const Law& law) {
   count.bytes += Kernel::passes *
                  static_cast<long>((std::is_empty_v<Element> ? 0 : sizeof(Element)) + 4 * sizeof(Place));
   count.force = tally - count.gradient - count.law;
-  if constexpr (Hourglass::active) {
+  if constexpr (Hourglass::traits.active) {
     const OperationCount without = count_operations<Kinematics, NoHourglassControl>(law);
     count.hourglass = tally - without.total;
     count.gradient = without.gradient;

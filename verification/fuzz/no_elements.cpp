@@ -3,8 +3,9 @@
 
 #include <array>
 #include <stdexcept>
+#include <tuple>
 
-#include "assembly/method_facts.hpp"
+#include "assembly/method_entry.hpp"
 #include "element/methods.hpp"
 
 namespace sandglass {
@@ -37,20 +38,21 @@ template NodalField to_field(const Rows<float>&, const Layout&);
 template State<double> state_at(const InternalForce<double>&, const NodalField&);
 template State<float> state_at(const InternalForce<float>&, const NodalField&);
 
-template <class Method>
-MethodEntry method_entry() {
-  return method_facts<Method>();
+template <class Method, class Number>
+Kernels<Number> kernels() {
+  return {};
 }
 
 namespace {
 
-/// Makes the compiler emit all entries, which the list is made of.
+/// Makes the compiler emit the kernels of all methods, which their list names.
 template <class... Method>
-auto entries_of(TypeList<Method...> /*methods*/) {
-  return std::array{&method_entry<Method>...};
+auto kernels_of(TypeList<Method...> /*methods*/) {
+  return std::tuple{std::array{&kernels<KernelOwner<Method>, Pack<double>>...},
+                    std::array{&kernels<KernelOwner<Method>, Pack<float>>...}};
 }
 
-[[gnu::used]] const auto entries = entries_of(Methods{});
+[[gnu::used]] const auto none = kernels_of(Methods{});
 
 }  // namespace
 

@@ -14,18 +14,12 @@ namespace sandglass::verification {
 /// with.
 template <class Law>
 constexpr double smallest_stiff_stretch(double smallest) {
-  if constexpr (requires { Law::softening_stretch; }) {
-    return std::max(smallest, 1.05 * Law::softening_stretch);
-  } else {
-    return smallest;
-  }
+  return std::max(smallest, 1.05 * Law::traits.softening_stretch);
 }
 
 /// Whether a law has fibres that resist stretch alone: its stress has a kink where they slacken.
 template <class Law>
-inline constexpr bool slackens = requires {
-  Law::slackens;
-};
+inline constexpr bool slackens = Law::traits.slackens;
 
 /// A small displacement gradient under which nothing that resists stretch alone is slack: drawn from `sample`
 /// until fibres and sheets are stretched, if the law has such ones.
@@ -55,9 +49,7 @@ constexpr bool may_give_way() {
     for_each_type(typename Method::Levels{}, [&]<class Level>() { any = any || may_give_way<Level, Law>(); });
     return any;
   }
-  if constexpr (requires { Method::Kinematics::averages_pressure; }) {
-    if (Method::Kinematics::averages_pressure && !Law::splits_volume) return true;
-  }
+  if (Method::Kinematics::traits.averages_pressure && !Law::traits.splits_volume) return true;
   return zero_energy_modes<Method>() > 6 && !is_isotropic<Law>;
 }
 

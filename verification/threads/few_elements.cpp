@@ -2,29 +2,29 @@
 /// thread sanitizer need not see minutes of kernels.
 
 #include <array>
+#include <tuple>
 
 #include "assembly/assemble.hpp"
-#include "assembly/method_facts.hpp"
 #include "element/methods.hpp"
 
 namespace sandglass {
 
-template <class Method>
-MethodEntry method_entry() {
-  MethodEntry entry = method_facts<Method>();
-  entry.assemble_packed_double = &assemble<KernelOwner<Method>, Pack<double>>;
-  return entry;
+template <class Method, class Number>
+Kernels<Number> kernels() {
+  if constexpr (std::is_same_v<Number, Pack<double>>) return {.assemble = &assemble<Method, Number>};
+  return {};
 }
 
 namespace {
 
-/// Makes the compiler emit all entries, which the list is made of.
+/// Makes the compiler emit the kernels of all methods, which their list names.
 template <class... Method>
-auto entries_of(TypeList<Method...> /*methods*/) {
-  return std::array{&method_entry<Method>...};
+auto kernels_of(TypeList<Method...> /*methods*/) {
+  return std::tuple{std::array{&kernels<KernelOwner<Method>, Pack<double>>...},
+                    std::array{&kernels<KernelOwner<Method>, Pack<float>>...}};
 }
 
-[[gnu::used]] const auto entries = entries_of(Methods{});
+[[gnu::used]] const auto few = kernels_of(Methods{});
 
 }  // namespace
 

@@ -3,15 +3,14 @@
 #include <string_view>
 
 #include "element/hourglass_none.hpp"
+#include "element/method.hpp"
 #include "element/tetrahedra.hpp"
 
 namespace sandglass {
 
-struct T4Anp {
+struct T4Anp : MethodWith<Tetrahedra<NodalPressure>, NoHourglassControl> {
   static constexpr std::string_view name = "t4-anp";
   static constexpr std::string_view summary = "the same tetrahedra with pressures averaged at the nodes";
-  using Kinematics = Tetrahedra<NodalPressure>;
-  using Hourglass = NoHourglassControl;
 };
 
 }  // namespace sandglass

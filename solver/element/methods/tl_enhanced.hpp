@@ -4,16 +4,15 @@
 
 #include "element/hourglass_enhanced.hpp"
 #include "element/hourglass_form.hpp"
+#include "element/method.hpp"
 #include "element/one_point.hpp"
 
 namespace sandglass {
 
-struct TlEnhanced {
+struct TlEnhanced : MethodWith<OnePoint, ReferenceHourglassControl<EnhancedStrain>> {
   static constexpr std::string_view name = "tl-enhanced";
   static constexpr std::string_view summary =
       "one point, Total Lagrangian, enhanced assumed strain after Puso, undeformed shape";
-  using Kinematics = OnePoint;
-  using Hourglass = ReferenceHourglassControl<EnhancedStrain>;
 };
 
 }  // namespace sandglass

@@ -4,15 +4,14 @@
 
 #include "element/four_point.hpp"
 #include "element/hourglass_sampling.hpp"
+#include "element/method.hpp"
 
 namespace sandglass {
 
-struct TlFourPoint {
+struct TlFourPoint : MethodWith<FourPoint, LastModeControl> {
   static constexpr std::string_view name = "tl-four-point";
   static constexpr std::string_view summary =
       "four points on the element's mean parallelepiped, one pressure: nearly eight, from one point's memory";
-  using Kinematics = FourPoint;
-  using Hourglass = LastModeControl;
 };
 
 }  // namespace sandglass

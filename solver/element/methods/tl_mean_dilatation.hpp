@@ -4,16 +4,14 @@
 
 #include "element/eight_point.hpp"
 #include "element/hourglass_none.hpp"
+#include "element/method.hpp"
 
 namespace sandglass {
 
-struct TlMeanDilatation {
+struct TlMeanDilatation : MethodWith<EightPoint<MeanPressure>, NoHourglassControl, Batches> {
   static constexpr std::string_view name = "tl-mean-dilatation";
   static constexpr std::string_view summary =
       "eight points, one pressure per element: the golden's own element";
-  static constexpr bool batches = true;
-  using Kinematics = EightPoint<MeanPressure>;
-  using Hourglass = NoHourglassControl;
 };
 
 }  // namespace sandglass

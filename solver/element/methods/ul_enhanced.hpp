@@ -4,18 +4,17 @@
 
 #include "element/hourglass_enhanced.hpp"
 #include "element/hourglass_rate.hpp"
+#include "element/method.hpp"
 #include "element/methods/tl_enhanced.hpp"
 #include "element/updated_one_point.hpp"
 
 namespace sandglass {
 
-struct UlEnhanced {
+struct UlEnhanced
+    : MethodWith<UpdatedOnePoint, RateHourglassControl<EnhancedStrain>, AtSmallStrainLike<TlEnhanced>> {
   static constexpr std::string_view name = "ul-enhanced";
   static constexpr std::string_view summary =
       "one point, Updated Lagrangian, enhanced assumed strain after Puso: ABAQUS's costlier control";
-  using Kinematics = UpdatedOnePoint;
-  using Hourglass = RateHourglassControl<EnhancedStrain>;
-  using AtSmallStrain = TlEnhanced;
 };
 
 }  // namespace sandglass

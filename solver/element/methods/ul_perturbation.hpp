@@ -3,18 +3,17 @@
 #include <string_view>
 
 #include "element/hourglass_rate_perturbation.hpp"
+#include "element/method.hpp"
 #include "element/methods/tl_perturbation.hpp"
 #include "element/updated_one_point.hpp"
 
 namespace sandglass {
 
-struct UlPerturbation {
+struct UlPerturbation
+    : MethodWith<UpdatedOnePoint, RatePerturbationControl, AtSmallStrainLike<TlPerturbation>> {
   static constexpr std::string_view name = "ul-perturbation";
   static constexpr std::string_view summary =
       "one point, Updated Lagrangian, the same control integrated in time and rotated, as in ABAQUS";
-  using Kinematics = UpdatedOnePoint;
-  using Hourglass = RatePerturbationControl;
-  using AtSmallStrain = TlPerturbation;
 };
 
 }  // namespace sandglass

@@ -3,20 +3,17 @@
 #include <string_view>
 
 #include "element/hourglass_viscous.hpp"
+#include "element/method.hpp"
 #include "element/methods/tl_none.hpp"
 #include "element/updated_one_point.hpp"
 
 namespace sandglass {
 
-struct UlViscous {
+struct UlViscous : MethodWith<UpdatedOnePoint, ViscousHourglassControl, AtSmallStrainLike<TlNone>> {
   static constexpr std::string_view name = "ul-viscous";
   static constexpr std::string_view summary =
       "one point, Updated Lagrangian, viscous control: LS-DYNA's and OpenRadioss's default; no effect in "
       "equilibrium";
-  static constexpr int zero_energy_modes = 18;  // it resists velocities only
-  using Kinematics = UpdatedOnePoint;
-  using Hourglass = ViscousHourglassControl;
-  using AtSmallStrain = TlNone;
 };
 
 }  // namespace sandglass
