@@ -7,6 +7,7 @@ Of a slow one, SANDGLASS_PATIENCE says how many times longer its commands may ta
 import os
 import signal
 import subprocess
+import time
 from pathlib import Path
 
 import h5py
@@ -58,6 +59,21 @@ def catches_interrupts(process):
         if line.startswith("SigCgt:"):
             return bool(int(line.split()[1], 16) >> (signal.SIGTERM - 1) & 1)  # watched last
     return False
+
+
+def interrupted(*arguments, sent=signal.SIGINT, once=lambda: True, **options):
+    """Runs the program and sends it a signal once it handles it and a condition holds.
+
+    Returns its exit code and its errors.
+    """
+    command = [BINARY, *map(str, arguments)]
+    pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes, **options) as process:
+        while process.poll() is None and not (once() and catches_interrupts(process)):
+            time.sleep(0.002)
+        process.send_signal(sent)
+        _, errors = process.communicate(timeout=60 * PATIENCE)
+    return process.returncode, errors
 
 
 def methods():

@@ -12,7 +12,7 @@ import subprocess
 import time
 
 import pytest
-from command_line import BINARY, BLOCK, catches_interrupts, dynamic, sandglass
+from command_line import BINARY, BLOCK, dynamic, interrupted, sandglass
 
 KILLS = int(os.environ.get("SANDGLASS_KILLS", "5"))
 
@@ -198,14 +198,10 @@ def test_an_interrupted_run_goes_on(block):
     folder = block.parent
     assert sandglass("run", block, "-o", folder / "whole.h5").returncode == 0
     file = folder / "run.checkpoint"
-    call = [BINARY, "run", str(block), "-o", str(folder / "a.h5"), "--checkpoint", str(file)]
-    with subprocess.Popen(call, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
-        while process.poll() is None and not catches_interrupts(process):
-            time.sleep(0.001)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-    assert process.returncode == 3 and b"interrupted" in errors
-    outcome = sandglass(*call[1:], code=0)
+    call = ("run", block, "-o", folder / "a.h5", "--checkpoint", file)
+    code, errors = interrupted(*call)
+    assert code == 3 and "interrupted" in errors
+    outcome = sandglass(*call, code=0)
     assert f"goes on from {file}" in outcome.stdout
     assert (folder / "a.h5").read_bytes() == (folder / "whole.h5").read_bytes()
     assert not file.exists()

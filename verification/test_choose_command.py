@@ -2,14 +2,11 @@
 
 import json
 import re
-import signal
-import subprocess
-import time
 
 import h5py
 import numpy as np
 import pytest
-from command_line import BINARY, BLOCK, ROOT, catches_interrupts, sandglass, write_golden
+from command_line import BLOCK, ROOT, interrupted, sandglass, write_golden
 from scipy.interpolate import RegularGridInterpolator
 
 from common.result_file import last_displacement
@@ -273,14 +270,6 @@ def test_the_note_on_the_reference_is_its_distance_from_the_stored_truth(tmp_pat
 def test_ctrl_c_leaves_nothing(tmp_path):
     case = copied("ellipsoid-indentation", tmp_path)
     chosen, table = tmp_path / "chosen.toml", tmp_path / "choice.json"
-    command = [BINARY, "choose", case, "--all", "-o", chosen, "--json", table]
-    process = subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-    )
-    while process.poll() is None and not catches_interrupts(process):
-        time.sleep(0.002)
-    process.send_signal(signal.SIGINT)
-    _, told = process.communicate(timeout=60)
-    assert process.returncode == 3, told
-    assert "interrupted" in told
+    code, told = interrupted("choose", case, "--all", "-o", chosen, "--json", table)
+    assert code == 3 and "interrupted" in told, told
     assert sorted(path.name for path in tmp_path.iterdir()) == ["ellipsoid-indentation.toml"]

@@ -3,12 +3,11 @@ refused, and every run ends. The inputs are in reported/."""
 
 import re
 import signal
-import subprocess
 
 import h5py
 import numpy
 import pytest
-from command_line import BINARY, catches_interrupts, sandglass
+from command_line import interrupted, sandglass
 
 from common.program import ROOT
 from common.result_file import last_displacement, text_of
@@ -310,12 +309,9 @@ frames = 2
 def test_an_interrupted_search_leaves_no_partial_file(sent, tmp_path):
     text = (FOLDER / "turn-x-90.toml").read_text().replace("[2, 2, 6]", "[30, 30, 90]")
     (tmp_path / "case.toml").write_text(text)
-    command = [BINARY, "run", "case.toml", "-o", "result.h5", "--method", "tl-full"]
-    process = subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    words = ("run", "case.toml", "-o", "result.h5", "--method", "tl-full")
+    code, _ = interrupted(
+        *words, sent=sent, once=lambda: list(tmp_path.glob("*.part")), cwd=tmp_path
     )
-    while not list(tmp_path.glob("*.part")) or not catches_interrupts(process):
-        assert process.poll() is None
-    process.send_signal(sent)
-    process.communicate(timeout=60)
+    assert code == 3
     assert not list(tmp_path.glob("*.part"))
