@@ -5,7 +5,7 @@ import numpy as np
 from sandglass_report import axes as helpers
 from sandglass_report import style
 from sandglass_report.verdicts import REFERENCES
-from sandglass_report.plates import Panel, Plate
+from sandglass_report.plates import Panel
 
 FIGURES = (("max", "-", 1.6), ("profile", "--", 1.3), ("rms", ":", 1.6))
 NAMES = {"max": "max, all nodes", "profile": "max, profile", "rms": "rms"}
@@ -17,19 +17,6 @@ def kappa_panels(subject, palette):
         return ()
     limits = _limits(subject)
     return tuple(_panel(subject, palette, kind, limits) for kind in REFERENCES)
-
-
-def kappa_plates(subjects, palette):
-    """One static figure per case with kappa curves."""
-    plates = []
-    for subject in subjects:
-        panels = kappa_panels(subject, palette)
-        if panels:
-            title = f"{subject.name}: error against the hourglass stiffness kappa"
-            shown = dict.fromkeys(m for kind in REFERENCES for m in _curves(subject, kind))
-            legend = tuple((m, palette.colour(m), palette.mark(m)) for m in shown)
-            plates.append(Plate(f"kappa.{subject.name}", title, panels, 2, legend=legend))
-    return plates
 
 
 def _curves(subject, reference):
