@@ -38,15 +38,18 @@ def dynamic(text, **numbers):
     return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
+def ran(*command, **options):
+    """The outcome of any command, with its output. options: of subprocess.run."""
+    words = [str(word) for word in command]
+    return subprocess.run(words, capture_output=True, text=True, **options)
+
+
 def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
     """Runs the program; returns its outcome with its output.
 
     code: the exit code that it must end with. told: a text, or several, that its errors must have.
     """
-    command = [program, *map(str, arguments)]
-    done = subprocess.run(
-        command, capture_output=True, text=True, timeout=120 * PATIENCE, **options
-    )
+    done = ran(program, *arguments, timeout=120 * PATIENCE, **options)
     assert code in (None, done.returncode), f"{done.returncode}: {done.stdout}{done.stderr}"
     for text in [told] if isinstance(told, str) else told:
         assert text in done.stderr, f"{text!r} is not in {done.stderr!r}"

@@ -6,10 +6,9 @@ No time is judged: only that figures exist, are positive and follow from each ot
 import json
 import os
 import re
-import subprocess
 
 import pytest
-from command_line import BINARY, methods, sandglass
+from command_line import BINARY, methods, ran, sandglass
 
 FIGURES = """
 ns_per_element_step ns_best ns_lower_quartile ns_upper_quartile check_ns_per_element_step
@@ -103,12 +102,7 @@ def test_json_tells_the_width_of_packs(tiny):
     """According to the compiler: machines of one name and "-march=native" may differ."""
     flags = tiny[1]["build_flags"]
     arch = re.search(r"-march=[^;]+", flags).group()
-    macros = subprocess.run(
-        ["c++", arch, "-dM", "-E", "-x", "c++", os.devnull],
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
+    macros = ran("c++", arch, "-dM", "-E", "-x", "c++", os.devnull, check=True).stdout
     width = 8 if "__AVX512F__" in macros else 4 if "__AVX__" in macros else 2
     assert flags.endswith(f"; packs of {width} doubles")
 

@@ -12,7 +12,7 @@ import subprocess
 import time
 
 import pytest
-from command_line import BINARY, BLOCK, dynamic, interrupted, sandglass
+from command_line import BINARY, BLOCK, dynamic, interrupted, ran, sandglass
 
 KILLS = int(os.environ.get("SANDGLASS_KILLS", "5"))
 
@@ -77,9 +77,7 @@ def test_killed_runs_end_with_the_same_bytes(tmp_path, name):
     case = tmp_path / "case.toml"
     case.write_text(text)
     start = time.monotonic()
-    first = subprocess.run(
-        command(case, options, 1, "whole.h5"), cwd=tmp_path, capture_output=True, text=True
-    )
+    first = ran(*command(case, options, 1, "whole.h5"), cwd=tmp_path)
     longest = 1.2 * (time.monotonic() - start)
     assert first.returncode == 0, first.stderr
     sandglass("run", case.name, *options, "-o", "plain.h5", cwd=tmp_path, code=0)
@@ -174,9 +172,7 @@ def test_another_program_is_refused(stopped, tmp_path):
     other = tmp_path / "other-program"
     other.write_bytes(open(BINARY, "rb").read() + b"\0")
     shutil.copymode(BINARY, other)
-    outcome = subprocess.run(
-        [other, "run", case, "--checkpoint", file], capture_output=True, text=True
-    )
+    outcome = ran(other, "run", case, "--checkpoint", file)
     assert outcome.returncode == 2
     assert "program_hash" in outcome.stderr
 

@@ -4,12 +4,11 @@ import importlib.util
 import json
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import command_line
 import pytest
-from command_line import ROOT, sandglass
+from command_line import ROOT, ran, sandglass
 
 README = (ROOT / "exchange" / "README.md").read_text()
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="ccx is not installed")
@@ -22,7 +21,7 @@ def example(tmp_path):
 
 
 def run(*words, folder):
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    done = ran(*words, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -67,7 +66,7 @@ def test_a_page_that_cannot_be_made_leaves_the_old_one(tmp_path, monkeypatch):
     monkeypatch.setenv("SANDGLASS_BINARY", str(Path(command_line.BINARY).resolve()))
     for words, told in (([], "no case"), (["none.toml"], "neither a file nor a known case")):
         command = ["bash", "ci/page", *words]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        done = ran(*command, cwd=tmp_path)
         assert done.returncode == 2 and told in done.stderr
     assert [path.name for path in (tmp_path / "build").iterdir()] == ["page"]
 
