@@ -4,9 +4,11 @@ The program is the one that SANDGLASS_BINARY in the environment names, else buil
 Of a slow one, SANDGLASS_PATIENCE says how many times longer its commands may take.
 """
 
+import json
 import os
 import signal
 import subprocess
+import tempfile
 import time
 from pathlib import Path
 
@@ -54,6 +56,14 @@ def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
     for text in [told] if isinstance(told, str) else told:
         assert text in done.stderr, f"{text!r} is not in {done.stderr!r}"
     return done
+
+
+def documented(command, *more, **options):
+    """(outcome, document): of sandglass() with --json. command: its words in one text."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "document.json"
+        outcome = sandglass(*command.split(), *more, "--json", file, **options)
+        return outcome, json.loads(file.read_text())
 
 
 def catches_interrupts(process):

@@ -1,12 +1,11 @@
 """`sandglass choose`: its choice and reasons, agreement of predictions and runs, rejected input."""
 
-import json
 import re
 
 import h5py
 import numpy as np
 import pytest
-from command_line import BLOCK, ROOT, interrupted, sandglass, write_golden
+from command_line import BLOCK, ROOT, documented, interrupted, sandglass, write_golden
 from scipy.interpolate import RegularGridInterpolator
 
 from common.result_file import last_displacement
@@ -14,11 +13,9 @@ from common.result_file import last_displacement
 CASES = ROOT / "cases"
 
 
-def choose(case, *arguments):
-    """The outcome of the command, and its JSON file."""
-    file = case.parent / "choice.json" if hasattr(case, "parent") else None
-    outcome = sandglass("choose", case, *arguments, "--json", file)
-    return outcome, json.loads(file.read_text())
+def choose(*arguments):
+    """The outcome of the command, and its JSON document."""
+    return documented("choose", *arguments)
 
 
 def copied(name, folder, *replaced):

@@ -1,14 +1,13 @@
 """The worked example and the table of README.md: what comes out is what they say."""
 
 import importlib.util
-import json
 import re
 import shutil
 from pathlib import Path
 
 import command_line
 import pytest
-from command_line import ROOT, ran, sandglass
+from command_line import ROOT, documented, ran, sandglass
 
 README = (ROOT / "exchange" / "README.md").read_text()
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="ccx is not installed")
@@ -27,9 +26,7 @@ def run(*words, folder):
 
 def record_of(*words, folder):
     """What `sandglass score` finds, as it is written."""
-    sandglass("score", *words, "--json", "score.json", cwd=folder, code=0)
-    (record,) = json.loads((folder / "score.json").read_text())["records"]
-    return record
+    return documented("score", *words, cwd=folder, code=0)[1]["records"][0]
 
 
 def test_the_papers_element_is_near_the_mixed_one_but_not_the_same(example):
