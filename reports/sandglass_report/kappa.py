@@ -101,16 +101,9 @@ def _draw_auto(axes, curves, palette):
         for run in runs:
             if run.kappa_is_auto:
                 axes.axvline(run.kappa, color=palette.colour(method), linewidth=0.8, alpha=0.5)
-                axes.annotate(
-                    f"auto {run.kappa:.2g}",
-                    (run.kappa, 1.0),
-                    xycoords=("data", "axes fraction"),
-                    xytext=(4, -2),
-                    textcoords="offset points",
-                    va="top",
-                    fontsize=7.5,
-                    color=palette.colour(method),
-                )
+                place, data = (run.kappa, 1.0), ("data", "axes fraction")
+                strokes = {"va": "top", "color": palette.colour(method)}
+                helpers.note(axes, f"auto {run.kappa:.2g}", place, (4, -2), data, **strokes)
 
 
 def _label_ends(axes, labels):
@@ -121,15 +114,8 @@ def _label_ends(axes, labels):
     heights = [axes.transData.transform(label[:2])[1] for label in labels]
     moved = helpers.spread(heights, gap, box.y0 + gap / 2, box.y1 - gap / 2)
     for (x, y, text, colour), old, new in zip(labels, heights, moved):
-        axes.annotate(
-            text,
-            (x, y),
-            xytext=(5, (new - old) / pixels_per_point),
-            textcoords="offset points",
-            va="center",
-            color=colour,
-            fontsize=7.5,
-        )
+        up = (new - old) / pixels_per_point
+        helpers.note(axes, text, (x, y), (5, up), va="center", color=colour)
 
 
 def _draw_levels(axes, levels, curves, reference):
@@ -139,17 +125,10 @@ def _draw_levels(axes, levels, curves, reference):
             axes.axhline(levels[name], color=style.GOLDEN[0], linestyle=dashes, linewidth=1.3)
     if levels.get("max"):
         place, above = _free_place(axes, levels, curves, reference)
-        axes.annotate(
-            "golden to truth, max",
-            (place, levels["max"]),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, 3 if above else -3),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if above else "top",
-            fontsize=7.5,
-            color=style.GOLDEN[0],
-        )
+        side, up = ("bottom", 3) if above else ("top", -3)
+        strokes = {"ha": "center", "va": side, "color": style.GOLDEN[0]}
+        at, data = (place, levels["max"]), ("axes fraction", "data")
+        helpers.note(axes, "golden to truth, max", at, (0, up), data, **strokes)
 
 
 def _free_place(axes, levels, curves, reference):
