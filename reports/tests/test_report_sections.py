@@ -8,8 +8,7 @@ import pytest
 from common.program import ROOT
 
 from sandglass_report.paper import TIMED_CASE
-from sandglass_report.published import _arrowheads, _why_failed
-from sandglass_report.verdicts import _tips
+from sandglass_report.published import _arrowheads
 
 OPTIONAL = "sandglass bench --threads", "sandglass flops", "reports/curves", "sandglass stability"
 
@@ -164,21 +163,6 @@ def test_a_published_benchmark_names_the_methods_that_fail(data):
     data.write_verdicts()
     unsound = re.search(r"Not sound here<.*?</p>", section(data.make(), "published"), re.S)[0]
     assert "tl-none" in unsound and "no answer" in unsound
-
-
-@pytest.mark.parametrize(
-    ("ratio", "words"),
-    [
-        (0.00044, "99.96 % too small"),
-        (0.5, "50 % too small"),
-        (1.25, "25 % too large"),
-        (-0.2, "of the wrong sign"),
-        (1.04, ""),
-    ],
-)
-def test_what_is_not_sound_says_how_far_off_it_is(data, ratio, words):
-    (tip,) = _tips("here", data.tip("tl-full", ratio, "4"))
-    assert _why_failed({4: tip}) == words
 
 
 def test_values_beyond_the_edges_are_arrowheads(data):
