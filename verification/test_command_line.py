@@ -14,7 +14,7 @@ import numpy
 import pytest
 from command_line import BLOCK, ROOT, dynamic, interrupted, methods, sandglass
 
-from common.result_file import last_displacement, text_of
+from common.result_file import text_of
 
 CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
 
@@ -248,18 +248,6 @@ def test_interrupt_keeps_what_was_computed(block, request_to_end):
         assert text_of(file.attrs["status"]).startswith("interrupted at step ")
         assert file["frames/0000/displacement"].shape == (45, 3)
         assert len(file["history/time"]) > 0
-
-
-def test_mesh_file_as_input(block):
-    folder = block.parent
-    assert sandglass("mesh", block, "-o", folder / "mesh.h5").returncode == 0
-    generated = 'generator = "box"\nsize = [0.1, 0.1, 0.2]\nelements = [2, 2, 4]'
-    from_file = folder / "from-file.toml"
-    from_file.write_text(BLOCK.replace(generated, 'file = "mesh.h5"'))
-    for case, result in ((block, "a.h5"), (from_file, "b.h5")):
-        assert sandglass("run", case, "-o", folder / result).returncode == 0
-    a, b = (last_displacement(folder / name) for name in ("a.h5", "b.h5"))
-    assert numpy.array_equal(a, b)
 
 
 def test_cases_folder_is_found_from_anywhere(tmp_path):

@@ -35,7 +35,7 @@ def refused(*arguments, told, **options):
     assert "sandglass-" not in done.stderr, "a temporary file is nobody's business"
 
 
-@pytest.mark.parametrize("ending", ["vtu", "inp"])
+@pytest.mark.parametrize("ending", ["vtu", "inp", "h5"])
 def test_a_mesh_that_goes_round_gives_the_same_answer(block, ending):
     folder = block.parent
     sandglass("mesh", block, "-o", folder / f"own.{ending}", code=0)
