@@ -1,21 +1,13 @@
 """How the cost grows: what is stored, one step count for all rounds, wrong input."""
 
-import json
-
 import pytest
 
 import growth
-
-
-def _measure(tmp_path, *options):
-    """Exit code and stored document (None without one) of the command line."""
-    output = tmp_path / "growth.json"
-    code = growth.main(["--json", str(output), *options])
-    return code, json.loads(output.read_text()) if output.exists() else None
+from test_measuring import measured
 
 
 def test_every_method_is_timed_at_every_ratio(tmp_path, capsys):
-    code, document = _measure(tmp_path, "--most", "400", "--most-implicit", "0")
+    code, document = measured(growth.main, tmp_path, "--most", "400", "--most-implicit", "0")
     assert code == 0
     assert document["processor"] and document["versions"]["sandglass"]
     records = document["records"]
@@ -32,7 +24,7 @@ def test_every_method_is_timed_at_every_ratio(tmp_path, capsys):
 def test_other_programs_stand_beside_it(tmp_path, monkeypatch):
     pytest.importorskip("dolfinx")
     monkeypatch.setattr(growth, "RATIOS", (0.3,))
-    code, document = _measure(tmp_path, "--most", "400")
+    code, document = measured(growth.main, tmp_path, "--most", "400")
     assert code == 0
     iterations = {record["name"]: record["iterations"] for record in document["records"]}
     assert 2 < iterations["FEniCSx"] < 20  # Newton's method on a mild load
@@ -43,7 +35,7 @@ def test_missing_programs_are_named_and_left_out(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(growth.shutil, "which", lambda name: None)
     monkeypatch.setattr(growth.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(growth, "RATIOS", (0.3,))
-    code, document = _measure(tmp_path, "--most", "400")
+    code, document = measured(growth.main, tmp_path, "--most", "400")
     assert code == 0
     assert {record["name"] for record in document["records"]} == set(growth.METHODS)
     told = capsys.readouterr().err
@@ -51,6 +43,6 @@ def test_missing_programs_are_named_and_left_out(tmp_path, monkeypatch, capsys):
 
 
 def test_less_than_the_smallest_mesh_is_wrong_input(tmp_path, capsys):
-    code, document = _measure(tmp_path, "--most", "319")
+    code, document = measured(growth.main, tmp_path, "--most", "319")
     assert (code, document) == (2, None)
     assert "--most: 319 is less than 320" in capsys.readouterr().err

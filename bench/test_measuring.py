@@ -1,9 +1,18 @@
 """What measurements share: what the program prints of a search for rest, tables."""
 
+import json
+
 import pytest
 
 import measuring
 from common.errors import ComputationError
+
+
+def measured(main, folder, *options):
+    """Exit code and stored document (None without one) of a script."""
+    output = folder / "document.json"
+    code = main(["--json", str(output), *options])
+    return code, json.loads(output.read_text()) if output.exists() else None
 
 
 def test_a_search_for_rest(block):

@@ -10,6 +10,7 @@ import peers
 from peer_report import spread
 from rivals.calculix import PROGRAM, CalculiX
 from rivals.program import Run
+from test_measuring import measured
 from command_line import BLOCK
 
 CCX = ["--program", f"calculix={PROGRAM}"]
@@ -20,10 +21,8 @@ needs_ccx = pytest.mark.skipif(
 
 
 def _compare(case, *options):
-    """Exit code and stored document (None without one) of the command line."""
-    output = case.parent / "peers.json"
-    code = peers.main([str(case), "--json", str(output), *SMALL, *options])
-    return code, json.loads(output.read_text()) if output.exists() else None
+    """Exit code and stored document (None without one) of the comparison."""
+    return measured(peers.main, case.parent, str(case), *SMALL, *options)
 
 
 @needs_ccx

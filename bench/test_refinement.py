@@ -1,21 +1,13 @@
 """Error to the truth over time: what is stored, wrong input."""
 
-import json
-
 import refinement
-
-
-def _measure(tmp_path, *options):
-    """Exit code and stored document (None without one) of the command line."""
-    output = tmp_path / "refinement.json"
-    code = refinement.main(["--json", str(output), *options])
-    return code, json.loads(output.read_text()) if output.exists() else None
+from test_measuring import measured
 
 
 def test_uniform_and_refined_meshes_come_nearer_to_the_truth(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(refinement, "ACCURACIES", (0.02, 0.006))
     monkeypatch.setattr(refinement, "ROUNDS", 1)
-    code, document = _measure(tmp_path, "column", "--most", "2160")
+    code, document = measured(refinement.main, tmp_path, "column", "--most", "2160")
     assert code == 0
     assert document["processor"] and document["versions"]["sandglass"]
     records = document["records"]
@@ -31,12 +23,12 @@ def test_uniform_and_refined_meshes_come_nearer_to_the_truth(tmp_path, monkeypat
 
 def test_an_accuracy_that_cannot_be_reached_ends_the_case(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(refinement, "ACCURACIES", (0.02,))
-    code, document = _measure(tmp_path, "ellipsoid-indentation", "--most", "1")
+    code, document = measured(refinement.main, tmp_path, "ellipsoid-indentation", "--most", "1")
     assert code == 3
     assert {record["way"] for record in document["records"]} == {"uniform"}
     assert "no answer found on the refined mesh of" in capsys.readouterr().err
 
 
 def test_wrong_input_is_told(tmp_path, capsys):
-    assert _measure(tmp_path, "colum") == (2, None)
+    assert measured(refinement.main, tmp_path, "colum") == (2, None)
     assert "colum" in capsys.readouterr().err

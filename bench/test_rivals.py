@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from common.errors import ComputationError, InputError
 from exchange import decks, frd_file
@@ -185,7 +186,7 @@ MATERIAL = Material(
 
 
 def _lateral_stretch(stretch):
-    """Lateral stretch of MATERIAL in uniaxial tension: bisection of dW/dt = 0 to round-off."""
+    """Lateral stretch of MATERIAL in uniaxial tension: dW/dt = 0 to round-off."""
     mu, bulk = 1000.0, 2000.0
 
     def slope(t):  # of W = mu/2 (J^(-2/3) (s^2 + 2 t^2) - 3) + K/2 (J - 1)^2, J = s t^2
@@ -193,11 +194,7 @@ def _lateral_stretch(stretch):
         isochoric = mu / 2 * J ** (-2 / 3) * (4 * t - 4 / 3 / t * (stretch**2 + 2 * t**2))
         return isochoric + bulk * (J - 1) * 2 * stretch * t
 
-    low, high = 0.5, 1.5
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (low, middle) if slope(middle) > 0 else (middle, high)
-    return low
+    return brentq(slope, 0.5, 1.5, xtol=1e-15)
 
 
 @pytest.mark.skipif(

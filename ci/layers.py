@@ -9,23 +9,12 @@ import re
 import sys
 
 TARGETS = {
-    "solver": [
-        "base",
-        "math",
-        "material",
-        "mesh",
-        "forces",
-        "element",
-        "assembly",
-        "multigrid",
-        "problem",
-        "io",
-        "solve",
-        "sandglass",
-    ],
-    "suite": ["counting", "comparison", "benchmark", "choice", "stability"],
-    "app": ["app"],
+    "solver": "base math material mesh forces element assembly multigrid problem io solve"
+    " sandglass",
+    "suite": "counting comparison benchmark choice stability",
+    "app": "app",
 }
+TARGETS = {target: layers.split() for target, layers in TARGETS.items()}
 LAYERS = [layer for layers in TARGETS.values() for layer in layers]
 
 

@@ -41,16 +41,3 @@ def output_of(*command, allowed=(0,), **options):
         text = f"`{' '.join(words)}` ended with {done.returncode}: {reason.removeprefix('error: ')}"
         raise kind(text)
     return done.stdout
-
-
-def under_mpirun(ranks, *command):
-    """(words, environment) that start a command on so many ranks.
-
-    As the superuser too, with more ranks and threads than processors, and bound to none of them.
-    Python may be within MPI itself, as dolfinx starts it, but mpirun refuses to run within MPI.
-    """
-    words = ("mpirun", "--oversubscribe", "--bind-to", "none", "-n", ranks, *command)
-    permission = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-    within = ("OMPI_", "ORTE_", "PMIX_") if "PMIX_RANK" in os.environ else ()
-    outside = {name: text for name, text in os.environ.items() if not name.startswith(within)}
-    return [str(word) for word in words], outside | permission

@@ -28,16 +28,10 @@ DOCS = ROOT / "docs"
 # What `ci/site` puts beside the documentation, and where.
 PUBLISHED = {"build/report/index.html": "report/index.html"}
 MATHJAX = Path("/usr/share/javascript/mathjax")  # Debian's libjs-mathjax
-MATHJAX_PARTS = (
-    "MathJax.js",
-    "config/TeX-AMS_SVG.js",
-    "jax/element",
-    "jax/output/SVG/config.js",
-    "jax/output/SVG/jax.js",
-    "jax/output/SVG/autoload",
-    "jax/output/SVG/fonts/TeX",
-    "extensions",
-)
+MATHJAX_PARTS = """
+MathJax.js config/TeX-AMS_SVG.js extensions jax/element jax/output/SVG/config.js
+jax/output/SVG/jax.js jax/output/SVG/autoload jax/output/SVG/fonts/TeX
+""".split()
 INCLUDE = re.compile(r"^```\{include\} (\S+)$", re.MULTILINE)
 LOGGER = logging.getLogger(__name__)
 

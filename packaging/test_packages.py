@@ -1,11 +1,10 @@
 """Packages, where they are made, are installed and used on a bare Debian; one version for all."""
 
 import re
-import subprocess
 import sys
 
 import pytest
-from command_line import PATIENCE, ROOT
+from command_line import PATIENCE, ROOT, ran
 from try_packages import why_not
 
 PACKAGES = ROOT / "build/packages"
@@ -33,12 +32,12 @@ def test_the_wheel_has_the_version_of_the_project(tmp_path):
     pytest.importorskip("setuptools")
     (version,) = found(r"^project\(sandglass VERSION (\S+) ", "CMakeLists.txt")
     command = [sys.executable, "setup.py", "--quiet", "--version"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    done = ran(*command, cwd=ROOT)
     assert done.stdout.split()[-1:] == [version], done.stderr
 
 
 def test_without_packages_it_says_what_to_do(tmp_path):
-    done = subprocess.run([*TRY, tmp_path], capture_output=True, text=True)
+    done = ran(*TRY, tmp_path)
     assert done.returncode == 2
     assert re.fullmatch(r"error: .+\n", done.stderr)
 
@@ -46,5 +45,5 @@ def test_without_packages_it_says_what_to_do(tmp_path):
 @pytest.mark.skipif(why_not(PACKAGES) != "", reason=why_not(PACKAGES))
 def test_they_are_installed_and_used_on_a_bare_debian():
     """Minutes, most of them for what apt fetches."""
-    done = subprocess.run(TRY, capture_output=True, text=True, timeout=3600 * PATIENCE)
+    done = ran(*TRY, timeout=3600 * PATIENCE)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -11,7 +11,7 @@ import scipy.sparse
 
 from common.errors import InputError
 from common.hexahedron import CORNERS, LEXICOGRAPHIC
-from newton import Unknown
+from newton import Problem, Unknown, condensed
 
 getfem.util_trace_level(0)
 
@@ -37,11 +37,10 @@ Def x := (pow(J, -2/3) * Norm_sqr(F) - 3);
 """
 
 
-class GetfemProblem:
+class GetfemProblem(Problem):
     """Equilibrium of a HexMesh with the golden's element, assembled by GetFEM.
 
     mesh: HexMesh. materials: list of Material. Raises InputError for a law that is not in LAWS.
-    It has the functions and attributes of MixedProblem that newton.solve() needs.
     """
 
     program = "GetFEM"
@@ -65,11 +64,8 @@ class GetfemProblem:
         self._add_loads()
         self.displacement = Unknown(self._dofs.size)
         self.pressure = Unknown(len(corners))
-        prescribed, _ = mesh.imposed()
-        self.fixed = np.sort(self._dofs[prescribed])
-        self.free = np.setdiff1d(np.arange(self._dofs.size), self.fixed)
-        self.scale = max(np.abs(self.values_at(1.0)).max(initial=0.0), mesh.largest_turn().max())
-        self.load, self.symmetric = 1.0, not any(s.pressure for s in mesh.surfaces)
+        self.impose(mesh, self._dofs, self._dofs.size)
+        self.symmetric = not any(s.pressure for s in mesh.surfaces)
 
     def _add_materials(self, materials):
         of_cell = self._mesh.materials
@@ -119,15 +115,6 @@ class GetfemProblem:
         kept = loaded[cells, faces]
         return np.stack([cells[kept], faces[kept]])
 
-    def values_at(self, load):
-        """Values (in m) of the prescribed dofs at a load factor."""
-        prescribed, values = self._mesh.imposed(load)
-        return values[prescribed][np.argsort(self._dofs[prescribed])]
-
-    def node_dofs(self):
-        """See MixedProblem.node_dofs."""
-        return self._dofs
-
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh."""
         return self.displacement.array[self._dofs]
@@ -154,14 +141,8 @@ class GetfemProblem:
         matrix = self._model.tangent_matrix()
         starts, rows = matrix.csc_ind()
         matrix = scipy.sparse.csc_matrix((matrix.csc_val(), rows, starts)).tocsr()
-        (stiffness, up), (pu, pp) = ([matrix[rows, cs] for cs in self._rows] for rows in self._rows)
-        inverse = scipy.sparse.diags(1 / pp.diagonal())
-        condensed = up @ inverse
-
-        def recover(increment):
-            return -(inverse @ (dilatation + pu @ increment))
-
-        return (stiffness - condensed @ pu).tocsr(), force - condensed @ dilatation, recover
+        blocks = [matrix[rows, columns] for rows in self._rows for columns in self._rows]
+        return condensed(blocks, force, dilatation)
 
 
 def _field(mesh, size, element):

@@ -5,6 +5,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse
 from petsc4py import PETSc
 
 from common.errors import ComputationError
@@ -39,6 +40,48 @@ class Unknown:
     def __init__(self, size):
         self.x = self
         self.array = np.zeros(size)
+
+
+class Problem:
+    """What solve() needs to know of any problem on a HexMesh: which unknowns are imposed.
+
+    Attributes: fixed (prescribed unknowns), free (the others), scale (the largest displacement
+    imposed on the way, m), load (the current factor of the loads, 0 to 1).
+    """
+
+    def impose(self, mesh, dofs, size):
+        """Sets them. dofs: (n, 3) the unknowns of the mesh's nodes. size: number of unknowns."""
+        self._mesh, self._dofs = mesh, dofs
+        self._prescribed, values = mesh.imposed()
+        self.fixed = dofs[self._prescribed]
+        self.free = np.setdiff1d(np.arange(size), self.fixed)
+        imposed = np.abs(values[self._prescribed]).max(initial=0.0)
+        self.scale, self.load = max(imposed, mesh.largest_turn().max()), 1.0
+
+    def values_at(self, load):
+        """Values (in m) of the prescribed unknowns at a load factor."""
+        return self._mesh.imposed(load)[1][self._prescribed]
+
+    def node_dofs(self):
+        """The numbers (n, 3) of the displacement unknowns of the HexMesh's nodes."""
+        return self._dofs
+
+
+def condensed(blocks, force, dilatation):
+    """(tangent, residual, recover) of a mixed system whose pressures are local to elements.
+
+    blocks: the sparse matrices uu, up, pu and pp, of which the last is diagonal. force,
+    dilatation: both rows of the residual. recover: from a displacement increment to the pressure
+    increment of the same Newton step.
+    """
+    uu, up, pu, pp = blocks
+    inverse = scipy.sparse.diags(1 / pp.diagonal())
+    eliminated = up @ inverse
+
+    def recover(increment):
+        return -(inverse @ (dilatation + pu @ increment))
+
+    return (uu - eliminated @ pu).tocsr(), force - eliminated @ dilatation, recover
 
 
 def solve(problem, load_steps, tolerance, guessed=False):

@@ -9,7 +9,6 @@ from functools import partial
 import basix
 import dolfinx
 import numpy as np
-import scipy.sparse
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
@@ -17,21 +16,20 @@ from mpi4py import MPI
 from common.hexahedron import LEXICOGRAPHIC
 from laws import energy
 from loads import JIT_OPTIONS, Loads, assembled
+from newton import Problem, condensed
 
 
 QUADRATURE = 3  # the degree that 2 x 2 x 2 Gauss points integrate
 
 
-class MixedProblem:
+class MixedProblem(Problem):
     """Equilibrium of a HexMesh: residual and tangent in the displacement's unknowns.
 
     The golden's element: a trilinear displacement and one pressure (Q1-P0), 2 x 2 x 2 Gauss points.
 
-    mesh: HexMesh. materials: list of Material, to which the mesh's material numbers refer.
-    Attributes: displacement and pressure (dolfinx functions, m and Pa), fixed (prescribed unrolled
-    dofs), values (their values at full load, m), scale (the largest of them on the way, m), free
-    (the other dofs), load (the current factor of the loads, 0 to 1), symmetric (whether tangents
-    are).
+    mesh: HexMesh. materials: list of Material, of which the mesh's elements have the numbers.
+    Attributes, beside those of a Problem: displacement and pressure (dolfinx functions, m and Pa),
+    symmetric (whether tangents are).
     """
 
     def __init__(self, mesh, materials):
@@ -56,13 +54,8 @@ class MixedProblem:
         space = self.displacement.function_space
         self._vertex_block = np.empty(len(mesh.points), dtype=np.int64)
         self._vertex_block[cell_nodes] = space.dofmap.list.array.reshape(n_cells, 8)
-        self._mesh = mesh
-        prescribed, values = mesh.imposed()
-        self.fixed = self.node_dofs()[prescribed].astype(np.int32)
-        self.values = values[prescribed]
-        self.scale = max(np.abs(self.values).max(initial=0.0), mesh.largest_turn().max())
-        self.free = np.setdiff1d(np.arange(self.displacement.x.array.size), self.fixed)
-        self.load = 1.0
+        dofs = 3 * self._vertex_block[:, None] + np.arange(3)
+        self.impose(mesh, dofs, self.displacement.x.array.size)
         self._densities = densities_of(domain, mesh, materials)
         self._loads = Loads(mesh, self.displacement, cell_nodes, self._densities, QUADRATURE)
         self.symmetric = self._loads.symmetric
@@ -88,11 +81,6 @@ class MixedProblem:
         take_over(self.displacement, coarse.displacement)
         take_over(self.pressure, coarse.pressure)
 
-    def values_at(self, load):
-        """Values (in m) of the prescribed dofs at a load factor."""
-        prescribed, values = self._mesh.imposed(load)
-        return values[prescribed]
-
     def factor_of(self, _curve):
         """The current factor of a load: in a quasi-static case no load has its own curve."""
         return self.load
@@ -108,10 +96,6 @@ class MixedProblem:
         of_cells = (self._densities * volumes / 8)[:, None]
         np.add.at(masses, space.dofmap.list.array.reshape(len(volumes), 8), of_cells)
         return np.repeat(masses, 3)
-
-    def node_dofs(self):
-        """The numbers (n, 3) of the displacement dofs of the HexMesh's nodes."""
-        return 3 * self._vertex_block[:, None] + np.arange(3)
 
     def dofs_of(self, nodal):
         """Values (n, 3) at the nodes of the HexMesh as values of the displacement dofs (N,)."""
@@ -142,18 +126,9 @@ class MixedProblem:
         displacement dofs, and a function from a displacement increment (N,) to the pressure
         increment of the same Newton step.
         """
-        stiffness = self._assemble_matrix("uu")
-        coupling = self._assemble_matrix("up")
-        inverse = scipy.sparse.diags(1 / self._assemble_matrix("pp").diagonal())
-        force, dilatation = self.mixed_residual()
-        condensed = coupling @ inverse
-        tangent = (stiffness - condensed @ coupling.T + self._loads.tangent(self.factor_of)).tocsr()
-        residual = force - condensed @ dilatation
-
-        def recover(increment):
-            return -(inverse @ (dilatation + coupling.T @ increment))
-
-        return tangent, residual, recover
+        uu, up, pp = map(self._assemble_matrix, ("uu", "up", "pp"))
+        uu = uu + self._loads.tangent(self.factor_of)
+        return condensed((uu, up, up.T, pp), *self.mixed_residual())
 
     def mixed_residual(self):
         """Both rows of the mixed system: forces (N,) in N, and (M,) in m^3, one per pressure.

@@ -22,7 +22,7 @@ with contextlib.redirect_stdout(io.StringIO()):
 
 from common.errors import InputError
 from common.hexahedron import boundary_faces
-from newton import Unknown
+from newton import Problem, Unknown, condensed
 
 output.set_output(quiet=True)
 
@@ -31,11 +31,11 @@ ORDER = 3
 LAWS = ("neo-hookean",)
 
 
-class SfepyProblem:
+class SfepyProblem(Problem):
     """Equilibrium of a HexMesh, Q1 displacements and P0 pressures, with the terms of SfePy.
 
-    mesh: HexMesh. materials: list of Material. Raises InputError if SfePy lacks an element or term.
-    It has the functions and attributes of MixedProblem that newton.solve() needs.
+    mesh: HexMesh. materials: list of Material. Raises InputError if SfePy
+    lacks an element or term.
     """
 
     program = f"SfePy {VERSION}"
@@ -51,12 +51,8 @@ class SfepyProblem:
         with contextlib.redirect_stdout(io.StringIO()):
             self._set_up(mesh, materials)
         self.displacement, self.pressure = Unknown(3 * n_nodes), Unknown(n_cells)
-        prescribed, _ = mesh.imposed()
-        self.fixed = np.flatnonzero(prescribed)
-        self.free = np.setdiff1d(np.arange(3 * n_nodes), self.fixed)
-        values = self.values_at(1.0)
-        self.scale = max(np.abs(values).max(initial=0.0), mesh.largest_turn().max())
-        self.load, self.symmetric = 1.0, not any(s.pressure for s in mesh.surfaces)
+        self.impose(mesh, np.arange(3 * n_nodes).reshape(-1, 3), 3 * n_nodes)
+        self.symmetric = not any(s.pressure for s in mesh.surfaces)
 
     def _set_up(self, mesh, materials):
         of_cell = np.zeros(len(mesh.cells), int) if mesh.materials is None else mesh.materials
@@ -170,14 +166,6 @@ class SfepyProblem:
 
         return discrete.Material(name, function=discrete.Function(name, at_points))
 
-    def values_at(self, load):
-        """Values (in m) of the prescribed dofs at a load factor."""
-        return self._mesh.imposed(load)[1].ravel()[self.fixed]
-
-    def node_dofs(self):
-        """See MixedProblem.node_dofs."""
-        return np.arange(self.displacement.array.size).reshape(-1, 3)
-
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh."""
         return self.displacement.array.reshape(-1, 3)
@@ -201,13 +189,6 @@ class SfepyProblem:
         both = np.concatenate([self.displacement.array, self.pressure.array])
         n = len(self.displacement.array)
         matrix = self._evaluator.eval_tangent_matrix(both).tocsr()
-        stiffness, up, pu, pp = matrix[:n, :n], matrix[:n, n:], matrix[n:, :n], matrix[n:, n:]
-        diagonal = pp.diagonal()
-        assert abs(pp - scipy.sparse.diags(diagonal)).max() == 0, "pressure is not local"
-        condensed = up @ scipy.sparse.diags(1 / diagonal)
-        tangent = (stiffness - condensed @ pu).tocsr()
-
-        def recover(increment):
-            return -(dilatation + pu @ increment) / diagonal
-
-        return tangent, force - condensed @ dilatation, recover
+        uu, up, pu, pp = matrix[:n, :n], matrix[:n, n:], matrix[n:, :n], matrix[n:, n:]
+        assert abs(pp - scipy.sparse.diags(pp.diagonal())).max() == 0, "pressure is not local"
+        return condensed((uu, up, pu, pp), force, dilatation)

@@ -97,30 +97,31 @@ def run(options):
         displacement = displacements[-1]
         unit = mesh.largest_imposed() or np.linalg.norm(displacement, axis=1).max()
         facts = discretisation_error(displacements, unit)
-    attributes = {
-        "case": case.name,
-        "case_hash": file.case_hash,
-        "mesh_hash": file.mesh_hash,
-        "kind": kind,
+    attributes = origin(case, file, kind, started) | {
         "element": "Q1-P0",
         "refinements": refinements,
         "quadrature": "Gauss-Legendre 2x2x2",
-        "law": ", ".join(material.law for material in case.materials),
         "mirror_planes": mirrors,
-        "boundary_rule": BOUNDARY_RULE,
         "largest_imposed": unit,
         "load_steps": outcome.load_steps,
         "newton_iterations": outcome.newton_iterations,
         "residual": outcome.residual,
         "newton_tolerance": motion.TOLERANCE if case.motion else NEWTON_TOLERANCE,
         "last_correction": outcome.last_correction,
-        "dolfinx_version": dolfinx.__version__,
-        "wall_seconds": time.perf_counter() - started,
         **facts,
         **NOT_ESTIMATED,
     }
     times = case.motion.times() if case.motion else None
     write_reference(options.output, mesh.points, displacement, attributes, times)
+
+
+def origin(case, file, kind, started):
+    """The attributes that every reference has: of its case and mesh, and when it was started."""
+    hashes = {name: getattr(file, name) for name in ("case_hash", "mesh_hash")}
+    laws = ", ".join(material.law for material in case.materials)
+    known = {"case": case.name, "kind": kind, "law": laws, "boundary_rule": BOUNDARY_RULE}
+    known |= {"dolfinx_version": dolfinx.__version__}
+    return hashes | known | {"wall_seconds": time.perf_counter() - started}
 
 
 def discretisation_error(displacements, unit):

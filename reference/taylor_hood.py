@@ -10,7 +10,7 @@ from mpi4py import MPI
 from scipy.spatial import cKDTree
 
 from loads import Loads, assembled
-from newton import Unknown
+from newton import Problem, Unknown
 from problem import compile_forms, densities_of
 from tetrahedra import EDGES
 
@@ -19,7 +19,7 @@ from tetrahedra import EDGES
 DEGREE = 4
 
 
-class TaylorHoodProblem:
+class TaylorHoodProblem(Problem):
     """Equilibrium on quadratic tetrahedra, as newton.solve() needs it.
 
     mesh: HexMesh of tetrahedra.cut(). materials: list of Material. A continuous pressure cannot be
@@ -54,22 +54,15 @@ class TaylorHoodProblem:
         self._place = used  # of each pressure unknown: node + nodes * material
         densities = densities_of(domain, mesh, materials)
         self._loads = Loads(mesh, self.function, self._cells, densities, DEGREE)
-        self.symmetric, self.load = self._loads.symmetric, 1.0
+        self.symmetric = self._loads.symmetric
         self._n = self.function.x.array.size
         self.displacement = Unknown(self._n + len(used))
         self.pressure = Unknown(0)
-        prescribed, _ = mesh.imposed()
-        self._nodes, self._axes = np.nonzero(prescribed)
-        self.fixed = 3 * self._block[self._nodes] + self._axes
-        self.free = np.setdiff1d(np.arange(self.displacement.array.size), self.fixed)
-        self.scale = max(np.abs(self.values_at(1.0)).max(initial=0.0), mesh.largest_turn().max())
+        dofs = 3 * self._block[:, None] + np.arange(3)
+        self.impose(mesh, dofs, self.displacement.array.size)
         forms = self._forms["matrices"]
         uu, pp = assembled(forms["uu"]), self._of_cells.T @ assembled(forms["pp"]) @ self._of_cells
         self._stiffness = np.sqrt(-uu.diagonal().mean() / pp.diagonal().mean())
-
-    def values_at(self, load):
-        """Values (in m) of the prescribed dofs at a load factor."""
-        return self.mesh.imposed(load)[1][self._nodes, self._axes]
 
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the mesh, in its numbering."""

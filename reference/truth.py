@@ -15,7 +15,6 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-import dolfinx
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -32,7 +31,7 @@ from common.program import CASES
 from convergence import attributes_of
 from mesh_file import case_with_mesh
 from reference_file import path_of, write_reference
-from solve import BOUNDARY_RULE, NEWTON_TOLERANCE
+from solve import NEWTON_TOLERANCE, origin
 from symmetry import expand, halve
 from taylor_hood import DEGREE, TaylorHoodProblem
 from tetrahedra import cut
@@ -171,7 +170,6 @@ class Answer:
                 raise ComputationError(f"{name}, mesh {level + 1}: {error}") from error
         self.field = expand(halves, self.problem.nodal_displacement()[: len(part.points)])
         self.facts = {
-            "law": ", ".join(material.law for material in case.materials),
             "mirror_planes": "".join("xyz"[half.axis] for half in halves),
             **dataclasses.asdict(outcome),
         }
@@ -249,7 +247,7 @@ def make_truth(name, output, keep=None):
     if name not in GRADINGS:
         raise InputError(f"CASE: {name!r} has no meshes in GRADINGS; {suggestion(name, GRADINGS)}")
     require_writable(output)
-    _, mesh, file = case_with_mesh(find_case(CASES, name), name)
+    case, mesh, file = case_with_mesh(find_case(CASES, name), name)
     grading = GRADINGS[name]
     fields, inside, facts = solve_levels(name, grading, mesh, keep)
     orders = grading.sequences or (range(grading.levels()),)
@@ -259,18 +257,11 @@ def make_truth(name, output, keep=None):
     displacement[prescribed] = values[prescribed]  # the same except for rounding
     unit = mesh.largest_imposed() or np.linalg.norm(displacement, axis=1).max()
     most, rms = relative_errors(fields[-2], displacement, unit)
-    attributes = {
-        "case": name,
-        "case_hash": file.case_hash,
-        "mesh_hash": file.mesh_hash,
-        "kind": "truth",
+    attributes = origin(case, file, "truth", started) | {
         "element": "P2-P1",
         "quadrature": f"degree {DEGREE}",
-        "boundary_rule": BOUNDARY_RULE,
         "largest_imposed": unit,
         "newton_tolerance": NEWTON_TOLERANCE,
-        "dolfinx_version": dolfinx.__version__,
-        "wall_seconds": time.perf_counter() - started,
         "discretisation_error_max": most,
         "discretisation_error_rms": rms,
         "discretisation_error_note": "difference to the mesh before",

@@ -4,9 +4,12 @@ The program is the one that SANDGLASS_BINARY in the environment names, else buil
 Of a slow one, SANDGLASS_PATIENCE says how many times longer its commands may take.
 """
 
+import json
 import os
 import signal
 import subprocess
+import tempfile
+import time
 from pathlib import Path
 
 import h5py
@@ -37,19 +40,30 @@ def dynamic(text, **numbers):
     return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
+def ran(*command, **options):
+    """The outcome of any command, with its output. options: of subprocess.run."""
+    words = [str(word) for word in command]
+    return subprocess.run(words, capture_output=True, text=True, **options)
+
+
 def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
     """Runs the program; returns its outcome with its output.
 
     code: the exit code that it must end with. told: a text, or several, that its errors must have.
     """
-    command = [program, *map(str, arguments)]
-    done = subprocess.run(
-        command, capture_output=True, text=True, timeout=120 * PATIENCE, **options
-    )
+    done = ran(program, *arguments, timeout=120 * PATIENCE, **options)
     assert code in (None, done.returncode), f"{done.returncode}: {done.stdout}{done.stderr}"
     for text in [told] if isinstance(told, str) else told:
         assert text in done.stderr, f"{text!r} is not in {done.stderr!r}"
     return done
+
+
+def documented(command, *more, **options):
+    """(outcome, document): of sandglass() with --json. command: its words in one text."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "document.json"
+        outcome = sandglass(*command.split(), *more, "--json", file, **options)
+        return outcome, json.loads(file.read_text())
 
 
 def catches_interrupts(process):
@@ -58,6 +72,21 @@ def catches_interrupts(process):
         if line.startswith("SigCgt:"):
             return bool(int(line.split()[1], 16) >> (signal.SIGTERM - 1) & 1)  # watched last
     return False
+
+
+def interrupted(*arguments, sent=signal.SIGINT, once=lambda: True, **options):
+    """Runs the program and sends it a signal once it handles it and a condition holds.
+
+    Returns its exit code and its errors.
+    """
+    command = [BINARY, *map(str, arguments)]
+    pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes, **options) as process:
+        while process.poll() is None and not (once() and catches_interrupts(process)):
+            time.sleep(0.002)
+        process.send_signal(sent)
+        _, errors = process.communicate(timeout=60 * PATIENCE)
+    return process.returncode, errors
 
 
 def methods():

@@ -3,13 +3,11 @@
 No time is judged: only that figures exist, are positive and follow from each other.
 """
 
-import json
 import os
 import re
-import subprocess
 
 import pytest
-from command_line import BINARY, methods, sandglass
+from command_line import BINARY, documented, methods, ran
 
 FIGURES = """
 ns_per_element_step ns_best ns_lower_quartile ns_upper_quartile check_ns_per_element_step
@@ -27,19 +25,17 @@ OF_MOTION = ("mean_step_seconds", "seconds_per_simulated_second")
 
 
 @pytest.fixture(scope="module")
-def tiny(tmp_path_factory):
+def tiny():
     """One short run of everything: its output and its file."""
-    file = tmp_path_factory.mktemp("bench") / "bench.json"
-    command = "bench --elements 64 --repetitions 1 --threads 1 2 --json".split()
-    outcome = sandglass(*command, file, program=SCALAR, code=0)
-    return outcome.stdout, json.loads(file.read_text())
+    command = "bench --elements 64 --repetitions 1 --threads 1 2"
+    outcome, document = documented(command, program=SCALAR, code=0)
+    return outcome.stdout, document
 
 
-def test_cubes_take_fewer_operations_and_bytes_than_other_bricks(tmp_path):
-    file = tmp_path / "bench.json"
-    command = "bench --elements 64 --cubes 64 --repetitions 1 --threads 1 --json".split()
-    sandglass(*command, file, "--methods", "tl-perturbation", "tl-full", code=0)
-    found = {(r["case"], r["method"]): r for r in json.loads(file.read_text())["records"]}
+def test_cubes_take_fewer_operations_and_bytes_than_other_bricks():
+    command = "bench --elements 64 --cubes 64 --repetitions 1 --threads 1"
+    _, document = documented(command, "--methods", "tl-perturbation", "tl-full", code=0)
+    found = {(r["case"], r["method"]): r for r in document["records"]}
     assert set(found) == {(c, m) for c in ("box", "cubes") for m in ("tl-perturbation", "tl-full")}
     for figure in ("operations_per_element_step", "bytes_per_element_step"):
         assert found["cubes", "tl-perturbation"][figure] < found["box", "tl-perturbation"][figure]
@@ -103,12 +99,7 @@ def test_json_tells_the_width_of_packs(tiny):
     """According to the compiler: machines of one name and "-march=native" may differ."""
     flags = tiny[1]["build_flags"]
     arch = re.search(r"-march=[^;]+", flags).group()
-    macros = subprocess.run(
-        ["c++", arch, "-dM", "-E", "-x", "c++", os.devnull],
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
+    macros = ran("c++", arch, "-dM", "-E", "-x", "c++", os.devnull, check=True).stdout
     width = 8 if "__AVX512F__" in macros else 4 if "__AVX__" in macros else 2
     assert flags.endswith(f"; packs of {width} doubles")
 
@@ -126,27 +117,18 @@ def test_table_fits_a_terminal_and_shows_every_figure(tiny):
         assert heads.count(head) == 1
 
 
-def test_quartiles_that_are_far_apart_are_warned_of(block, tmp_path):
-    file = tmp_path / "bench.json"
-    outcome = sandglass(
-        *f"bench {block} --methods tl-full tl-none --threads 1 --repetitions 20".split(),
-        "--json",
-        file,
-    )
-    records = json.loads(file.read_text())["records"]
-    wide = [
-        record
-        for record in records
-        if record["ns_upper_quartile"] > 1.3 * record["ns_lower_quartile"]
-    ]
+def test_quartiles_that_are_far_apart_are_warned_of(block):
+    command = f"bench {block} --methods tl-full tl-none --threads 1 --repetitions 20"
+    outcome, document = documented(command)
+    records = document["records"]
+    wide = [r for r in records if r["ns_upper_quartile"] > 1.3 * r["ns_lower_quartile"]]
     words = f"warning: q3 is more than 1.3 times q1 in {len(wide)} of {len(records)} rows: "
     assert (words in outcome.stderr) == bool(wide)
     assert ("warning" in outcome.stderr) == bool(wide)
 
 
-def test_operations_are_those_of_the_flops_command(tiny, tmp_path):
-    assert sandglass("flops", "--json", tmp_path / "flops.json").returncode == 0
-    records = json.loads((tmp_path / "flops.json").read_text())["records"]
+def test_operations_are_those_of_the_flops_command(tiny):
+    records = documented("flops", code=0)[1]["records"]
     counted = {
         r["method"]: r["total"] for r in records if r["form"] == "kernel" and r["part"] == "element"
     }
@@ -159,27 +141,17 @@ def test_operations_are_those_of_the_flops_command(tiny, tmp_path):
             assert record["operations_per_element_step"] == counted[record["method"]]
 
 
-def test_condensed_methods_are_left_out_of_large_meshes(tmp_path):
-    json_file = tmp_path / "bench.json"
-    choice = "--methods linear-condensed --precision double --threads 1 --repetitions 1 --json"
-    outcome = sandglass(*"bench --elements 20000".split(), *choice.split(), json_file, code=0)
-    records = json.loads(json_file.read_text())["records"]
-    assert len(records) == 1
-    for record in records:
-        assert record["status"].startswith("left out: ") and record["status"] in outcome.stdout
-        assert record["ns_per_element_step"] is None
+def test_condensed_methods_are_left_out_of_large_meshes():
+    choice = "--methods linear-condensed --precision double --threads 1 --repetitions 1"
+    outcome, document = documented("bench --elements 20000 " + choice, code=0)
+    (record,) = document["records"]
+    assert record["status"].startswith("left out: ") and record["status"] in outcome.stdout
+    assert record["ns_per_element_step"] is None
 
 
 def test_a_case_and_a_choice(block):
-    json_file = block.parent / "bench.json"
-    sandglass(
-        *f"bench {block} --methods tl-full --precision float --threads 1".split(),
-        *"--repetitions 2 --json".split(),
-        json_file,
-        program=SCALAR,
-        code=0,
-    )
-    records = json.loads(json_file.read_text())["records"]
+    command = f"bench {block} --methods tl-full --precision float --threads 1 --repetitions 2"
+    records = documented(command, program=SCALAR, code=0)[1]["records"]
     assert [(r["case"], r["elements"], r["kernel"], r["precision"]) for r in records] == [
         ("block", 16, "pack", "float"),
         ("block", 16, "scalar", "double"),  # the yardstick
@@ -189,10 +161,8 @@ def test_a_case_and_a_choice(block):
 
 
 def test_without_scalar_kernels_packs_are_compared_with_doubles(block):
-    json_file = block.parent / "packs.json"
-    command = f"bench {block} --methods tl-full --threads 1 --repetitions 1 --json".split()
-    sandglass(*command, json_file, code=0)
-    double, single = json.loads(json_file.read_text())["records"]
+    command = f"bench {block} --methods tl-full --threads 1 --repetitions 1"
+    double, single = documented(command, code=0)[1]["records"]
     assert (double["kernel"], single["kernel"]) == ("pack", "pack")
     assert double["force_difference"] == 0.0 and single["force_difference"] > 0.0
     assert double["speedup_over_scalar_double"] is None
@@ -200,10 +170,8 @@ def test_without_scalar_kernels_packs_are_compared_with_doubles(block):
 
 def test_rest(block):
     """Every method and precision, with ordered seconds; bench/ reads the solver's records."""
-    json_file = block.parent / "rest.json"
-    outcome = sandglass("bench", "--rest", block, "--json", json_file, code=0)
+    outcome, document = documented("bench --rest", block, code=0)
     assert "block: 16 elements, 45 nodes" in outcome.stdout
-    document = json.loads(json_file.read_text())
     assert document["revision"] and document["processor"]
     found = [(r["case"], r["method"], r["precision"], r["threads"]) for r in document["records"]]
     default = ("tl-perturbation", "tl-mean-dilatation")
@@ -222,10 +190,9 @@ def test_rest(block):
 
 def test_rest_that_is_not_reached_ends_with_3(block):
     block.write_text(block.read_text() + "\n[relaxation]\nmax_steps = 5\n")
-    json_file = block.parent / "rest.json"
-    choice = "--methods tl-full --precision double --json".split()
-    outcome = sandglass("bench", "--rest", block, *choice, json_file, code=3)
+    command = f"bench --rest {block} --methods tl-full --precision double"
+    outcome, document = documented(command, code=3)
     assert "failed: no equilibrium after" in outcome.stdout
     assert "1 of 1 found no static equilibrium" in outcome.stderr
-    (record,) = json.loads(json_file.read_text())["records"]
+    (record,) = document["records"]
     assert record["seconds_to_rest"] is None and record["status"].startswith("failed: ")

@@ -12,7 +12,7 @@ import subprocess
 import time
 
 import pytest
-from command_line import BINARY, BLOCK, catches_interrupts, dynamic, sandglass
+from command_line import BINARY, BLOCK, dynamic, interrupted, ran, sandglass
 
 KILLS = int(os.environ.get("SANDGLASS_KILLS", "5"))
 
@@ -77,9 +77,7 @@ def test_killed_runs_end_with_the_same_bytes(tmp_path, name):
     case = tmp_path / "case.toml"
     case.write_text(text)
     start = time.monotonic()
-    first = subprocess.run(
-        command(case, options, 1, "whole.h5"), cwd=tmp_path, capture_output=True, text=True
-    )
+    first = ran(*command(case, options, 1, "whole.h5"), cwd=tmp_path)
     longest = 1.2 * (time.monotonic() - start)
     assert first.returncode == 0, first.stderr
     sandglass("run", case.name, *options, "-o", "plain.h5", cwd=tmp_path, code=0)
@@ -174,9 +172,7 @@ def test_another_program_is_refused(stopped, tmp_path):
     other = tmp_path / "other-program"
     other.write_bytes(open(BINARY, "rb").read() + b"\0")
     shutil.copymode(BINARY, other)
-    outcome = subprocess.run(
-        [other, "run", case, "--checkpoint", file], capture_output=True, text=True
-    )
+    outcome = ran(other, "run", case, "--checkpoint", file)
     assert outcome.returncode == 2
     assert "program_hash" in outcome.stderr
 
@@ -198,14 +194,10 @@ def test_an_interrupted_run_goes_on(block):
     folder = block.parent
     assert sandglass("run", block, "-o", folder / "whole.h5").returncode == 0
     file = folder / "run.checkpoint"
-    call = [BINARY, "run", str(block), "-o", str(folder / "a.h5"), "--checkpoint", str(file)]
-    with subprocess.Popen(call, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
-        while process.poll() is None and not catches_interrupts(process):
-            time.sleep(0.001)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-    assert process.returncode == 3 and b"interrupted" in errors
-    outcome = sandglass(*call[1:], code=0)
+    call = ("run", block, "-o", folder / "a.h5", "--checkpoint", file)
+    code, errors = interrupted(*call)
+    assert code == 3 and "interrupted" in errors
+    outcome = sandglass(*call, code=0)
     assert f"resumed from {file}" in outcome.stdout
     assert (folder / "a.h5").read_bytes() == (folder / "whole.h5").read_bytes()
     assert not file.exists()

@@ -7,16 +7,14 @@ import os
 import pathlib
 import shutil
 import signal
-import subprocess
-import time
 import xml.etree.ElementTree
 
 import h5py
 import numpy
 import pytest
-from command_line import BINARY, BLOCK, ROOT, catches_interrupts, dynamic, methods, sandglass
+from command_line import BLOCK, ROOT, dynamic, interrupted, methods, sandglass
 
-from common.result_file import last_displacement, text_of
+from common.result_file import text_of
 
 CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
 
@@ -239,18 +237,8 @@ def test_not_at_rest_ends_with_3_and_says_so_in_the_file(block):
 def test_interrupt_keeps_what_was_computed(block, request_to_end):
     block.write_text(dynamic(BLOCK, duration=1e6))
     result = block.parent / "result.h5"
-    with subprocess.Popen(
-        [BINARY, "run", str(block), "-o", str(result)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
-        while process.poll() is None and not catches_interrupts(process):
-            time.sleep(0.01)
-        process.send_signal(request_to_end)
-        _, errors = process.communicate(timeout=60)
-    assert process.returncode == 3
-    assert "interrupted" in errors and str(result) in errors
+    code, errors = interrupted("run", block, "-o", result, sent=request_to_end)
+    assert code == 3 and "interrupted" in errors and str(result) in errors
     assert sorted(file.name for file in block.parent.iterdir()) == [
         "block.toml",
         "result.h5",
@@ -260,18 +248,6 @@ def test_interrupt_keeps_what_was_computed(block, request_to_end):
         assert text_of(file.attrs["status"]).startswith("interrupted at step ")
         assert file["frames/0000/displacement"].shape == (45, 3)
         assert len(file["history/time"]) > 0
-
-
-def test_mesh_file_as_input(block):
-    folder = block.parent
-    assert sandglass("mesh", block, "-o", folder / "mesh.h5").returncode == 0
-    generated = 'generator = "box"\nsize = [0.1, 0.1, 0.2]\nelements = [2, 2, 4]'
-    from_file = folder / "from-file.toml"
-    from_file.write_text(BLOCK.replace(generated, 'file = "mesh.h5"'))
-    for case, result in ((block, "a.h5"), (from_file, "b.h5")):
-        assert sandglass("run", case, "-o", folder / result).returncode == 0
-    a, b = (last_displacement(folder / name) for name in ("a.h5", "b.h5"))
-    assert numpy.array_equal(a, b)
 
 
 def test_cases_folder_is_found_from_anywhere(tmp_path):

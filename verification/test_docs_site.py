@@ -3,13 +3,12 @@
 import importlib.util
 import re
 import shutil
-import subprocess
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
-from command_line import BINARY
+from command_line import BINARY, ran
 from readme import commands, copy
 
 from common.program import ROOT
@@ -105,7 +104,7 @@ def pages(tree):
 def docs_site(tree, *words):
     """Runs ci/docs-site."""
     command = ["bash", str(tree / "ci/docs-site"), *words]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+    return ran(*command)
 
 
 def clicks(pages):

@@ -7,21 +7,18 @@ import os
 import pathlib
 import platform
 import shutil
-import subprocess
 
 import h5py
 import numpy as np
 import pytest
-from command_line import BARE, BINARY, PATIENCE, ROOT, dynamic, sandglass
+from command_line import BARE, BINARY, PATIENCE, ROOT, dynamic, ran, sandglass
 
 BUILD = pathlib.Path(BINARY).resolve().parent
 DYNAMIC = dynamic(BARE, duration=1.0, time_step=1e-3, frames=10)
 
 
 def run(*command, **options):
-    done = subprocess.run(
-        list(map(str, command)), capture_output=True, text=True, timeout=300 * PATIENCE, **options
-    )
+    done = ran(*command, timeout=300 * PATIENCE, **options)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -115,23 +112,19 @@ def test_what_is_installed_reads_and_writes_for_other_programs(prefix, tmp_path)
     assert (tmp_path / "column.vtu").stat().st_size > 1000
     converter = moved / "share/sandglass/exchange/convert.py"
     converter.write_text("import sys\nsys.exit(print('the copy') or 2)\n")
-    done = subprocess.run(
-        [program, "mesh", "column", "-o", tmp_path / "again.vtu"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-    )
+    done = ran(program, "mesh", "column", "-o", tmp_path / "again.vtu", cwd=tmp_path)
     assert done.returncode == 2 and "the copy" in done.stderr
 
     modules = moved / "lib/python3/dist-packages"
     if not modules.exists():
         return  # built without it
     script = "import sandglass, sys; sandglass.Simulation(sys.argv[1])"
-    done = subprocess.run(
-        ["/usr/bin/python3", "-c", script, ROOT / "exchange/example/hook.toml"],
+    done = ran(
+        "/usr/bin/python3",
+        "-c",
+        script,
+        ROOT / "exchange/example/hook.toml",
         env={"PYTHONPATH": str(modules)},
-        capture_output=True,
-        text=True,
     )
     assert "mesh.file: the copy" in done.stderr
 
@@ -162,7 +155,7 @@ def test_packages_refuse_a_processor_without_their_instructions(processor, code,
     run("c++", "main.o", "processor_check.o", "-o", "checked", cwd=tmp_path)
     for program in ("bare", "checked"):
         command = ["qemu-x86_64", "-cpu", processor, tmp_path / program]
-        done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+        done = ran(*command, cwd=tmp_path)
         if program == "bare" and code:
             assert done.returncode < 0
         else:
@@ -176,9 +169,5 @@ def test_other_versions_are_refused(tmp_path):
         "cmake_minimum_required(VERSION 3.25)\nproject(later LANGUAGES CXX)\n"
         "find_package(sandglass 9.0 REQUIRED)\n"
     )
-    done = subprocess.run(
-        ["cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-Dsandglass_DIR={BUILD}"],
-        capture_output=True,
-        text=True,
-    )
+    done = ran("cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-Dsandglass_DIR={BUILD}")
     assert done.returncode != 0 and "9.0" in done.stderr

@@ -1,12 +1,11 @@
 """What clang-tidy looks at after a change, and what the scripts that check a change take."""
 
-import subprocess
 from pathlib import Path
 
 import affected
 import pytest
 import yaml
-from command_line import ROOT
+from command_line import ROOT, ran
 
 FILES = {
     ".clang-tidy": "Checks: '-*'\n",
@@ -39,9 +38,7 @@ class Clone:
 
     def git(self, *words):
         own = ["-c", "user.name=A", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
-        done = subprocess.run(
-            ["git", *own, *words], cwd=self.root, capture_output=True, text=True, check=True
-        )
+        done = ran("git", *own, *words, cwd=self.root, check=True)
         return done.stdout
 
     def write(self, name, text):
@@ -115,7 +112,7 @@ def test_the_revision_in_ci_linted_is_of_this_history():
         pytest.skip("no clone")
 
     def git(*words):
-        return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
+        return ran("git", *words, cwd=ROOT)
 
     if git("rev-parse", "--is-shallow-repository").stdout != "false\n":
         pytest.skip("a shallow clone")
@@ -125,7 +122,7 @@ def test_the_revision_in_ci_linted_is_of_this_history():
 
 @pytest.mark.parametrize("script", ["lint", "test"])
 def test_a_word_that_a_script_does_not_know_is_refused_before_anything_is_done(script):
-    done = subprocess.run(["bash", f"ci/{script}", "al"], cwd=ROOT, capture_output=True, text=True)
+    done = ran("bash", f"ci/{script}", "al", cwd=ROOT)
     assert done.returncode == 2 and "'al' is not known; allowed: nothing, " in done.stderr
     assert done.stdout == ""
 

@@ -12,7 +12,7 @@ import outcomes
 import patches
 import pytest
 import run
-from command_line import ROOT
+from command_line import ROOT, ran
 from common.errors import InputError
 from plant import Mistake, mistakes_of, plant
 from worker import Failure, programs_of
@@ -23,9 +23,7 @@ PATCHES = patches.read_patches()
 @pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.name)
 def test_patch_fits_this_tree(patch):
     """A patch that does not must be updated: its mistake is still possible."""
-    done = subprocess.run(
-        ["git", "apply", "--check", patch.path], cwd=ROOT, capture_output=True, text=True
-    )
+    done = ran("git", "apply", "--check", patch.path, cwd=ROOT)
     assert done.returncode == 0, done.stderr
     assert all((ROOT / name).is_file() for name in patch.files)
 

@@ -15,7 +15,7 @@ import h5py
 import pytest
 
 from command_line import BARE, BINARY, dynamic
-from common.program import ROOT, under_mpirun
+from common.program import ROOT
 
 PROGRAM = ROOT / "build/mpi/sandglass"
 pytestmark = pytest.mark.skipif(
@@ -34,6 +34,19 @@ def block_in_motion(duration):
     text = BARE.replace("[2, 2, 4]", "[8, 8, 40]")
     text = text.replace("[sets]", "[sets]\nside = { x = [0.0, 0.0] }")
     return dynamic(text + PRESSURE, duration=duration, ramp_time=0.02, frames=4)
+
+
+def under_mpirun(ranks, *command):
+    """(words, environment) that start a command on so many ranks.
+
+    As the superuser too, with more ranks and threads than processors, and bound to none of them.
+    Python may be within MPI itself, as dolfinx starts it, but mpirun refuses to run within MPI.
+    """
+    words = ("mpirun", "--oversubscribe", "--bind-to", "none", "-n", ranks, *command)
+    permission = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    within = ("OMPI_", "ORTE_", "PMIX_") if "PMIX_RANK" in os.environ else ()
+    outside = {name: text for name, text in os.environ.items() if not name.startswith(within)}
+    return [str(word) for word in words], outside | permission
 
 
 def start(ranks, *arguments, program=PROGRAM, bound=False):

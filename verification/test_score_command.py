@@ -1,9 +1,7 @@
 """`sandglass score --limit`: the error that a limit holds for, exit codes, what is printed."""
 
-import json
-
 import pytest
-from command_line import BARE, sandglass, write_golden
+from command_line import BARE, documented, sandglass, write_golden
 
 
 @pytest.fixture
@@ -17,11 +15,9 @@ def answer(block):
 
 def scored(answer, *arguments):
     """The outcome, and the errors as fractions."""
-    file = answer.parent / "score.json"
     case = answer.parent / "block.toml"
-    outcome = sandglass("score", answer, "--case", case, *arguments, "--json", file)
-    (record,) = json.loads(file.read_text())["records"]
-    return outcome, record
+    outcome, document = documented("score", answer, "--case", case, *arguments)
+    return outcome, document["records"][0]
 
 
 def test_limits_just_above_and_below_the_errors(answer):

@@ -3,10 +3,9 @@
 import re
 import resource
 import shutil
-import subprocess
 
 import pytest
-from command_line import BLOCK, ROOT, methods, sandglass
+from command_line import BLOCK, ROOT, methods, ran, sandglass
 
 COMMANDS = re.findall(r"^  (\w+)  ", sandglass("--help").stdout, re.MULTILINE)
 HELP = {name: sandglass(name, "--help").stdout for name in COMMANDS}
@@ -152,9 +151,7 @@ def test_manual_has_all_commands_and_options_and_no_fault_in_its_markup():
     assert "3 the computation failed" in page.stdout.split(".SH EXIT STATUS")[1]
     if shutil.which("groff") is None:
         pytest.skip("needs groff")
-    made = subprocess.run(
-        ["groff", "-man", "-ww", "-Tutf8"], input=page.stdout, capture_output=True, text=True
-    )
+    made = ran("groff", "-man", "-ww", "-Tutf8", input=page.stdout)
     assert made.returncode == 0 and not made.stderr
     assert "`sandglass methods`" in made.stdout  # quotes come out as they went in
 
@@ -174,7 +171,7 @@ def completed(script, *words):
         f"COMP_CWORD={len(words) - 1}",
         '_sandglass; printf "%s\\n" "${COMPREPLY[@]}"',
     ]
-    done = subprocess.run(["bash"], input="\n".join(lines), capture_output=True, text=True)
+    done = ran("bash", input="\n".join(lines))
     assert done.returncode == 0 and not done.stderr, done.stderr
     return [line for line in done.stdout.splitlines() if line]
 

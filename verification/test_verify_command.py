@@ -1,9 +1,7 @@
 """`sandglass verify`: limits, references of the right case, every figure in JSON."""
 
-import json
-
 import pytest
-from command_line import BLOCK, LIMIT, ROOT, methods, sandglass, write_golden
+from command_line import BLOCK, LIMIT, ROOT, documented, methods, sandglass, write_golden
 
 
 ELEMENTS = 16  # of the block
@@ -26,9 +24,7 @@ def check_step_cost(record):
 def test_verify_holds_and_writes_every_figure(block):
     write_golden(block)
     block.write_text(BLOCK + LIMIT.format(method="tl-mean-dilatation", below=1e-6))
-    verdicts = block.parent / "verdicts.json"
-    sandglass("verify", block, "--json", verdicts, "--results", block.parent / "states", code=0)
-    document = json.loads(verdicts.read_text())
+    _, document = documented("verify", block, "--results", block.parent / "states", code=0)
     for key in ("revision", "build_flags", "processor"):
         assert document[key]
     records = document["records"]
@@ -57,15 +53,9 @@ def test_verify_gives_the_same_figures_for_any_number_of_threads(block):
     write_golden(block)
     figures = []
     for threads in (1, 3):
-        verdicts = block.parent / "verdicts.json"
-        assert sandglass("verify", block, "-j", threads, "--json", verdicts).returncode == 0
-        records = json.loads(verdicts.read_text())["records"]
-        figures.append(
-            [
-                (r["method"], r["kappa"], r["evaluations"], r["golden"], r["residual"])
-                for r in records
-            ]
-        )
+        records = documented("verify", block, "-j", threads, code=0)[1]["records"]
+        keys = ("method", "kappa", "evaluations", "golden", "residual")
+        figures.append([[record[key] for key in keys] for record in records])
     assert figures[0] == figures[1]
 
 
@@ -73,10 +63,8 @@ def test_verify_in_float_gives_figures_and_checks_no_limit(block):
     """The figures correspond to a rounding of 6e-8, amplified by less than four decades."""
     write_golden(block)
     block.write_text(BLOCK + LIMIT.format(method="tl-mean-dilatation", below=1e-30))
-    verdicts = block.parent / "verdicts.json"
-    outcome = sandglass("verify", block, "--precision", "float", "--json", verdicts, code=0)
+    outcome, document = documented("verify --precision float", block, code=0)
     assert "the cases' limits are for double precision; none was checked in float" in outcome.stdout
-    document = json.loads(verdicts.read_text())
     assert document["limits"] == []
     assert {r["precision"] for r in document["records"]} == {"float"}
     (same,) = (r for r in document["records"] if r["method"] == "tl-mean-dilatation")
@@ -117,9 +105,7 @@ def test_published_values_in_tables_and_json(block):
     force = 1e-6 * 3000.0 * 0.01
     published = PUBLISHED.format(force=force, value=1e-6 * 0.2, limit="below = 1.001")
     block.write_text(text + published)
-    verdicts = block.parent / "verdicts.json"
-    outcome = sandglass("verify", block, "--json", verdicts, code=0)
-    document = json.loads(verdicts.read_text())
+    outcome, document = documented("verify", block, code=0)
     assert document["records"] == []
     records = document["published"]
     assert [r["case"] for r in records] == ["block-soft"] * len(methods()) + ["block-hard"] * len(

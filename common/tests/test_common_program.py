@@ -1,13 +1,11 @@
 """Finding the solver, and the errors of a program that fails."""
 
-import os
 import sys
-from pathlib import Path
 
 import pytest
 
 from common.errors import ComputationError, InputError
-from common.program import ROOT, binary, output_of, under_mpirun
+from common.program import ROOT, binary, output_of
 
 
 def test_the_solver_is_the_one_of_this_tree_unless_told(monkeypatch, tmp_path):
@@ -47,19 +45,3 @@ def test_a_program_that_says_nothing_or_is_not_there(tmp_path):
         python("import sys; sys.exit(3)")
     with pytest.raises(InputError, match="none: cannot be run: No such file"):
         output_of(tmp_path / "none")
-
-
-def test_ranks_are_started_with_words_and_the_environment(monkeypatch):
-    monkeypatch.delenv("PMIX_RANK", raising=False)
-    words, environment = under_mpirun(2, Path("a/program"), "run", 3)
-    assert words[0] == "mpirun" and words[-5:] == ["-n", "2", "a/program", "run", "3"]
-    assert environment.items() >= os.environ.items()
-
-
-def test_ranks_know_nothing_of_the_mpi_that_python_is_in(monkeypatch):
-    """mpirun ends at once, without a word, where these tell it that it is one of its ranks."""
-    monkeypatch.setenv("OMPI_MCA_ess", "singleton")
-    monkeypatch.setenv("PMIX_RANK", "0")
-    environment = under_mpirun(2, "program")[1]
-    assert not environment.keys() & {"OMPI_MCA_ess", "PMIX_RANK"}
-    assert environment["PATH"] == os.environ["PATH"]

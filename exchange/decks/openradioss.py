@@ -110,24 +110,10 @@ def _conditions(problem):
 
 def _engine(name, motion):
     """The engine file: the motion, and an animation file with the final displacements."""
-    return "\n".join(
-        [
-            f"/RUN/{name}/1",
-            repr(motion.duration),
-            "/PRINT/-1000",
-            "/TFILE",
-            repr(motion.duration),
-            "/DT",
-            f"{STEP_SCALE} 0.0",
-            "/DTIX",
-            f"{motion.time_step!r} {motion.time_step!r}",
-            "/ANIM/DT",
-            f"{motion.duration!r} {motion.duration!r}",
-            "/ANIM/VECT/DISP",
-            "/END",
-            "",
-        ]
-    )
+    end, step = repr(motion.duration), repr(motion.time_step)
+    lines = [f"/RUN/{name}/1", end, "/PRINT/-1000", "/TFILE", end, "/DT", f"{STEP_SCALE} 0.0"]
+    lines += ["/DTIX", f"{step} {step}", "/ANIM/DT", f"{end} {end}", "/ANIM/VECT/DISP", "/END", ""]
+    return "\n".join(lines)
 
 
 def _reals(values):

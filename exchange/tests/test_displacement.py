@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from meshes import CELLS, POINTS, Refused, run, write
+from meshes import CELLS, POINTS, Refused, damaged, run, write
 
 RANDOM = np.random.default_rng(7)
 U = RANDOM.normal(size=POINTS.shape)  # the answer, node by node
@@ -270,14 +270,8 @@ def test_no_such_file(tmp_path, capsys, name):
 @pytest.mark.parametrize("kind", FILES)
 def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys, kind):
     path = FILES[kind](tmp_path)
-    data, random = path.read_bytes(), np.random.default_rng(11)
-    damaged = [data[:length] for length in range(0, len(data), max(1, len(data) // 15))]
-    for _ in range(40):
-        changed = bytearray(data)
-        for at in random.integers(0, len(data), 3):
-            changed[at] = random.integers(0, 256)
-        damaged.append(bytes(changed))
-    for content in damaged:
+    data = path.read_bytes()
+    for content in damaged(data, max(1, len(data) // 15), 40, seed=11):
         path.write_bytes(content)
         try:
             found, _ = matched(capsys, path)

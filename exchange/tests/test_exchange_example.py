@@ -1,15 +1,13 @@
 """The worked example and the table of README.md: what comes out is what they say."""
 
 import importlib.util
-import json
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import command_line
 import pytest
-from command_line import ROOT, sandglass
+from command_line import ROOT, documented, ran, sandglass
 
 README = (ROOT / "exchange" / "README.md").read_text()
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="ccx is not installed")
@@ -22,15 +20,13 @@ def example(tmp_path):
 
 
 def run(*words, folder):
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    done = ran(*words, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def record_of(*words, folder):
     """What `sandglass score` finds, as it is written."""
-    sandglass("score", *words, "--json", "score.json", cwd=folder, code=0)
-    (record,) = json.loads((folder / "score.json").read_text())["records"]
-    return record
+    return documented("score", *words, cwd=folder, code=0)[1]["records"][0]
 
 
 def test_the_papers_element_is_near_the_mixed_one_but_not_the_same(example):
@@ -67,7 +63,7 @@ def test_a_page_that_cannot_be_made_leaves_the_old_one(tmp_path, monkeypatch):
     monkeypatch.setenv("SANDGLASS_BINARY", str(Path(command_line.BINARY).resolve()))
     for words, told in (([], "no case"), (["none.toml"], "neither a file nor a known case")):
         command = ["bash", "ci/page", *words]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        done = ran(*command, cwd=tmp_path)
         assert done.returncode == 2 and told in done.stderr
     assert [path.name for path in (tmp_path / "build").iterdir()] == ["page"]
 

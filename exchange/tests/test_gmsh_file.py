@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import DATA, Refused, read, run
+from meshes import DATA, Refused, damaged, read, run
 
 FORMS = ("2.2", "2.2-binary", "4.1", "4.1-binary", "4.1-parametric")
 SIDES = np.array([0.1, 0.1, 0.2])
@@ -132,19 +132,12 @@ def test_names_keep_spaces_and_letters_but_no_slashes(tmp_path, capsys):
 def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys, form):
     """Cut at every 37th byte, and with bytes changed: an exit code of 0 or 2 and one line."""
     data = (DATA / f"block-{form}.msh").read_bytes()
-    random = np.random.default_rng(2)
-    end = data.index(b"$EndElements")
-    damaged = [data[:length] for length in range(0, end + 9, 37)]
-    for _ in range(150):
-        changed = bytearray(data)
-        for at in random.integers(0, len(data), 3):
-            changed[at] = random.integers(0, 256)
-        damaged.append(bytes(changed))
+    end = data.index(b"$EndElements") + 9
     path = tmp_path / "block.msh"
-    for i, content in enumerate(damaged):
+    for content in damaged(data, 37, 150, seed=2):
         path.write_bytes(content)
         try:
             run(capsys, "mesh", path, tmp_path / "out.h5")
-            assert len(content) == len(data), f"cut off at {len(content)}, and not seen"
+            assert len(content) >= end, f"cut off at {len(content)}, and not seen"
         except Refused as told:
-            assert str(told).startswith(str(path)), (i, told)
+            assert str(told).startswith(str(path)), told

@@ -6,7 +6,7 @@ import h5py
 import meshio
 import numpy as np
 import pytest
-from meshes import CELLS, POINTS, Refused, read, run, write
+from meshes import CELLS, POINTS, Refused, damaged, read, run, write
 
 SETS = {
     "foot": np.array([1] * 4 + [0] * 8, dtype=np.uint8),
@@ -83,18 +83,11 @@ def test_what_is_no_grid(tmp_path, capsys, content):
 )
 def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys, options):
     data = write(tmp_path / "a.vtu", point_data=SETS, **options).read_bytes()
-    random = np.random.default_rng(5)
-    damaged = [data[:length] for length in range(0, len(data) - 20, 61)]
-    for _ in range(100):
-        changed = bytearray(data)
-        for at in random.integers(0, len(data), 2):
-            changed[at] = random.integers(0, 256)
-        damaged.append(bytes(changed))
-    for content in damaged:
+    for content in damaged(data, 61, 100, seed=5):
         (tmp_path / "b.vtu").write_bytes(content)
         try:
             run(capsys, "mesh", tmp_path / "b.vtu", tmp_path / "out.h5")
-            assert len(content) == len(data), "cut off, and not seen"
+            assert len(content) > len(data) - 20, "cut off, and not seen"
         except Refused as told:
             assert "b.vtu" in str(told)
 

@@ -1,6 +1,5 @@
 """The solver with files of other programs: exit codes, messages, bit-identical answers."""
 
-import json
 import os
 import resource
 import shutil
@@ -9,7 +8,7 @@ import xml.etree.ElementTree as xml
 import h5py
 import numpy as np
 import pytest
-from command_line import BLOCK, dynamic, sandglass, write_golden
+from command_line import BLOCK, documented, dynamic, sandglass, write_golden
 from meshes import CELLS, DATA, POINTS, write
 
 from common.accuracy import relative_errors  # an account of its own
@@ -28,11 +27,6 @@ def case_of(folder, mesh, name="own.toml"):
     return folder / name
 
 
-def succeeds(*arguments, **options):
-    done = sandglass(*arguments, **options, code=0)
-    return done
-
-
 def refused(*arguments, told, **options):
     """One line of error, an exit code of 2."""
     done = sandglass(*arguments, **options, code=2)
@@ -41,14 +35,14 @@ def refused(*arguments, told, **options):
     assert "sandglass-" not in done.stderr, "a temporary file is nobody's business"
 
 
-@pytest.mark.parametrize("ending", ["vtu", "inp"])
+@pytest.mark.parametrize("ending", ["vtu", "inp", "h5"])
 def test_a_mesh_that_goes_round_gives_the_same_answer(block, ending):
     folder = block.parent
-    succeeds("mesh", block, "-o", folder / f"own.{ending}")
+    sandglass("mesh", block, "-o", folder / f"own.{ending}", code=0)
     own = case_of(folder, f"own.{ending}")
     hashes = []
     for case, result in ((block, "a.h5"), (own, "b.h5")):
-        succeeds("run", case, "-o", folder / result)
+        sandglass("run", case, "-o", folder / result, code=0)
         with h5py.File(folder / result) as file:
             hashes.append(text_of(file.attrs["mesh_hash"]))
     assert hashes[0] == hashes[1], "nodes, elements and sets are the same to the bit"
@@ -63,7 +57,10 @@ def test_meshes_of_gmsh_run(tmp_path, mesh):
     case = case_of(tmp_path, mesh)
     head = "head_plate" if mesh.endswith("inp") else "head plate"
     case.write_text(case.read_text().replace('set = "head"', f'set = "{head}"'))
-    assert "static equilibrium (stable):" in succeeds("run", case, "-o", tmp_path / "a.h5").stdout
+    assert (
+        "static equilibrium (stable):"
+        in sandglass("run", case, "-o", tmp_path / "a.h5", code=0).stdout
+    )
     with h5py.File(tmp_path / "a.h5") as file:
         points = file["mesh/points"][...]
     u = last_displacement(tmp_path / "a.h5")
@@ -73,11 +70,11 @@ def test_meshes_of_gmsh_run(tmp_path, mesh):
 
 def test_rules_of_the_case_add_sets_to_those_of_the_file(block):
     folder = block.parent
-    succeeds("mesh", block, "-o", folder / "own.vtu")
+    sandglass("mesh", block, "-o", folder / "own.vtu", code=0)
     own = case_of(folder, "own.vtu")
     sets = "[sets]\nmiddle = { z = [0.1, 0.1] }\nfoot = { z = [0, 0.05] }\n"
     own.write_text(own.read_text() + sets)
-    said = succeeds("mesh", own, "-o", folder / "m.h5").stdout
+    said = sandglass("mesh", own, "-o", folder / "m.h5", code=0).stdout
     for line in ("set middle: 9 nodes", "set head: 9 nodes", "set foot: 18 nodes"):
         assert line in said
 
@@ -86,7 +83,7 @@ def test_what_is_put_right_is_told_and_the_run_goes_on(tmp_path):
     mirrored = CELLS[:, [4, 5, 6, 7, 0, 1, 2, 3]]
     masks = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
     write(tmp_path / "own.vtu", POINTS / 20, mirrored, point_data=masks)
-    done = succeeds("run", case_of(tmp_path, "own.vtu"))
+    done = sandglass("run", case_of(tmp_path, "own.vtu"), code=0)
     told = f"warning: {tmp_path}/own.vtu: 2 of 2 elements had a mirrored node order"
     assert done.stderr.startswith(told)
     assert "static equilibrium (stable):" in done.stdout
@@ -190,7 +187,7 @@ def test_a_motion_with_a_rotation_has_no_deck(block):
 def test_a_deck_of_a_motion_says_how_it_moves(block):
     block.write_text(dynamic(BLOCK, duration=0.05, time_step=1e-3, damping=3.0))
     deck = block.parent / "a.xml"
-    succeeds("mesh", block, "--deck", "niftysim", "--hourglass", "0.25", "-o", deck)
+    sandglass("mesh", block, "--deck", "niftysim", "--hourglass", "0.25", "-o", deck, code=0)
     parameters = xml.parse(deck).getroot().find("SystemParams")
     found = {one.tag: float(one.text) for one in parameters}
     assert found == {
@@ -217,7 +214,7 @@ def test_a_deck_says_what_the_case_says(block):
     block.write_text(BLOCK + '[[force]]\nset = "side"\ntotal = [0.0, 0.5, 0.0]\n')
     block.write_text(block.read_text().replace("[sets]", "[sets]\nside = { x = [0.1, 0.1] }"))
     deck = block.parent / "deck.inp"
-    succeeds("mesh", block, "--deck", "calculix", "--element", "C3D8R", "-o", deck)
+    sandglass("mesh", block, "--deck", "calculix", "--element", "C3D8R", "-o", deck, code=0)
     text = deck.read_text()
     assert text.startswith("*HEADING\nblock, mesh ") and "*ELEMENT, TYPE=C3D8R, ELSET=ALL" in text
     assert "*NSET, NSET=foot\n1, 2, 3, 4, 5, 6, 7, 8, 9\n" in text
@@ -237,7 +234,7 @@ def test_a_deck_ends_where_a_rotation_ends(block):
     turned = '[[rotation]]\nset = "head"\naxis = "z"\nangle = 90.0\n'
     turned += "displacement = [0.0, 0.0, 0.01]\n"
     block.write_text(BLOCK[: BLOCK.rindex("[[displacement]]")] + turned)
-    succeeds("mesh", block, "--deck", "calculix", "-o", block.parent / "a.inp")
+    sandglass("mesh", block, "--deck", "calculix", "-o", block.parent / "a.inp", code=0)
     lines = (block.parent / "a.inp").read_text().splitlines()
     points = [line.split(", ")[1:] for line in lines[3:48]]
     end = lines.index(next(n for n in lines if "FILE" in n))
@@ -258,15 +255,13 @@ def test_a_deck_ends_where_a_rotation_ends(block):
 def answered(block):
     """BLOCK with a golden, and the answer of tl-perturbation in answer.h5."""
     write_golden(block)
-    succeeds("run", block, "-o", block.parent / "answer.h5")
+    sandglass("run", block, "-o", block.parent / "answer.h5", code=0)
     return block
 
 
 def scored(case, answer, *options):
     """The record that a score leaves."""
-    file = case.parent / "score.json"
-    succeeds("score", answer, "--case", case, "--json", file, *options)
-    document = json.loads(file.read_text())
+    _, document = documented("score", answer, "--case", case, *options, code=0)
     assert document["limits"] == [] and "revision" in document
     (record,) = document["records"]
     return record
@@ -274,8 +269,7 @@ def scored(case, answer, *options):
 
 def test_a_score_has_the_figures_of_verify(answered):
     record = scored(answered, answered.parent / "answer.h5", "--name", "mine")
-    succeeds("verify", answered, "--json", answered.parent / "verdicts.json")
-    runs = json.loads((answered.parent / "verdicts.json").read_text())["records"]
+    runs = documented("verify", answered, code=0)[1]["records"]
     (run,) = [r for r in runs if r["method"] == "tl-perturbation" and r["kappa_is_auto"]]
     assert record["golden"] == run["golden"] and record["golden"]["max_relative_error"] > 1e-3
     assert record["truth"] is None and record["finding"] == run["finding"]
@@ -321,7 +315,7 @@ def test_without_a_golden_the_mean_dilatation_element_judges(answered):
     assert record["golden"] is None and record["finding"] is None
     expected = relative_errors(last_displacement(folder / "answer.h5"), twin, LARGEST)
     assert np.isclose(record["twin"]["max_relative_error"], expected[0], rtol=1e-12)
-    said = succeeds("score", folder / "answer.h5", "--case", answered).stdout
+    said = sandglass("score", folder / "answer.h5", "--case", answered, code=0).stdout
     assert "against the mean-dilatation element" in said and "against the truth" not in said
 
 
@@ -348,11 +342,11 @@ def test_quality_table(tmp_path):
     points = POINTS + np.sqrt(3) * np.maximum(POINTS[:, 2:] - 1, 0) * [1, 0, 0]
     masks = {name: (POINTS[:, 2] == z).astype(int) for name, z in (("foot", 0), ("head", 2))}
     write(tmp_path / "own.vtu", points, point_data=masks)
-    said = succeeds("mesh", case_of(tmp_path, "own.vtu"), "-o", tmp_path / "m.h5").stdout
+    said = sandglass("mesh", case_of(tmp_path, "own.vtu"), "-o", tmp_path / "m.h5", code=0).stdout
     assert "smallest scaled Jacobian 0.500" in said
     lines = [line.strip() for line in said.splitlines()]
     assert "scaled Jacobian: 0.500 to 1.000" in lines
     assert "0.9 to 1.0: 1 elements" in lines
-    worst = lines.index("worst elements, numbered from 0 as in what is written") + 1
+    worst = lines.index("worst elements, numbered from 0 as in the file") + 1
     assert lines[worst] == "element 1: 0.500 at (1.36603, 0.5, 1.5)"
     assert lines[worst + 1].startswith("element 0: 1.000 at (0.5, 0.5, 0.5)")

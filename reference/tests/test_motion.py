@@ -1,13 +1,13 @@
 """Goldens of motion: exact motions for the integrator, and a small golden for the solver."""
 
 import json
-import subprocess
 from dataclasses import replace
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from command_line import ran
 
 import solve
 from blocks import distorted_block, write_mesh
@@ -123,7 +123,7 @@ def plain(small):
 def _verify(folder):
     """(exit code, error of tl-mean-dilatation, text) of `sandglass verify`."""
     command = [binary(), "verify", folder / "small.toml", "--json", folder / "v.json"]
-    run = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+    run = ran(*command, cwd=ROOT)
     if run.returncode not in (0, 1):
         return run.returncode, None, run.stderr
     records = json.loads((folder / "v.json").read_text())["records"]

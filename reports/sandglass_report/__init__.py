@@ -1,1 +1,1 @@
-"""The report of the project: verdicts and result files -> one page and static figures."""
+"""The report of the project: verdicts and result files -> one page; figures of its texts."""

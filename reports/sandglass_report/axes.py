@@ -51,6 +51,12 @@ def spread(positions, gap, low, high):
     return result
 
 
+def note(axes, text, place, offset, data="data", size=7.5, **strokes):
+    """Writes a text beside a place. offset: points. data: coordinates of the place, or two."""
+    strokes |= {"xycoords": data, "textcoords": "offset points", "fontsize": size}
+    axes.annotate(text, place, xytext=offset, **strokes)
+
+
 def label_points(axes, labels, size=7.5):
     """Writes labels next to their points, on the side with more space, without overlaps.
 
@@ -69,14 +75,6 @@ def label_points(axes, labels, size=7.5):
         up = (height - point[1]) / pixels_per_point
         # A label that was moved vertically may extend below or above its point.
         aside = 8 if abs(up) < size else 0
-        axes.annotate(
-            text,
-            (x, y),
-            xytext=(aside if on_the_left else -aside, up),
-            textcoords="offset points",
-            ha="left" if on_the_left else "right",
-            va="center",
-            color=colour,
-            fontsize=size,
-            fontweight="bold",
-        )
+        side, aside = ("left", aside) if on_the_left else ("right", -aside)
+        strokes = {"ha": side, "va": "center", "color": colour, "fontweight": "bold"}
+        note(axes, text, (x, y), (aside, up), size=size, **strokes)

@@ -26,35 +26,28 @@ def bending_plates(tips, palette):
     methods = [m for m in palette.methods if any(key[0] == m for key in found)]
     legend = tuple((m, palette.colour(m), palette.mark(m)) for m in methods)
     words = {e: f"{e} element{'s' if e > 1 else ''} through the thickness" for e in elements}
-    locking = tuple(
-        _panel(
-            f"locking.{e}",
-            words[e],
-            "Poisson’s ratio",
-            ratios,
-            {m: [found.get((m, e, nu)) for nu in ratios] for m in methods},
-            palette,
-        )
-        for e in elements
-    )
-    bending = tuple(
-        _panel(
-            f"bending.{nu:g}",
-            f"Poisson’s ratio {nu:g}",
-            "elements through the thickness",
-            elements,
-            {m: [found.get((m, e, nu)) for e in elements] for m in methods},
-            palette,
-        )
-        for nu in dict.fromkeys((ratios[0], *ratios[-2:]))
-    )
+    locking, bending = [], []
+    for e in elements:
+        curves = {m: [found.get((m, e, nu)) for nu in ratios] for m in methods}
+        locking.append(_panel(f"locking.{e}", words[e], "Poisson’s ratio", ratios, curves, palette))
+    for nu in dict.fromkeys((ratios[0], *ratios[-2:])):
+        curves = {m: [found.get((m, e, nu)) for e in elements] for m in methods}
+        title, across = f"Poisson’s ratio {nu:g}", "elements through the thickness"
+        bending.append(_panel(f"bending.{nu:g}", title, across, elements, curves, palette))
     note = (
         "Deflection of the tip over that of the truth; 1 is exact, less is too stiff. Values above "
         f"{CEILING:g} are drawn as arrowheads at the edge."
     )
     return (
-        Plate("locking", "Locking: as the body becomes incompressible", locking, 3, note, legend),
-        Plate("bending", "Bending: as the mesh becomes finer", bending, 3, note, legend),
+        Plate(
+            "locking",
+            "Locking: as the body becomes incompressible",
+            tuple(locking),
+            3,
+            note,
+            legend,
+        ),
+        Plate("bending", "Bending: as the mesh becomes finer", tuple(bending), 3, note, legend),
     )
 
 

@@ -31,15 +31,16 @@ PAPERS = "tl-perturbation"
 START, END = "<!-- figure: reports/make_headline.py -->", "<!-- end of the figure -->"
 LINE = 138  # letters of a line of the caption
 FACTS = ("version", "revision", "processor", "compiler", "build_flags")
-NUMBERS = (
-    "golden",
-    "truth",
-    "operations",
-    "ns_per_element_step",
-    "check_ns_per_element_step",
-    "mean_step_seconds",
-    "seconds_per_simulated_second",
-)
+# What a record has of a method -> how a Point of the main chart has it.
+NUMBERS = {
+    "golden": lambda point: point.error("golden", "max"),
+    "truth": lambda point: point.error("truth", "max"),
+    "operations": lambda point: point.operations,
+    "ns_per_element_step": lambda point: point.ns,
+    "check_ns_per_element_step": lambda p: p.checks and 1e9 * p.checks / p.elements,
+    "mean_step_seconds": lambda point: point.mean_step,
+    "seconds_per_simulated_second": lambda point: point.simulated,
+}
 
 
 def headline(points, own):
@@ -52,7 +53,11 @@ def headline(points, own):
         for p in points
         if p.case == CASE and p.mesh == OWN_MESH and p.precision == "double" and may_lead(p)
     }
-    records = [_record(method, found[method]) for method in METHODS if method in found]
+    records = [
+        {"method": method} | {name: number(found[method]) for name, number in NUMBERS.items()}
+        for method in METHODS
+        if method in found
+    ]
     if len(records) < len(METHODS) or None in (r[name] for r in records for name in NUMBERS):
         return None
     return {
@@ -61,25 +66,6 @@ def headline(points, own):
         **{name: own[name] for name in FACTS if name in own},
         "methods": records,
     }
-
-
-def _record(method, point):
-    """What the figure shows of a method."""
-    return {
-        "method": method,
-        "golden": point.error("golden", "max"),
-        "truth": point.error("truth", "max"),
-        "operations": point.operations,
-        "ns_per_element_step": point.ns,
-        "check_ns_per_element_step": None if point.checks is None else _ns(point),
-        "mean_step_seconds": point.mean_step,
-        "seconds_per_simulated_second": point.simulated,
-    }
-
-
-def _ns(point):
-    """A point's checks per element and step."""
-    return 1e9 * point.checks / point.elements
 
 
 def require_valid(path, document):

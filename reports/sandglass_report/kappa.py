@@ -5,7 +5,7 @@ import numpy as np
 from sandglass_report import axes as helpers
 from sandglass_report import style
 from sandglass_report.verdicts import REFERENCES
-from sandglass_report.plates import Panel, Plate
+from sandglass_report.plates import Panel
 
 FIGURES = (("max", "-", 1.6), ("profile", "--", 1.3), ("rms", ":", 1.6))
 NAMES = {"max": "max, all nodes", "profile": "max, profile", "rms": "rms"}
@@ -17,19 +17,6 @@ def kappa_panels(subject, palette):
         return ()
     limits = _limits(subject)
     return tuple(_panel(subject, palette, kind, limits) for kind in REFERENCES)
-
-
-def kappa_plates(subjects, palette):
-    """One static figure per case with kappa curves."""
-    plates = []
-    for subject in subjects:
-        panels = kappa_panels(subject, palette)
-        if panels:
-            title = f"{subject.name}: error against the hourglass stiffness kappa"
-            shown = dict.fromkeys(m for kind in REFERENCES for m in _curves(subject, kind))
-            legend = tuple((m, palette.colour(m), palette.mark(m)) for m in shown)
-            plates.append(Plate(f"kappa.{subject.name}", title, panels, 2, legend=legend))
-    return plates
 
 
 def _curves(subject, reference):
@@ -114,16 +101,9 @@ def _draw_auto(axes, curves, palette):
         for run in runs:
             if run.kappa_is_auto:
                 axes.axvline(run.kappa, color=palette.colour(method), linewidth=0.8, alpha=0.5)
-                axes.annotate(
-                    f"auto {run.kappa:.2g}",
-                    (run.kappa, 1.0),
-                    xycoords=("data", "axes fraction"),
-                    xytext=(4, -2),
-                    textcoords="offset points",
-                    va="top",
-                    fontsize=7.5,
-                    color=palette.colour(method),
-                )
+                place, data = (run.kappa, 1.0), ("data", "axes fraction")
+                strokes = {"va": "top", "color": palette.colour(method)}
+                helpers.note(axes, f"auto {run.kappa:.2g}", place, (4, -2), data, **strokes)
 
 
 def _label_ends(axes, labels):
@@ -134,15 +114,8 @@ def _label_ends(axes, labels):
     heights = [axes.transData.transform(label[:2])[1] for label in labels]
     moved = helpers.spread(heights, gap, box.y0 + gap / 2, box.y1 - gap / 2)
     for (x, y, text, colour), old, new in zip(labels, heights, moved):
-        axes.annotate(
-            text,
-            (x, y),
-            xytext=(5, (new - old) / pixels_per_point),
-            textcoords="offset points",
-            va="center",
-            color=colour,
-            fontsize=7.5,
-        )
+        up = (new - old) / pixels_per_point
+        helpers.note(axes, text, (x, y), (5, up), va="center", color=colour)
 
 
 def _draw_levels(axes, levels, curves, reference):
@@ -152,17 +125,10 @@ def _draw_levels(axes, levels, curves, reference):
             axes.axhline(levels[name], color=style.GOLDEN[0], linestyle=dashes, linewidth=1.3)
     if levels.get("max"):
         place, above = _free_place(axes, levels, curves, reference)
-        axes.annotate(
-            "golden to truth, max",
-            (place, levels["max"]),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, 3 if above else -3),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if above else "top",
-            fontsize=7.5,
-            color=style.GOLDEN[0],
-        )
+        side, up = ("bottom", 3) if above else ("top", -3)
+        strokes = {"ha": "center", "va": side, "color": style.GOLDEN[0]}
+        at, data = (place, levels["max"]), ("axes fraction", "data")
+        helpers.note(axes, "golden to truth, max", at, (0, up), data, **strokes)
 
 
 def _free_place(axes, levels, curves, reference):

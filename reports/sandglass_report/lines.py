@@ -155,15 +155,10 @@ def _shade_imposed(axes, subject, nodes, along):
             axes.axvspan(along[first], along[last], color=style.GRID[0], alpha=0.6, linewidth=0)
         first, last = max(spans, key=lambda span: span[1] - span[0], default=(0, 0))
         if last > first:
-            axes.annotate(
-                "driven" if np.any(value) else "held",
-                ((along[first] + along[last]) / 2, 0.985),
-                xycoords=("data", "axes fraction"),
-                ha="center",
-                va="top",
-                fontsize=7.5,
-                color=style.MUTED[0],
-            )
+            text, middle = "driven" if np.any(value) else "held", (along[first] + along[last]) / 2
+            strokes = {"ha": "center", "va": "top", "color": style.MUTED[0]}
+            data = "data", "axes fraction"
+            helpers.note(axes, text, (middle, 0.985), (0, 0), data, **strokes)
 
 
 def _plane(rest, subject, nodes):

@@ -78,7 +78,7 @@ def with_hard_spaces(html):
 
 
 def write_report(inputs, page):
-    """Writes the page, and its static figures to the folder figures/ next to it.
+    """Writes the page, and the README's figure to the folder figures/ next to it.
 
     page: path of the HTML file, which is written completely or not at all. Returns its size in
     bytes. Raises InputError if a file cannot be written.
@@ -107,10 +107,6 @@ def write_report(inputs, page):
     folder = page.parent / "figures"
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        timed = filter(None, [inputs.growth, inputs.refinement])
-        more = [*bent, *(one.plate for one in others), *timed]
-        for plate in (*_static_plates(inputs, palette, sections), *more):
-            plates.save_plate(plate, folder)
         shown = headline.headline(inputs.points, inputs.verdicts.provenance)
         if shown is not None:
             write_json(folder / f"{headline.NAME}.json", shown)
@@ -234,17 +230,3 @@ def _paper_section(experiment, subjects, palette):
         auto=next((run for run in curve if run.kappa_is_auto), None),
         best=min(curve, key=lambda run: run.golden.profile, default=None),
     )
-
-
-def _static_plates(inputs, palette, sections):
-    """All figures that are also saved as files."""
-    subjects = inputs.subjects
-    found = kappa.kappa_plates(subjects, palette)
-    for section in sections:
-        found += [plate for plate in (section.shapes, section.line) if plate is not None]
-    gallery = tuple(p for p in (bodies.gallery_panel(s) for s in subjects) if p is not None)
-    if gallery:
-        found.append(
-            plates.Plate("cases", "The cases, undeformed and deformed", gallery, len(gallery))
-        )
-    return found

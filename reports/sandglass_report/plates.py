@@ -27,27 +27,19 @@ BASE = {
     "axes.titlesize": 9,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
-    "axes.edgecolor": MUTED,
-    "axes.labelcolor": MUTED,
     "axes.facecolor": "none",
     "axes.linewidth": 0.8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
     "grid.color": style.GRID[0],
     "grid.linewidth": 0.7,
     "text.color": TEXT,
-    "xtick.color": MUTED,
-    "ytick.color": MUTED,
-    "xtick.major.size": 3,
-    "ytick.major.size": 3,
-    "xtick.minor.size": 0,
-    "ytick.minor.size": 0,
     "figure.facecolor": "none",
     "svg.hashsalt": "sandglass",
     "path.simplify": True,
 }
+BASE |= dict.fromkeys(("axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color"), MUTED)
+BASE |= dict.fromkeys(("axes.spines.top", "axes.spines.right"), False)
+BASE |= dict.fromkeys(("axes.grid", "axes.axisbelow"), True)
+BASE |= {f"{axis}tick.{kind}.size": n for axis in "xy" for kind, n in (("major", 3), ("minor", 0))}
 
 
 @dataclass(frozen=True)

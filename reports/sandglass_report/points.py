@@ -19,6 +19,9 @@ MESHES = ("all", "own")
 PRECISIONS = ("all", "double")
 VERIFY = "sandglass verify"
 CHOOSE = "sandglass choose"
+# What a Point has as its Run or its Rung has it.
+OF_RUN = "case method kappa precision ok ns mean_step step_remark simulated operations".split()
+OF_RUNG = "case method kappa accuracy precision mesh elements".split()
 
 
 @dataclass
@@ -121,27 +124,18 @@ def make_points(runs, elements, measured, own):
 def _of_run(run, elements):
     """The point of a run."""
     return Point(
-        run.case,
-        run.method,
-        run.kappa,
-        run.is_main,
-        None,
-        run.precision,
-        OWN_MESH,
-        elements,
+        **{name: getattr(run, name) for name in OF_RUN},
+        as_it_comes=run.is_main,
+        accuracy=None,
+        mesh=OWN_MESH,
+        elements=elements,
         finding=(run.finding or "no golden to compare with") if run.ok else run.status,
-        ok=run.ok,
         golden=_errors(run.golden),
         truth=_errors(run.truth),
-        ns=run.ns,
         step=_of_mesh(run.ns, elements),
         checks=_of_mesh(run.check_ns, elements),
-        mean_step=run.mean_step,
-        step_remark=run.step_remark,
-        simulated=run.simulated,
         equilibrium=run.equilibrium if run.ok else None,
         evaluations=run.evaluations if run.ok else None,
-        operations=run.operations,
         stable_step=run.stable_step or None,
     )
 
@@ -152,19 +146,9 @@ def _of_mesh(ns, elements):
 
 
 def _of_rung(rung):
-    return Point(
-        rung.case,
-        rung.method,
-        rung.kappa,
-        rung.kappa is None,
-        rung.accuracy,
-        rung.precision,
-        rung.mesh,
-        rung.elements,
-        finding="",
-        ok=False,  # until a rung brings an answer
-        measured_by="",
-    )
+    """The point of a rung that has no run; it is not ok until a rung brings an answer."""
+    same = {name: getattr(rung, name) for name in OF_RUNG}
+    return Point(**same, as_it_comes=rung.kappa is None, finding="", ok=False, measured_by="")
 
 
 def _add_rung(point, rung, own):

@@ -57,17 +57,7 @@ QUANTITIES = {
 COSTS = ("simulated", "step", "equilibrium")
 FIGURES = ("max", "profile", "rms")
 # The columns of the table of all runs, after the errors: attributes of a Run.
-RUN_NUMBERS = (
-    "hourglass_energy_ratio",
-    "stable_step",
-    "mean_step",
-    "operations",
-    "ns",
-    "check_ns",
-    "simulated",
-    "evaluations",
-    "equilibrium",
-    "steps",
-    "motion",
-    "residual",
-)
+RUN_NUMBERS = """
+hourglass_energy_ratio stable_step mean_step operations ns check_ns simulated evaluations
+equilibrium steps motion residual
+""".split()

@@ -32,20 +32,9 @@ class Timed:
 
 def table_1(counts):
     """Operations of the hourglass control, Total and Updated Lagrangian; Counted for each."""
+    kinds = (("paper", "hourglass"), ("kernel", "hourglass"), ("kernel", "element"))
     return tuple(
-        Counted(
-            words,
-            method,
-            figure,
-            *(
-                _count(counts, method, form, part)
-                for form, part in (
-                    ("paper", "hourglass"),
-                    ("kernel", "hourglass"),
-                    ("kernel", "element"),
-                )
-            ),
-        )
+        Counted(words, method, figure, *(_count(counts, method, *kind) for kind in kinds))
         for words, method, figure in paper.TABLE_1
     )
 

@@ -101,27 +101,18 @@ class Submission:
         entry, errors = self.entry, self.entry["errors"]
         ns, step = self.figure("ns_per_element_step"), self.figure("time_step")
         cost = 1e-9 * ns * elements if ns else None
+        costs = {"ns": ns, "step": cost, "mean_step": step, "ok": True}
+        costs["simulated"] = cost / step if cost and step else None
         return Point(
-            entry["case"],
-            self.label,
-            None,
-            True,
-            None,
-            entry["precision"],
-            OWN_MESH,
-            elements,
+            *(entry["case"], self.label, None, True, None, entry["precision"], OWN_MESH, elements),
             finding=self.finding(),
-            ok=True,
             golden=errors.get("golden", {}),
             truth=errors.get("truth", {}),
-            ns=ns,
-            step=cost,
-            mean_step=step,
-            simulated=cost / step if cost and step else None,
             equilibrium=self.figure("seconds_to_rest"),
             measured_by=f"results/{self.name}: {entry['build']}; {entry['machine']}",
             elsewhere=self.elsewhere(own),
             group=entry["program"],
+            **costs,
         )
 
 

@@ -1,6 +1,5 @@
 """A headless Chromium, driven over a pipe by its DevTools protocol; it needs nothing else."""
 
-import base64
 import json
 import os
 import shutil
@@ -64,20 +63,6 @@ class Browser:
         while not comes_true():
             assert time.monotonic() < end, f"{told}; console: {self.complaints}"
             time.sleep(0.05)
-
-    def picture(self, path, selector=None):
-        """Saves a PNG of an element or of the window."""
-        options = {}
-        if selector:
-            box = self.run(
-                f"(() => {{ const b = document.querySelector({json.dumps(selector)})"
-                ".getBoundingClientRect();"
-                " return [b.x + scrollX, b.y + scrollY, b.width, b.height] })()"
-            )
-            options["clip"] = dict(zip(("x", "y", "width", "height"), box)) | {"scale": 1}
-            options["captureBeyondViewport"] = True
-        data = self._call("Page.captureScreenshot", format="png", **options)["data"]
-        path.write_bytes(base64.b64decode(data))
 
     def __enter__(self):
         return self

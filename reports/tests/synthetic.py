@@ -1,7 +1,6 @@
 """A tiny data set of the report's inputs: a box with two methods, a kappa curve and a failure."""
 
 import json
-from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
@@ -153,11 +152,9 @@ class DataSet:
         document |= {"records": self.records, "limits": self.limits, "published": self.published}
         (self.folder / "verdicts.json").write_text(json.dumps(document), encoding="utf-8")
 
-    def make(self, figures=False):
-        """Makes the page, and its static figures where a test is about them. Returns its text."""
-        saving = nullcontext() if figures else mock.patch("sandglass_report.plates.save_plate")
-        with saving:
-            assert main(self.arguments) == 0
+    def make(self):
+        """Makes the page. Returns its text."""
+        assert main(self.arguments) == 0
         return self.page.read_text(encoding="utf-8")
 
     @property

@@ -1,10 +1,10 @@
 """Curves of the adaptive method: contents and units; broken files are rejected."""
 
 import json
-import subprocess
 import sys
 
 import pytest
+from command_line import ran
 from synthetic import DataSet
 
 from common.errors import InputError
@@ -88,12 +88,10 @@ def test_broken_files_are_refused(tmp_path, text, told):
 def test_the_script_draws_and_refuses(tmp_path):
     file = write(tmp_path / "1", [rung("tl-perturbation", 1e-5)])
     call = [sys.executable, SCRIPT, file, "-o", tmp_path]
-    outcome = subprocess.run(call, capture_output=True, text=True)
+    outcome = ran(*call)
     assert outcome.returncode == 0, outcome.stderr
     assert (tmp_path / "adaptive.png").stat().st_size > 1000
-    outcome = subprocess.run(
-        [sys.executable, SCRIPT, tmp_path / "none"], capture_output=True, text=True
-    )
+    outcome = ran(sys.executable, SCRIPT, tmp_path / "none")
     assert outcome.returncode == 2 and "none" in outcome.stderr
 
 

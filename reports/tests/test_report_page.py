@@ -38,7 +38,7 @@ class Balance(HTMLParser):
 def plain(tmp_path_factory):
     """The data set as it is, with its page made."""
     data = DataSet(tmp_path_factory.mktemp("plain"))
-    data.make(figures=True)
+    data.make()
     return data
 
 
@@ -48,11 +48,8 @@ def page(plain):
     return plain.page.read_text(encoding="utf-8")
 
 
-def test_page_and_figures_are_written(plain, page):
+def test_the_page_is_written_as_a_whole(plain, page):
     assert "All 1 limits hold" in page
-    figures = {path.name for path in (plain.page.parent / "figures").iterdir()}
-    for name in ("kappa.column", "figure-3", "figure-4", "cases"):
-        assert {f"{name}.svg", f"{name}.png"} <= figures
     assert [path.name for path in plain.page.parent.iterdir() if path.name.startswith(".")] == []
 
 
@@ -111,7 +108,7 @@ def test_a_case_whose_runs_all_failed_makes_a_page(data):
     data.write_verdicts()
     for path in (data.folder / "results").iterdir():
         path.unlink()
-    page = data.make(figures=True)
+    page = data.make()
     assert "No limits were checked" in page
     assert "No mesh: no run has a result file" in page
 
@@ -120,7 +117,7 @@ def test_an_exploded_run_makes_a_page(data):
     error = 1e9
     data.records[0] = data.run("tl-none", error) | {"status": "failed: not at rest"}
     data.write_verdicts()
-    page = data.make(figures=True)
+    page = data.make()
     assert "failed: not at rest" in page
 
 

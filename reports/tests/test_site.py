@@ -1,9 +1,9 @@
 """What is published: the folder that `ci/site` makes, and the workflow that uploads it."""
 
 import shutil
-import subprocess
 
 import pytest
+from command_line import ran
 import yaml
 
 from common.program import ROOT
@@ -26,7 +26,7 @@ def tree(tmp_path):
 def site(tree, *words):
     """Runs ci/site."""
     command = ["bash", str(tree / "ci/site"), *words]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+    return ran(*command)
 
 
 def test_a_site_has_documentation_page_and_results_and_replaces_the_last_one(tree):
