@@ -1,4 +1,4 @@
-"""The growth of cost: seconds and evaluations to equilibrium over mesh size and Poisson's ratio.
+"""The growth of cost: seconds and evaluations to rest over mesh size and Poisson's ratio.
 
 Usage: /usr/bin/python3 bench/growth.py [--json FILE] [--most N] [--most-implicit N]
 A beam, clamped at one end and moved at the other, on ever finer meshes; Sandglass beside FEniCSx
@@ -133,7 +133,7 @@ def measure(options):
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(
-        description="Seconds and evaluations to equilibrium over mesh size and Poisson's ratio.",
+        description="Seconds and evaluations to rest over mesh size and Poisson's ratio.",
         epilog="exit codes: 0 done, 2 bad usage or input, 3 a computation failed",
     )
     add = parser.add_argument

@@ -97,7 +97,7 @@ COLUMNS = (
     ("number", "precision", str),
     ("to 1 %, s", "seconds_to_1_percent", "{:.3g}".format),
     ("to 0.1 %, s", "seconds_to_0_1_percent", "{:.3g}".format),
-    ("to equilibrium, s", "seconds_to_rest", "{:.3g}".format),
+    ("to rest, s", "seconds_to_rest", "{:.3g}".format),
     ("residual", "residual", "{:.1e}".format),
     ("set-up, s", "setup_seconds", "{:.3g}".format),
     ("compiling, s", "jit_seconds", "{:.3g}".format),

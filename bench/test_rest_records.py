@@ -94,7 +94,7 @@ def test_table():
         "program": "CalculiX",
         "method": "C3D8",
         "number": "double",
-        "to equilibrium, s": "5.14",
+        "to rest, s": "5.14",
         "iterations": "20",
         "to golden, max": "24.2 %",
     }

@@ -45,8 +45,8 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 NOTES = """
 Seconds are wall time. Distances are max |u - u'| over the nodes / largest imposed displacement.
 to 1 %, 0.1 %: from the start of the solution until u stays that close to the method's final u.
-For Sandglass: the corresponding share of its force evaluations, times its seconds to equilibrium.
-to equilibrium: until the method stops. FEniCSx: correction < 1e-10. CalculiX: residual and correction
+For Sandglass: the corresponding share of its force evaluations, times its seconds to rest.
+to rest: until the method stops. FEniCSx: correction < 1e-10. CalculiX: residual and correction
 < 1e-8; wall time of the process, including reading and set-up. Sandglass: residual < 1e-8, in
 float also the rounding; median of three runs.
 evaluations: of the forces, by Sandglass. load steps, iterations: of Newton's method, by
