@@ -385,6 +385,6 @@ def test_quality_table(tmp_path):
     lines = [line.strip() for line in said.splitlines()]
     assert "scaled Jacobian: 0.500 to 1.000" in lines
     assert "0.9 to 1.0: 1 elements" in lines
-    worst = lines.index("worst elements, numbered from 0 as in what is written") + 1
+    worst = lines.index("worst elements, numbered from 0 as in the file") + 1
     assert lines[worst] == "element 1: 0.500 at (1.36603, 0.5, 1.5)"
     assert lines[worst + 1].startswith("element 0: 1.000 at (0.5, 0.5, 0.5)")
