@@ -1,4 +1,4 @@
-"""The growth of cost: seconds and evaluations to equilibrium over mesh size and Poisson's ratio.
+"""The growth of cost: seconds and evaluations to rest over mesh size and Poisson's ratio.
 
 Usage: /usr/bin/python3 bench/growth.py [--json FILE] [--most N] [--most-implicit N]
 A beam, clamped at one end and moved at the other, on ever finer meshes; Sandglass beside FEniCSx
