@@ -139,7 +139,7 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
         fmt::format("{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
                     "one, 0 stands for no wave",
                     scene.settings.file.string(), velocity.half_waves[i], "xyz"[i],
-                    velocity.set.value_or("of all nodes"), "xyz"[i]));
+                    velocity.set.empty() ? "of all nodes" : velocity.set, "xyz"[i]));
   }
   for (const int node : nodes) {
     const Vector& X = points[at(node)];
@@ -178,7 +178,7 @@ NodalField make_initial_velocities(const Case& description, const Scene& scene,
   std::iota(body.begin(), body.end(), 0);
   NodalField sums(masses.size());
   for (const auto& velocity : description.velocities) {
-    const auto& nodes = velocity.set ? node_set(scene, "velocity.set", *velocity.set) : body;
+    const auto& nodes = velocity.set.empty() ? body : node_set(scene, "velocity.set", velocity.set);
     add_motion(scene, velocity, nodes, masses, sums);
   }
   return sums;
