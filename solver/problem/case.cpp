@@ -149,22 +149,4 @@ std::string case_hash(const Case& description) {
   return hash_of(text);
 }
 
-std::set<std::string> used_node_sets(const Case& description) {
-  std::set<std::string> names;
-  const auto add = [&](const auto&... name) { (names.insert(name), ...); };
-  for (const auto& refinement : description.refinements) add(refinement.around);
-  for (const auto& tie : description.ties) add(tie.set);
-  for (const auto& imposed : description.displacements) add(imposed.set);
-  for (const auto& turned : description.rotations) add(turned.set);
-  description.forces.for_each([&]<class Force>(const Force& force) {
-    const auto add_text = [&]<class Value>(const Parameter<Force, Value>& parameter) {
-      if constexpr (std::is_same_v<Value, std::string>) add(force.*(parameter.member));
-    };
-    std::apply([&](const auto&... parameter) { (add_text(parameter), ...); }, Force::parameters());
-  });
-  for (const auto& start : description.velocities) add(start.set);
-  names.erase("");
-  return names;
-}
-
 }  // namespace sandglass

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -137,8 +136,5 @@ struct Case : CaseSettings {
 /// in motion also density, damping, duration, ramp time and initial velocities. Method, other settings and
 /// words do not enter.
 std::string case_hash(const Case& description);
-
-/// The names of the node sets on which its tables act, or which they refine around or tie.
-std::set<std::string> used_node_sets(const Case& description);
 
 }  // namespace sandglass
