@@ -98,20 +98,10 @@ constexpr std::string_view sets_and_motions = R"(
   center = [x, y], semi_axes = [a, b] }, ellipsoid = { center = [x, y, z], semi_axes = [a, b, c] } }
   all conditions must hold; lengths in m; inf and -inf are allowed
 
-[[refine]] around = NAME, depth 1 to 8 (default: 1), layers 1 to 8 (default: 2): splits this many layers of
-  elements at the edge of a node set into eight each, then as many layers of their parts at the edge, depth
-  times in all. Or elements = NAME, depth: splits the elements of an element set. Or numbers = [...], after 0 to
-  7 (default: 0): splits elements by their numbers, from 0, in the mesh after so many splits. Faces keep their
-  shape, parts inherit sets and materials, and hanging nodes follow the element on which they hang
-[[tie]] set = NAME, elements = NAME: joins meshes that do not match: nodes of a set that lie inside elements of
-  an element set, or on their faces, but are not their corners, move with these elements; not with [[refine]]
 [[displacement]] set = NAME, value = [x, y, z] in m, components = "xyz" (default: all)
 [[rotation]] set = NAME, axis = "x", "y", "z" or [x, y, z], angle in degrees, by the right-hand rule:
   the set turns rigidly, all components imposed; center = [x, y, z] in m, a point of the axis
   (default: the mean of the set's nodes), displacement = [x, y, z] in m, added (default: none)
-[[velocity]] set = NAME (default: the whole body), value = [x, y, z] in m/s, spin = [x, y, z] in rad/s about
-  the set's centre of mass, half_waves = [x, y, z]: value as a standing wave in the set,
-  value * cos(pi half_waves (x - low) / (high - low)): the initial velocities of a dynamic case; several add up
 [method] name, kappa (number or "auto"), kappa_modulus ("p-wave" or "shear"), accuracy
   (of an adaptive method), precision ("double" or "float"): used by `sandglass run` unless its options
   differ; `sandglass choose` writes it
@@ -130,10 +120,12 @@ std::string describe_case_keys() {
   text += parts_of_a_material;
   text += several_materials;
   text += sets_and_motions;
-  for_each_type(Forces{}, [&]<class Force>() {
-    text += fmt::format("\n[[{}]]: {}\n{}", Force::name, Force::summary,
-                        described<Force>(std::string(Force::name)));
-  });
+  const auto add_table = [&]<class Table>() {
+    text += fmt::format("\n[[{}]]: {}\n{}", Table::name, Table::summary,
+                        described<Table>(std::string(Table::name)));
+  };
+  for_each_type(TypeList<Refinement, NodeTie, InitialVelocity>{}, add_table);
+  for_each_type(Forces{}, add_table);
   text += fmt::format("\nformula: {}\n", formula_language());
   text += "\n[relaxation]: settings of the quasi-static solver\n";
   text += described<RelaxationSettings>("relaxation");

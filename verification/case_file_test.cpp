@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <typeinfo>
+
 #include "comparison/comparison.hpp"
 #include "io/mesh_file.hpp"
 #include "support/case_text.hpp"
@@ -92,7 +95,7 @@ TEST(CaseFile, dynamic_case_is_read_as_written) {
   const Case c = read_case_file(folder.write("dynamic.toml", text));
   EXPECT_FALSE(c.quasi_static);
   ASSERT_EQ(c.velocities.size(), 3U);
-  EXPECT_EQ(c.velocities[0].set, std::nullopt);
+  EXPECT_EQ(c.velocities[0].set, "");
   EXPECT_EQ(c.velocities[0].value, (Vector{1.0, 2.5, -3.0}));
   EXPECT_EQ(c.velocities[0].spin, Vector{});
   EXPECT_EQ(c.velocities[0].half_waves, (std::array<int, 3>{}));
@@ -209,42 +212,133 @@ void change(Value& value) {
   } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
     value = static_cast<Value>(static_cast<int>(value) + 1);
   } else {
-    value.back() += 1.0;
+    value.back() += 1;
   }
 }
 
-/// Whatever is declared of a force, and of its curve, decides the answer of a motion.
-TEST(CaseFile, hash_follows_every_declared_field_of_every_force) {
+/// Calls use(name, changed) for all declared parameters of a table, and of tables in it, with the table in
+/// which that one is another.
+template <class Table, class Use>
+void for_each_change(const Table& table, const Use& use) {
+  const auto with_change = [&]<class Value>(const Parameter<Table, Value>& parameter) {
+    Table changed = table;
+    Value& value = changed.*(parameter.member);
+    if constexpr (requires { Value::parameters(); }) {
+      for_each_change(Value(value), [&](std::string_view name, const Value& other) {
+        value = other;
+        use(name, changed);
+      });
+    } else {
+      change(value);
+      use(parameter.name, changed);
+    }
+  };
+  std::apply([&](const auto&... parameter) { (with_change(parameter), ...); }, Table::parameters());
+}
+
+/// A case at rest or in motion, whose hash is that of a table in it.
+struct HashedCase {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});
-  description.quasi_static = false;
-  for_each_type(Forces{}, [&]<class Force>() {
-    Force force;
-    if constexpr (requires { force.curve; }) force.curve = {.times = {0.0, 1.0}, .factors = {0.0, 1.0}};
-    const auto hash = [&](const Force& one) {
-      Case with_force = description;
-      with_force.forces.of<Force>() = {one};
-      return case_hash(with_force);
+
+  /// Whatever is declared of a table changes the hash if it `decides(name)` and only then. `put(case, table)`
+  /// puts the table into a case.
+  template <class Table, class Put, class Decides>
+  void expect(const Table& table, const Put& put, const Decides& decides) const {
+    const auto hash = [&](const Table& one) {
+      Case with_table = description;
+      put(with_table, one);
+      return case_hash(with_table);
     };
-    const auto expect_change = [&](std::string_view name, const auto& changed) {
-      EXPECT_NE(hash(changed), hash(force)) << Force::name << "." << name;
-    };
-    const auto check = [&]<class Value>(const Parameter<Force, Value>& parameter) {
-      Force changed = force;
-      Value& value = changed.*(parameter.member);
-      if constexpr (requires { Value::parameters(); }) {
-        const auto check_part = [&](const auto& part) {
-          changed = force;
-          change(value.*(part.member));
-          expect_change(part.name, changed);
-        };
-        std::apply([&](const auto&... part) { (check_part(part), ...); }, Value::parameters());
-      } else {
-        change(value);
-        expect_change(parameter.name, changed);
-      }
-    };
-    std::apply([&](const auto&... parameter) { (check(parameter), ...); }, Force::parameters());
-  });
+    for_each_change(table, [&](std::string_view name, const Table& changed) {
+      EXPECT_EQ(hash(changed) != hash(table), decides(name))
+          << typeid(Table).name() << "." << name << (description.quasi_static ? " at rest" : " in motion");
+    });
+  }
+};
+
+TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
+  const auto always = [](std::string_view /*name*/) { return true; };
+  for (const bool at_rest : {true, false}) {
+    HashedCase hashed;
+    hashed.description.quasi_static = at_rest;
+    const auto in_motion = [&](std::string_view /*name*/) { return !at_rest; };
+    for_each_type(Generators{}, [&]<class Generator>() {
+      hashed.expect(
+          Generator{}, [](Case& c, const Generator& mesh) { c.mesh = mesh; }, always);
+    });
+    for_each_type(Laws{}, [&]<class Law>() {
+      hashed.expect(
+          Law{}, [](Case& c, const Law& law) { c.materials.front().law = law; }, always);
+    });
+    for_each_type(Forces{}, [&]<class Force>() {
+      Force force;
+      if constexpr (requires { force.curve; }) force.curve = {.times = {0.0, 1.0}, .factors = {0.0, 1.0}};
+      hashed.expect(
+          force, [](Case& c, const Force& one) { c.forces.of<Force>() = {one}; },
+          [&](std::string_view name) { return !at_rest || name != Force::only_in_motion; });
+    });
+    Refinement split;
+    split.numbers = {1};
+    hashed.expect(
+        split, [](Case& c, const Refinement& rule) { c.refinements = {rule}; }, always);
+    hashed.expect(
+        NodeTie{}, [](Case& c, const NodeTie& rule) { c.ties = {rule}; }, always);
+    hashed.expect(
+        InitialVelocity{.set = "start"},
+        [](Case& c, const InitialVelocity& start) { c.velocities = {start}; }, in_motion);
+    hashed.expect(
+        DynamicsSettings{}, [](Case& c, const DynamicsSettings& settings) { c.dynamics = settings; },
+        [&](std::string_view name) {
+          return !at_rest && (name == "duration" || name == "ramp_time" || name == "damping");
+        });
+    hashed.expect(
+        RelaxationSettings{}, [](Case& c, const RelaxationSettings& settings) { c.relaxation = settings; },
+        [](std::string_view /*name*/) { return false; });
+  }
+}
+
+/// The fields of tables that are not declared, each changed in the text of a case.
+TEST(CaseFile, hash_follows_the_fields_of_other_tables) {
+  const TemporaryFolder folder;
+  const auto hash = [&](const std::string& text) {
+    return case_hash(read_case_file(folder.write("a.toml", text)));
+  };
+  const std::string text = with("top = { z = [3.0, 3.0] }", R"(top = { z = [3.0, 3.0] }
+round = { cylinder = { axis = "z", center = [0.0, 0.5], semi_axes = [1.0, 2.0] } }
+oval = { ellipsoid = { center = [0.0, 0.0, 0.5], semi_axes = [1.0, 2.0, 3.0] } }
+[element_sets]
+half = { x = [0.25, inf] })") +
+                           R"([[rotation]]
+set = "round"
+axis = "x"
+angle = 10.0
+center = [0.0, 1.5, 0.0]
+displacement = [0.0, 0.0, 0.125]
+)";
+  const std::string once = hash(text);
+  std::set<std::string> hashes{once};
+  std::size_t changes = 0;
+  for (const auto& [old, other] : std::vector<std::pair<std::string, std::string>>{
+           {"center = [0.0, 0.5]", "center = [0.1, 0.5]"},
+           {"axis = \"z\"", "axis = \"y\""},
+           {"semi_axes = [1.0, 2.0] ", "semi_axes = [1.0, 2.5] "},
+           {"center = [0.0, 0.0, 0.5]", "center = [0.0, 0.0, 0.6]"},
+           {"semi_axes = [1.0, 2.0, 3.0]", "semi_axes = [1.0, 2.0, 3.5]"},
+           {"oval = {", "oval = { surface = true,"},
+           {"oval = {", "ball = {"},
+           {"half = { x", "half = { y"},
+           {"x = [0.25, inf]", "x = [0.5, inf]"},
+           {"set = \"round\"", "set = \"oval\""},
+           {"axis = \"x\"", "axis = [1.0, 1.0, 0.0]"},
+           {"angle = 10.0", "angle = 11.0"},
+           {"center = [0.0, 1.5, 0.0]\n", ""},
+           {"0.125", "0.25"},
+           {"set = \"bottom\"\nvalue", "set = \"oval\"\nvalue"},
+           {"value = [0.5, 0.0, 0.3]", "value = [0.5, 0.0, 0.4]"},
+           {"components = \"xz\"", "components = \"xyz\""}}) {
+    hashes.insert(hash(replaced(text, old, other)));
+    EXPECT_EQ(hashes.size(), 1 + ++changes) << other;
+  }
 }
 
 const std::string published =

@@ -296,6 +296,48 @@ TEST(Load, unit_of_errors_without_imposed_displacement_is_the_references_own) {
   EXPECT_EQ(displacement_unit(make_scene(problem), reference), 0.02);
 }
 
+/// A scene with more load is that of a case whose tables say more: displacements, angles, forces with and
+/// without curves, and velocities, to a few roundings.
+TEST(Scaled, is_the_case_with_more_in_every_table) {
+  constexpr double factor = 1.5;
+  const auto loaded = [](double by) {
+    CaseOnMesh problem = pulled_bar_case(sample_law<NeoHookean>(0.3), 0.4 * by);
+    Case& description = problem.description;
+    problem.sets["foot"] = nodes_where(problem.mesh.points, [](const Vector& X) { return X[2] == 0.0; });
+    problem.sets["middle"] = nodes_where(problem.mesh.points, [](const Vector& X) { return X[2] == 0.2; });
+    description.displacements = {{"foot", {0.01 * by, 0.0, 0.0}}};
+    description.rotations = {{"middle", {0.0, 0.0, 1.0}, 0.3 * by, {}, {0.0, 0.0, 0.02 * by}}};
+    description.quasi_static = false;
+    description.velocities = {{.value = {0.1 * by, 0.0, 0.0}, .spin = {0.0, 0.2 * by, 0.0}}};
+    auto& forces = description.forces.of<DeadForce>();
+    forces.push_back({"end", {0.1 * by, 0.0, 0.0}, {}});
+    forces.back().curve = {.times = {0.0, 1.0}, .factors = {0.2, 0.8}};
+    description.forces.of<Gravity>() = {{{0.0, 9.81 * by, 0.0}, {.formula = Formula("sin(t)")}}};
+    return make_scene(problem);
+  };
+  const Scene scene = scaled(loaded(1.0), factor), expected = loaded(factor);
+  ASSERT_EQ(scene.constraints.size(), expected.constraints.size());
+  for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
+    EXPECT_NEAR(final_value(scene, scene.constraints[k]), final_value(expected, expected.constraints[k]),
+                1e-16);
+  }
+  EXPECT_NEAR(largest_imposed(scene), largest_imposed(expected), 1e-16);
+  EXPECT_LT(largest_distance(scene.initial_velocities, expected.initial_velocities), 1e-15);
+  const auto loads = dead_loads(scene.forces), more = dead_loads(expected.forces);
+  ASSERT_EQ(loads.size(), more.size());
+  ASSERT_EQ(scene.curves.size(), 3U);
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    for (const double time : {0.25, 0.5, 2.0}) {
+      const double by = scene.curves[loads[k].curve].at(time, 0.5),
+                   at = expected.curves[more[k].curve].at(time, 0.5);
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(by * loads[k].force[i], at * more[k].force[i], 1e-15);
+    }
+  }
+  for (std::size_t c = 0; c < scene.curves.size(); ++c)
+    EXPECT_NEAR(scene.curves[c].largest(2.0), factor * expected.curves[c].largest(2.0), 1e-15);
+  EXPECT_EQ(scene.case_hash, "");
+}
+
 /// On nodes, a set needs no face, and its three nodes carry a third each; the edge of a face would carry a
 /// quarter, a half and a quarter.
 TEST(Load, force_on_nodes_is_shared_equally) {

@@ -221,6 +221,65 @@ TEST(Sleep, is_refused_where_it_has_no_sense) {
   EXPECT_THROW(scene.awake("linear-condensed", 0.01), InputError) << "it answers at once";
   const Touched untouched({8, 8, 3}, 0.0);
   EXPECT_THROW(untouched.awake("tl-perturbation", 0.01), InputError);
+  const auto refusal = [](const Scene& scene) {
+    Observer nobody;
+    try {
+      relax_awake(scene, {.method = "tl-perturbation"}, 0.01, nobody);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  Scene tied = scene.scene;
+  tied.ties = {{0, {{1, 1.0}}}};
+  EXPECT_NE(refusal(tied).find("a mesh without [[tie]]"), std::string::npos);
+  tied.coarser.emplace_back();
+  EXPECT_NE(refusal(tied).find("a mesh without [[refine]]"), std::string::npos);
+}
+
+/// A part has all that the scene has there: what is imposed, sets by its own numbers, forces, velocities and
+/// materials; its rim is fixed.
+TEST(OnPart, keeps_what_the_scene_has_there) {
+  Touched touched({4, 4, 3}, 0.5e-3);
+  Case& description = touched.problem.description;
+  description.velocities = {{.value = {0.0, 0.1, 0.0}, .half_waves = {1, 0, 0}}};
+  description.forces.of<DeadForce>() = {{"base", {1.0, 2.0, 3.0}, {}}};
+  const Scene whole = make_scene(touched.problem);
+  std::vector<bool> marked(whole.mesh.cells.size(), false);
+  for (std::size_t e = 0; e < marked.size(); ++e) marked[e] = e % 4 < 3;  // all but x > 3 mm
+  const MeshPart part = part_of_mesh(whole.mesh, marked);
+  const Scene scene = on_part(whole, part);
+  EXPECT_EQ(scene.settings.name, whole.settings.name);
+  EXPECT_EQ(scene.driven.size(), 2U);
+  std::size_t rim = 0;
+  for (const bool on_the_rim : part.on_the_rim) rim += on_the_rim ? 1 : 0;
+  ASSERT_EQ(rim, 5U * 4);
+  std::size_t held = 0;
+  for (const Constraint& c : scene.constraints) {
+    const bool fixed = part.on_the_rim[index(c.node)];
+    held += fixed ? 1 : 0;
+    const auto there = std::ranges::find_if(whole.constraints, [&](const Constraint& other) {
+      return other.node == part.node_of[index(c.node)] && other.component == c.component;
+    });
+    ASSERT_TRUE(fixed || there != whole.constraints.end());
+    EXPECT_EQ(c.path, fixed ? ImposedPath{} : there->path);
+  }
+  EXPECT_EQ(held, 3 * rim);
+  for (const auto& [name, set] : scene.sets) {
+    std::size_t inside = 0;
+    for (const int node : whole.sets.at(name)) inside += part.part_of[index(node)] >= 0 ? 1 : 0;
+    EXPECT_EQ(set.size(), inside) << name;
+    for (const int node : set)
+      EXPECT_TRUE(std::ranges::binary_search(whole.sets.at(name), part.node_of[index(node)])) << name;
+  }
+  for (std::size_t n = 0; n < part.node_of.size(); ++n)
+    EXPECT_EQ(scene.initial_velocities[n], whole.initial_velocities[index(part.node_of[n])]);
+  for (const NodalLoad& load : dead_loads(scene.forces)) {
+    const auto all = dead_loads(whole.forces);
+    const auto there = std::ranges::find(all, part.node_of[index(load.node)], &NodalLoad::node);
+    ASSERT_NE(there, all.end());
+    EXPECT_EQ(load.force, there->force);
+  }
 }
 
 }  // namespace

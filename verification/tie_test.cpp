@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "io/case_file.hpp"
-#include "problem/scene_ties.hpp"
+#include "problem/scene_rules.hpp"
 #include "solve/relaxation.hpp"
 #include "support/at_rest.hpp"
 #include "support/case_text.hpp"

@@ -113,52 +113,6 @@ ImposedRotation read_rotation(TableReader table) {
   return turned;
 }
 
-Refinement read_refinement(TableReader table) {
-  Refinement refinement;
-  const auto around = table.optional<std::string>("around"),
-             elements = table.optional<std::string>("elements");
-  const auto numbers = table.optional<std::vector<int>>("numbers", Range::at_least(0.0));
-  if (around.has_value() + elements.has_value() + numbers.has_value() != 1) {
-    table.fail("around",
-               "elements or numbers: exactly one of the three must be given: the name of a node set, the "
-               "name of an element set, or element numbers");
-  }
-  refinement.around = around.value_or("");
-  refinement.elements = elements.value_or("");
-  refinement.numbers = numbers.value_or(std::vector<int>{});
-  if (numbers) {
-    if (numbers->empty()) table.fail("numbers", "= [] must name at least one element");
-    constexpr Range before{.low = 0, .high = 7, .low_open = false, .high_open = false};
-    refinement.after = table.optional<int>("after", before).value_or(refinement.after);
-  } else {
-    constexpr Range few{.low = 1, .high = 8, .low_open = false, .high_open = false};
-    refinement.depth = table.optional<int>("depth", few).value_or(refinement.depth);
-    if (around) refinement.layers = table.optional<int>("layers", few).value_or(refinement.layers);
-  }
-  table.finish();
-  return refinement;
-}
-
-NodeTie read_tie(TableReader table) {
-  NodeTie tie{table.required<std::string>("set"), table.required<std::string>("elements")};
-  table.finish();
-  return tie;
-}
-
-InitialVelocity read_velocity(TableReader table) {
-  InitialVelocity velocity;
-  velocity.set = table.optional<std::string>("set");
-  const auto value = table.optional<Vector>("value", Range::any());
-  const auto spin = table.optional<Vector>("spin", Range::any());
-  if (!value && !spin) table.fail("value", "or spin must be given, or both");
-  velocity.value = value.value_or(Vector{});
-  velocity.spin = spin.value_or(Vector{});
-  velocity.half_waves =
-      table.optional<std::array<int, 3>>("half_waves", Range::at_least(0.0)).value_or(velocity.half_waves);
-  table.finish();
-  return velocity;
-}
-
 /// The hourglass parameter of a method as written: a number, or none for "auto".
 std::optional<double> read_strength(TableReader& table, const std::string& method) {
   if (!table.holds_number("kappa")) {
@@ -243,24 +197,24 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   };
   description.sets = read_sets("sets", true);
   description.element_sets = read_sets("element_sets", false);
-  for (const auto& table : reader.tables("refine")) description.refinements.push_back(read_refinement(table));
-  for (const auto& table : reader.tables("tie")) description.ties.push_back(read_tie(table));
+  const auto read_tables = [&]<class Table>(std::vector<Table>& tables) {
+    for (TableReader& table : reader.tables(std::string(Table::name))) {
+      table.parameters(tables.emplace_back());
+      table.finish();
+    }
+  };
+  read_tables(description.refinements);
+  read_tables(description.ties);
   for (const auto& table : reader.tables("displacement"))
     description.displacements.push_back(read_displacement(table));
   for (const auto& table : reader.tables("rotation")) description.rotations.push_back(read_rotation(table));
-  for_each_type(Forces{}, [&]<class Force>() {
-    for (TableReader& table : reader.tables(std::string(Force::name))) {
-      table.parameters(description.forces.of<Force>().emplace_back());
-      table.finish();
-    }
-  });
+  for_each_type(Forces{}, [&]<class Force>() { read_tables(description.forces.of<Force>()); });
   if (auto relaxation = reader.table("relaxation")) {
     relaxation->parameters(description.relaxation);
     relaxation->finish();
   }
   if (!description.quasi_static) {
-    for (const auto& table : reader.tables("velocity"))
-      description.velocities.push_back(read_velocity(table));
+    read_tables(description.velocities);
     auto dynamics = reader.required_table("dynamics");
     dynamics.parameters(description.dynamics);
     dynamics.finish();

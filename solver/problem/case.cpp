@@ -24,13 +24,19 @@ std::string described(const Aggregate& aggregate) {
 }
 
 std::string described(const NodeSetRule& rule) {
-  std::string text = fmt::format("{}(surface={}", rule.name, rule.surface);
-  for (const auto& interval : rule.within) {
+  const auto& [name, surface, within, cylinder, ellipsoid] = rule;
+  std::string text = fmt::format("{}(surface={}", name, surface);
+  for (const auto& interval : within) {
     text += interval ? fmt::format(",[{},{}]", interval->low, interval->high) : ",-";
   }
-  if (const auto& c = rule.cylinder)
-    text += fmt::format(",cylinder({},{},{})", c->axis, c->center, c->semi_axes);
-  if (const auto& e = rule.ellipsoid) text += fmt::format(",ellipsoid({},{})", e->center, e->semi_axes);
+  if (cylinder) {
+    const auto& [axis, center, semi_axes] = *cylinder;
+    text += fmt::format(",cylinder({},{},{})", axis, center, semi_axes);
+  }
+  if (ellipsoid) {
+    const auto& [center, semi_axes] = *ellipsoid;
+    text += fmt::format(",ellipsoid({},{})", center, semi_axes);
+  }
   return text + ")";
 }
 
@@ -85,18 +91,29 @@ std::string described(const Force& force, bool in_motion) {
 
 /// What decides a motion beside what decides the answer at rest: inertia, damping, times, the start.
 std::string described_motion(const Case& description) {
-  const DynamicsSettings& settings = description.dynamics;
-  std::string text = fmt::format("motion({}:{}:{})", settings.duration, settings.ramp_time, settings.damping);
+  const auto& [duration, ramp_time, time_step, step_fraction, damping, subcycles, body_frequency,
+               check_interval, frames] = description.dynamics;
+  std::string text = fmt::format("motion({}:{}:{})", duration, ramp_time, damping);
   for (const auto& material : description.materials) text += fmt::format("density({})", material.density);
   description.forces.for_each([&](const auto& force) { text += described(force, true); });
-  for (const auto& start : description.velocities) {
-    text += fmt::format("velocity({}:{}:{}:{})", start.set.value_or("-"), start.value, start.half_waves,
-                        start.spin);
-  }
+  for (const auto& [set, value, half_waves, spin] : description.velocities)
+    text += fmt::format("velocity({}:{}:{}:{})", set.empty() ? "-" : set, value, half_waves, spin);
   return text;
 }
 
 }  // namespace
+
+std::optional<BrokenRule> Refinement::broken_rule() const {
+  if (!around.empty() + !elements.empty() + !numbers.empty() != 1) {
+    return BrokenRule{"around",
+                      "elements or numbers: exactly one of the three must be given: the name of a node set, "
+                      "the name of an element set, or numbers of at least one element"};
+  }
+  if (after != 0 && numbers.empty()) return BrokenRule{"after", "goes with numbers; leave it out"};
+  if (depth != 1 && !numbers.empty()) return BrokenRule{"depth", "does not go with numbers; leave it out"};
+  if (layers != 2 && around.empty()) return BrokenRule{"layers", "goes with around; leave it out"};
+  return std::nullopt;
+}
 
 std::string case_hash(const Case& description) {
   std::string text;
@@ -117,13 +134,11 @@ std::string case_hash(const Case& description) {
     if (!numbers.empty()) text += fmt::format("{}:{}", after, numbers);
   }
   for (const auto& [set, elements] : description.ties) text += fmt::format("tie({}:{})", set, elements);
-  for (const auto& imposed : description.displacements) {
-    text += fmt::format("{}:{}:{};", imposed.set, imposed.value, imposed.components);
-  }
-  for (const auto& turned : description.rotations) {
-    text += fmt::format("rotation({}:{}:{}:", turned.set, turned.axis, turned.angle);
-    text += turned.center ? fmt::format("{}", *turned.center) : "-";
-    text += fmt::format(":{})", turned.displacement);
+  for (const auto& [set, value, components] : description.displacements)
+    text += fmt::format("{}:{}:{};", set, value, components);
+  for (const auto& [set, axis, angle, center, displacement] : description.rotations) {
+    text += fmt::format("rotation({}:{}:{}:{}:{})", set, axis, angle,
+                        center ? fmt::format("{}", *center) : "-", displacement);
   }
   description.forces.for_each([&]<class Force>(const Force& force) {
     text += described(force, false);
@@ -132,24 +147,6 @@ std::string case_hash(const Case& description) {
   });
   if (!description.quasi_static) text += described_motion(description);
   return hash_of(text);
-}
-
-std::set<std::string> used_node_sets(const Case& description) {
-  std::set<std::string> names;
-  const auto add = [&](const auto&... name) { (names.insert(name), ...); };
-  for (const auto& refinement : description.refinements) add(refinement.around);
-  for (const auto& tie : description.ties) add(tie.set);
-  for (const auto& imposed : description.displacements) add(imposed.set);
-  for (const auto& turned : description.rotations) add(turned.set);
-  description.forces.for_each([&]<class Force>(const Force& force) {
-    const auto add_text = [&]<class Value>(const Parameter<Force, Value>& parameter) {
-      if constexpr (std::is_same_v<Value, std::string>) add(force.*(parameter.member));
-    };
-    std::apply([&](const auto&... parameter) { (add_text(parameter), ...); }, Force::parameters());
-  });
-  for (const auto& start : description.velocities) add(start.set.value_or(""));
-  names.erase("");
-  return names;
 }
 
 }  // namespace sandglass

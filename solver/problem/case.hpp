@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -31,18 +30,52 @@ struct CaseMaterial : Material {
 
 /// Elements that are split in eight, their parts again, and so on.
 struct Refinement {
-  std::string around;        ///< a node set, at whose edge elements are split; or
-  std::string elements;      ///< an element set that is split; or
-  std::vector<int> numbers;  ///< elements that are split once, numbered in the mesh
-  int after = 0;             ///< after so many splits; with `numbers` alone
-  int depth = 1;             ///< how often the elements of a set, or at its edge, are split
-  int layers = 2;            ///< of elements and parts at the edge that are split
+  static constexpr std::string_view name = "refine";
+  static constexpr std::string_view summary =
+      "splits elements in eight, and others so that neighbours differ by one split at most; sets and "
+      "materials pass on to the parts, and nodes that hang follow the element they hang on";
+
+  std::string around;
+  std::string elements;
+  std::vector<int> numbers;
+  int after = 0;
+  int depth = 1;
+  int layers = 2;
+
+  static constexpr auto parameters() {
+    using R = Refinement;
+    constexpr Range few{.low = 1, .high = 8, .low_open = false, .high_open = false};
+    constexpr Range before{.low = 0, .high = 7, .low_open = false, .high_open = false};
+    return std::tuple{
+        Parameter{&R::around, "around", "-", Range::any(), "a node set, at whose edge elements are split; or",
+                  false},
+        Parameter{&R::elements, "elements", "-", Range::any(), "an element set that is split; or", false},
+        Parameter{&R::numbers, "numbers", "-", Range::at_least(0.0),
+                  "elements that are split once, by their numbers from 0 in the mesh", false},
+        Parameter{&R::after, "after", "-", before, "this many splits; with numbers", false},
+        Parameter{&R::depth, "depth", "-", few, "how often the elements of a set, or at its edge, are split",
+                  false},
+        Parameter{&R::layers, "layers", "-", few,
+                  "of elements, and again of their parts, at the edge that are split; with around", false}};
+  }
+  std::optional<BrokenRule> broken_rule() const;
 };
 
-/// Nodes that move with elements they are no corners of: where meshes that do not match meet, for instance.
+/// Nodes that move with elements they are no corners of.
 struct NodeTie {
-  std::string set;       ///< of nodes; those that are corners of the elements stay as they are
-  std::string elements;  ///< an element set
+  static constexpr std::string_view name = "tie";
+  static constexpr std::string_view summary =
+      "nodes move with the elements that they are inside, or on the faces of, without being their corners: "
+      "where meshes that do not match meet; not with [[refine]]";
+
+  std::string set;
+  std::string elements;
+
+  static constexpr auto parameters() {
+    using T = NodeTie;
+    return std::tuple{Parameter{&T::set, "set", "-", Range::any(), "a node set"},
+                      Parameter{&T::elements, "elements", "-", Range::any(), "an element set"}};
+  }
 };
 
 /// Displacements imposed on a node set; they follow the loading curve.
@@ -64,11 +97,26 @@ struct ImposedRotation {
 
 /// Velocities in which nodes start; what several say of one node adds up.
 struct InitialVelocity {
-  std::optional<std::string> set = {};  ///< none: the whole body
-  Vector value{};                       ///< m/s
-  std::array<int, 3> half_waves{};  ///< of a standing wave between the free ends of the set, on each axis:
-                                    ///< value times cos(pi half_waves (x - low) / (high - low))
-  Vector spin{};                    ///< rad/s, about the centre of mass of the set
+  static constexpr std::string_view name = "velocity";
+  static constexpr std::string_view summary = "where a dynamic answer starts; several add up";
+  static constexpr std::array<std::string_view, 2> one_of{"value", "spin"};
+
+  std::string set;  ///< empty: the whole body
+  Vector value{};
+  std::array<int, 3> half_waves{};
+  Vector spin{};
+
+  static constexpr auto parameters() {
+    using V = InitialVelocity;
+    return std::tuple{
+        Parameter{&V::set, "set", "-", Range::any(), "a node set instead of the whole body", false},
+        Parameter{&V::value, "value", "m/s", Range::any(), "velocity", false},
+        Parameter{&V::half_waves, "half_waves", "-", Range::at_least(0.0),
+                  "on each axis, of a wave that stands between the free ends of the set: value times "
+                  "cos(pi half_waves (x - low) / (high - low))",
+                  false},
+        Parameter{&V::spin, "spin", "rad/s", Range::any(), "about the centre of mass of the set", false}};
+  }
 };
 
 /// Everything a case file says, checked key by key; what is inside is plain data.
@@ -89,8 +137,5 @@ struct Case : CaseSettings {
 /// in motion also density, damping, duration, ramp time and initial velocities. Method, other settings and
 /// words do not enter.
 std::string case_hash(const Case& description);
-
-/// The names of the node sets on which its tables act, or which they refine around or tie.
-std::set<std::string> used_node_sets(const Case& description);
 
 }  // namespace sandglass

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -12,9 +13,7 @@
 #include "mesh/hexahedron.hpp"
 #include "mesh/quality.hpp"
 #include "problem/masses.hpp"
-#include "problem/scene_materials.hpp"
-#include "problem/scene_refinement.hpp"
-#include "problem/scene_ties.hpp"
+#include "problem/scene_rules.hpp"
 
 namespace sandglass {
 
@@ -44,47 +43,24 @@ std::string described(const ImposedPath& path, const std::vector<double>& angles
   return fmt::format("{} turning by {:.6g} rad", path.share[0], angles[path.angle]);
 }
 
-/// Node and component -> path; a second path must equal the first.
-class ImposedPaths {
- public:
-  ImposedPaths(const Case& description, const std::vector<double>& angles)
-      : description_(description), angles_(angles) {}
-
-  /// `group` as in Constraint.
-  void add(int node, std::size_t component, const ImposedPath& path, const std::string& set, int group = -1) {
-    const Origin origin{path, set, group};
-    const Origin& first = imposed_.try_emplace({node, static_cast<int>(component)}, origin).first->second;
-    if (first.path == path) return;
-    throw InputError(fmt::format(
-        "{}: node {} is given two displacements in {}: {} by set '{}' and {} by set '{}'; a node may be in "
-        "two sets only if both impose the same value",
-        description_.file.string(), node, "xyz"[component], described(first.path, angles_), first.set,
-        described(path, angles_), set));
-  }
-
-  std::vector<Constraint> constraints() const {
-    std::vector<Constraint> all;
-    for (const auto& [key, origin] : imposed_)
-      all.push_back({key.first, key.second, origin.path, origin.group});
-    return all;
-  }
-
- private:
-  struct Origin {
-    ImposedPath path;
-    std::string set;
-    int group;
-  };
-  const Case& description_;
-  const std::vector<double>& angles_;
-  std::map<std::pair<int, int>, Origin> imposed_;
-};
-
 /// Sets the constraints, their angles and the driven sets.
 void make_constraints(const Case& description, Scene& scene) {
   const NodalField& points = scene.mesh.points;
   std::vector<double>& angles = scene.angles;
-  ImposedPaths imposed(description, angles);
+  struct Origin {
+    Constraint constraint;
+    const std::string& set;
+  };
+  std::map<std::pair<int, int>, Origin> imposed;  // by node and component
+  const auto impose = [&](const Constraint& c, const std::string& set) {
+    const Origin& first = imposed.try_emplace({c.node, c.component}, Origin{c, set}).first->second;
+    if (first.constraint.path == c.path) return;
+    throw InputError(fmt::format(
+        "{}: node {} is given two displacements in {}: {} by set '{}' and {} by set '{}'; a node may be in "
+        "two sets only if both impose the same value",
+        description.file.string(), c.node, "xyz"[c.component], described(first.constraint.path, angles),
+        first.set, described(c.path, angles), set));
+  };
   const auto drive = [&](const std::string& set) {
     if (std::ranges::find(scene.driven, set, &DrivenSet::name) == scene.driven.end())
       scene.driven.push_back({set, {}});
@@ -92,9 +68,9 @@ void make_constraints(const Case& description, Scene& scene) {
   int group = 0;
   for (const auto& displacement : description.displacements) {
     for (const int node : node_set(scene, "displacement.set", displacement.set)) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (!displacement.components[i]) continue;
-        imposed.add(node, i, {{displacement.value[i]}}, displacement.set, group);
+      for (int i = 0; i < 3; ++i) {
+        if (displacement.components[at(i)])
+          impose({node, i, {{displacement.value[at(i)]}}, group}, displacement.set);
       }
     }
     drive(displacement.set);
@@ -108,12 +84,13 @@ void make_constraints(const Case& description, Scene& scene) {
     if (known == angles.end()) angles.push_back(turned.angle);
     for (const int node : nodes) {
       const auto paths = turning_paths(turned, points[at(node)], center, angle);
-      for (std::size_t i = 0; i < 3; ++i) imposed.add(node, i, paths[i], turned.set);
+      for (int i = 0; i < 3; ++i) impose({node, i, paths[at(i)]}, turned.set);
     }
     drive(turned.set);
   }
-  scene.constraints = imposed.constraints();
-  std::erase_if(scene.constraints, [&](const Constraint& c) { return is_tied(scene.ties, c.node); });
+  for (const auto& [at_node, origin] : imposed) {
+    if (!is_tied(scene.ties, at_node.first)) scene.constraints.push_back(origin.constraint);
+  }
   for (auto& [set, constraints] : scene.driven) {
     for_each_constraint(scene.constraints, scene.sets.at(set),
                         [&](std::size_t k, std::size_t /*n*/) { constraints.push_back(k); });
@@ -139,7 +116,7 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
         fmt::format("{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
                     "one, 0 stands for no wave",
                     scene.settings.file.string(), velocity.half_waves[i], "xyz"[i],
-                    velocity.set.value_or("of all nodes"), "xyz"[i]));
+                    velocity.set.empty() ? "of all nodes" : velocity.set, "xyz"[i]));
   }
   for (const int node : nodes) {
     const Vector& X = points[at(node)];
@@ -178,7 +155,7 @@ NodalField make_initial_velocities(const Case& description, const Scene& scene,
   std::iota(body.begin(), body.end(), 0);
   NodalField sums(masses.size());
   for (const auto& velocity : description.velocities) {
-    const auto& nodes = velocity.set ? node_set(scene, "velocity.set", *velocity.set) : body;
+    const auto& nodes = velocity.set.empty() ? body : node_set(scene, "velocity.set", velocity.set);
     add_motion(scene, velocity, nodes, masses, sums);
   }
   return sums;

@@ -8,37 +8,29 @@ namespace sandglass {
 
 namespace {
 
-/// The members of a set that are in a part, by their numbers there; `there` gives -1 for others.
-std::vector<int> renumbered(const std::vector<int>& set, const std::vector<int>& there) {
-  std::vector<int> inside;
-  for (const int member : set) {
-    if (there[at(member)] >= 0) inside.push_back(there[at(member)]);
-  }
-  return inside;
-}
-
+/// Gives the members of sets their numbers in a part, where `there` has them; -1 stands for others, which are
+/// left out.
 template <class Sets>
-Sets renumbered(const Sets& sets, const std::vector<int>& there) {
-  Sets inside;
-  for (const auto& [name, set] : sets) inside[name] = renumbered(set, there);
-  return inside;
+void renumber(Sets& sets, const std::vector<int>& there) {
+  for (auto& [name, set] : sets) {
+    for (int& member : set) member = there[at(member)];
+    std::erase(set, -1);
+  }
 }
 
-/// The constraints of a part, where `there[k]` becomes the number of the k-th, or -1.
+/// The constraints of a part, whose rim is fixed. Sets `there[k]` to the number of the k-th of the whole.
 std::vector<Constraint> constraints_of(const MeshPart& part, const std::vector<Constraint>& whole,
-                                       std::vector<int>& there) {
+                                       std::vector<std::size_t>& there) {
   std::vector<Constraint> inside;
   for (std::size_t n = 0; n < part.node_of.size(); ++n) {
     auto next = std::ranges::lower_bound(whole, part.node_of[n], {}, &Constraint::node);
     for (int i = 0; i < 3; ++i) {
       const bool imposed = next != whole.end() && next->node == part.node_of[n] && next->component == i;
-      if (imposed) there[static_cast<std::size_t>(next - whole.begin())] = static_cast<int>(inside.size());
-      if (part.on_the_rim[n]) {
-        inside.push_back({static_cast<int>(n), i, {}});
-      } else if (imposed) {
-        inside.push_back({static_cast<int>(n), i, next->path, next->group});
-      }
-      if (imposed) ++next;
+      if (!imposed && !part.on_the_rim[n]) continue;
+      Constraint constraint{static_cast<int>(n), i, {}};
+      if (!part.on_the_rim[n]) constraint = {constraint.node, i, next->path, next->group};
+      if (imposed) there[static_cast<std::size_t>(next++ - whole.begin())] = inside.size();
+      inside.push_back(constraint);
     }
   }
   return inside;
@@ -61,8 +53,8 @@ double largest_length(const Scene& scene, const Length& length_of) {
       square += path.share[1] * path.share[1];
       angle = std::max(angle, path.angle);
     }
-    largest = std::max(
-        largest, length_of(length(displacement), std::sqrt(square), std::abs(scene.angles[angle])));
+    largest =
+        std::max(largest, length_of(length(displacement), std::sqrt(square), std::abs(scene.angles[angle])));
   }
   return largest;
 }
@@ -70,40 +62,30 @@ double largest_length(const Scene& scene, const Length& length_of) {
 }  // namespace
 
 Scene on_part(const Scene& whole, const MeshPart& part) {
-  // A new field does not compile before it is named here.
-  const auto& [settings, case_hash, mesh_hash, mesh, ties, coarser, boundary, sets, element_sets, materials,
-               constraints, driven, angles, curves, forces, initial_velocities] = whole;
-  std::vector<int> element_there(mesh.cells.size(), -1), constraint_there(constraints.size(), -1);
+  constexpr auto nowhere = static_cast<std::size_t>(-1);
+  Scene scene = whole;
+  // A new field does not compile before it is named here; those of the mesh become those of the part.
+  auto& [settings, case_hash, mesh_hash, mesh, ties, coarser, boundary, sets, element_sets, materials,
+         constraints, driven, angles, curves, forces, initial_velocities] = scene;
+  std::vector<int> element_there(mesh.cells.size(), -1);
   for (std::size_t e = 0; e < part.element_of.size(); ++e)
     element_there[at(part.element_of[e])] = static_cast<int>(e);
-  Scene scene{.settings = settings,
-              .case_hash = case_hash,
-              .mesh_hash = mesh_hash,
-              .mesh = part.mesh,
-              .ties = ties,
-              .coarser = {},
-              .boundary = faces_in(part, boundary),
-              .sets = renumbered(sets, part.part_of),
-              .element_sets = renumbered(element_sets, element_there),
-              .materials = materials_of(materials, part.element_of),
-              .constraints = constraints_of(part, constraints, constraint_there),
-              .driven = driven,
-              .angles = angles,
-              .curves = curves,
-              .forces = {},
-              .initial_velocities = {}};
-  for (DrivenSet& set : scene.driven) {
-    std::vector<std::size_t> inside;
-    for (const std::size_t k : set.constraints) {
-      if (constraint_there[k] >= 0) inside.push_back(at(constraint_there[k]));
-    }
-    set.constraints = std::move(inside);
+  mesh = part.mesh;
+  coarser.clear();
+  boundary = faces_in(part, whole.boundary);
+  renumber(sets, part.part_of);
+  renumber(element_sets, element_there);
+  materials = materials_of(whole.materials, part.element_of);
+  std::vector<std::size_t> there(whole.constraints.size(), nowhere);
+  constraints = constraints_of(part, whole.constraints, there);
+  for (DrivenSet& set : driven) {
+    for (std::size_t& k : set.constraints) k = there[k];
+    std::erase(set.constraints, nowhere);
   }
-  std::erase_if(scene.driven, [](const DrivenSet& set) { return set.constraints.empty(); });
-  for (const auto& force : forces) {
-    if (auto restricted = force->restricted_to(part)) scene.forces.push_back(std::move(restricted));
-  }
-  if (!initial_velocities.empty()) scene.initial_velocities = values_at(part.node_of, initial_velocities);
+  std::erase_if(driven, [](const DrivenSet& set) { return set.constraints.empty(); });
+  for (auto& force : forces) force = force->restricted_to(part);
+  std::erase(forces, nullptr);
+  if (!initial_velocities.empty()) initial_velocities = values_at(part.node_of, whole.initial_velocities);
   return scene;
 }
 

@@ -1,4 +1,4 @@
-#include "problem/scene_materials.hpp"
+#include "problem/scene_rules.hpp"
 
 #include <fmt/format.h>
 

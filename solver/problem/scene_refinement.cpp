@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 #include "mesh/distances.hpp"
-#include "mesh/refinement.hpp"
+#include "problem/scene_rules.hpp"
 
 namespace sandglass {
 

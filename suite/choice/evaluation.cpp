@@ -201,10 +201,15 @@ Displacements interpolate(const Mesh& mesh, const Displacements& history, const 
 }
 
 CaseOnMesh on_mesh(const AnyGenerator& mesh, Case description) {
-  const auto used = used_node_sets(description);
-  std::erase_if(description.sets, [&](const NodeSetRule& rule) { return !used.contains(rule.name); });
-  description.mesh = mesh;
-  return {std::move(description), generate_mesh(mesh)};
+  CaseOnMesh problem{std::move(description), generate_mesh(mesh)};
+  problem.description.mesh = mesh;
+  const auto on_boundary = boundary_nodes(problem.mesh);
+  std::erase_if(problem.description.sets, [&](const NodeSetRule& rule) {
+    if (!select_nodes(problem.mesh, on_boundary, rule).empty()) return false;
+    problem.sets[rule.name] = {};  // for the message, if a table names it
+    return true;
+  });
+  return problem;
 }
 
 }  // namespace sandglass

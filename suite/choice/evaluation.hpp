@@ -61,8 +61,8 @@ class Evaluator {
 /// Displacements (m) on a mesh at other points of the same body, at all times.
 Displacements interpolate(const Mesh& mesh, const Displacements& history, const NodalField& points);
 
-/// The same case on a coarser mesh, without the sets that only tables and pictures need, which may have no
-/// node there.
+/// The same case on a coarser mesh, without rules for sets that have no node there; a table that names one
+/// is refused when the scene is made.
 CaseOnMesh on_mesh(const AnyGenerator& mesh, Case description);
 
 }  // namespace sandglass
