@@ -95,10 +95,11 @@ def run_random(options, stop):
     """Plants mistakes at random in the lines of a change; returns their verdicts."""
     planted = plant(ROOT, options.since, options.random, options.seed, options.files)
     if not planted:
-        raise InputError(f"--since {options.since}: no lines of C++ were added since")
-    known = [program.name for program in programs_of(ROOT)]
-    for name in set(options.tests) - set(known):
-        raise InputError(f"--tests {name}: allowed are {', '.join(known)}")
+        raise InputError(f"--since {options.since}: no lines of C++ were added in these files")
+    for name in options.tests:
+        known = [program.name for program in programs_of(ROOT)]
+        if name not in known:
+            raise InputError(f"--tests {name}: allowed are {', '.join(known)}")
     verdicts, sources_only = [], all(mistake.file.endswith(".cpp") for mistake in planted)
     worker = Worker("HEAD", stop, options.jobs, options.tests, sources_only)
     with tempfile.TemporaryDirectory() as folder, worker:

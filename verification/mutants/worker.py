@@ -246,7 +246,8 @@ class Worker:
     def _remove_built(self, since):
         """Removes the files built from a mutant; all others are up to date and stay."""
         for path in self.build.rglob("*"):
-            is_built = path.suffix in (".o", ".a", ".so") or (not path.suffix and os.access(path, os.X_OK))
+            is_program = not path.suffix and os.access(path, os.X_OK)
+            is_built = is_program or path.suffix in (".o", ".a", ".so")
             if is_built and path.is_file() and path.stat().st_mtime >= since:
                 path.unlink()
 
