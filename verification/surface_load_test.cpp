@@ -78,40 +78,80 @@ TEST(Pressure, does_the_work_of_the_volume) {
   }
 }
 
-/// The tangent of the loads: by differences, the derivative of their potential is minus the loads, for a body
-/// whose whole surface is pressed and springs of both kinds.
-TEST(Loads, derive_from_their_potential) {
-  const Mesh mesh = box({1.0, 2.0, 1.5}, {2, 2, 2});
-  Case description = plain_case(NeoHookean{});
-  const NodeSets sets{{"all", nodes_where(mesh.points, [](const Vector&) { return true; })},
-                      {"left", plane(mesh.points, 0, 0.0)},
-                      {"top", plane(mesh.points, 2, 1.5)}};
-  description.displacements = {{"left", {}}};
-  description.forces.of<DeadForce>() = {{"top", {1.0, 2.0, 3.0}, {0.1, 0.0, 0.5}}};
-  description.forces.of<Gravity>() = {{{0.0, -9.81e-3, 0.0}}};
-  description.forces.of<Pressure>() = {{"all", 7.0}};
-  description.forces.of<Support>() = {{"top", 5.0, 0.0, true}, {"left", 3.0, 0.0, false}};
-  const Scene scene = make_scene(description, mesh, sets);
-  const Model model(scene, {"tl-perturbation"});
-  const auto& elements = *std::get<0>(model.internal_force());
-  Loads<double> loads(scene, elements.layout());
-  loads.set(0.6, 0.6);
-  State<double> state = elements.undeformed();
-  RandomGeometry random(8);
-  for (std::size_t row = 0; row < mesh.points.size(); ++row) {
-    for (std::size_t i = 0; i < 3; ++i) state.u[row][i] = 0.1 * random.uniform(-1.0, 1.0);
+/// A body under loads of every kind, whose whole surface is pressed, on springs of both kinds; displaced at
+/// random.
+struct Loaded {
+  Mesh mesh = box({1.0, 2.0, 1.5}, {2, 2, 2});
+  Scene scene;
+  Model model;
+  const InternalForce<double>& elements;
+  State<double> state;
+
+  explicit Loaded(const LoadCurve& of_pressure = {})
+      : scene(make(mesh, of_pressure)),
+        model(scene, {"tl-perturbation"}),
+        elements(*std::get<0>(model.internal_force())),
+        state(elements.undeformed()) {
+    RandomGeometry random(8);
+    for (std::size_t row = 0; row < mesh.points.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) state.u[row][i] = 0.1 * random.uniform(-1.0, 1.0);
+    }
   }
-  Rows<double> force(state.u.size());
-  loads.subtract(state, force);
-  for (std::size_t row = 0; row < mesh.points.size(); row += 4) {
+
+  static Scene make(const Mesh& mesh, const LoadCurve& of_pressure) {
+    Case description = plain_case(NeoHookean{});
+    const NodeSets sets{{"all", nodes_where(mesh.points, [](const Vector&) { return true; })},
+                        {"left", plane(mesh.points, 0, 0.0)},
+                        {"top", plane(mesh.points, 2, 1.5)}};
+    description.displacements = {{"left", {}}};
+    description.forces.of<DeadForce>() = {{"top", {1.0, 2.0, 3.0}, {0.1, 0.0, 0.5}}};
+    description.forces.of<Gravity>() = {{{0.0, -9.81e-3, 0.0}}};
+    description.forces.of<Pressure>() = {{"all", 7.0, of_pressure}};
+    description.forces.of<Support>() = {{"top", 5.0, 0.0, true}, {"left", 3.0, 0.0, false}};
+    return make_scene(description, mesh, sets);
+  }
+};
+
+/// The tangent of the loads: by differences, the derivative of their potential is minus the loads.
+TEST(Loads, derive_from_their_potential) {
+  Loaded body;
+  Loads<double> loads(body.scene, body.elements.layout());
+  loads.set(0.6, 0.6);
+  Rows<double> force(body.state.u.size());
+  loads.subtract(body.state, force);
+  for (std::size_t row = 0; row < force.size(); row += 4) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const double h = 1e-4, there = state.u[row][i];
-      state.u[row][i] = there + h;
-      const double up = loads.potential(state.u);
-      state.u[row][i] = there - h;
+      double& u = body.state.u[row][i];
+      const double h = 1e-4, there = u;
+      u = there + h;
+      const double up = loads.potential(body.state.u);
+      u = there - h;
       // Of third order at most in one coordinate: rounding over h is what is left.
-      EXPECT_NEAR(force[row][i], (up - loads.potential(state.u)) / (2.0 * h), 1e-9);
-      state.u[row][i] = there;
+      EXPECT_NEAR(force[row][i], (up - loads.potential(body.state.u)) / (2.0 * h), 1e-9);
+      u = there;
+    }
+  }
+}
+
+/// The change of the loads is the difference of their forces on a body that stays: from none before they are
+/// set, then from the last ones. Springs do not change. Forces are below 100 N: 1e-12 is a few roundings.
+TEST(Loads, change_by_the_difference_of_their_forces) {
+  const Loaded body(LoadCurve{{0.0, 1.0}, {0.5, 2.0}});
+  Loads<double> loads(body.scene, body.elements.layout());
+  const auto forces_at = [&](double factor) {
+    Loads<double> there(body.scene, body.elements.layout());
+    there.set(factor, factor);
+    Rows<double> force(body.state.u.size());
+    there.subtract(body.state, force);
+    return force;
+  };
+  for (const double before : {0.0, 0.2}) {
+    if (before > 0.0) loads.set(before, before);
+    const Rows<double> change = loads.change_to(0.6, 0.6, body.state.u);
+    const Rows<double> from = forces_at(before), to = forces_at(0.6);
+    for (std::size_t row = 0; row < change.size(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(change[row][i], from[row][i] - to[row][i], 1e-12) << row;
     }
   }
 }
