@@ -62,7 +62,7 @@ Body<Real>::Body(const Model& model, const InternalForce<Real>& elements)
   require_divisible(model);
   const Blocks::Range local = layout().row_blocks.local();
   for (std::size_t k = 0; k < reactions_.size(); ++k) {
-    const auto& [node, component, path] = scene_.constraints[k];
+    const auto& [node, component, path, group] = scene_.constraints[k];
     const auto row = at(layout().row_of_node[at(node)]);
     if (layout().owns(node)) own_constraints_.push_back(k);
     if (4 * row < local.first || 4 * row >= local.last) continue;
@@ -189,7 +189,7 @@ Rows<Real> Body<Real>::on_free_components(const std::vector<double>& nodal) cons
     for (std::size_t i = 0; i < 3; ++i) rows[r][i] = value;
   }
   ties_.clear(rows);
-  for (const auto& [node, component, path] : scene_.constraints) {
+  for (const auto& [node, component, path, group] : scene_.constraints) {
     const int row = layout.row_of_node[at(node)];
     rows[at(row)][at(component)] = Real(0);
   }

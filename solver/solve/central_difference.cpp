@@ -223,7 +223,7 @@ class CentralDifference {
   /// Velocities (m/s) at the time of the displacements; those of driven nodes follow from their paths.
   NodalField velocities() const {
     NodalField v = leapfrog_.free_velocities();
-    for (const auto& [node, component, path] : model_.scene().constraints) {
+    for (const auto& [node, component, path, group] : model_.scene().constraints) {
       const double by_factor = path.along(path_rates(model_.scene().angles[path.angle], loading(time())));
       v[at(node)][at(component)] = loading_rate(time()) * by_factor;
     }
