@@ -22,7 +22,7 @@ OPERATORS = {
     ast.UAdd: operator.pos,
 }
 LANGUAGE = (
-    "a formula may have the time t, numbers, + - * / ^, parentheses, pi, e and the functions "
+    "a formula may contain the time t, numbers, + - * / ^, parentheses, pi, e and the functions "
     + ", ".join(sorted(FUNCTIONS))
 )
 

@@ -408,7 +408,7 @@ INSTANTIATE_TEST_SUITE_P(
                 with("law = \"neo-hookean\"",
                      "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\nfibre_direction = [0, 0, 1]\n"
                      "sheet_direction = [0, 0, -2]"),
-                {"material.fibre_direction", "sheets is that of the fibres"}},
+                {"material.fibre_direction", "sheets and fibres have the same direction"}},
         BadCase{"radii_that_decrease",
                 with("law = \"neo-hookean\"",
                      "law = \"fibre-neo-hookean\"\nfibre_modulus = 1.0\n"

@@ -65,7 +65,7 @@ TEST(Formula, what_is_wrong_is_named_with_its_position) {
   }
   EXPECT_NE(input_error([&] {
               hanging(folder, "formula = \"t\"\ntimes = [0.0]\nfactors = [0.0]\n");
-            }).find("a load has a formula or a table, not both"),
+            }).find("a formula or a table, not both"),
             std::string::npos);
   const auto until_one = parse_formula("sqrt(1 - t)");
   EXPECT_EQ(until_one(0.75), 0.5);

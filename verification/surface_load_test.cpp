@@ -407,7 +407,7 @@ value = [0.0, 0.0, 0.0]
   expect("[[support]]\nset = \"foot\"\n", "or damping must be given and positive");
   expect("[[support]]\nset = \"foot\"\nstiffness = -1.0\n", "must be in [0, inf)");
   expect("[[gravity]]\nvalue = [0.0, 1.0]\n", "a list of 3");
-  expect("[[gravity]]\nvalue = [0.0, 1.0, 0.0]\ntimes = [0.0, 1.0]\n", "equally many");
+  expect("[[gravity]]\nvalue = [0.0, 1.0, 0.0]\ntimes = [0.0, 1.0]\n", "one factor for each time");
   expect("[[gravity]]\nvalue = [0.0, 1.0, 0.0]\ntimes = [0.0, 0.0]\nfactors = [0.0, 1.0]\n", "must increase");
   expect("[[gravity]]\nvalue = [0.0, 1.0, 0.0]\nset = \"foot\"\n", "set");
   const auto path = folder.write("pressed.toml", base + "[[pressure]]\nset = \"foot\"\nvalue = 1.0\n");

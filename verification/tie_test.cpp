@@ -128,11 +128,11 @@ TEST(Tie, wrong_input_is_refused) {
   };
   has("[[tie]]\nset = \"middle\"\nelements = \"none\"\n", "tie.elements");
   has("[[tie]]\nset = \"none\"\nelements = \"lower\"\n", "tie.set");
-  has("[[tie]]\nset = \"top\"\nelements = \"lower\"\n", "is in no element of 'lower'");
+  has("[[tie]]\nset = \"top\"\nelements = \"lower\"\n", "is outside all elements of 'lower'");
   has("[[tie]]\nset = \"middle\"\n", "elements");
   has(tied + tied, "is tied by two tables");
   has(tied + "[[refine]]\nelements = \"lower\"\n", "leave out refine");
-  has(tied + "[[displacement]]\nset = \"middle\"\nvalue = [0.0, 0.0, 0.0]\n", "is driven as well");
+  has(tied + "[[displacement]]\nset = \"middle\"\nvalue = [0.0, 0.0, 0.0]\n", "is also driven");
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view digits = "0123456789";
 
-/// Levenshtein distance in which two swapped neighbours are one edit.
+/// Levenshtein distance, with swapped neighbours as one edit.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last, row(b.size() + 1);  // the rows of i - 2, i - 1 and i
   std::iota(row.begin(), row.end(), 0U);

@@ -11,7 +11,7 @@
 
 namespace sandglass {
 
-/// Rows by the numbers of nodes, which stand at places among others.
+/// Rows accessed by node number, wherever they are stored.
 template <class T>
 class AtNodes {
  public:
@@ -26,11 +26,11 @@ using NodalRows = AtNodes<const Row<double>>;
 
 /// How the nodes of a force move. Without time, the increment over the step is zero.
 struct NodalMotion {
-  NodalRows u, increment;  ///< m, the second in the last step
+  NodalRows u, increment;  ///< m; increment: in the last step
   double step;             ///< s
 };
 
-/// Upper bounds of what forces add to the frequencies of nodes, or of elements.
+/// Upper bounds of the share of forces in the frequencies of nodes or elements.
 struct LoadRates {
   double square = 0.0;   ///< of the frequency, 1/s^2
   double damping = 0.0;  ///< 1/s
@@ -38,21 +38,21 @@ struct LoadRates {
 
 /// Properties of a force.
 struct ForceTraits {
-  std::string_view name;  ///< that of its table
-  bool drives;  ///< it is proportional to the factors of its curves; otherwise it only resists motion
+  std::string_view name;  ///< of its table
+  bool drives;            ///< proportional to the factors of its curves; otherwise it only resists motion
   bool dissipates;
-  std::string_view no_potential;  ///< why it has none, as far as is known; empty where it has one
+  std::string_view no_potential;  ///< why it has no potential, as far as is known; empty if it has one
 };
 
 /// The factors of all load curves of a scene.
 using Factors = std::span<const double>;
 
-/// A force of a case on a mesh: immutable, shared by all who compute with it.
+/// A force of a case on a mesh: immutable and shared.
 class BodyForce {
  public:
   virtual ~BodyForce() = default;
 
-  /// Those that it acts on, in any order.
+  /// The nodes on which it acts, in any order.
   const std::vector<int>& nodes() const { return nodes_; }
 
   const ForceTraits& traits() const { return traits_; }
@@ -60,24 +60,24 @@ class BodyForce {
   /// Adds its forces, N.
   virtual void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const = 0;
 
-  /// Adds the energy (J) of which the forces are minus the derivative, at displacements u (m).
+  /// Adds the potential (J) at displacements u (m): the forces are minus its derivative.
   virtual void add_potential(Factors factors, NodalRows u, double& sum) const = 0;
 
-  /// Adds to bounds of the frequencies of all nodes of the mesh, from their masses (kg) and the largest
-  /// factors of the curves.
+  /// Adds its share to the bounds of the frequencies of all nodes of the mesh, from their masses (kg) and the
+  /// largest factors of the curves.
   virtual void add_rates(Factors largest, const std::vector<double>& masses,
                          std::vector<LoadRates>& rates) const = 0;
 
-  /// Adds the diagonal of its stiffness where nothing is deformed (N/m), with which steps are prepared.
+  /// Adds the diagonal of its stiffness in the undeformed body (N/m), for the preconditioner.
   virtual void add_stiffness(AtNodes<Row<float>> diagonal) const = 0;
 
-  /// Adds what drives a body at the factor one (N), however it is directed; moments as forces at an arm (m).
+  /// Adds its magnitude at the factor one (N), whatever its direction; moments as forces at an arm (m).
   virtual void add_size(double arm, double& sum) const = 0;
 
-  /// Its nodal loads at the factor one if the motion of the body does not change them; otherwise none.
+  /// Its nodal loads at the factor one if they do not depend on the motion of the body; otherwise none.
   virtual std::span<const NodalLoad> dead_loads() const = 0;
 
-  /// The same force on a part of the mesh; null where none of it acts there.
+  /// The same force on a part of the mesh; null if it does not act there.
   virtual std::shared_ptr<const BodyForce> restricted_to(const MeshPart& part) const = 0;
 
  protected:
@@ -91,7 +91,7 @@ class BodyForce {
 /// The forces on a body, in the order in which they are summed.
 using BodyForces = std::vector<std::shared_ptr<const BodyForce>>;
 
-/// The first of forces that is no dead load; null where all are.
+/// The first force that is not a dead load; null if all are.
 const BodyForce* first_not_dead(const BodyForces& forces);
 
 /// All dead loads, at the factor one.

@@ -4,7 +4,7 @@ namespace sandglass {
 
 std::optional<BrokenRule> DeadForce::broken_rule() const {
   if (on == Carrier::faces || moment == Vector{}) return std::nullopt;
-  return BrokenRule{"moment", "acts on faces: it cannot be on = 'nodes'"};
+  return BrokenRule{"moment", "acts on faces and cannot have on = 'nodes'"};
 }
 
 void DeadForce::resolve(ForceResolver& resolver) const {

@@ -4,17 +4,17 @@
 
 namespace sandglass {
 
-/// How large a table of loads is, however it is directed.
+/// The magnitude of the load of a table, whatever its direction.
 struct LoadSize {
   double force;   ///< N
   double moment;  ///< N m
 };
 
-/// Forces at nodes that the motion of the body does not change: what dead forces and weight come to.
+/// Nodal forces that do not depend on the motion of the body: dead forces and weight.
 class DeadLoads final : public BodyForce {
  public:
-  /// `loads` (N, at the factor one) are sorted by curve and node, and are not empty; `sizes` are those of the
-  /// tables they are from.
+  /// `loads` (N, at the factor one) are sorted by curve and node and not empty; `sizes` are the magnitudes of
+  /// their tables.
   explicit DeadLoads(std::vector<NodalLoad> loads, std::vector<LoadSize> sizes = {});
 
   void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const override;

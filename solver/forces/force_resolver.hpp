@@ -8,7 +8,7 @@
 
 namespace sandglass {
 
-/// Resolves the forces of a case on a mesh: every kind adds its nodal forces in its function `resolve`.
+/// Resolves the forces of a case on a mesh; the function `resolve` of each kind adds to it.
 struct ForceResolver {
   std::string file;  ///< of the case, for messages
   const NodalField& points;
@@ -17,9 +17,9 @@ struct ForceResolver {
   const std::vector<double>& element_masses;  ///< kg
   const std::vector<double>& masses;          ///< of nodes, kg
 
-  std::vector<LoadCurve> curves = {LoadCurve{}};            ///< the first is that of the case
-  BodyForces forces = {};                                   ///< those that are no dead loads
-  std::map<std::pair<std::size_t, int>, Vector> dead = {};  ///< of curve and node, N
+  std::vector<LoadCurve> curves = {LoadCurve{}};            ///< the first is the case's
+  BodyForces forces = {};                                   ///< except dead loads
+  std::map<std::pair<std::size_t, int>, Vector> dead = {};  ///< by curve and node, N
   std::vector<LoadSize> sizes_of_dead = {};
 
   /// The nodes of the set that a table names. Throws InputError if there is no such set or it is empty.
@@ -28,7 +28,7 @@ struct ForceResolver {
   /// The boundary faces within that set. Throws InputError as well if there are none.
   std::vector<Quadrilateral> faces(std::string_view table, const std::string& set) const;
 
-  /// The number of a curve among those that are known, to which it is added if it is new.
+  /// The number of a curve, which is added if it is new.
   std::size_t number_of(const LoadCurve& curve);
 
   /// Adds a dead load (N), `factor` times a force.

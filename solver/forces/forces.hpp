@@ -19,7 +19,7 @@ namespace sandglass {
 /// parameters of which at least one must be given. All loads are proportional to the factor of their curve.
 using Forces = TypeList<DeadForce, Pressure, Gravity, Support>;
 
-/// The forces of a case: of each kind those that it names, in their order.
+/// The forces of a case: its tables of each kind, in their order.
 template <class List>
 class ForceTables;
 
@@ -35,7 +35,7 @@ class ForceTables<TypeList<Kinds...>> {
     return std::get<std::vector<Kind>>(tables_);
   }
 
-  /// Calls use(force) for all of them, kind by kind.
+  /// Calls use(force) for all forces, kind by kind.
   template <class Use>
   void for_each(const Use& use) {
     (std::ranges::for_each(of<Kinds>(), use), ...);

@@ -35,14 +35,14 @@ double largest(const double* values, int count) {
   return *std::max_element(values, values + count);
 }
 
-/// A parser of the language and the variable that it reads.
+/// A parser of the language, with its variable.
 struct Parser {
   std::string text;
   double t = 0.0;
   mu::Parser parser = {};
   std::mutex one_at_a_time = {};
 
-  /// The library's own language has more than ours, which Python must read the same.
+  /// The library's own language is larger than ours, which Python must read alike.
   explicit Parser(const std::string& written) : text(written) {
     parser.ClearFun();
     parser.ClearConst();
@@ -87,8 +87,8 @@ struct Parser {
 std::string formula_language() {
   std::string names;
   for (const auto& [name, function] : functions()) names += name + ", ";
-  return "a formula may have the time t, numbers, + - * / ^, parentheses, pi, e and the functions " + names +
-         "max, min";
+  return "a formula may contain the time t, numbers, + - * / ^, parentheses, pi, e and the functions " +
+         names + "max, min";
 }
 
 std::function<double(double)> parse_formula(const std::string& text) {

@@ -5,21 +5,21 @@
 
 namespace sandglass {
 
-/// What a formula may have, in words.
+/// The language of formulas, as text for messages.
 std::string formula_language();
 
-/// The value of a formula of the time t, such as "sin(2*pi*t/0.3)". Throws InputError that names what is
-/// wrong, its position from 1, and what is allowed; so does the result where it is not finite. It may be
-/// called by several threads.
+/// The value of a formula of the time t, such as "sin(2*pi*t/0.3)". Throws InputError with the mistake, its
+/// position counted from 1, and what is allowed. The function throws if its value is not finite; several
+/// threads may call it.
 std::function<double(double)> parse_formula(const std::string& text);
 
-/// A formula and what it means; without a text there is none.
+/// A formula as text and as a function; no formula if the text is empty.
 struct Formula {
   std::string text = {};
   std::function<double(double)> evaluate = {};
 
   Formula() = default;
-  /// Throws as parse_formula does.
+  /// Throws like parse_formula.
   explicit Formula(const std::string& written) : text(written), evaluate(parse_formula(written)) {}
 };
 

@@ -17,7 +17,7 @@ struct Gravity {
   static constexpr auto parameters() {
     using G = Gravity;
     return std::tuple{Parameter{&G::value, "value", "m/s^2", Range::any(), "acceleration"},
-                      Parameter{&G::curve, "curve", "-", Range::any(), "how it follows time", false}};
+                      Parameter{&G::curve, "curve", "-", Range::any(), "factor over time", false}};
   }
 
   bool holds() const { return false; }

@@ -12,36 +12,38 @@
 
 namespace sandglass {
 
-/// How a load follows time: a table, linear between its points, constant before the first and after the last,
-/// or a formula. Without either it follows the load factor of the case. In a quasi-static answer time is the
-/// share of the load, 0 to 1.
+/// The factor of a load over time: a table, linear between its points and constant outside, or a formula.
+/// Without either it is the load factor of the case. In a quasi-static answer, time is the share of the load,
+/// 0 to 1.
 struct LoadCurve {
   std::vector<double> times = {};  ///< s, increasing
   std::vector<double> factors = {};
   Formula formula = {};
-  double share = 1.0;  ///< of all this
+  double share = 1.0;  ///< a factor of all values
 
   static constexpr auto parameters() {
     using C = LoadCurve;
     return std::tuple{
-        Parameter{
-            &C::times, "times", "s", Range::at_least(0.0),
-            "increasing times at which factors are given, instead of the loading curve of the case; in a "
-            "quasi-static answer time is the share of the load, 0 to 1",
-            false},
+        Parameter{&C::times, "times", "s", Range::at_least(0.0),
+                  "increasing times of the factors, which replace the loading curve of the case; in a "
+                  "quasi-static answer, time is the share of the load, 0 to 1",
+                  false},
         Parameter{&C::factors, "factors", "-", Range::any(),
-                  "of the load at these times, linear in between and constant outside", false},
-        Parameter{&C::formula, "formula", "-", Range::any(),
-                  "instead of a table, a factor of the time t in s, such as \"sin(2*pi*t) * t\"", false}};
+                  "factors of the load at these times, linear in between and constant outside", false},
+        Parameter{
+            &C::formula, "formula", "-", Range::any(),
+            "instead of a table, a factor as a function of the time t in s, such as \"sin(2*pi*t) * t\"",
+            false}};
   }
 
   std::optional<BrokenRule> broken_rule() const {
     if (!formula.text.empty() && !(times.empty() && factors.empty())) {
       return BrokenRule{"formula",
-                        "was given with times or factors; a load has a formula or a table, not both"};
+                        "was given with times or factors; allowed: a formula or a table, not both"};
     }
     if (times.size() != factors.size())
-      return BrokenRule{times.empty() ? "factors" : "times", "needs both times and factors, equally many"};
+      return BrokenRule{times.empty() ? "factors" : "times",
+                        "needs times and factors, one factor for each time"};
     for (std::size_t k = 1; k < times.size(); ++k) {
       if (times[k] > times[k - 1]) continue;
       return BrokenRule{"times", fmt::format("= ..., {}, {}, ... must increase", times[k - 1], times[k])};
@@ -54,7 +56,7 @@ struct LoadCurve {
            share == other.share;
   }
 
-  /// The factor of the load, where `load_factor` is that of the case.
+  /// The factor of the load; `load_factor` is the case's.
   double at(double time, double load_factor) const {
     if (formula.evaluate) return share * formula.evaluate(time);
     if (times.empty()) return share * load_factor;
@@ -66,7 +68,7 @@ struct LoadCurve {
     return share * (factors[n - 1] + part * (factors[n] - factors[n - 1]));
   }
 
-  /// The largest absolute value; of a formula that of 1001 times in equal distances from 0 to `end`.
+  /// The largest absolute value; for a formula, at 1001 equidistant times from 0 to `end`.
   double largest(double end) const {
     if (!formula.evaluate && times.empty()) return std::abs(share);
     double most = 0.0;

@@ -29,8 +29,8 @@ class FacePressures final : public BodyForce {
     }
   }
 
-  /// Where the edges of the faces are held or lie in planes of symmetry through the origin: the volume below
-  /// a face is a third of the integral of x . n da.
+  /// Exact if the edges of the faces are held or lie in planes of symmetry through the origin: the volume
+  /// below a face is a third of the integral of x . n da.
   void add_potential(Factors factors, NodalRows u, double& sum) const override {
     for (std::size_t k = 0; k < faces_.size(); ++k) {
       const auto x = corners(k, u);
@@ -75,7 +75,7 @@ class FacePressures final : public BodyForce {
   }
 
  private:
-  /// The corners (m) of the k-th face where it is now.
+  /// The current corners (m) of the k-th face.
   std::array<Vector, 4> corners(std::size_t k, NodalRows u) const {
     std::array<Vector, 4> x = corners_[k];
     for (std::size_t I = 0; I < 4; ++I) {

@@ -6,11 +6,10 @@
 
 namespace sandglass {
 
-/// A pressure on the boundary faces within a node set: it pushes on them and follows them as they turn and
-/// stretch.
+/// A pressure on the boundary faces within a node set, which follows them as they turn and stretch.
 struct Pressure {
   static constexpr std::string_view name = "pressure";
-  static constexpr std::string_view summary = "pushes on boundary faces, and follows them";
+  static constexpr std::string_view summary = "pushes on boundary faces and follows them";
   static constexpr std::string_view only_in_motion{};
   static constexpr bool by_mass = false;
 
@@ -20,10 +19,9 @@ struct Pressure {
 
   static constexpr auto parameters() {
     using P = Pressure;
-    return std::tuple{
-        Parameter{&P::set, "set", "-", Range::any(), "node set within which faces are pushed on"},
-        Parameter{&P::value, "value", "Pa", Range::any(), "pressure"},
-        Parameter{&P::curve, "curve", "-", Range::any(), "how it follows time", false}};
+    return std::tuple{Parameter{&P::set, "set", "-", Range::any(), "node set with the loaded faces"},
+                      Parameter{&P::value, "value", "Pa", Range::any(), "pressure"},
+                      Parameter{&P::curve, "curve", "-", Range::any(), "factor over time", false}};
   }
 
   bool holds() const { return false; }

@@ -26,7 +26,7 @@ class FaceSupports final : public BodyForce {
         });
       };
       resist(support_.stiffness, motion.u);
-      // The velocity is that of half a step before; without time it is zero.
+      // The velocity is half a step old; without time it is zero.
       if (support_.damping > 0.0) resist(support_.damping / motion.step, motion.increment);
     }
   }
@@ -42,7 +42,7 @@ class FaceSupports final : public BodyForce {
     }
   }
 
-  /// As if each node had its share of the area for itself.
+  /// Treats each node as if its share of the area supported it alone.
   void add_rates(Factors /*largest*/, const std::vector<double>& masses,
                  std::vector<LoadRates>& rates) const override {
     for_each_share([&](std::size_t k, std::size_t I, const FacePoint& point) {
@@ -52,7 +52,7 @@ class FaceSupports final : public BodyForce {
     });
   }
 
-  /// As if each node had its share of the area for itself.
+  /// Treats each node as if its share of the area supported it alone.
   void add_stiffness(AtNodes<Row<float>> diagonal) const override {
     for_each_share([&](std::size_t k, std::size_t I, const FacePoint& point) {
       for (std::size_t i = 0; i < 3; ++i) {
@@ -72,8 +72,8 @@ class FaceSupports final : public BodyForce {
   }
 
  private:
-  /// Calls use(N, t) for the Gauss points of the k-th face with their shape functions and what resists the
-  /// vector `field`, such as u (m), times the area: its normal part or all of it.
+  /// Calls use(N, t) for the Gauss points of the k-th face: shape functions, and the part of `field`, such as
+  /// u (m), that is resisted, normal or all, times the area.
   template <class Use>
   void for_each_point(std::size_t k, NodalRows field, const Use& use) const {
     for (const FacePoint& point : points_[k]) {

@@ -11,7 +11,7 @@ namespace sandglass {
 
 namespace {
 
-/// "name(parameter=value,...)" of an aggregate that declares its parameters.
+/// "name(parameter=value,...)" for an aggregate with declared parameters.
 template <class Aggregate>
 std::string described(const Aggregate& aggregate) {
   std::string text = fmt::format("{}(", Aggregate::name);
@@ -40,14 +40,14 @@ std::string described(const NodeSetRule& rule) {
   return text + ")";
 }
 
-/// Nothing for the volumetric part of the law itself.
+/// Empty for the law's own volumetric part.
 std::string described(const VolumetricPart& volume) {
   if (std::holds_alternative<QuadraticPart>(volume)) return "";
   return std::visit([]<class Part>(const Part&) { return fmt::format("volumetric({})", Part::name); },
                     volume);
 }
 
-/// Nothing for an isotropic material.
+/// Empty for an isotropic material.
 std::string described(const FibreRule& rule) {
   if (const auto* uniform = std::get_if<UniformFibres>(&rule)) {
     return fmt::format("fibres({}:{})", uniform->fibre, uniform->sheet.value_or(Vector{}));
@@ -66,8 +66,8 @@ std::string described(const LoadCurve& curve) {
   return curve.times.empty() ? "" : fmt::format("curve({}:{})", curve.times, curve.factors);
 }
 
-/// "name(value:value)" of the parameters of a force that decide an answer at rest, or of those that decide a
-/// motion beside them; then its curve, and words that are not the default.
+/// "name(value:value)" with the parameters of a force that affect a static answer, or with those that affect
+/// only motions; then its curve, and words other than the default.
 template <class Force>
 std::string described(const Force& force, bool in_motion) {
   std::vector<std::string> values;
@@ -89,7 +89,7 @@ std::string described(const Force& force, bool in_motion) {
   return fmt::format("{}({}){}", Force::name, fmt::join(values, ":"), others);
 }
 
-/// What decides a motion beside what decides the answer at rest: inertia, damping, times, the start.
+/// Everything that affects only motions: inertia, damping, times, initial velocities.
 std::string described_motion(const Case& description) {
   const auto& [duration, ramp_time, time_step, step_fraction, damping, subcycles, body_frequency,
                check_interval, frames] = description.dynamics;
@@ -109,9 +109,10 @@ std::optional<BrokenRule> Refinement::broken_rule() const {
                       "elements or numbers: exactly one of the three must be given: the name of a node set, "
                       "the name of an element set, or numbers of at least one element"};
   }
-  if (after != 0 && numbers.empty()) return BrokenRule{"after", "goes with numbers; leave it out"};
-  if (depth != 1 && !numbers.empty()) return BrokenRule{"depth", "does not go with numbers; leave it out"};
-  if (layers != 2 && around.empty()) return BrokenRule{"layers", "goes with around; leave it out"};
+  if (after != 0 && numbers.empty()) return BrokenRule{"after", "needs numbers; leave it out"};
+  if (depth != 1 && !numbers.empty())
+    return BrokenRule{"depth", "cannot be combined with numbers; leave it out"};
+  if (layers != 2 && around.empty()) return BrokenRule{"layers", "needs around; leave it out"};
   return std::nullopt;
 }
 

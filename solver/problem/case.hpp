@@ -16,24 +16,24 @@
 
 namespace sandglass {
 
-/// A mesh read from a file: as `sandglass mesh` writes it, or another program's, or a labelled image.
+/// A mesh file, written by `sandglass mesh` or another program, or a labelled image.
 struct MeshFile {
   std::filesystem::path path;
-  std::optional<Vector> spacing = {};  ///< size of an image's voxels, m, where the image has none
+  std::optional<Vector> spacing = {};  ///< voxel size, m, for an image without one
 };
 
-/// A material, its fibres, and the elements that are made of it.
+/// A material, its fibres and its elements.
 struct CaseMaterial : Material {
   std::string elements = {};  ///< an element set; empty: all elements that no other material names
   FibreRule fibres = {};
 };
 
-/// Elements that are split in eight, their parts again, and so on.
+/// Repeated splitting of elements into eight.
 struct Refinement {
   static constexpr std::string_view name = "refine";
   static constexpr std::string_view summary =
-      "splits elements in eight, and others so that neighbours differ by one split at most; sets and "
-      "materials pass on to the parts, and nodes that hang follow the element they hang on";
+      "splits elements into eight; neighbours differ by at most one split; parts inherit sets and materials; "
+      "hanging nodes follow the element on which they hang";
 
   std::string around;
   std::string elements;
@@ -47,26 +47,25 @@ struct Refinement {
     constexpr Range few{.low = 1, .high = 8, .low_open = false, .high_open = false};
     constexpr Range before{.low = 0, .high = 7, .low_open = false, .high_open = false};
     return std::tuple{
-        Parameter{&R::around, "around", "-", Range::any(), "a node set, at whose edge elements are split; or",
+        Parameter{&R::around, "around", "-", Range::any(), "splits elements at the edge of this node set; or",
                   false},
-        Parameter{&R::elements, "elements", "-", Range::any(), "an element set that is split; or", false},
+        Parameter{&R::elements, "elements", "-", Range::any(), "splits this element set; or", false},
         Parameter{&R::numbers, "numbers", "-", Range::at_least(0.0),
-                  "elements that are split once, by their numbers from 0 in the mesh", false},
-        Parameter{&R::after, "after", "-", before, "this many splits; with numbers", false},
-        Parameter{&R::depth, "depth", "-", few, "how often the elements of a set, or at its edge, are split",
-                  false},
+                  "splits these elements once; numbers count from 0 in the mesh", false},
+        Parameter{&R::after, "after", "-", before, "numbers refer to the mesh after so many splits", false},
+        Parameter{&R::depth, "depth", "-", few, "how many times elements are split; not with numbers", false},
         Parameter{&R::layers, "layers", "-", few,
-                  "of elements, and again of their parts, at the edge that are split; with around", false}};
+                  "layers of elements at the edge that are split, in each split; with around", false}};
   }
   std::optional<BrokenRule> broken_rule() const;
 };
 
-/// Nodes that move with elements they are no corners of.
+/// Nodes that move with elements without being their corners.
 struct NodeTie {
   static constexpr std::string_view name = "tie";
   static constexpr std::string_view summary =
-      "nodes move with the elements that they are inside, or on the faces of, without being their corners: "
-      "where meshes that do not match meet; not with [[refine]]";
+      "joins meshes that do not match: nodes inside elements, or on their faces, that are not their corners "
+      "move with these elements; not with [[refine]]";
 
   std::string set;
   std::string elements;
@@ -89,16 +88,16 @@ struct ImposedDisplacement {
 /// of the loading curve.
 struct ImposedRotation {
   std::string set;
-  Vector axis{};                 ///< of length one; turns by the right-hand rule
+  Vector axis{};                 ///< of length one; right-hand rule
   double angle = 0.0;            ///< final angle, rad
-  std::optional<Vector> center;  ///< a point of the axis, m; else the mean of the nodes' positions
+  std::optional<Vector> center;  ///< a point on the axis, m; default: the mean of the nodes' positions
   Vector displacement{};         ///< final displacement in addition to the rotation, m
 };
 
-/// Velocities in which nodes start; what several say of one node adds up.
+/// Initial velocities of nodes; several for one node add up.
 struct InitialVelocity {
   static constexpr std::string_view name = "velocity";
-  static constexpr std::string_view summary = "where a dynamic answer starts; several add up";
+  static constexpr std::string_view summary = "initial velocities of a dynamic case; several add up";
   static constexpr std::array<std::string_view, 2> one_of{"value", "spin"};
 
   std::string set;  ///< empty: the whole body
@@ -112,19 +111,19 @@ struct InitialVelocity {
         Parameter{&V::set, "set", "-", Range::any(), "a node set instead of the whole body", false},
         Parameter{&V::value, "value", "m/s", Range::any(), "velocity", false},
         Parameter{&V::half_waves, "half_waves", "-", Range::at_least(0.0),
-                  "on each axis, of a wave that stands between the free ends of the set: value times "
-                  "cos(pi half_waves (x - low) / (high - low))",
+                  "along each axis, for a standing wave between the free ends of the set: value times cos(pi "
+                  "half_waves (x - low) / (high - low))",
                   false},
         Parameter{&V::spin, "spin", "rad/s", Range::any(), "about the centre of mass of the set", false}};
   }
 };
 
-/// Everything a case file says, checked key by key; what is inside is plain data.
+/// The contents of a case file as plain data, checked key by key.
 struct Case : CaseSettings {
   std::variant<AnyGenerator, MeshFile> mesh;
   std::vector<CaseMaterial> materials = std::vector<CaseMaterial>(1);
   std::vector<NodeSetRule> sets;
-  std::vector<NodeSetRule> element_sets;  ///< for the centres of elements
+  std::vector<NodeSetRule> element_sets;  ///< rules for the centres of elements
   std::vector<Refinement> refinements;
   std::vector<NodeTie> ties;
   std::vector<ImposedDisplacement> displacements;
@@ -133,9 +132,9 @@ struct Case : CaseSettings {
   std::vector<InitialVelocity> velocities;
 };
 
-/// A hash of what decides the answer: mesh recipe, laws, sets, imposed displacements, rotations and forces;
-/// in motion also density, damping, duration, ramp time and initial velocities. Method, other settings and
-/// words do not enter.
+/// A hash of everything that affects the answer: mesh recipe, laws, sets, imposed displacements, rotations
+/// and forces; for motions also density, damping, duration, ramp time and initial velocities. Method, other
+/// settings and texts are not hashed.
 std::string case_hash(const Case& description);
 
 }  // namespace sandglass

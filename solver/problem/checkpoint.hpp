@@ -97,8 +97,8 @@ class CheckpointReader {
   const std::map<std::string, std::vector<double>>& arrays_;
 };
 
-/// Copies the state of a stepper to bytes, or back from const bytes, within a process: as the two above, in a
-/// small part of the time, and without allocating once the bytes are there.
+/// Copies the state of a stepper to bytes, or back from const bytes, within a process: like the two above,
+/// but much faster, and without allocating once the bytes exist.
 template <class Bytes>
 requires std::is_same_v<std::remove_const_t<Bytes>, std::vector<std::byte>>
 class StateCopy {

@@ -11,7 +11,7 @@ namespace sandglass {
 
 namespace {
 
-/// A direction with length one, found without overflow. Throws InputError for zero.
+/// The unit vector of a direction, without overflow. Throws InputError for zero.
 Triple<double> unit(const Triple<double>& direction, std::string_view what) {
   const auto& [x, y, z] = direction.entries;
   const double length = std::hypot(x, y, z);
@@ -22,12 +22,12 @@ Triple<double> unit(const Triple<double>& direction, std::string_view what) {
   return (1.0 / length) * direction;
 }
 
-/// The part of a direction across a unit vector.
+/// The part of a direction perpendicular to a unit vector.
 Triple<double> across(const Triple<double>& direction, const Triple<double>& unit) {
   return direction - double_dot(direction, unit) * unit;
 }
 
-/// The coordinate axis that is most nearly across a unit vector.
+/// The coordinate axis that is most nearly perpendicular to a unit vector.
 Triple<double> most_nearly_across(const Triple<double>& unit) {
   const auto smallest = std::min_element(unit.entries.begin(), unit.entries.end(),
                                          [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -54,8 +54,7 @@ MaterialAxes<double> axes_along(const Vector& fibre, const std::optional<Vector>
   const Triple<double> f = unit({fibre}, "fibres");
   const Triple<double> hint = sheet ? unit({*sheet}, "sheets") : most_nearly_across(f);
   const Triple<double> rest = across(hint, f);
-  if (!(double_dot(rest, rest) > 1e-12))
-    throw InputError("the direction of the sheets is that of the fibres");
+  if (!(double_dot(rest, rest) > 1e-12)) throw InputError("sheets and fibres have the same direction");
   const Triple<double> s = unit(across(unit(rest, "sheets"), f), "sheets");  // twice is enough
   const Triple<double> n = cross(f, s);
   MaterialAxes<double> axes;

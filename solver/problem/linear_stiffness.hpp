@@ -10,8 +10,8 @@ namespace sandglass {
 using ElementStiffness = Matrix<double, 24, 24>;
 
 /// Calls visit(cell, K) for each element of a model whose method is linear, f = K u: the columns of K are the
-/// forces of the method's own kernel at unit displacements. Throws InputError when the method is not linear
-/// or the law remembers.
+/// forces of the method's own kernel at unit displacements. Throws InputError if the method is not linear or
+/// the law has a history.
 void for_each_stiffness(const Model& model,
                         const std::function<void(const Hexahedron&, const ElementStiffness&)>& visit);
 

@@ -97,8 +97,8 @@ void make_constraints(const Case& description, Scene& scene) {
   }
 }
 
-/// Adds to `sums` what an initial velocity gives to its nodes at X (m): its value, as a wave where there is
-/// one, and spin x (X - centre of mass), m/s.
+/// Adds an initial velocity (m/s) to the `sums` of its nodes at X (m): its value, as a wave if it has one,
+/// and spin x (X - centre of mass).
 void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::vector<int>& nodes,
                 const std::vector<double>& masses, NodalField& sums) {
   const NodalField& points = scene.mesh.points;
@@ -114,7 +114,7 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
     if (velocity.half_waves[i] == 0 || low[i] < high[i]) continue;
     throw InputError(
         fmt::format("{}: velocity.half_waves = {} along {}: the set {} has no extent along {}; a wave needs "
-                    "one, 0 stands for no wave",
+                    "one; 0 means no wave",
                     scene.settings.file.string(), velocity.half_waves[i], "xyz"[i],
                     velocity.set.empty() ? "of all nodes" : velocity.set, "xyz"[i]));
   }
@@ -133,7 +133,7 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
   }
 }
 
-/// Resolves the forces of the case, whose curves become those of the scene.
+/// Resolves the forces of the case and keeps their curves in the scene.
 void make_forces(const Case& description, Scene& scene, const std::vector<double>& element_masses,
                  const std::vector<double>& masses) {
   ForceResolver resolver{.file = scene.settings.file.string(),
@@ -147,7 +147,7 @@ void make_forces(const Case& description, Scene& scene, const std::vector<double
   scene.curves = std::move(resolver.curves);
 }
 
-/// The sum of all initial velocities at each node, from their masses (kg); empty where a case has none.
+/// The sum of all initial velocities at each node, from their masses (kg); empty if the case has none.
 NodalField make_initial_velocities(const Case& description, const Scene& scene,
                                    const std::vector<double>& masses) {
   if (description.velocities.empty()) return {};

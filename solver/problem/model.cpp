@@ -9,7 +9,7 @@ namespace sandglass {
 
 namespace {
 
-/// Of each element the largest of its nodes.
+/// The largest value at the nodes of each element.
 std::vector<LoadRates> load_rates_of(const Scene& scene, const std::vector<double>& element_masses) {
   if (first_not_dead(scene.forces) == nullptr) return {};
   const std::vector<double> masses = lumped_masses(scene.mesh, element_masses);
@@ -55,7 +55,7 @@ StrainEnergies strain_energies(const Model& model, const NodalField& u) {
       [&]<class Real>(const std::unique_ptr<InternalForce<Real>>& elements) {
         State<Real> state = state_at(*elements, u);
         Rows<Real> unused(state.u.size());
-        elements->evaluate(state, unused);  // takes along what elements remember
+        elements->evaluate(state, unused);  // updates the history of the elements
         return elements->energies(state);
       },
       model.internal_force());

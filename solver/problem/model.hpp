@@ -7,7 +7,7 @@
 
 namespace sandglass {
 
-/// A well-posed problem: scene, elements and masses. All is const; what changes lives in the steppers' state.
+/// A well-posed problem: scene, elements and masses. Everything is const; the state is in the steppers.
 class Model {
  public:
   Model(const Scene& scene, MethodChoice choice);
@@ -16,13 +16,13 @@ class Model {
   const MethodChoice& choice() const { return choice_; }
   const AnyInternalForce& internal_force() const { return internal_force_; }
 
-  /// Lumped masses of the nodes, kg; tied nodes have none, those that they follow have theirs.
+  /// Lumped masses of the nodes, kg; the mass of a tied node is added to the nodes that it follows.
   const std::vector<double>& masses() const { return masses_; }
 
   /// Mass of each element, kg.
   const std::vector<double>& element_masses() const { return element_masses_; }
 
-  /// What forces add to the frequencies of each element; empty if none adds any.
+  /// The share of the forces in the frequencies of each element; empty if there is none.
   const std::vector<LoadRates>& load_rates() const { return load_rates_; }
 
  private:
@@ -34,10 +34,10 @@ class Model {
   std::vector<LoadRates> load_rates_;
 };
 
-/// Internal nodal forces (N) of a model at displacements u (m), reached from rest in one step.
+/// Internal nodal forces (N) of a model at displacements u (m), reached in one step.
 NodalField internal_forces(const Model& model, const NodalField& u);
 
-/// Energies of a model at displacements u (m), reached from rest in one step.
+/// Energies of a model at displacements u (m), reached in one step.
 StrainEnergies strain_energies(const Model& model, const NodalField& u);
 
 }  // namespace sandglass

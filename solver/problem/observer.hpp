@@ -50,10 +50,10 @@ class Observer {
 
   virtual void history(const HistoryRow& /*row*/) {}
 
-  /// The next time (s) at which a dynamic run is to tell its displacements; infinite: at none.
+  /// The next time (s) for which a dynamic run should report displacements; infinite: none.
   virtual double next_sample() const { return std::numeric_limits<double>::infinity(); }
 
-  /// The displacements (m) at `next_sample()`, whatever the steps: called when a step reaches it.
+  /// The displacements (m) at `next_sample()`, interpolated within the step that reaches it.
   virtual void sample(const NodalField& /*u*/) {}
 
   /// Called at every point from which the run can be resumed, after all reports up to there. `checkpoint`

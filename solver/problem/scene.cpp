@@ -8,8 +8,7 @@ namespace sandglass {
 
 namespace {
 
-/// Gives the members of sets their numbers in a part, where `there` has them; -1 stands for others, which are
-/// left out.
+/// Renumbers the members of sets: `there` has their numbers in a part, or -1 for members that it lacks.
 template <class Sets>
 void renumber(Sets& sets, const std::vector<int>& there) {
   for (auto& [name, set] : sets) {
@@ -18,7 +17,8 @@ void renumber(Sets& sets, const std::vector<int>& there) {
   }
 }
 
-/// The constraints of a part, whose rim is fixed. Sets `there[k]` to the number of the k-th of the whole.
+/// The constraints of a part, whose rim is fixed. Sets `there[k]` to the part's number of the k-th
+/// constraint.
 std::vector<Constraint> constraints_of(const MeshPart& part, const std::vector<Constraint>& whole,
                                        std::vector<std::size_t>& there) {
   std::vector<Constraint> inside;
@@ -36,9 +36,9 @@ std::vector<Constraint> constraints_of(const MeshPart& part, const std::vector<C
   return inside;
 }
 
-/// The largest value of a function of each imposed node: of the length of its final displacement beside a
-/// rotation (m), its distance from the axis (m), and the angle (rad), which is zero for those that do not
-/// turn.
+/// The largest value, over imposed nodes, of a function of three arguments: the length of the final
+/// displacement without the rotation (m), the distance from the axis (m), and the angle (rad; zero without
+/// rotation).
 template <class Length>
 double largest_length(const Scene& scene, const Length& length_of) {
   double largest = 0.0;
@@ -64,7 +64,7 @@ double largest_length(const Scene& scene, const Length& length_of) {
 Scene on_part(const Scene& whole, const MeshPart& part) {
   constexpr auto nowhere = static_cast<std::size_t>(-1);
   Scene scene = whole;
-  // A new field does not compile before it is named here; those of the mesh become those of the part.
+  // A new field does not compile until it is named here; fields of the mesh are cut to the part.
   auto& [settings, case_hash, mesh_hash, mesh, ties, coarser, boundary, sets, element_sets, materials,
          constraints, driven, angles, curves, forces, initial_velocities] = scene;
   std::vector<int> element_there(mesh.cells.size(), -1);

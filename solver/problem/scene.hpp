@@ -21,41 +21,41 @@ struct Constraint {
   int node;
   int component;
   ImposedPath path;
-  int group = -1;  ///< the number of the imposed displacement that moves it with others; -1 for none
+  int group = -1;  ///< the number of its imposed displacement; -1 for none
 };
 
-/// A node set that is driven.
+/// A driven node set.
 struct DrivenSet {
   std::string name;
-  std::vector<std::size_t> constraints;  ///< those of its nodes
+  std::vector<std::size_t> constraints;  ///< of its nodes
 };
 
 /// The problem that solvers take: a case resolved on its mesh. `make_scene` makes it from a case, the
 /// functions below from another scene.
 struct Scene {
   CaseSettings settings;
-  std::string case_hash;  ///< of the case whose answer it has; empty where no case has it
+  std::string case_hash;  ///< of the case with the same answer; empty if there is none
   std::string mesh_hash;
   Mesh mesh;
-  Ties ties;                            ///< of nodes, to such as are not tied
+  Ties ties;                            ///< of nodes to nodes that are not tied
   std::vector<CoarserMesh> coarser;     ///< the meshes before each refinement, the last first
   std::vector<Quadrilateral> boundary;  ///< faces on the boundary of the body
   NodeSets sets;
   ElementSets element_sets;
   Materials materials;
   std::vector<Constraint> constraints;  ///< sorted by node, then component
-  std::vector<DrivenSet> driven;        ///< sets with an imposed displacement, then those that are rotated
-  std::vector<double> angles;           ///< rad, of paths; the first is zero, for those that do not turn
-  std::vector<LoadCurve> curves;        ///< of forces; the first is that of the case
+  std::vector<DrivenSet> driven;        ///< sets with an imposed displacement, then rotated sets
+  std::vector<double> angles;           ///< rad, of paths; the first is zero, for straight paths
+  std::vector<LoadCurve> curves;        ///< of forces; the first is the case's
   BodyForces forces;
-  NodalField initial_velocities;  ///< m/s; empty: at rest. Imposed components do not obey them
+  NodalField initial_velocities;  ///< m/s; empty: at rest. Imposed components ignore them
 };
 
 /// The scene on a part of its mesh, fixed at the rim. The mesh must not have ties.
 Scene on_part(const Scene& whole, const MeshPart& part);
 
-/// The scene whose full load is that of another one at a time (s) and load factor, with imposed displacements
-/// of its own: a value (m) for each constraint.
+/// The scene whose full load is the load of another at a time (s) and load factor, but with the given imposed
+/// displacements: a value (m) for each constraint.
 Scene with_load(Scene scene, const std::vector<double>& imposed, double time, double load_factor);
 
 /// The scene with imposed displacements, angles, forces and initial velocities multiplied by a factor.
@@ -78,19 +78,19 @@ void for_each_constraint(const std::vector<Constraint>& constraints, const std::
 const std::vector<int>& node_set(const Scene& scene, const std::string& key, const std::string& name);
 const std::vector<int>& element_set(const Scene& scene, const std::string& key, const std::string& name);
 
-/// Largest imposed displacement of a node, m: of one that turns, the largest on its way, where a displacement
-/// besides the rotation counts in full; zero when the case is driven by forces alone.
+/// Largest imposed displacement of a node, m. For a rotated node it is the largest along its path, and a
+/// displacement besides the rotation counts in full; zero if only forces drive the case.
 double largest_imposed(const Scene& scene);
 
-/// The final displacement (m) of a constraint, where the load factor is one.
+/// The final displacement (m) of a constraint, at load factor one.
 double final_value(const Scene& scene, const Constraint& constraint);
 
-/// Upper bound of the speeds |du/df| (m) of all imposed nodes on their ways; sharp where nothing moves and
-/// turns at once.
+/// Upper bound of the speeds |du/df| (m) of all imposed nodes along their paths; sharp if no node is both
+/// displaced and rotated.
 double fastest_imposed(const Scene& scene);
 
-/// The unit of all relative errors against a reference (m): the largest imposed displacement; where none is
-/// imposed, the reference's own largest.
+/// The unit of all relative errors against a reference (m): the largest imposed displacement or, if there is
+/// none, the largest displacement of the reference.
 double displacement_unit(const Scene& scene, const NodalField& reference);
 
 }  // namespace sandglass

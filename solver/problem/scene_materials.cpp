@@ -1,16 +1,15 @@
-#include "problem/scene_rules.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "problem/scene_rules.hpp"
 
 namespace sandglass {
 
 namespace {
 
-/// The material of each element. Throws InputError for an element that has none or two.
+/// The material of each element. Throws InputError for an element with none or two.
 Materials assigned_materials(const Case& description, const Scene& scene) {
   const auto& regions = description.materials;
   Materials materials;
@@ -39,8 +38,8 @@ Materials assigned_materials(const Case& description, const Scene& scene) {
   const auto left = std::count(of_element.begin(), of_element.end(), none);
   if (left > 0 && other == none) {
     throw InputError(
-        fmt::format("{}: materials: {} of the {} elements have none, the first is element {}; one "
-                    "of [[materials]] may leave out its elements and be that of all others",
+        fmt::format("{}: materials: {} of the {} elements have none, the first is element {}; one of "
+                    "[[materials]] may omit its elements and is then used for all others",
                     scene.settings.file.string(), left, of_element.size(),
                     std::find(of_element.begin(), of_element.end(), none) - of_element.begin()));
   }

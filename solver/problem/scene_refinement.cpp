@@ -12,7 +12,7 @@ namespace sandglass {
 
 namespace {
 
-/// Marks `layers` layers of elements at the edge of a set: its nodes in a boundary face that is not within
+/// Marks `layers` layers of elements at the edge of a set: its nodes on boundary faces that are not within
 /// it. Throws InputError if there are none.
 void mark_edge(const Scene& scene, const RefinedMesh& refined, const std::string& name, int layers,
                std::vector<bool>& marked) {
@@ -26,15 +26,15 @@ void mark_edge(const Scene& scene, const RefinedMesh& refined, const std::string
     }
   }
   if (std::find(margin.begin(), margin.end(), layers) == margin.end()) {
-    throw InputError(fmt::format(
-        "{}: refine.around = '{}' has no edge: its nodes must be on the boundary, and some at faces that "
-        "are not within it; elements = NAME refines an element set",
-        scene.settings.file.string(), name));
+    throw InputError(
+        fmt::format("{}: refine.around = '{}' has no edge: some of its nodes must be on boundary faces that "
+                    "are not within it; elements = NAME refines an element set",
+                    scene.settings.file.string(), name));
   }
   Distances(refined.mesh()).mark(std::move(margin), marked);
 }
 
-/// The elements that a rule wants split in the present mesh, after `splits` splits.
+/// The elements of the present mesh that a rule splits, after `splits` splits.
 void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined, int splits,
           std::vector<bool>& marked) {
   if (!rule.numbers.empty() && splits == rule.after) {
@@ -55,7 +55,7 @@ void mark(const Scene& scene, const Refinement& rule, const RefinedMesh& refined
   }
 }
 
-/// How often the mesh is split.
+/// The number of splits of the mesh.
 int most_splits(const std::vector<Refinement>& rules) {
   int most = 0;
   for (const Refinement& rule : rules)

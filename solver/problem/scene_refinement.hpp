@@ -5,10 +5,11 @@
 
 namespace sandglass {
 
-/// The case with some elements of its refined mesh split once more, by their numbers. Nodes keep theirs.
+/// The case with some elements of its refined mesh, given by number, split once more. Nodes keep their
+/// numbers.
 Case refined(Case description, std::vector<int> elements);
 
-/// A nodal field of the mesh before the last split, on the mesh after it: the same trilinear field.
+/// A nodal field of the mesh before the last split, interpolated trilinearly on the mesh after it.
 NodalField prolonged(const CoarserMesh& coarser, NodalField u);
 
 }  // namespace sandglass

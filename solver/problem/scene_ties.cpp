@@ -1,5 +1,3 @@
-#include "problem/scene_rules.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "mesh/interpolation.hpp"
+#include "problem/scene_rules.hpp"
 
 namespace sandglass {
 
@@ -22,7 +21,7 @@ constexpr double tolerance = 1e-6;
                                scene.settings.file.string(), rule.set, node, X[0], X[1], X[2], what));
 }
 
-/// The corners that a point of an element follows. Points on a face follow that face's alone.
+/// The corners that a point of an element follows. Points on a face follow only the corners of that face.
 std::vector<Tie::Share> shares_of(const Hexahedron& cell, Vector parent) {
   for (double& xi : parent)
     if (std::abs(xi) > 1.0 - tolerance) xi = std::copysign(1.0, xi);
@@ -54,12 +53,13 @@ void add_ties(const Scene& scene, const NodeTie& rule, std::map<int, Tie>& ties)
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const auto& [element, parent] = places[n];
     if (parent_distance(parent) > 1.0 + tolerance)
-      refuse(scene, rule, nodes[n], fmt::format("is in no element of '{}'; it must be", rule.elements));
+      refuse(scene, rule, nodes[n],
+             fmt::format("is outside all elements of '{}'; it must be in one", rule.elements));
     if (is_driven(nodes[n]))
-      refuse(scene, rule, nodes[n], "is driven as well; a tied node follows the elements alone");
+      refuse(scene, rule, nodes[n], "is also driven; a tied node follows only the elements");
     Tie tie{nodes[n], shares_of(mesh.cells[element], parent)};
     if (!ties.emplace(nodes[n], std::move(tie)).second)
-      refuse(scene, rule, nodes[n], "is tied by two tables; one must do");
+      refuse(scene, rule, nodes[n], "is tied by two tables; allowed: one");
   }
 }
 

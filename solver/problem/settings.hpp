@@ -11,7 +11,7 @@
 
 namespace sandglass {
 
-/// How a quasi-static answer is found: levels of what is imposed, each brought to rest.
+/// How a quasi-static answer is found: load levels, each solved for its static equilibrium.
 struct RelaxationSettings {
   double tolerance = 1e-8;
   int levels = 0;
@@ -27,7 +27,7 @@ struct RelaxationSettings {
         Parameter{&S::levels, "levels", "-", Range::at_least(0),
                   "equal load levels; 0 chooses as few as the answer needs", false},
         Parameter{&S::cycles, "cycles", "-", Range::at_least(0),
-                  "how often the load goes back to a tenth and up again before the answer", false},
+                  "how many times the load returns to a tenth and rises again before the answer", false},
         Parameter{&S::max_steps, "max_steps", "-", Range::at_least(1),
                   "give up after this many evaluations of the forces", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
@@ -56,25 +56,23 @@ struct DynamicsSettings {
             "time in which imposed displacements and forces reach their value; 0 means the whole duration",
             false},
         Parameter{&S::time_step, "time_step", "s", Range::at_least(0.0),
-                  "fixed step; refused above the stable one; 0 chooses step_fraction of the stable one",
-                  false},
+                  "fixed step, at most the stable one; 0 chooses step_fraction of the stable one", false},
         Parameter{&S::step_fraction, "step_fraction", "-", Range{.low = 0.0, .high = 1.0, .high_open = false},
                   "chosen step over the stable one", false},
-        Parameter{
-            &S::subcycles, "subcycles", "-",
-            Range{.low = 1.0, .high = 64.0, .low_open = false, .high_open = false},
-            "small elements may take so many small steps in a step of the others; 1 means that all take "
-            "the same",
-            false},
+        Parameter{&S::subcycles, "subcycles", "-",
+                  Range{.low = 1.0, .high = 64.0, .low_open = false, .high_open = false},
+                  "largest number of small steps that small elements take in a step of the others; 1: all "
+                  "take the same",
+                  false},
         Parameter{&S::body_frequency, "body_frequency", "-",
                   Range{.low = 0.0, .high = 1.0, .low_open = false, .high_open = false},
-                  "1 takes the stable step from the largest frequency of the whole body, 0 from bounds of "
+                  "1 takes the stable step from the largest frequency of the whole body; 0 from bounds of "
                   "its elements, which is shorter and safer",
                   false},
         Parameter{&S::damping, "damping", "1/s", Range::at_least(0.0), "mass-proportional damping", false},
         Parameter{&S::check_interval, "check_interval", "-", Range::at_least(1),
                   "steps between checks for inversion, divergence and stiffening", false},
-        Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written, beside the initial one",
+        Parameter{&S::frames, "frames", "-", Range::at_least(1), "frames written after the initial one",
                   false}};
   }
 
@@ -85,18 +83,18 @@ struct DynamicsSettings {
   }
 };
 
-/// What a case says that does not depend on its mesh: its name, and how it is answered.
+/// The part of a case that does not depend on its mesh: its name and how it is solved.
 struct CaseSettings {
   std::filesystem::path file;
-  std::vector<std::filesystem::path> files;  ///< all that it was read from, with those of mesh and fibres
-  std::string name;                          ///< with the names of its variant, "-" between them
+  std::vector<std::filesystem::path> files;  ///< all files it was read from, with mesh and fibres
+  std::string name;                          ///< with the names of its variants, joined by "-"
   std::string family;                        ///< the name that all variants of a file share
   std::vector<std::string> variants;         ///< its variant on each axis of the file; empty without variants
   std::string requirement;
   bool quasi_static = true;  ///< else dynamic
   RelaxationSettings relaxation;
   DynamicsSettings dynamics;
-  std::optional<MethodChoice> method;  ///< what `sandglass run` takes unless told otherwise
+  std::optional<MethodChoice> method;  ///< the default of `sandglass run`
 };
 
 }  // namespace sandglass
