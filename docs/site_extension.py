@@ -17,6 +17,7 @@ from pathlib import Path
 
 from docutils import nodes
 from docutils.parsers.rst import Directive
+from docutils.statemachine import StringList
 from sphinx import addnodes
 from sphinx.transforms import SphinxTransform
 from sphinx.util import logging
@@ -142,32 +143,24 @@ def folded(line, width=102):
     return textwrap.fill(line, width, subsequent_indent=" " * column, break_on_hyphens=False)
 
 
-def table(titles, rows):
-    """A table of texts."""
-    group = nodes.tgroup(cols=len(titles))
-    group += [nodes.colspec(colwidth=1) for _ in titles]
-    for part, lines in ((nodes.thead(), [titles]), (nodes.tbody(), rows)):
-        for line in lines:
-            entries = [nodes.entry("", nodes.paragraph("", *inlines(text))) for text in line]
-            part += nodes.row("", *entries)
-        group += part
-    return nodes.table("", group)
-
-
-def inlines(text):
-    """The nodes of a text, in which code is between single backquotes."""
-    parts = str(text).split("`")
-    return [
-        (nodes.literal if k % 2 else nodes.Text)(*([""] * (k % 2)), part)
-        for k, part in enumerate(parts)
-    ]
-
-
-class Failures(Directive):
-    """How often each method fails on the stored maps, and how."""
+class Table(Directive):
+    """A table of Markdown texts that is not typed: titles and rows, lists of texts."""
 
     def run(self):
-        """A table with a row for each method and a column for each case."""
+        """The table."""
+        titles, rows = self.content_of()
+        lines = [titles, ["---"] * len(titles), *rows]
+        text = [" | ".join(line) for line in lines]
+        made = nodes.Element()
+        self.state.nested_parse(StringList(text, ""), self.content_offset, made)
+        return made.children
+
+
+class Failures(Table):
+    """How often each method fails on the stored maps, and how."""
+
+    def content_of(self):
+        """A row for each method and a column for each case."""
         maps = [
             json.loads(file.read_text()) for file in sorted((ROOT / "reports/maps").glob("*.json"))
         ]
@@ -179,7 +172,7 @@ class Failures(Directive):
         names = [case["case"] for case in maps]
         titles = ["method", *(f"`{name}`" for name in names)]
         lines = [[f"`{method}`", *(row.get(n, "-") for n in names)] for method, row in rows.items()]
-        return [table(titles, lines)]
+        return titles, lines
 
 
 def tell(cells):
@@ -190,12 +183,12 @@ def tell(cells):
     return f"{kinds['good']} of {len(asked)}" + (f" ({', '.join(bad)})" if bad else "")
 
 
-class Machines(Directive):
+class Machines(Table):
     """Where what was measured: the machine that each stored file names."""
 
-    def run(self):
-        """A table with a row for each kind of stored file."""
-        return [table(["files", "machine", "program"], machines())]
+    def content_of(self):
+        """A row for each kind of stored file."""
+        return ["files", "machine", "program"], machines()
 
 
 def machines():

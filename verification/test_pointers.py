@@ -71,24 +71,6 @@ def test_functions_are_in_the_files_that_texts_name(document):
         assert any(defines(file.read_text(), name) for file in files), f"`{name}` in `{path}`"
 
 
-@pytest.mark.parametrize(
-    "text, is_there",
-    [
-        ("double f(int x) {", True),
-        ("  virtual Adaptation<Real> f(", True),
-        ("Real Adaption<Real>::f(Body<Real>& body) {", True),
-        ("template <class T>\nusing f = T;", True),
-        ("  const auto x = f(mesh);", False),
-        ("  return f(mesh);", False),
-        ("      masses_(f(mesh)),", False),
-        ("  // see f", False),
-        ("  body.f(x);", False),
-    ],
-)
-def test_what_defines_a_function(text, is_there):
-    assert defines(text, "B::f") == is_there
-
-
 @pytest.fixture(scope="module")
 def words_of_sources():
     """Every word of the sources."""
@@ -133,22 +115,3 @@ def test_commands_that_texts_name_are_there(document, help_of):
                 assert re.search(rf"(?<![\w-]){word}(?![\w-])", help_of[words[1]]), code
             elif not before.startswith("-") and re.fullmatch(r"[a-z]+(-[a-z]+)*", word):
                 assert word in cases, code
-
-
-@pytest.mark.parametrize(
-    "text, pointers",
-    [
-        (
-            "see `f` in\n`../mesh/a.hpp`, and `B::c()` in `b.cpp`",
-            [("f", "../mesh/a.hpp"), ("B::c", "b.cpp")],
-        ),
-        ("`run` in `ci/`, `--flag` in `a.py`", [("run", "ci/")]),
-    ],
-)
-def test_what_is_a_function_in_a_file(text, pointers):
-    assert [found[:2] for found in PLACED.findall(text)] == pointers
-
-
-def test_anchors_of_headings():
-    text = "# A `b_c`, and d?\n```\n# no heading\n```\n## E - f\n"
-    assert anchors(text) == {"a-b_c-and-d", "e---f"}

@@ -143,17 +143,6 @@ def followed(tmp_path_factory):
     return follow
 
 
-def test_commands_between_blocks_of_any_kind_are_found():
-    """The end of a block with a directive does not begin another, which would hide the rest."""
-    block = "```{literalinclude} file\n:language: toml\n```\n"
-    output = "```\n    output\n```\n"
-    found = parts(f"{block}\ntext\n\n    first\n\n{block}\n    second\n\n{output}")
-    assert [(part.kind, part.text) for part in found] == [
-        ("command", "first"),
-        ("command", "second"),
-    ]
-
-
 @pytest.mark.parametrize("document", FOLLOWED)
 def test_a_document_is_followed(document, followed):
     followed(document)
@@ -209,23 +198,6 @@ def test_long_commands_are_taken(command):
     assert TEST.match(command) or not_taken(command, BINARY) == ""
 
 
-@pytest.mark.parametrize(
-    "command, why",
-    [
-        ("bash ci/setup brench", "does not know"),
-        ("bash ci/gates", "is not there"),
-        ("bash ci/gate --acept", "does not know"),
-        ("bench/local_touch.py", "cannot be executed"),
-        ("/usr/bin/python3 bench/growth.py --mostly 400", "does not know"),
-        ("reference/regenerate --truth-only", "does not know"),
-        ("build/release/sandglass bench --resting", "--resting"),
-        ("/usr/bin/python3 -m pytest reference/test", "is not there"),
-    ],
-)
-def test_what_a_tool_does_not_know_is_told(command, why):
-    assert why in not_taken(command, BINARY)
-
-
 def test_what_counts_of_a_document(tmp_path):
     text = """New file `there`:
 
@@ -247,14 +219,20 @@ A step:
 +c
 ```
 
-```text
+```{literalinclude} file
+:language: text
+```
+
+    second
+
+```
     not a command
 ```
 
 `sandglass
 run`
 """
-    assert commands(text) == ["ci/build release && true"]
+    assert commands(text) == ["ci/build release && true", "second"]
     assert inline(text) == ["there", "there", "sandglass run"]
     assert take_steps(text, tmp_path) == ["there"]
     assert (tmp_path / "there").read_text() == "    [mesh]\nc\n"

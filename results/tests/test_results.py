@@ -53,8 +53,9 @@ def answer(tmp_path_factory):
 
 
 def submitted(answer, folder, **changed):
-    """The exit code, and the path of the entry of a stranger."""
-    words = [word for pair in {**STRANGER, **changed}.items() for word in pair if word is not None]
+    """The exit code, and the path of the entry of a stranger; an option of None is left out."""
+    told = (STRANGER | changed).items()
+    words = [word for pair in told for word in pair if None not in pair]
     code = submit.main([str(answer), *words, "--folder", str(folder)])
     return code, next(iter(entry_files(folder)), None)
 
@@ -143,19 +144,15 @@ def test_wrong_entries_are_refused(answer, tmp_path, capsys, spoil, told):
     ],
 )
 def test_wrong_submissions(answer, tmp_path, capsys, changed, told):
-    words = {k: v for k, v in {**STRANGER, **changed}.items() if v is not None}
-    pairs = [word for pair in words.items() for word in pair]
-    assert submit.main([str(answer), *pairs, "--folder", str(tmp_path)]) == 2
+    assert submitted(answer, tmp_path, **changed) == (2, None)
     assert told in capsys.readouterr().err
-    assert not list(tmp_path.glob("*.json"))
 
 
 def test_nodes_that_are_not_those_of_the_case(answer, tmp_path, capsys):
     other = tmp_path / "other.csv"
     lines = answer.read_text().splitlines()
     other.write_text("\n".join(lines[:-1]) + "\n")
-    code, path = submitted(other, tmp_path)
-    assert code == 2 and path is None
+    assert submitted(other, tmp_path) == (2, None)
     assert "nodes of the case have no node" in capsys.readouterr().err
 
 

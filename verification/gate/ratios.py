@@ -5,11 +5,12 @@ BEFORE and AFTER are two builds of `sandglass`. README.md beside this file expla
 Exit codes: 0 no method is slower, 1 one is, 2 bad usage or input, 3 a program failed.
 """
 
-import math
 import statistics
 import sys
 import tempfile
 from pathlib import Path
+
+from scipy.stats import binom
 
 if __name__ == "__main__":
     sys.path.insert(1, str(Path(__file__).resolve().parents[2]))
@@ -28,24 +29,14 @@ BENCH = ("--elements", 600, "--threads", 1, "--repetitions", 20)
 
 
 def interval(samples):
-    """(low, median, high): contains the median of what was sampled, whatever its distribution.
+    """(low, median, high) of FEWEST samples or more: contains the median of their distribution.
 
     A sample is below the median as often as above: how many of n are is binomial, and so is the
     chance that the median lies outside the range of samples without the k least and k greatest.
     """
-    samples, count = sorted(samples), len(samples)
-    outside, left_out = 0.0, -1
-    while True:
-        outside += 2.0 * math.comb(count, left_out + 1) / 2**count
-        if outside > 1.0 - CONFIDENCE:
-            break
-        left_out += 1
-    median = statistics.median(samples)
-    return (
-        (samples[left_out], median, samples[-1 - left_out])
-        if left_out >= 0
-        else (0.0, median, math.inf)
-    )
+    left_out = int(binom.ppf((1.0 - CONFIDENCE) / 2.0, len(samples), 0.5)) - 1
+    samples = sorted(samples)
+    return samples[left_out], statistics.median(samples), samples[-1 - left_out]
 
 
 def times(program, folder):

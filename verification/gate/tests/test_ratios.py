@@ -1,7 +1,5 @@
 """Ratios of two programs, played by scripts whose times are known."""
 
-import math
-
 import pytest
 from gate import ratios
 
@@ -59,4 +57,3 @@ def test_interval_leaves_out_as_many_as_confidence_allows():
     samples = [3.0, 1.0, 2.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 100.0]
     assert ratios.interval(samples) == (2.0, 6.5, 11.0)
     assert ratios.interval(samples[:8]) == (1.0, 4.5, 8.0)
-    assert ratios.interval(samples[:7]) == (0.0, 4.0, math.inf)
