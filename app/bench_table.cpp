@@ -138,10 +138,10 @@ std::string spread_warning(const std::vector<BenchRecord>& records) {
 std::string rest_table(const Scene& scene, const std::vector<RestRecord>& records) {
   std::size_t longest = 0;
   for (const auto& record : records) longest = std::max(longest, record.choice.method.size());
-  std::string table = fmt::format(
-      "{}: {} elements, {} nodes\n{:<{}}  {:<6}  {:>3}{:>11}{:>13}{:>19}{:>8}{:>10}\n",
-      scene.settings.name, scene.mesh.cells.size(), scene.mesh.points.size(), "method", longest, "number",
-      "thr", "to 1 %, s", "to 0.1 %, s", "to equilibrium, s", "evals", "residual");
+  std::string table =
+      fmt::format("{}: {} elements, {} nodes\n{:<{}}  {:<6}  {:>3}{:>11}{:>13}{:>19}{:>8}{:>10}\n",
+                  scene.settings.name, scene.mesh.cells.size(), scene.mesh.points.size(), "method", longest,
+                  "number", "thr", "to 1 %, s", "to 0.1 %, s", "to equilibrium, s", "evals", "residual");
   for (const auto& record : records) {
     const MethodChoice& choice = record.choice;
     table += fmt::format("{:<{}}  {:<6}  {:>3}", choice.method, longest, name_of(choice.precision),

@@ -70,8 +70,7 @@ class SteppedModelOf final : public SteppedModel {
       sandglass::require_healthy(leapfrog_.body(), 0);
     } catch (const ComputationError& error) {
       throw ComputationError(fmt::format("bench of {} with {}: the initial waves were too large: {}",
-                                         model_.scene().settings.name, model_.choice().method,
-                                         error.what()));
+                                         model_.scene().settings.name, model_.choice().method, error.what()));
     }
   }
 
