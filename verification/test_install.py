@@ -3,6 +3,7 @@
 Takes the build folder in which the program under test stands.
 """
 
+import json
 import os
 import pathlib
 import platform
@@ -57,6 +58,41 @@ def test_the_example_steps_as_the_program(found, prefix, tmp_path):
         ]
     assert np.abs(np.array(nodes, dtype=float) - expected).max() < 1000 * 1000 * 1.8e-18
     assert np.abs(expected).max() >= 0.02
+
+
+AROUND = """
+cmake_minimum_required(VERSION 3.25)
+project(around LANGUAGES CXX)
+{way}
+add_library(own OBJECT own.cpp)
+target_link_libraries(own PRIVATE sandglass::sandglass)
+"""
+OWN = """
+#include <sandglass/batch.hpp>
+#if __has_include("math/pack.hpp") || __has_include("base/names.hpp")
+#error more than the public headers
+#endif
+double time(const sandglass::Simulation<double>& body) { return body.time(); }
+"""
+
+
+@pytest.mark.parametrize(
+    "way", ["find_package(sandglass REQUIRED)", f"add_subdirectory({ROOT} inner)"]
+)
+def test_other_projects_see_the_public_headers_and_get_the_library_alone(way, tmp_path):
+    (tmp_path / "CMakeLists.txt").write_text(AROUND.format(way=way))
+    (tmp_path / "own.cpp").write_text(OWN)
+    build = tmp_path / "build"
+    options = ["-DCMAKE_EXPORT_COMPILE_COMMANDS=ON", f"-Dsandglass_DIR={BUILD}"]
+    run("cmake", "-G", "Ninja", "-S", tmp_path, "-B", build, *options)
+    run("cmake", "--build", build, "--target", "own")
+    commands = {
+        c["file"]: c["command"] for c in json.loads((build / "compile_commands.json").read_text())
+    }
+    assert "-march" not in commands.pop(str(tmp_path / "own.cpp"))
+    sources = [pathlib.Path(file) for file in commands if not file.startswith(str(build))]
+    assert {file.relative_to(ROOT).parts[0] for file in sources} <= {"solver"}
+    assert "Python_EXECUTABLE" not in (build / "CMakeCache.txt").read_text()
 
 
 def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):

@@ -64,10 +64,9 @@ def why_empty(subject, reference):
 
 
 def solver_methods(header=METHODS_HEADER):
-    """Names of the solver's methods in the order of its list, as in the verdicts: TlNone is tl-none."""
-    listed = re.search(
-        r"using Methods =\s*TypeList<([^>]*)>", Path(header).read_text(encoding="utf-8")
-    )
+    """Names of the solver's methods in the order of its list, as in verdicts: tl-none, ...."""
+    text = Path(header).read_text(encoding="utf-8")
+    listed = re.search(r"using Methods =\s*TypeList<([^>]*)>", text)
     types = re.findall(r"\w+", listed[1])
     return tuple(re.sub(r"(?<=.)(?=[A-Z])", "-", name).lower() for name in types)
 
