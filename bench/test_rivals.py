@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from common.errors import ComputationError, InputError
+from common.hexahedron import CUBE
 from exchange import decks, frd_file
 from exchange.decks.problem import Material, Problem
 from exchange.foreign_mesh import HexMesh
@@ -18,10 +19,7 @@ from rivals.febio import FEBio
 from rivals.niftysim import NiftySim
 from rivals.openradioss import OpenRadioss
 
-CORNERS = np.array(
-    [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
-    dtype=float,
-)
+CORNERS = CUBE.astype(float)
 
 FRD = """\
     2C

@@ -6,6 +6,7 @@ CORNERS = np.array(
     [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)]
     + [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
 )
+CUBE = (CORNERS + 1) // 2  # of edges of one, on the planes of coordinates
 # Counterclockwise seen from outside.
 FACES = np.array(
     [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]

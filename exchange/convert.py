@@ -84,13 +84,10 @@ def write_mesh(source, output, name):
     output.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def write_deck(options):
+def write_deck(source, output, program, element, hourglass):
     """Writes the files of a deck. Raises InputError."""
-    problem = hdf5_file.read_problem(options.source)
-    texts = decks.files(
-        options.program, problem, options.output, options.element, options.hourglass
-    )
-    for path, text in texts.items():
+    problem = hdf5_file.read_problem(source)
+    for path, text in decks.files(program, problem, output, element, hourglass).items():
         write_whole(path, text)
 
 
@@ -152,38 +149,30 @@ def _warn(path, text):
 def main(arguments=None):
     """The command line. Returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    commands = parser.add_subparsers(dest="command", required=True)
-    command = commands.add_parser("mesh")
-    command.add_argument("source", type=Path)
-    command.add_argument("output", type=Path)
-    command.add_argument("--spacing", type=float, nargs=3)
-    command = commands.add_parser("write")
-    command.add_argument("source", type=Path)
-    command.add_argument("output", type=Path)
-    command.add_argument("--format", choices=("vtu", "xdmf", "inp"), required=True)
-    command = commands.add_parser("deck")
-    command.add_argument("source", type=Path)
-    command.add_argument("output", type=Path)
-    command.add_argument("program")
-    command.add_argument("--element", default="")
-    command.add_argument("--hourglass", type=float)
-    command = commands.add_parser("displacement")
-    command.add_argument("source", type=Path)
-    command.add_argument("mesh", type=Path)
-    command.add_argument("output", type=Path)
-    command.add_argument("--tolerance", type=float, required=True)
-    command.add_argument("--field")
-    options = parser.parse_args(arguments)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name, work, *paths):
+        """A command whose arguments are those of `work`, paths first."""
+        added = commands.add_parser(name)
+        added.set_defaults(work=work)
+        for path in paths:
+            added.add_argument(path, type=Path)
+        return added.add_argument
+
+    command("mesh", read_mesh, "source", "output")("--spacing", type=float, nargs=3)
+    add = command("write", write_mesh, "source", "output")
+    add("--format", choices=("vtu", "xdmf", "inp"), required=True, dest="name")
+    add = command("deck", write_deck, "source", "output")
+    add("program")
+    add("--element", default="")
+    add("--hourglass", type=float)
+    add = command("displacement", match_displacement, "source", "mesh_path", "output")
+    add("--tolerance", type=float, required=True)
+    add("--field")
+    options = vars(parser.parse_args(arguments))
+    work = options.pop("work")
     try:
-        if options.command == "mesh":
-            read_mesh(options.source, options.output, options.spacing)
-        elif options.command == "write":
-            write_mesh(options.source, options.output, options.format)
-        elif options.command == "deck":
-            write_deck(options)
-        else:
-            names = ("source", "mesh", "output", "tolerance", "field")
-            match_displacement(*(getattr(options, name) for name in names))
+        work(**options)
     except InputError as error:
         print(" ".join(str(error).splitlines()))
         return 2

@@ -3,7 +3,7 @@
 import numpy as np
 
 from common.errors import InputError
-from common.hexahedron import CORNERS
+from common.hexahedron import CUBE
 from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
 
 MOST_LABELS = 1000
@@ -62,9 +62,8 @@ def _voxels(path, labels, map_, origin):
         raise InputError(
             f"{path}: has {len(names)} labels; allowed are {MOST_LABELS}: is it a grey image?"
         )
-    corners = (CORNERS + 1) // 2
-    if np.linalg.det(map_) < 0:
-        corners = corners[[4, 5, 6, 7, 0, 1, 2, 3]]  # the map mirrors: bottom and top change places
+    mirrors = np.linalg.det(map_) < 0  # then bottom and top change places
+    corners = np.roll(CUBE, 4, axis=0) if mirrors else CUBE
     shape = np.array(labels.shape) + 1
     number = np.ravel_multi_index((places[:, None] + corners).reshape(-1, 3).T, shape)
     nodes, cells = np.unique(number, return_inverse=True)

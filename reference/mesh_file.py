@@ -16,6 +16,9 @@ from common.hexahedron import boundary_faces
 from hexahedra import Condition, HexMesh, Surface, traction, turn_about
 
 
+TIES = ("node", "of", "weight")  # datasets of nodes that hang
+
+
 @dataclass(frozen=True)
 class MeshFile:
     """A mesh file's contents: points (n, 3) m, cells (m, 8) VTK, sets, origin.
@@ -58,55 +61,30 @@ def case_with_mesh(path, name=None):
 
 
 def read_mesh(path):
-    """Read and check a mesh file.
+    """Reads a mesh file. path: str or Path of what `sandglass mesh` wrote, which has checked it.
 
-    path: str or Path of an HDF5 file with /mesh/points, /mesh/cells, /mesh/sets/NAME and the root
-    attributes case, case_hash and mesh_hash. Returns a MeshFile.
-    Raises InputError naming the file, the dataset or attribute, and the rule.
+    Returns a MeshFile. Raises InputError naming the file, and the dataset or attribute it lacks.
     """
     try:
         with h5py.File(path, "r") as file:
-            points = _dataset(path, file, "/mesh/points", np.float64, 3)
-            cells = _dataset(path, file, "/mesh/cells", np.int64, 8)
-            sets = {
-                name: _dataset(path, file, f"/mesh/sets/{name}", np.int64, None)
-                for name in file.get("/mesh/sets", {})
+            mesh = file["mesh"]
+            origin = {
+                name: str(text_of(file.attrs[name])) for name in ("case", "case_hash", "mesh_hash")
             }
-            materials = None
-            if "/mesh/materials" in file:
-                materials = _dataset(path, file, "/mesh/materials", np.int64, None)
-            axes = file["/mesh/axes"][...] if "/mesh/axes" in file else None
-            ties = None
-            if "/mesh/ties" in file:
-                pairs = [
-                    _dataset(path, file, f"/mesh/ties/{n}", np.int64, None) for n in ("node", "of")
-                ]
-                ties = (*pairs, _dataset(path, file, "/mesh/ties/weight", np.float64, None))
-            attributes = {}
-            for name in ("case", "case_hash", "mesh_hash"):
-                if name not in file.attrs:
-                    raise InputError(f"{path}: root attribute {name!r} is missing")
-                attributes[name] = str(text_of(file.attrs[name]))
+            ties = [mesh[f"ties/{name}"][...] for name in TIES] if "ties" in mesh else None
+            return MeshFile(
+                mesh["points"][...],
+                mesh["cells"][...],
+                {name: nodes[...] for name, nodes in mesh.get("sets", {}).items()},
+                materials=mesh["materials"][...] if "materials" in mesh else None,
+                axes=mesh["axes"][...] if "axes" in mesh else None,
+                ties=ties and tuple(ties),
+                **origin,
+            )
     except OSError as error:
         raise InputError(f"{path}: cannot be read as HDF5: {error}") from error
-    if not np.isfinite(points).all():
-        raise InputError(f"{path}: /mesh/points: coordinates must be finite")
-    for name, nodes in [("cells", cells)] + [(f"sets/{n}", s) for n, s in sets.items()]:
-        if nodes.size and not (0 <= nodes.min() and nodes.max() < len(points)):
-            raise InputError(
-                f"{path}: /mesh/{name}: node numbers {nodes.min()}..{nodes.max()} must be in "
-                f"0..{len(points) - 1}"
-            )
-    if axes is not None and axes.shape != (len(cells), 3, 3):
-        raise InputError(
-            f"{path}: /mesh/axes has shape {axes.shape}; it must be ({len(cells)}, 3, 3)"
-        )
-    if materials is not None and len(materials) != len(cells):
-        raise InputError(
-            f"{path}: /mesh/materials has {len(materials)} numbers; it must have one for each of "
-            f"the {len(cells)} elements"
-        )
-    return MeshFile(points, cells, sets, materials=materials, axes=axes, ties=ties, **attributes)
+    except KeyError as error:
+        raise InputError(f"{path}: is not of `sandglass mesh`: {error.args[0]}") from error
 
 
 def load_case_mesh(case, mesh_path):
@@ -236,18 +214,3 @@ def _mask(file, members):
     nodes = np.zeros(len(file.points), dtype=bool)
     nodes[members] = True
     return nodes
-
-
-def _dataset(path, file, name, dtype, width):
-    """A dataset checked for its shape, (n, width) or (n,) if width is None, and its type."""
-    if name not in file:
-        raise InputError(f"{path}: dataset {name} is missing")
-    data = file[name]
-    shape = "(n,)" if width is None else f"(n, {width})"
-    good_shape = data.ndim == 1 if width is None else data.ndim == 2 and data.shape[1] == width
-    if not good_shape or data.dtype.kind != np.dtype(dtype).kind:
-        raise InputError(
-            f"{path}: {name} has shape {data.shape} and type {data.dtype}; it must be {shape}, "
-            f"{np.dtype(dtype)}"
-        )
-    return data[...].astype(dtype)

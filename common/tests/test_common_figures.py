@@ -5,10 +5,9 @@ import numpy as np
 import pytest
 
 from common.accuracy import relative_distances, relative_errors
-from common.hexahedron import CORNERS, FACES, LEXICOGRAPHIC, boundary_faces, gauss_jacobians
+from common.hexahedron import CORNERS, CUBE, FACES, LEXICOGRAPHIC, boundary_faces, gauss_jacobians
 from common.result_file import last_displacement, text_of
 
-CUBE = (CORNERS + 1) / 2  # a unit cube
 STACK = np.vstack([CUBE, CUBE[4:] + [0, 0, 1]]), np.array([range(8), range(4, 12)])  # two of them
 
 
@@ -54,7 +53,7 @@ def test_volumes_of_cubes_and_of_sheared_ones():
 
 def test_volume_of_a_frustum():
     """The upper face is half as long: V = h/3 (1 + 1/2 + 1/4). A cube would pass with one point."""
-    points = CUBE.copy()
+    points = CUBE.astype(float)
     points[4:, :2] = 0.25 + 0.5 * points[4:, :2]
     assert gauss_jacobians(points, np.arange(8)[None]).sum() == pytest.approx(1.75 / 3, rel=1e-14)
 

@@ -14,16 +14,14 @@ import numpy as np
 import pytest
 
 from common.errors import InputError
+from common.hexahedron import CUBE
 from exchange import abaqus_file, decks
 from exchange.decks import calculix, febio, openradioss
 from exchange.decks.problem import CURVE_POINTS, Material, Motion, Problem, agreed
 from exchange.foreign_mesh import HexMesh
 
 TEXTS = Path(__file__).parent / "data/decks"
-CORNERS = np.array(
-    [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
-    dtype=float,
-)
+CORNERS = CUBE.astype(float)
 BRICK = HexMesh(CORNERS, np.arange(8)[None, :], {"left side": np.array([0, 3, 4, 7])})
 ALL = np.arange(1)
 # mu = 1500 Pa, K = 1000 Pa, to the last digit.

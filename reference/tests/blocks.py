@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from case_file import Material
+from common.hexahedron import CUBE
 from hexahedra import Condition, HexMesh, refine
 from problem import MixedProblem
 from taylor_hood import TaylorHoodProblem
@@ -29,11 +30,8 @@ def distorted_block(n=3, distortion=0.15, seed=1):
     points = lattice / n
     points[~boundary] += distortion / n * random.uniform(-1, 1, (np.sum(~boundary), 3))
     shuffled = random.permutation(len(points))  # new number of each lattice node
-    vtk = np.array(
-        [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
-    )
     first = lattice[(lattice < n).all(axis=1)]
-    corners = first[:, None, :] + vtk[None, :, :]
+    corners = first[:, None, :] + CUBE
     cells = shuffled[(corners @ [(n + 1) ** 2, n + 1, 1])]
     order = np.argsort(shuffled)
     return points[order], random.permutation(cells), boundary[order]

@@ -8,7 +8,6 @@ Exit codes: 0 all killed or proven equivalent, 1 some survived, 2 bad usage, 3 i
 mutant without a verdict.
 """
 
-import argparse
 import datetime
 import hashlib
 import signal
@@ -23,7 +22,7 @@ if __name__ == "__main__":
     sys.path[1:1] = [str(ROOT_OF_ALL), str(ROOT_OF_ALL / "ci")]
 
 import outcomes
-from common.command import exit_code
+from common.command import command_line, option
 from common.errors import InputError
 from common.program import ROOT
 from patches import read_patch, read_patches
@@ -134,28 +133,27 @@ def run(options, stop):
     return 1 if "survived" in verdicts else 0
 
 
-def main(arguments=None):
-    """The command line. Returns the exit code."""
-    parser = argparse.ArgumentParser(
-        prog="verification/mutants/run.py",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add = parser.add_argument
-    add("names", nargs="*", metavar="NAME", help="mutants, or how their names begin: 017")
-    add("--random", type=int, default=0, metavar="N", help="plant N mistakes at random instead")
-    add("--seed", type=int, default=1, help="of --random (default 1)")
-    add("--since", default="HEAD~1", metavar="REV", help="of --random: what changed (HEAD~1)")
-    add("--files", nargs="+", default=["*"], metavar="GLOB", help="of --random: 'solver/*.cpp'")
-    add("--tests", nargs="+", default=[], metavar="NAME", help="of --random: these, not all")
-    add("--jobs", type=int, default=1, help="compilers side by side (default 1)")
-    add("--timeout", type=float, default=1800, help="s of tests for each mutant (1800)")
-    add("--table", action="store_true", help="write RESULTS.md, and run nothing")
-    options = parser.parse_args(arguments)
+def run_until_interrupted(options):
+    """Runs the mutants until all are done or a signal comes; returns the exit code."""
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    return exit_code(run, options, stop)
+    return run(options, stop)
+
+
+main = command_line(
+    run_until_interrupted,
+    __doc__,
+    option("names", nargs="*", metavar="NAME", help="mutants, or how their names begin: 017"),
+    option("--random", type=int, default=0, metavar="N", help="plant N mistakes at random instead"),
+    option("--seed", type=int, default=1, help="of --random (default 1)"),
+    option("--since", default="HEAD~1", metavar="REV", help="of --random: what changed (HEAD~1)"),
+    option("--files", nargs="+", default=["*"], metavar="GLOB", help="of --random: 'solver/*.cpp'"),
+    option("--tests", nargs="+", default=[], metavar="NAME", help="of --random: these, not all"),
+    option("--jobs", type=int, default=1, help="compilers side by side (default 1)"),
+    option("--timeout", type=float, default=1800, help="s of tests for each mutant (1800)"),
+    option("--table", action="store_true", help="write RESULTS.md, and run nothing"),
+)
 
 
 if __name__ == "__main__":
