@@ -88,7 +88,7 @@ ImposedDisplacement read_displacement(TableReader table) {
   return imposed;
 }
 
-/// An axis as written: a letter, or a vector of any length but zero. Returns it with length one.
+/// The unit vector of an axis given as a letter or as a vector of any length but zero.
 Vector read_axis(TableReader& table) {
   Vector axis{};
   if (table.holds_text("axis")) {
@@ -113,7 +113,7 @@ ImposedRotation read_rotation(TableReader table) {
   return turned;
 }
 
-/// The hourglass parameter of a method as written: a number, or none for "auto".
+/// The hourglass parameter of a method: a number, or none for "auto".
 std::optional<double> read_strength(TableReader& table, const std::string& method) {
   if (!table.holds_number("kappa")) {
     if (table.optional<std::string>("kappa")) table.required_choice("kappa", {"auto"});
@@ -153,7 +153,7 @@ void read_header(TableReader table, Case& description) {
   table.finish();
 }
 
-/// The files that a case was read from.
+/// The files from which a case was read.
 std::vector<std::filesystem::path> files_of(const Case& description) {
   std::vector<std::filesystem::path> files{description.file};
   if (const auto* mesh = std::get_if<MeshFile>(&description.mesh)) files.push_back(mesh->path);
@@ -177,7 +177,7 @@ MeshWithSets read_mesh_of(const Case& description, const MeshFile& file) {
   }
 }
 
-/// `read_mesh(reader, case)` says where its mesh is from.
+/// `read_mesh(reader, case)` sets its mesh.
 template <class ReadMesh>
 Case read_case(const CaseTables& tables, const std::filesystem::path& path, const ReadMesh& read_mesh) {
   Case description;

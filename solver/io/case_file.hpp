@@ -9,7 +9,7 @@
 
 namespace sandglass {
 
-/// The tables of a case file that say how answers are compared; they are read by programs that compare.
+/// The tables of a case file about the comparison of answers, which only comparing programs read.
 inline constexpr std::array tables_not_read{"comparison", "expect", "profile", "published"};
 
 /// Reads a case file, strictly: unknown keys, missing keys, wrong types and values out of range are
@@ -18,22 +18,22 @@ inline constexpr std::array tables_not_read{"comparison", "expect", "profile", "
 /// All cases of the file: one, or every combination of its variants, named after file and variants.
 std::vector<Case> read_cases(const std::filesystem::path& path);
 
-/// The same of a file that must not have variants.
+/// The same for a file without variants.
 Case read_case_file(const std::filesystem::path& path);
 
 /// A case with its mesh, generated or read.
 CaseOnMesh with_mesh(Case description);
 
-/// A case that is a text, the text of a file without [mesh] and variants, with a mesh of its own.
+/// A case from text, as of a file without [mesh] and variants, and a mesh.
 CaseOnMesh with_mesh(const std::string& text, MeshWithSets mesh);
 
-/// The scenes of these, and of a case file without variants.
+/// The scenes of such cases, and of a case file without variants.
 Scene read_scene(Case description);
 Scene read_scene(const std::string& text, MeshWithSets mesh);
 Scene read_scene(const std::filesystem::path& path);
 
-/// What a case says of its method, or tl-perturbation where it says nothing. Of another method, where one is
-/// named, it says no more than the precision.
+/// The method of a case, tl-perturbation by default. If another method is named, only the precision is taken
+/// from the case.
 MethodChoice method_of(const CaseSettings& settings, const std::optional<std::string>& named = {});
 
 }  // namespace sandglass

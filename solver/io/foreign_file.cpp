@@ -28,7 +28,7 @@ std::string setting(const char* variable, const std::string& otherwise) {
   return value != nullptr ? value : otherwise;
 }
 
-/// What a program writes to a pipe, until it closes its end; trailing white space is cut.
+/// The output of a program through a pipe, until it closes its end, without trailing white space.
 std::string read_all(int pipe) {
   std::string text;
   std::array<char, 4096> buffer{};
@@ -42,8 +42,8 @@ std::string read_all(int pipe) {
   return text;
 }
 
-/// Runs a program to its end with its standard output in `said`; how it ended, as `waitpid` tells. Throws
-/// InputError when there is no such program.
+/// Runs a program to its end and puts its standard output into `said`; returns its status as from `waitpid`.
+/// Throws InputError if there is no such program.
 int run_program(std::vector<std::string> words, std::string& said) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw ComputationError("cannot open a pipe to convert.py");

@@ -9,22 +9,22 @@
 
 namespace sandglass {
 
-// Files of other programs are converted by exchange/convert.py, a process of its own: the libraries that know
-// these formats are Python's. Its warnings go to standard error.
+// Files of other programs are converted by exchange/convert.py in a separate process, because the libraries
+// for these formats are in Python. Its warnings go to standard error.
 
-/// Whether the ending of a mesh's file is that of another program: .msh (Gmsh), .inp (Abaqus, CalculiX),
-/// .vtu (VTK), or of a labelled image: .npy (NumPy), .nii, .nii.gz (NIfTI).
+/// Whether a mesh file, by its ending, is from another program, .msh (Gmsh), .inp (Abaqus, CalculiX) or .vtu
+/// (VTK), or a labelled image, .npy (NumPy), .nii or .nii.gz (NIfTI).
 bool is_foreign_mesh(const std::filesystem::path& path);
 
-/// The mesh of such a file, its hexahedra numbered as VTK does it, with its sets. Throws InputError when it
-/// is no mesh of hexahedra and where a package is missing.
+/// The mesh and sets of such a file, with hexahedra in VTK order. Throws InputError if it is not a mesh of
+/// hexahedra or a package is missing.
 MeshWithSets read_foreign_mesh(const MeshFile& file);
 
 /// Runs exchange/convert.py with arguments; `path` is the user's file, for messages. Throws InputError with
-/// what it says of wrong input, ComputationError when it fails.
+/// its message about wrong input, or ComputationError if it fails.
 void run_converter(std::vector<std::string> arguments, const std::filesystem::path& path);
 
-/// A path of the user as an argument that is no option.
+/// A user's path as an argument that cannot be taken for an option.
 std::string as_argument(const std::filesystem::path& path);
 
 }  // namespace sandglass

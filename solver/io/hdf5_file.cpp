@@ -45,10 +45,10 @@ hid_t native(std::int64_t /*tag*/) {
   return H5T_NATIVE_INT64;
 }
 
-/// The largest ratio by which the library's compression shrinks (zlib: 1032 to 1).
+/// The largest compression ratio of the library (zlib: 1032 to 1).
 constexpr std::size_t most_compression = 1032;
 
-/// The number of entries of a shape; the largest number where it is too large to be told.
+/// The number of entries of a shape, or the largest number if it overflows.
 std::size_t entries_of(const std::vector<std::size_t>& shape) {
   constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
   if (std::find(shape.begin(), shape.end(), 0U) != shape.end()) return 0;
@@ -60,8 +60,8 @@ std::size_t entries_of(const std::vector<std::size_t>& shape) {
   return entries;
 }
 
-/// The most bytes that a dataset can hold for each byte of its file: one, or more when compressed; none when
-/// its values stand in another file that it names.
+/// The most bytes that a dataset can hold for each byte of its file: one, more if compressed, or none if its
+/// values are in another file.
 std::size_t most_bytes_per_byte(const Identifier& set) {
   const Identifier creation(H5Dget_create_plist(set.get()), H5Pclose);
   const H5D_layout_t layout = H5Pget_layout(creation.get());
@@ -71,20 +71,20 @@ std::size_t most_bytes_per_byte(const Identifier& set) {
   return own ? 1 : 0;
 }
 
-/// Whether a type is a number of at most eight bytes. In damaged files it may have none.
+/// Whether a type is a number of at most eight bytes. In damaged files it may have no size.
 bool is_number(const Identifier& type) {
   const H5T_class_t kind = H5Tget_class(type.get());
   const std::size_t bytes = H5Tget_size(type.get());
   return (kind == H5T_INTEGER || kind == H5T_FLOAT) && bytes > 0 && bytes <= 8;
 }
 
-/// Whether an attribute holds one value, not a list and not nothing.
+/// Whether an attribute holds exactly one value.
 bool is_single(const Identifier& attribute) {
   const Identifier space(H5Aget_space(attribute.get()), H5Sclose);
   return H5Sget_simple_extent_npoints(space.get()) == 1;
 }
 
-/// What the system said about the last failure of the library; "is the disk full?" where that is not told.
+/// The system's message about the last failure of the library; "is the disk full?" if there is none.
 std::string reason_of_failure() {
   std::string reason = "is the disk full?";
   const auto look = [](unsigned /*n*/, const H5E_error2_t* error, void* found) -> herr_t {
@@ -100,9 +100,9 @@ std::string reason_of_failure() {
   return reason;
 }
 
-/// How this program uses the library, before anything else is asked of it. It closes its files itself: at the
-/// exit the library would try once more to complete one that a full disk kept from being completed, and
-/// crash. Errors are reported in our own words. No filter is loaded because a file asks for it.
+/// Sets up the library before its first use. This program closes its files itself: at exit, the library would
+/// try again to complete a file that did not fit on a full disk, and crash. The library prints no errors, and
+/// no file can make it load a filter.
 void prepare_library() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -260,8 +260,7 @@ FileArray<T> Hdf5File::read(const std::string& name) const {
   const Identifier set(H5Dopen2(handle_->file, name.c_str(), H5P_DEFAULT), H5Dclose);
   handle_->require(
       set.valid(),
-      fmt::format("dataset '{}' is missing; this is not a file that this program or its reference wrote",
-                  name));
+      fmt::format("dataset '{}' is missing; this file is not from this program or its reference", name));
   const Identifier type(H5Dget_type(set.get()), H5Tclose);
   handle_->require(is_number(type), fmt::format("dataset '{}' must hold numbers", name));
   const Identifier space(H5Dget_space(set.get()), H5Sclose);
@@ -289,7 +288,7 @@ template FileArray<std::int64_t> Hdf5File::read(const std::string&) const;
 
 void Hdf5File::write_attribute(const std::string& object, const std::string& name, const std::string& value) {
   const Identifier type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), H5T_VARIABLE);  // h5py reads this kind as a text, the fixed kind as bytes
+  H5Tset_size(type.get(), H5T_VARIABLE);  // h5py reads this kind as text, the fixed kind as bytes
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   const char* text = value.c_str();
   handle_->write_attribute(object, name, type.get(), &text);
@@ -310,7 +309,7 @@ std::string Hdf5File::read_text_attribute(const std::string& object, const std::
   const Identifier type(H5Aget_type(attribute.get()), H5Tclose);
   handle_->require(H5Tget_class(type.get()) == H5T_STRING && is_single(attribute),
                    fmt::format("attribute '{}' must be a text", name));
-  if (H5Tis_variable_str(type.get()) > 0) {  // what h5py writes
+  if (H5Tis_variable_str(type.get()) > 0) {  // as written by h5py
     char* text = nullptr;
     handle_->require(H5Aread(attribute.get(), type.get(), &text) >= 0 && text != nullptr,
                      fmt::format("attribute '{}' cannot be read", name));

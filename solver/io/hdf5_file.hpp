@@ -11,7 +11,7 @@
 
 namespace sandglass {
 
-/// An array of a file: shape and entries by rows.
+/// An array in a file: its shape, and its entries by rows.
 template <class T>
 struct FileArray {
   std::vector<std::size_t> shape;
@@ -20,25 +20,24 @@ struct FileArray {
 
 /// How a file is stored.
 struct Storage {
-  bool compressed = true;  ///< large datasets; smaller, and many times slower
-  bool sealed = false;     ///< with a checksum of the whole file before its content
+  bool compressed = true;  ///< for large datasets: smaller, but many times slower
+  bool sealed = false;     ///< with a checksum of the whole file at its start
   std::shared_ptr<const Ranks> ranks = std::make_shared<const Ranks>();  ///< that write it together, all the
                                                                          ///< same, each a part of a dataset
 };
 
-/// An HDF5 file that closes itself. Errors of reading, and of places that cannot be written, are InputError
-/// with the file, the name inside it and the rule; a disk that does not take the bytes is a ComputationError.
-/// A file being written goes to a temporary file next to its place and is renamed by `commit`; without it
-/// nothing is left.
+/// An HDF5 file that closes itself. If a file cannot be read or created, it throws InputError with the file,
+/// the name inside it and the rule; if the disk fails, ComputationError. A new file is written to a temporary
+/// file beside it, which `commit` renames; without `commit` nothing is left.
 class Hdf5File {
  public:
-  /// Starts a new file. Throws InputError when the place cannot be written.
+  /// Starts a new file. Throws InputError if it cannot be created.
   static Hdf5File create(const std::filesystem::path& path, Storage storage = {});
 
-  /// Opens a file for reading. Throws InputError when it is missing, truncated or not HDF5.
+  /// Opens a file for reading. Throws InputError if it is missing, truncated or not HDF5.
   static Hdf5File open(const std::filesystem::path& path);
 
-  /// The same for a file that was sealed; throws InputError, too, when a bit has changed since.
+  /// The same for a sealed file; also throws InputError if any bit has changed.
   static Hdf5File open_sealed(const std::filesystem::path& path);
 
   Hdf5File(const Hdf5File&) = delete;
@@ -49,15 +48,15 @@ class Hdf5File {
 
   const std::filesystem::path& path() const;
 
-  /// Finishes a file made by `create`: close, wait for the disk, rename into place.
+  /// Finishes a file from `create`: closes it, waits for the disk and renames it.
   void commit();
 
   bool contains(const std::string& name) const;
 
-  /// Names of the objects in a group, in alphabetical order; empty when there is no such group.
+  /// Names of the objects in a group, in alphabetical order; empty if there is no such group.
   std::vector<std::string> names_in(const std::string& group) const;
 
-  /// Writes a dataset by rows, groups on the way made as needed; compressed when it is large. T: double or
+  /// Writes a dataset by rows, creates missing groups, and compresses large datasets. T: double or
   /// std::int64_t.
   template <class T>
   void write(const std::string& name, const std::vector<std::size_t>& shape, std::span<const T> entries);
