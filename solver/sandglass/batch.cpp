@@ -33,7 +33,7 @@ void require_supported(const Scene& scene) {
             "a batch takes the step of its stiffest element; set subcycles = 1 and body_frequency = 0");
 }
 
-/// Throws InputError, which names those that have some, if the method has no such kernels.
+/// Throws InputError, which lists the methods that have such kernels, if this one has none.
 template <class Number>
 std::unique_ptr<BatchForce<Number>> make_batch_force(const Model& model) {
   const auto kernel = [](const MethodEntry& method) {
@@ -166,7 +166,7 @@ class Batch<Real>::Parts {
     Number stiffness;  // over that of the case
   };
 
-  /// A step that all bodies take.
+  /// A step of all bodies.
   struct Step {
     double share;  // of the way from `from` to `to`
     LeapfrogClock::Coefficients coefficients;

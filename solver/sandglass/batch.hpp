@@ -5,20 +5,21 @@
 namespace sandglass {
 
 /// Many bodies of one case that move side by side, in `double` or `float`: for identification, training data
-/// and studies of uncertainty. They share mesh, materials, method, damping and step; each has a stiffness and
-/// driven nodes and forces of its own. A register holds one body in each lane, 8 in double and 16 in float
-/// with AVX-512, so that nothing is gathered (`sandglass bench --bodies`); empty lanes cost as much as full.
+/// and studies of uncertainty. They share mesh, materials, method, damping and step; each has its own
+/// stiffness, driven nodes and forces. A register holds one body in each lane, 8 in double and 16 in float
+/// with AVX-512, so that nothing is gathered (`sandglass bench --bodies`); empty lanes cost as much as full
+/// ones.
 ///
-/// Methods that declare `batches`; isotropic elastic laws; imposed displacements, dead forces
-/// and initial velocities. Steps follow from the stiffest element of all bodies, see Simulation.
+/// Supported are methods that declare `batches`, isotropic elastic laws, imposed displacements, dead forces
+/// and initial velocities. Steps follow from the stiffest element of all bodies; see Simulation.
 template <class Real>
 class Batch {
  public:
-  /// `bodies` times the case of a file, at rest or with its initial velocities. Throws InputError for a case
-  /// that a batch does not support.
+  /// `bodies` copies of the case of a file, at rest or with its initial velocities. Throws InputError for a
+  /// case that a batch does not support.
   Batch(const std::filesystem::path& case_file, std::size_t bodies, const SimulationSettings& settings = {});
 
-  /// The same with a mesh of yours, see Simulation.
+  /// The same with your own mesh; see Simulation.
   Batch(MeshArrays mesh, const std::string& case_text, std::size_t bodies,
         const SimulationSettings& settings = {});
 
@@ -28,17 +29,17 @@ class Batch {
 
   // Bodies count from 0; a number that is too large is an InputError.
 
-  /// Makes all moduli of a body `factor` times those of the case. The step adapts at once.
+  /// Multiplies all moduli of the case by `factor` for one body. The step adapts immediately.
   void scale_stiffness(std::size_t body, double factor);
 
-  /// Where the driven nodes of a set of a body shall be when the next `advance` ends; see Simulation::move.
+  /// Sets the targets of a body's driven nodes in a set for the next `advance`; see Simulation::move.
   void move(std::size_t body, const std::string& set, const std::array<double, 3>& displacement);
 
-  /// The same for all driven nodes of a body, and its forces; see Simulation::impose.
+  /// The same for all driven nodes and the forces of a body; see Simulation::impose.
   void impose(std::size_t body, double factor);
 
-  /// Goes on for `seconds` with all bodies, see Simulation::advance. Threads compute bodies of their own.
-  /// Throws ComputationError, which names the body, for inverted elements, not-a-number and collapsing steps.
+  /// Advances all bodies by `seconds`; see Simulation::advance. Each thread computes its own bodies. Throws
+  /// ComputationError, which names the body, for inverted elements, NaN and collapsing steps.
   void advance(double seconds);
 
   double time() const;       ///< s

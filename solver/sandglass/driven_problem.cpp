@@ -84,8 +84,9 @@ MeshWithSets checked(MeshArrays arrays) {
   }
   const auto alone = std::find(met.begin(), met.end(), false);
   if (met.empty() || alone != met.end()) {
-    throw InputError(fmt::format("mesh: node {} of {} belongs to no cell; each must, and there must be some",
-                                 std::distance(met.begin(), alone), met.size()));
+    throw InputError(fmt::format(
+        "mesh: node {} of {} belongs to no cell; each node must belong to one, and there must be nodes",
+        std::distance(met.begin(), alone), met.size()));
   }
   return {{std::move(arrays.points), std::move(arrays.cells)}, std::move(arrays.sets)};
 }

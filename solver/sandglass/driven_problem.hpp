@@ -8,34 +8,34 @@
 #include "io/mesh_file.hpp"
 #include "sandglass/simulation.hpp"
 
-/// What simulations and batches share.
+/// Common parts of simulations and batches.
 namespace sandglass {
 
 template <class Real>
 inline constexpr Precision precision_of =
     std::is_same_v<Real, double> ? Precision::double_precision : Precision::single_precision;
 
-/// Throws InputError, which names what `name` is, if the value is out of range.
+/// Throws InputError, with this name, if the value is out of range.
 void require_in_range(const char* name, double value, const Range& range);
 
-/// Arrays of a program as a mesh with sets, each sorted. Throws InputError when a cell or set names a node
-/// that the mesh has not, when a node belongs to no cell or stands nowhere, and when there are none.
+/// A program's arrays as a mesh with sorted sets. Throws InputError if a cell or set names an unknown node,
+/// if a node belongs to no cell or has no finite position, and if there are no nodes.
 MeshWithSets checked(MeshArrays arrays);
 
-/// The number of equal steps of at most `step` (s) in a time (s); of n times `step` it is n.
+/// The number of equal steps of at most `step` (s) in a time (s); n for a time of n times `step`.
 double steps_in(double seconds, double step);
 
 /// A driven component of a set.
 struct Driven {
-  std::size_t constraint;  ///< into those of the scene
-  std::size_t node;        ///< into those of the set
+  std::size_t constraint;  ///< index into the constraints of the scene
+  std::size_t node;        ///< index into the nodes of the set
   std::size_t component;
 };
 
-/// A case with a method, and the sets that a program drives. It does not change.
+/// A case with a method and the sets that a program drives; immutable.
 class DrivenProblem {
  public:
-  /// Throws InputError for settings out of range and a method without steps.
+  /// Throws InputError for settings out of range and for a method without steps.
   DrivenProblem(Scene scene, const SimulationSettings& settings, Precision precision);
 
   const Scene& scene() const { return scene_; }
@@ -43,14 +43,14 @@ class DrivenProblem {
   double damping() const { return damping_; }  ///< 1/s
   double step_fraction() const { return step_fraction_; }
 
-  /// The driven components of a set. Throws InputError for a set without any, naming those with.
+  /// The driven components of a set. Throws InputError for a set without any, and lists the driven sets.
   const std::vector<Driven>& driven(const std::string& set) const;
 
   /// Throws InputError for an unknown set.
   const std::vector<int>& nodes(const std::string& set) const;
 
-  /// Calls set(constraint, u) for the driven components of a set, u (m) that of `displacement(n)` for the
-  /// n-th node of the set; before, throws InputError for numbers that are not finite.
+  /// Calls set(constraint, u) for the driven components of a set, with u (m) from `displacement(n)` for the
+  /// n-th node of the set. First throws InputError if any number is not finite.
   template <class Displacement, class Set>
   void move(const std::string& name, const Displacement& displacement, const Set& set) const {
     const std::vector<Driven>& components = driven(name);
@@ -62,7 +62,7 @@ class DrivenProblem {
     }
   }
 
-  /// Calls set(constraint, u) with where the case has driven components (m) at a factor of its loads.
+  /// Calls set(constraint, u) with the case's displacements (m) of driven components at a load factor.
   template <class Set>
   void impose(double factor, const Set& set) const {
     require_in_range("factor", factor, Range::any());

@@ -59,7 +59,7 @@ class Simulation<Real>::Parts {
       const double step = left / steps;
       left = steps > 1.0 ? left - step : 0.0;
       if (take(step, 1.0 - left / whole)) continue;
-      from_ = imposed_;  // back at the last check, from where the way is a straight one
+      from_ = imposed_;  // back at the last check, from which the path is straight
       factor_from_ = factor_;
       left = whole = end - time();
     }
@@ -78,7 +78,8 @@ class Simulation<Real>::Parts {
     }
     Body<Real>& body = leapfrog_.body();
     State<Real> reached = state_at(elements(), answer.u);
-    std::copy(reached.u.begin(), reached.u.end(), body.state().u.begin());  // views stay where they are
+    std::copy(reached.u.begin(), reached.u.end(),
+              body.state().u.begin());  // in place, so that views stay valid
     reached.u.swap(body.state().u);
     body.state() = std::move(reached);
     elements().set_levels(body.state(), observer.levels);
@@ -111,8 +112,8 @@ class Simulation<Real>::Parts {
     factor_from_ = factor_to_;
   }
 
-  /// A step that ends where a share of the way from `from_` to `to_` is gone. False if it was the last of
-  /// steps that proved too long: the state is that of the last check, and steps are shorter from there.
+  /// A step to a share of the path from `from_` to `to_`. False if steps proved too long: the state is back
+  /// at the last check, and steps are shorter from there.
   bool take(double step, double share) {
     const double rest = 1.0 - share;
     for (std::size_t k = 0; k < to_.size(); ++k) imposed_[k] = share * to_[k] + rest * from_[k];
@@ -121,7 +122,7 @@ class Simulation<Real>::Parts {
     return leapfrog_.step() % scene().settings.dynamics.check_interval != 0 || check();
   }
 
-  /// False as for `take`.
+  /// False as in `take`.
   bool check() {
     const bool healthy = is_healthy(leapfrog_.body());
     if (!healthy && longest_step_.may_shorten()) {
@@ -146,8 +147,7 @@ class Simulation<Real>::Parts {
     return true;
   }
 
-  /// Returns to the last state that was whole and could be continued, and throws what is wrong with the
-  /// present one.
+  /// Returns to the last sound state and throws the error of the present one.
   [[noreturn]] void fail(const ComputationError& error) {
     const double failed = time();
     keep(StateCopy(std::as_const(whole_)));
@@ -155,11 +155,10 @@ class Simulation<Real>::Parts {
     to_ = imposed_;
     factor_to_ = factor_;
     arrive();
-    throw ComputationError(
-        fmt::format("at {:.6g} s, {}\nthe simulation is back at {:.6g} s, where all elements "
-                    "were whole, with driven nodes and forces as they were then",
-                    failed, error.what(), time()),
-        error.breakdown());
+    throw ComputationError(fmt::format("at {:.6g} s, {}\nthe simulation is back at {:.6g} s, when all "
+                                       "elements were sound, with the driven nodes and forces of that time",
+                                       failed, error.what(), time()),
+                           error.breakdown());
   }
 
   /// The data that the next step depends on; see checkpoint.hpp.
@@ -186,7 +185,7 @@ class Simulation<Real>::Parts {
   Adaption<Real> adaption_;
   AdaptionSchedule adaption_schedule_ = adaption_.schedule();
   std::vector<double> from_, to_,
-      imposed_;  // m, in the order of the scene's constraints; the last at present
+      imposed_;  // m, in the order of the scene's constraints; the last is the present one
   double factor_from_ = 0.0, factor_to_ = 0.0, factor_ = 0.0;
   std::vector<std::byte> whole_;  // the state at the last check
 };
