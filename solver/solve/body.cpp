@@ -11,7 +11,7 @@ namespace sandglass {
 
 namespace {
 
-/// Throws InputError for what is not yet divided among ranks.
+/// Throws InputError if a case has features that are not yet divided among ranks.
 void require_divisible(const Model& model) {
   if (model.choice().ranks->count() == 1) return;
   const auto& dynamics = model.scene().settings.dynamics;

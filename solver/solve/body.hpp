@@ -24,26 +24,26 @@ class Body {
   const State<Real>& state() const { return state_; }
   State<Real>& state() { return state_; }
 
-  /// Internal forces minus loads (N) of the last evaluation, tied nodes' handed on to those they follow; zero
-  /// on constrained components and tied nodes.
+  /// Internal forces minus loads (N) of the last evaluation, with the forces on tied nodes transferred to the
+  /// nodes that they follow; zero on constrained components and tied nodes.
   const Rows<Real>& free_forces() const { return force_; }
 
   /// Internal forces minus loads (N) on constrained components, in the order of the scene's constraints: the
-  /// reactions of a body in equilibrium; of several ranks each knows those of its own nodes.
+  /// reactions of a body in equilibrium. Each rank knows only the reactions of its own nodes.
   const std::vector<double>& reactions() const { return reactions_; }
 
   /// The constraints of the scene, on rows.
   const RowConstraints<Real>& constraints() const { return constraints_; }
 
   /// The sum of the reactions (N) of each set that the case drives: the force that holds or moves it, without
-  /// what accelerates the masses of its own nodes.
+  /// the inertia of its own nodes.
   Reactions reactions_of_sets() const { return constraints_.sums_over_sets(reactions_); }
 
   /// Evaluates the forces of the state. Afterwards the increments of constrained components are cleared, so
   /// that the update of increments can ignore constraints.
   void evaluate_forces();
 
-  /// Sets `force` to the free forces of another state, and leaves those of the last evaluation.
+  /// Sets `force` to the free forces of another state; the forces of the last evaluation do not change.
   void evaluate_forces(State<Real>& state, Rows<Real>& force) const;
 
   /// The norm of reactions and loads together, N.
@@ -56,17 +56,17 @@ class Body {
   void move_to(const Rows<Real>& target);
 
   /// Sets constrained components to their paths at a load factor, and their increments to the change; from
-  /// now on loads are those of this factor and `time` (s).
+  /// now on loads follow this factor and `time` (s).
   void impose(double factor, double time);
 
-  /// The same in a quasi-static answer, whose time is the load factor.
+  /// The same in a quasi-static answer, where time is the load factor.
   void impose(double factor) { impose(factor, factor); }
 
   /// Sets constrained components, in the order of the scene's constraints, to `displacements` (m) and their
-  /// increments to the change; from now on loads are those of this factor and `time` (s).
+  /// increments to the change; from now on loads follow this factor and `time` (s).
   void impose(std::span<const double> displacements, double factor, double time);
 
-  /// Lets tied nodes and their increments follow.
+  /// Updates tied nodes and their increments.
   void follow() {
     ties_.follow(state_.u);
     ties_.follow(state_.increment);
@@ -75,7 +75,7 @@ class Body {
   /// The ties of the scene, on rows.
   const RowTies<Real>& ties() const { return ties_; }
 
-  /// The present factor of the load.
+  /// The present load factor.
   double load_factor() const { return load_factor_; }
 
   /// The change of the loads (N) from now to another factor, by row; zero on constrained components.
@@ -87,7 +87,7 @@ class Body {
   /// Adds the work of the loads since the last call.
   void add_work_of_loads() { loads_.add_work(state_.u); }
 
-  /// The work (J) of the loads, of all calls.
+  /// The work (J) of the loads in all calls.
   double work_of_loads() const { return loads_.work(); }
 
   /// Nodal values as rows, zero on constrained components, at tied nodes and in spare rows: with inverse
@@ -100,25 +100,24 @@ class Body {
   /// The order of its rows.
   const Layout& layout() const { return elements_.layout(); }
 
-  /// Rows, of which each rank knows its own, in the numbering of the mesh.
+  /// Rows in the numbering of the mesh, from ranks that each know their own.
   NodalField field(const Rows<Real>& rows) const { return to_field(of_all(rows), layout()); }
 
   /// Strain and hourglass energy, J.
   StrainEnergies energies() const { return elements_.energies(state_); }
 
-  /// Lets small elements take small steps alone from the next evaluation on, if the case asks for it; see
-  /// Subcycling.
+  /// Starts subcycling with the next evaluation, if the case requests it; see Subcycling.
   void subcycle(const Model& model, const Rows<Real>& inverse_masses) {
     if (model.scene().settings.dynamics.subcycles > 1) subcycling_.emplace(model, elements_, inverse_masses);
   }
 
-  /// What lets small elements take small steps; null unless the case asks for it.
+  /// The subcycling of small elements; null unless the case requests it.
   Subcycling<Real>* subcycling() { return subcycling_ ? &*subcycling_ : nullptr; }
 
-  /// The number of small steps that small elements take in a step at present.
+  /// The present number of small steps of small elements in a step.
   int substeps() const { return subcycling_ ? subcycling_->substeps() : 1; }
 
-  /// Sets the step (s) that follows evaluations from now on.
+  /// Sets the step (s) after evaluations from now on.
   void set_step(double step) {
     if (subcycling_) subcycling_->set_step(step);
   }
@@ -148,13 +147,13 @@ class Body {
   }
 
  private:
-  /// Rows, of which each rank knows its own, of all ranks.
+  /// The rows of all ranks, from ranks that each know their own.
   Rows<Real> of_all(Rows<Real> rows) const {
     layout().gather_rows(rows.data());
     return rows;
   }
 
-  /// Makes everything that is kept known to all ranks.
+  /// Shares the whole kept state among all ranks.
   void gather();
 
   const InternalForce<Real>& elements_;

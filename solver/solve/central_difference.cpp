@@ -26,13 +26,13 @@ constexpr double loading_curve(double relative_time) {
   return t * t * t * (10.0 + t * (-15.0 + t * 6.0));
 }
 
-/// Its first derivative by relative time.
+/// Its first derivative with respect to relative time.
 constexpr double loading_curve_rate(double relative_time) {
   const double t = std::clamp(relative_time, 0.0, 1.0);
   return 30.0 * t * t * (1.0 - t) * (1.0 - t);
 }
 
-/// Its second derivative by relative time.
+/// Its second derivative with respect to relative time.
 constexpr double loading_curve_acceleration(double relative_time) {
   const double t = std::clamp(relative_time, 0.0, 1.0);
   return 60.0 * t * (1.0 - t) * (1.0 - 2.0 * t);
@@ -53,7 +53,7 @@ NodalField cubic(double s, double h, const NodalField& u, const NodalField& v, c
   return between;
 }
 
-/// Detects energy that no work explains: steps that are too long feed the fastest vibrations.
+/// Detects energy that no work explains, because too long steps feed the fastest vibrations.
 class EnergyWatch {
  public:
   /// Takes a motion's energy and the work done on it (J), and the step (s). Returns whether the difference
@@ -102,7 +102,7 @@ class CentralDifference {
   long step() const { return leapfrog_.step(); }
   double step_size() const { return leapfrog_.step_size(); }
 
-  /// Of imposed displacements and forces since the start, J.
+  /// Work of imposed displacements and forces since the start, J.
   double external_work() const {
     const std::vector<double> all = body_.constraints().of_all(works_);
     return std::accumulate(all.begin(), all.end(), body_.work_of_loads());

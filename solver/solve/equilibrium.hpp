@@ -30,7 +30,7 @@ class Equilibrium {
   /// Pressures of the elements, Pa.
   std::vector<Real>& pressures() { return mixed_.pressures(); }
 
-  /// Sets the pressures to those that belong to the displacements.
+  /// Sets the pressures to the values at the present displacements.
   void take_own_pressures();
 
   /// See MixedBody::average_pressures.

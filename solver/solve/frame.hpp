@@ -4,7 +4,7 @@
 
 namespace sandglass {
 
-/// A frame of a body's present state at `time` (s) with velocities v (m/s).
+/// A frame of a body's present state, at `time` (s) and with velocities v (m/s).
 template <class Real>
 Frame frame_of(const Body<Real>& body, double time, NodalField v);
 

@@ -11,7 +11,7 @@ namespace sandglass {
 
 namespace {
 
-/// The smallest det F of each element; 1 where another rank owns it.
+/// The smallest det F of each element; 1 if another rank owns it.
 template <class Real>
 std::vector<double> smallest_jacobians(const Body<Real>& body) {
   std::vector<double> jacobians(body.scene().mesh.cells.size(), 1.0);

@@ -14,30 +14,29 @@ namespace sandglass {
 
 namespace {
 
-/// Displacement gradients that change by less leave the multigrid method as good as it was.
+/// Smaller changes of displacement gradients do not impair the multigrid method.
 constexpr double hardly_changed = 0.1;
 
-/// The grids do not see a stiffness of hourglass modes: a model with all of a strong control converges more
-/// slowly than one with the E/9 that lets cubes bend as they should. Where volume changes are resisted at
-/// several points of an element, some more of it helps, in shares of E/9.
+/// The grids do not see the stiffness of hourglass modes: a model with the full stiffness of a strong control
+/// converges more slowly than one with E/9, with which cubes bend correctly. If volume changes are resisted
+/// at several points of an element, somewhat more helps, in shares of E/9.
 constexpr double strongest_resistance = 16.0;
 
-/// The pressures carry lambda (J - 1), and at least this share of mu for lambda: where Poisson's ratio is
-/// zero or less, they would carry nothing, and 1 / lambda has no value. How much they carry is free.
+/// The pressures carry lambda (J - 1), with lambda at least this share of mu: if Poisson's ratio is zero or
+/// less, they would carry nothing, and 1 / lambda has no value. Any share is admissible.
 constexpr double least_lambda_over_mu = 0.1;
 
-/// A displacement is rounded by half an epsilon, which the stiffness of all elements at a node, at most three
-/// times the diagonal, turns into forces; the arithmetic of an element rounds a few times as much.
+/// A displacement is rounded by half an epsilon. The stiffness of all elements at a node, at most three times
+/// the diagonal, turns this into forces; the arithmetic of an element rounds a few times as much.
 template <class Real>
 constexpr double rounding = 8.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
 
-/// Reactions that are more than this share of what a node of the undeformed body would bear are never
-/// rounding.
+/// Reactions above this share of the force that a node of the undeformed body would bear are never rounding.
 constexpr double most_rounding = 1e-4;
 
-/// The multigrid method prepares steps as if lambda were no larger, in shear moduli: the step is then wrong
-/// by a hundredth of a percent, and the coarsest grid, which eliminates pressures, does not lose mu beside
-/// lambda.
+/// The multigrid method prepares steps as if lambda were no larger, in shear moduli: this changes the step by
+/// a hundredth of a percent, and the coarsest grid, which eliminates pressures, does not lose mu in the
+/// rounding of lambda.
 constexpr double most_lambda_over_mu = 1e4;
 
 /// Of the undeformed laws and of the method's control.
@@ -59,7 +58,7 @@ std::vector<ModelModuli> moduli_of(const Model& model) {
                      [&](const Material& material) { return std::visit(moduli, material.law); });
 }
 
-/// What forces add to the diagonal of the stiffness, N/m; empty where none adds any.
+/// The share of forces in the diagonal of the stiffness, N/m; empty if there is none.
 Rows<float> stiffness_of_forces(const Scene& scene, const Layout& layout) {
   Rows<float> stiffness(layout.rows());
   for (const auto& force : scene.forces) force->add_stiffness({stiffness.data(), layout.row_of_node});

@@ -8,12 +8,11 @@
 
 namespace sandglass {
 
-/// A body whose pressures are unknowns of their own, one for each element, beside the displacements. With
-/// internal forces f_int, loads f, and J - 1 the mean volume change of an element of volume V, its residuals
-/// are
+/// A body with pressures as separate unknowns, one for each element. With internal forces f_int, loads f, and
+/// J - 1 the mean volume change of an element of volume V, its residuals are
 ///   R_u = f_int(u) - f + B^T (p - lambda (J - 1)),   R_p = V (J - 1 - p / lambda),
 /// B the derivative of V J. In equilibrium p is lambda (J - 1) and R_u the force of the method, whatever its
-/// law of the volume; but no step has to follow the narrow valley of nearly incompressible motions.
+/// volumetric law; but no step has to follow the narrow valley of nearly incompressible motions.
 template <class Real>
 class MixedBody {
  public:
@@ -31,8 +30,8 @@ class MixedBody {
   /// Whether the method's forces are linear in the displacements.
   bool is_linear() const { return linear_; }
 
-  /// Whether the method resists volume changes otherwise than by one pressure for each element, which is all
-  /// that the pressures here can carry.
+  /// Whether the method resists volume changes other than by one pressure for each element; the pressures
+  /// here can carry no more.
   bool pressure_varies() const { return pressure_varies_; }
 
   /// Whether the stiffening of a law is known.
@@ -40,15 +39,15 @@ class MixedBody {
     return std::ranges::any_of(laws_, [](const auto& law) { return law.has_value(); });
   }
 
-  /// Adapts the multigrid method to the present configuration, unless that has hardly changed since the last
+  /// Adapts the multigrid method to the present configuration, unless it has hardly changed since the last
   /// time; no element may be inverted.
   void linearize() { linearize(INFINITY); }
 
-  /// The same where volume changes are resisted as with multipliers of this penalty.
+  /// The same with the resistance to volume changes of multipliers with this penalty.
   void linearize(double penalty);
 
-  /// Sets the weights of the residuals, by which both have the unit of a root of energy, from the last
-  /// configuration linearized.
+  /// Sets the weights of the residuals from the last linearized configuration; weighted, both have the unit
+  /// of a root of energy.
   void weigh();
 
   /// Evaluates forces and residuals.
@@ -57,9 +56,9 @@ class MixedBody {
   /// Evaluates residuals from the forces of the last evaluation.
   void compare();
 
-  /// change = the tangent stiffness times displacements (m): N, the difference of forces over `length` times
-  /// these, with one evaluation. Volume changes of an element are resisted by lambda up to so many shear
-  /// moduli, where pressures vary within elements by all of it. The body stays at the last evaluation.
+  /// change = the tangent stiffness times displacements (m): N, a finite difference over `length` times
+  /// these, with one evaluation. Elements resist volume changes by lambda up to so many shear moduli, or by
+  /// all of it if pressures vary within elements. The body stays at the last evaluation.
   void differentiate(const MixedVector& direction, double length, double most_lambda_over_mu,
                      Rows<float>& change);
 
@@ -72,12 +71,12 @@ class MixedBody {
   /// Body::residual of the last evaluation.
   double residual() const { return residual_; }
 
-  /// Whether what is left of the residuals may be the rounding of the displacements and of the arithmetic: in
-  /// both unknowns, or in the displacements alone. See README.md, "Rounding".
+  /// Whether the remaining residuals may be rounding of the displacements and of the arithmetic: in both
+  /// unknowns, or only in the displacements. See README.md, "Rounding".
   bool at_rounding(bool in_both) const;
 
-  /// Whether reactions and loads, too, may be the rounding of the undeformed body's stiffest node: the body
-  /// bears nothing.
+  /// Whether reactions and loads may also be rounding at the undeformed body's stiffest node: the body bears
+  /// nothing.
   bool bears_nothing() const;
 
   /// step = minus an approximate solution of the linear problem for weighted residuals.
@@ -89,34 +88,34 @@ class MixedBody {
   /// Adds `share` times a step to both unknowns, m and Pa.
   void move(const MixedVector& step, double share);
 
-  /// Sets the pressures to those that belong to the displacements, lambda (J - 1).
+  /// Sets the pressures to lambda (J - 1) at the present displacements.
   void take_own_pressures();
 
-  /// Sets the pressures to their means over the elements of a coarser mesh, element_of those it was split
-  /// into. Where displacements were interpolated, the parts of an element change their volumes as no answer
-  /// does, but the whole does not.
+  /// Sets the pressures to their means over the elements of a coarser mesh; element_of has the coarser
+  /// element of each. With interpolated displacements, the volume changes of an element's parts are
+  /// unrealistic, but their mean is not.
   void average_pressures(const std::vector<int>& element_of);
 
-  /// Instead of an element's own resistance to volume changes, lambda (J - 1), a constant pressure and
-  /// what remains of lambda with a penalty of so many shear moduli beside it: 1 / (1 / lambda + 1 / penalty).
-  /// The forces are those of an augmented Lagrangian.
+  /// Instead of an element's own resistance to volume changes, lambda (J - 1), a constant pressure and a
+  /// lambda reduced by a penalty of so many shear moduli: 1 / (1 / lambda + 1 / penalty). The forces are
+  /// those of an augmented Lagrangian.
   struct Multipliers {
     std::vector<Real> pressures;   ///< of elements, Pa
     double penalty;                ///< in shear moduli
     std::vector<double> given_up;  ///< of lambda, by material, Pa
   };
 
-  /// Multipliers that leave the forces at the present pressures as they are.
+  /// Multipliers that do not change the forces at the present pressures.
   Multipliers multipliers(double penalty) const;
 
-  /// Sets `f` to the forces (N) with multipliers, zero on constrained components; null: to the body's own.
+  /// Sets `f` to the forces (N) with multipliers, zero on constrained components; null: the body's own
+  /// forces.
   void evaluate(const Multipliers* multipliers, Rows<Real>& f);
 
-  /// The energy (J), less the work of the loads, of which these forces are the derivative, at the last
-  /// evaluation.
+  /// The potential (J) of these forces at the last evaluation: energy minus the work of the loads.
   double potential(const Multipliers* multipliers) const;
 
-  /// Sets the pressures to those of the last evaluation with multipliers.
+  /// Sets the pressures to the values of the last evaluation with multipliers.
   void take_pressures(const Multipliers& multipliers);
 
   SaddleMultigrid& multigrid() { return multigrid_; }
@@ -150,13 +149,13 @@ class MixedBody {
   template <class Term>
   double sum_over_components(const Term& term) const;
 
-  /// How much stiffer than undeformed the laws are where the multigrid method was linearized, by cell.
+  /// How much stiffer than undeformed the laws are in the linearized configuration, by cell.
   std::vector<float> stiffening_of_laws() const;
 
   /// See InternalForce::replace_pressures.
   void replace_pressures(const std::vector<Real>& pressures, const std::vector<double>& lambdas);
 
-  /// What remains of lambda (Pa) with a penalty, by material.
+  /// The reduced lambda (Pa) of a penalty, by material.
   std::vector<double> remaining(double penalty) const;
   double lambda(std::size_t element) const { return moduli_[materials_.of(element)].lambda; }
 
@@ -185,7 +184,7 @@ class MixedBody {
   const Materials& materials_;
   std::vector<ModelModuli> moduli_;             // of each material
   std::vector<double> lambdas_;                 // Pa
-  std::vector<std::optional<CalledLaw>> laws_;  // of each material; none where stiffening is not known
+  std::vector<std::optional<CalledLaw>> laws_;  // of each material; none if stiffening is not known
   double unfelt_ = 0.0;                         // N/m, reactions over displacements that may be rounding
   bool linear_;
   bool pressure_varies_;
@@ -193,7 +192,7 @@ class MixedBody {
   SaddleMultigrid multigrid_;
   Rows<float> linearized_at_;        // m
   double linearized_penalty_ = 0.0;  // zero before the first time
-  bool linearized_ = false;          // whether the multigrid method is that of these two
+  bool linearized_ = false;          // whether the multigrid method belongs to these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
   Rows<Real> pressure_force_;

@@ -63,7 +63,7 @@ class Search {
     return finish();
   }
 
-  /// The same from displacements near the answer, at the full load; none if the search fails.
+  /// The same from displacements near the answer at the full load; none if the search fails.
   std::optional<Relaxation> run_near(const NodalField& u) {
     const Frame rest = frame_of(body(), 0.0, no_velocity_);
     load_levels_.skip_to_end();
@@ -201,12 +201,12 @@ class Search {
       if (!force->traits().no_potential.empty()) return std::string(force->traits().no_potential);
     if (without_stiffness(model_)) return "hourglass modes are not resisted";
     if (method_named(model_.choice().method).is_linear) return "";
-    // Softest motions are computed with less resistance to volume changes. Such a law does not separate it,
-    // so the result would depend on the orientation.
+    // The softest motions are computed with less resistance to volume changes. Such a law does not separate
+    // it, so the result would depend on the orientation.
     const auto& materials = model_.scene().materials.list;
     const auto splits = [](const Material& material) { return splits_volume(material.law); };
     return std::all_of(materials.begin(), materials.end(), splits) ? ""
-                                                                   : "a law does not split its volume part";
+                                                                   : "a law has no separate volumetric part";
   }
 
   /// At the full load, leaves equilibria whose tangent has a negative eigenvalue, until a minimum of the

@@ -9,7 +9,7 @@ namespace sandglass {
 enum class Stability {
   not_decided,
   stable,
-  saddle_left  ///< stable, after the search left an equilibrium that is not
+  saddle_left  ///< stable, after the search left an unstable equilibrium
 };
 
 /// A static answer and the course of the search for it.
@@ -30,14 +30,14 @@ struct Relaxation {
   long stability_evaluations = 0;    ///< of the forces, beside `steps`
 };
 
-/// Finds the displacements at which forces are in equilibrium, with the settings of the case. The imposed
-/// displacements and forces grow in load levels (load_levels.hpp), each solved by `Equilibrium`, to a coarse
-/// tolerance except at the full load. A load level that fails is repeated with half the increment. A
-/// condensed method superposes its answer in one step. Throws ComputationError if an element remains inverted
-/// or no increment is small enough. The search can be resumed from the start of every load level; with
-/// `from`, a checkpoint of the same model, it starts there, and nothing is reported twice. A condensed method
-/// has no checkpoints. If displacements (m) near the answer are given, from another method or a coarser mesh,
-/// the search first starts from them at the full load, unless forces depend on the path.
+/// Finds the static equilibrium with the settings of the case. The imposed displacements and forces grow in
+/// load levels (load_levels.hpp), each solved by `Equilibrium`, to a coarse tolerance except at the full
+/// load. A load level that fails is repeated with half the increment. A condensed method superposes its
+/// answer in one step. Throws ComputationError if an element remains inverted or no increment is small
+/// enough. The search can be resumed from the start of every load level; with `from`, a checkpoint of the
+/// same model, it starts there, and nothing is reported twice. A condensed method has no checkpoints. If
+/// displacements (m) near the answer are given, from another method or a coarser mesh, the search first
+/// starts from them at the full load, unless forces depend on the path.
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from = nullptr,
                  const NodalField* near = nullptr);
 

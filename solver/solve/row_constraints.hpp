@@ -42,10 +42,10 @@ class RowConstraints {
     }
   }
 
-  /// Numbers in the order of the scene's constraints, of which each rank knows its own, of all ranks.
+  /// Numbers of all ranks in the order of the scene's constraints, from ranks that each know their own.
   std::vector<double> of_all(const std::vector<double>& numbers) const;
 
-  /// The sums of such numbers over the constraints of each set that the case drives.
+  /// The sums of such numbers over the constraints of each driven set.
   Reactions sums_over_sets(const std::vector<double>& numbers) const;
 
  private:

@@ -22,7 +22,7 @@ namespace {
 // is left for the changes under the full load.
 constexpr double share_of_motion = 0.27, share_of_holding = 0.63;
 
-/// The nodes that an imposed displacement or a force drives.
+/// The nodes with an imposed displacement or a force.
 std::vector<int> pushed_nodes(const Scene& scene) {
   std::vector<int> nodes;
   for (const auto& constraint : scene.constraints) {
@@ -82,11 +82,11 @@ Vector scaled(const Vector& v, double factor) {
   return {factor * v[0], factor * v[1], factor * v[2]};
 }
 
-/// Sets the displacements u (m) of a whole body at the nodes of a part to those of the part's model under its
-/// first load, from a guess, divided by that load, which is so small that answers are proportional to it.
-/// Returns the number of evaluations of forces.
+/// Solves the model of a part under its first load, from a guess, and sets the displacements u (m) of the
+/// whole body at the nodes of the part to the solution over the load, which is so small that answers are
+/// proportional to it. Returns the number of evaluations of forces.
 long find_first_answer(const Model& model, const MeshPart& part, NodalField& whole) {
-  // Even a small residual is what wakes the surroundings.
+  // Even a small residual wakes the surroundings.
   constexpr double share_left = 0.05;  // of the residual at the guess
   constexpr long most_evaluations = 1000;
   const double load = first_load(model);
@@ -150,15 +150,15 @@ class FirstMotion {
   long evaluations() const { return evaluations_; }
 
  private:
-  /// The factor by which the error of a motion that decays as 1/r falls from one part to the next, which is a
-  /// third larger; no motion decays more slowly.
+  /// The factor by which the error of a motion that decays as 1/r falls from one part to the next, a third
+  /// larger one; no motion decays more slowly.
   static constexpr double slowest = 0.75;
   static constexpr int first_margin = 4;  // elements around pushed nodes
   static constexpr int least_margin =
       2;  // so that the next rim, not the last moving node, is a third farther
 
   /// Wakes the elements around nodes that move by more than a length (m), within a third of their distance
-  /// from the pushed nodes; whether any of them slept.
+  /// from the pushed nodes; returns whether any of them slept.
   bool wake(double by_more_than) {
     std::vector<int> margin(u_.size(), 0);
     for (std::size_t n = 0; n < u_.size(); ++n) {
@@ -213,7 +213,7 @@ LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, doub
               "a mesh without [[refine]]");
   }
   if (pushed_nodes(scene).empty()) {
-    throw InputError("sleep: everything would sleep; impose a displacement or a force");
+    throw InputError("sleep: all elements would sleep; impose a displacement or a force");
   }
   const auto start = std::chrono::steady_clock::now();
   FirstMotion first(scene, choice);

@@ -17,12 +17,11 @@ struct LocalRelaxation {
 /// Elements around pushed nodes are awake, and a moving node wakes the elements within a third of its
 /// distance from the pushed nodes, until none is woken. The error due to the fixed rim is then within the
 /// share even if motions decay as slowly as 1/r. Nodes that move by less than half of the share are then
-/// fixed, fewer if fixing them changes the motion of the others by more than the share; the rest is relaxed
-/// under the full load.
+/// fixed, fewer if fixing them changes the motion of the others by more than the share; the remaining part is
+/// solved under the full load.
 ///
-/// Observers receive reports on the whole mesh; such a run has no checkpoints. Throws ComputationError as
-/// `relax`, and InputError for a condensed method, a refined mesh, or if no displacement or force is
-/// imposed.
+/// Observers receive reports on the whole mesh; such a run has no checkpoints. Throws ComputationError like
+/// `relax`, and InputError for a condensed method, a refined mesh, or if no displacement or force is imposed.
 LocalRelaxation relax_awake(const Scene& scene, const MethodChoice& choice, double share, Observer& observer);
 
 }  // namespace sandglass
