@@ -126,8 +126,9 @@ def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
     assert not chosen.exists() and document["chosen"] is None
     assert "no method suffices" in outcome.stdout and "was not written" in outcome.stdout
     words = " ".join(document["remarks"])
-    assert "nothing can be shown" in words and "no method can be nearer" in words
-    assert "the nearest" in words
+    assert "smaller errors cannot be shown" in words
+    assert "no method can be more accurate" in words
+    assert "the most accurate rung" in words
     assert all(r["reason"] and r["outcome"] == "refused" for r in document["rungs"])
     assert all(remark in " ".join(outcome.stdout.split()) for remark in document["remarks"])
 

@@ -3,11 +3,11 @@
 namespace sandglass {
 
 std::string_view unfit(const MethodEntry& method, bool at_rest) {
-  if (method.is_condensed && !at_rest) return "it superposes static answers: it has no motion";
+  if (method.is_condensed && !at_rest) return "superposes static answers and cannot compute motions";
   if (method.damps_only && at_rest)
-    return "its hourglass control resists velocities alone: it has no answer at rest";
+    return "its hourglass control resists only velocities, so it has no static answer";
   if (!method.controls_hourglass) {
-    return "nothing resists its hourglass modes: a disturbance stays where it was put";
+    return "does not resist hourglass modes: disturbances remain";
   }
   return "";
 }

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A path as it is to be written into a file of that folder: relative, so that both may move together.
+/// A path relative to a folder, for a file in it, so that both may be moved together.
 std::string path_from(const fs::path& folder, const fs::path& path) {
   const fs::path to = fs::weakly_canonical(fs::absolute(path));
   return to.lexically_proximate(fs::weakly_canonical(folder)).generic_string();
@@ -39,7 +39,7 @@ toml::table method_table(const MethodChoice& choice) {
   return method;
 }
 
-/// Numbers and texts are changed where they stand, so that they keep their place in the file.
+/// Numbers and texts are changed in place, so that they keep their position in the file.
 void set_counts(toml::table& mesh, const AnyGenerator& generator) {
   for (const auto& [parameter, counts] : element_counts(generator)) {
     toml::node& node = *mesh.get(parameter);
@@ -54,7 +54,7 @@ void set_text(toml::table& table, std::string_view key, const std::string& text)
   *table.get(key)->as_string() = text;
 }
 
-/// References stay where they are; from another folder they have another path.
+/// References are not moved; from another folder they have another path.
 void set_references(toml::table& root, const Case& description, const fs::path& folder) {
   const Comparison comparison = read_comparison(description);
   for (const auto& [key, path] : {std::pair{"golden", comparison.golden}, {"truth", comparison.truth}}) {
@@ -64,7 +64,7 @@ void set_references(toml::table& root, const Case& description, const fs::path& 
   }
 }
 
-/// The sets of a case, and no others.
+/// Keeps only the sets of a case.
 void keep_sets(toml::table& sets, const Case& description) {
   const toml::table all = sets;
   for (const auto& [key, node] : all) {
@@ -75,7 +75,7 @@ void keep_sets(toml::table& sets, const Case& description) {
   }
 }
 
-/// The elements by number that the other case splits besides what the case says.
+/// The element numbers that the other case splits in addition to the case.
 void add_refinements(toml::table& root, const Case& description, const Case& other) {
   toml::array& rules = *root.insert("refine", toml::array{}).first->second.as_array();
   for (std::size_t n = description.refinements.size(); n < other.refinements.size(); ++n) {
@@ -86,7 +86,7 @@ void add_refinements(toml::table& root, const Case& description, const Case& oth
   if (rules.empty()) root.erase("refine");
 }
 
-/// The steps of the other case, and its moduli, changed where they stand.
+/// The steps and moduli of the other case, changed in place.
 void set_longer_steps(toml::table& root, const Case& description, const Case& other) {
   if (other.dynamics.body_frequency != description.dynamics.body_frequency)
     table_of(root, "dynamics").insert_or_assign("body_frequency", other.dynamics.body_frequency);
@@ -106,7 +106,7 @@ void set_longer_steps(toml::table& root, const Case& description, const Case& ot
   }
 }
 
-/// What the case says of answers on its own mesh and with its own materials.
+/// Tables of the case about answers on its own mesh and with its own materials.
 void forget_answers(toml::table& root, const Case& description) {
   set_text(table_of(root, "case"), "name", description.name + "-chosen");
   root.erase("expect");
@@ -137,7 +137,7 @@ std::string case_text(const Case& description, const MethodChoice& choice, const
   }
   root.insert_or_assign("method", method_table(choice));
   return fmt::format(
-      "# Written by `sandglass choose` from {}, whose comments are not kept here.\n"
+      "# Written by `sandglass choose` from {}; its comments are not kept here.\n"
       "# [method] is what `sandglass run` takes for this case.\n{}",
       description.file.filename().string(), toml_text(root));
 }

@@ -7,12 +7,12 @@
 
 namespace sandglass {
 
-/// The text of a case file for `place` (its folder is what paths are relative to) that says what the file of
-/// `description` says about this case, with `choice` as its [method]. What a file with variants says of all
-/// of them is resolved. `chosen` is the same case, perhaps on a coarser or refined mesh or with longer steps:
-/// the file gets its counts of elements, refinements, sets, steps and moduli. If another mesh or other moduli
-/// make it another case, it gets another name and no limits or references, which are not its own. Comments
-/// are lost; the first lines say so. Throws InputError as reading does.
+/// The text of a case file at `place`, to whose folder paths are relative: the case of `description`, with
+/// its variants resolved and `choice` as its [method]. `chosen` is the same case, perhaps on a coarser or
+/// refined mesh or with longer steps: the file gets its counts of elements, refinements, sets, steps and
+/// moduli. If another mesh or other moduli make it another case, it gets another name and no limits or
+/// references, because they do not apply. Comments are lost; the first lines say so. Throws InputError like
+/// reading.
 std::string case_text(const Case& description, const MethodChoice& choice, const Case& chosen,
                       const std::filesystem::path& place);
 

@@ -20,15 +20,16 @@ namespace sandglass {
 
 namespace {
 
-/// Evaluations of the forces after which a rung is not at rest: answers that exist take some hundreds.
+/// Evaluations of the forces after which a rung has no static equilibrium: existing answers take some
+/// hundreds.
 constexpr int most_evaluations = 2000;
 
 void require_methods(const Demand& demand) {
   for (const auto& name : demand.methods) method_named(name, "--methods");
 }
 
-/// The meshes that rungs stand on: the user's, and those others that the golden's own element can still
-/// answer on. All others that are looked at are told.
+/// The meshes of rungs: the user's, and others on which the golden's own element still finds an answer. All
+/// others that were tried are reported.
 class Meshes {
  public:
   Meshes(CaseOnMesh problem, const Scene& scene, Choice& choice, Evaluator& evaluator)
@@ -52,7 +53,7 @@ class Meshes {
     }
   }
 
-  /// For a motion: each mesh with longer steps, as long as the golden's own element is near enough.
+  /// For a motion: each mesh with longer steps, as long as the golden's own element is accurate enough.
   void add_longer_steps() {
     for (std::size_t n = 0, count = choice_.meshes.size(); n < count; ++n) {
       for (const auto& [steps, problem] : longer_steps(choice_.meshes[n].problem)) {
@@ -62,8 +63,8 @@ class Meshes {
     }
   }
 
-  /// Refines meshes that are too coarse where the golden's own element errs. One with more elements than a
-  /// mesh that suffices is not worth it: its smallest elements, which decide its step, are smaller, too.
+  /// Refines meshes that are too coarse where the golden's own element errs. A mesh with more elements than a
+  /// sufficient one is not worth it: its smallest elements, which determine its step, are also smaller.
   void add_refined() {
     const LadderMesh& own = choice_.meshes.front();
     const bool own_suffices = evaluator_.evaluate_mesh(own).reason.empty();
@@ -75,17 +76,17 @@ class Meshes {
   }
 
  private:
-  /// Refinements after which a mesh is given up.
+  /// Refinements after which a mesh is abandoned.
   static constexpr int most_refinements = 5;
 
-  /// Whether the golden's own element can answer on another mesh.
+  /// Whether the golden's own element finds an answer on another mesh.
   bool try_out_mesh(const std::string& difference, const CaseOnMesh& problem) {
     Scene scene = make_scene(problem);
     auto reference = interpolate(scene_.mesh, choice_.reference.u, scene.mesh.points);
     return try_out({difference, problem, std::move(scene), std::move(reference)});
   }
 
-  /// Whether the golden's own element can answer on a mesh; if so, rungs stand on it.
+  /// Whether the golden's own element finds an answer on a mesh; if so, rungs use it.
   bool try_out(LadderMesh mesh) {
     choice_.others.push_back({mesh.name(), evaluator_.evaluate_mesh(mesh)});
     MeshAttempt& attempt = choice_.others.back();
@@ -94,8 +95,7 @@ class Meshes {
     return attempt.kept;
   }
 
-  /// Ends, too, where a refinement no longer brings the answer nearer by a tenth: the error is the shape's
-  /// then.
+  /// Also ends if a refinement no longer reduces the error by a tenth: the rest is due to the shape.
   void refine_until_near(const std::string& difference, const CaseOnMesh& start) {
     std::string name = difference;
     const auto done = [&](const auto& search) {
@@ -125,7 +125,7 @@ class Meshes {
     }
   }
 
-  /// The user's case, for fewer evaluations.
+  /// The user's case, with fewer evaluations.
   const Case& own() const { return choice_.meshes.front().problem.description; }
 
   static std::size_t elements_of(const Scene& scene) { return scene.mesh.cells.size(); }
@@ -133,12 +133,12 @@ class Meshes {
   const Scene& scene_;
   Choice& choice_;
   Evaluator& evaluator_;
-  std::deque<std::pair<std::string, CaseOnMesh>> too_coarse_;  // by their differences from the user's
+  std::deque<std::pair<std::string, CaseOnMesh>> too_coarse_;  // by their differences from the user's mesh
   std::size_t enough_elements_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// What a rung's place is by: its cost. An adaptive one stands behind fixed ones that cost up to a tenth
-/// more: elements that stay as they are make the simpler program.
+/// The sort key of a rung: its cost. An adaptive rung comes after fixed ones that cost up to a tenth more,
+/// because fixed elements are simpler.
 double rank(const Attempt& attempt) {
   constexpr double price_of_change = 1.1;
   if (!attempt.cost) return std::numeric_limits<double>::infinity();
@@ -146,7 +146,7 @@ double rank(const Attempt& attempt) {
   return method_named(attempt.rung.choice.method).adapts() ? price_of_change * cost : cost;
 }
 
-/// Why a rung is too expensive; empty when it is not.
+/// Why a rung is too expensive; empty if it is not.
 std::string cost_reason(const StepCost& cost, const Demand& demand) {
   if (demand.budget && cost.seconds > *demand.budget) {
     return fmt::format("too expensive: {} takes {:.3g} ms, and may take {:.3g} ms",
@@ -172,12 +172,12 @@ std::vector<Attempt> make_attempts(std::vector<Rung> rungs, const std::vector<Co
   return attempts;
 }
 
-/// Whether an error can be told by a reference: not when the truth itself is known less well.
+/// Whether a reference can show an error: not if the truth itself is less accurate.
 bool can_show(const Reference& reference, double error) {
   return reference.name != "truth" || reference.own.largest.value_or(0.0) <= error;
 }
 
-/// Evaluates rungs from the cheapest on.
+/// Evaluates rungs, starting with the cheapest.
 void climb(Choice& choice, Evaluator& evaluator, const ProgressOf& progress) {
   const Demand& demand = choice.demand;
   for (std::size_t n = 0; n < choice.attempts.size(); ++n) {
@@ -191,7 +191,7 @@ void climb(Choice& choice, Evaluator& evaluator, const ProgressOf& progress) {
     if (too_dear.empty() || demand.all) attempt.evaluation = evaluator.evaluate(attempt.rung);
     if (!too_dear.empty()) attempt.evaluation.reason = too_dear;
     if (attempt.evaluation.reason.empty() && !can_show(choice.reference, demand.tolerance)) {
-      attempt.evaluation.reason = "nearer to the truth than the truth itself is known";
+      attempt.evaluation.reason = "closer to the truth than the error of the truth itself";
     }
     attempt.outcome = attempt.evaluation.reason.empty() ? Outcome::sufficient : Outcome::refused;
     if (attempt.outcome == Outcome::refused || choice.chosen) continue;
@@ -204,19 +204,18 @@ std::string percent(double fraction) {
   return fmt::format("{:.3g} %", 100.0 * fraction);
 }
 
-/// What the reference itself is worth.
+/// A remark about the error of the reference.
 std::string reference_remark(const Choice& choice) {
   const auto& [name, u, unit, own] = choice.reference;
   const double tolerance = choice.demand.tolerance;
   if (name == "truth") {
     if (!own.largest) return fmt::format("the error of the truth itself is not known: {}", own.note);
-    return fmt::format(
-        "the truth itself is known to {} ({}){}", percent(*own.largest), own.note,
-        !can_show(choice.reference, tolerance) ? ": nothing can be shown to be nearer than that" : "");
+    return fmt::format("the truth itself is known to {} ({}){}", percent(*own.largest), own.note,
+                       !can_show(choice.reference, tolerance) ? ": smaller errors cannot be shown" : "");
   }
   if (!own.largest) return "";
   return fmt::format(
-      "the reference is the best of this mesh: it is itself about {} from the answer of ever finer meshes "
+      "the reference is the best answer on this mesh: it is itself about {} from the limit of finer meshes "
       "({})",
       percent(*own.largest), own.note);
 }
@@ -274,7 +273,7 @@ std::vector<std::string> remarks(const Choice& choice) {
   if (choice.chosen) return said;
   const Attempt* best = nearest(choice);
   if (best != nullptr) {
-    said.push_back(fmt::format("the nearest that was computed is {}, {}: {}; it was rejected: {}",
+    said.push_back(fmt::format("the most accurate rung computed is {}, {}: {}; it was rejected: {}",
                                name_of(best->rung), best->rung.mesh->name(), percent(*best->evaluation.error),
                                best->evaluation.reason));
   }
@@ -283,11 +282,11 @@ std::vector<std::string> remarks(const Choice& choice) {
     const bool is_golden = rung.choice.method == golden_method && rung.mesh->own() &&
                            rung.choice.precision == Precision::double_precision;
     if (!is_golden || !evaluation.error || !(*evaluation.error > tolerance)) continue;
-    said.push_back(
-        fmt::format("the golden's own element is {} off on this mesh: that much is the mesh's, and no "
-                    "method can be nearer. If errors fall with the square of the element size, about {:.2g} "
-                    "times as many elements in each direction are needed",
-                    percent(*evaluation.error), std::sqrt(*evaluation.error / tolerance)));
+    said.push_back(fmt::format(
+        "the golden's own element is {} off on this mesh: this error is due to the mesh, and no method can "
+        "be more accurate. If errors fall with the square of the element size, about {:.2g} "
+        "times as many elements in each direction are needed",
+        percent(*evaluation.error), std::sqrt(*evaluation.error / tolerance)));
   }
   const auto expensive =
       std::count_if(choice.attempts.begin(), choice.attempts.end(), [&](const Attempt& attempt) {

@@ -7,8 +7,8 @@
 
 namespace sandglass {
 
-/// A choice as JSON text: provenance, the demand, the reference, coarser meshes, and one record for
-/// each rung in the order of cost. What is not known is null. "chosen" counts into the records; null: nothing
+/// A choice as JSON text: provenance, the demand, the reference, coarser meshes, and one record for each rung
+/// in the order of cost. Unknown values are null. "chosen" is an index into the records; null: nothing
 /// suffices.
 std::string to_json(const Provenance& provenance, const Scene& scene, const Choice& choice);
 

@@ -18,10 +18,10 @@ namespace sandglass {
 
 namespace {
 
-/// Load over that of the case at which a rung must still find an answer.
+/// The load, over the case's, at which a rung must still find an answer.
 constexpr double margin = 1.1;
 
-/// Asks whether to go on while an answer is searched.
+/// Asks whether to continue during the search for an answer.
 class Asking final : public Observer {
  public:
   explicit Asking(const Proceed& proceed) : proceed_(proceed) {}
@@ -71,7 +71,7 @@ double largest_gradient(const Mesh& mesh, const Displacements& history) {
   return largest;
 }
 
-/// How an answer that is too far from the reference goes wrong.
+/// The mistake of an answer that is too far from the reference.
 std::string error_reason(const Rung& rung, const Symptoms& symptoms, double tolerance, double gradient) {
   if (method_named(rung.choice.method).is_linear && gradient > 0.1) {
     return fmt::format("small-strain theory, but displacement gradients reach {:.2g}", gradient);
@@ -84,32 +84,32 @@ std::string error_reason(const Rung& rung, const Symptoms& symptoms, double tole
       return fmt::format("locks: takes {:.2g} % more energy to deform",
                          100.0 * (symptoms.stiffness_ratio - 1.0));
     default:
-      return fmt::format("inaccurate; {:.2g} % of the squared error stands in hourglass modes",
+      return fmt::format("inaccurate; {:.2g} % of the squared error is in hourglass modes",
                          100.0 * symptoms.zigzag_share);
   }
 }
 
-/// How a computation failed, in a mechanic's words.
+/// How a computation failed, in mechanical terms.
 std::string failure_reason(const Answer& answer) {
   if (answer.failure == Finding::inverted) return "an element turns inside out";
-  if (answer.failure == Finding::unstable) return "displacements grow beyond all numbers";
+  if (answer.failure == Finding::unstable) return "displacements grow without limit";
   return answer.status;
 }
 
-/// How far a reference that is not the truth is from it: as measured where the truth of the case is stored,
-/// else as estimated when its golden was made.
+/// The error of a reference that is not the truth: measured if the truth of the case is stored, else
+/// estimated when its golden was made.
 OwnError own_error_of(const Reference& reference, const Comparison& comparison, const Scene& scene) {
   try {
     const Displacements truth = read_reference(comparison.truth, scene);
     return {accuracy(reference.u, truth, nullptr, reference.unit).max_relative_error,
             "measured against the stored truth"};
-  } catch (const InputError&) {  // there is none, or it belongs to another case
+  } catch (const InputError&) {  // there is no truth, or it belongs to another case
   }
   try {
     read_reference(comparison.golden, scene);
     return read_own_error(comparison.golden);
   } catch (const InputError&) {
-    return {{}, "neither a stored truth nor a golden says it"};
+    return {{}, "there is neither a stored truth nor a golden"};
   }
 }
 
@@ -172,7 +172,7 @@ Evaluation Evaluator::evaluate_answer(const Rung& rung) {
   if (answer.failure) {
     found.reason = failure_reason(answer);
   } else if (!(*found.error <= tolerance_)) {
-    // On its own mesh a coarser one's nodes have the reference's displacements to be compared with.
+    // Nodes of a coarser mesh are compared with the reference's displacements on that mesh.
     const Symptoms told = symptoms(scene, answer.u, answer.energies.strain + answer.energies.hourglass,
                                    rung.mesh->reference, reference_.unit);
     found.reason =

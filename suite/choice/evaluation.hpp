@@ -10,17 +10,16 @@
 
 namespace sandglass {
 
-/// What the rungs are measured against.
+/// The reference of the rungs.
 struct Reference {
   std::string name;  ///< "tl-mean-dilatation", "golden" or "truth"
   Displacements u;   ///< m, at the nodes of the user's mesh and the times of its answer
   double unit;       ///< of errors, m: the largest imposed displacement
-  OwnError
-      own;  ///< of the truth from what it stands for; of the others, from the answer of ever finer meshes
+  OwnError own;      ///< of the truth from the exact answer; of the others from the limit of finer meshes
 };
 
-/// The reference of a scene: with `against` "golden" or "truth" the stored one, else what the golden's own
-/// element finds on the user's mesh. Throws InputError where there is none, ComputationError where that
+/// The reference of a scene: with `against` "golden" or "truth" the stored one, else the answer of the
+/// golden's own element on the user's mesh. Throws InputError if there is none, ComputationError if that
 /// element finds no answer.
 Reference make_reference(const Scene& scene, const std::string& against, const Proceed& proceed);
 
@@ -28,7 +27,7 @@ Reference make_reference(const Scene& scene, const std::string& against, const P
 struct Evaluation {
   std::optional<double> error = {};  ///< max over all nodes of the user's mesh and times, over the unit
   std::optional<double> smallest_jacobian = {};     ///< det F, at the answer
-  std::optional<double> per_simulated_second = {};  ///< wall time that the run itself took, s; of a motion
+  std::optional<double> per_simulated_second = {};  ///< wall time of the run itself, s; of a motion
   std::string reason = {};                          ///< why it is rejected; empty: good enough
 };
 
@@ -38,16 +37,16 @@ class Evaluator {
   /// `scene` is the user's; it and the reference must outlive the evaluator.
   Evaluator(const Scene& scene, const Reference& reference, double tolerance, const Proceed& proceed);
 
-  /// Computes the rung's answer and its distance from the reference at all nodes of the user's mesh. One that
-  /// is near enough must also find an answer with a tenth more load where the golden's own element does.
-  /// Throws ComputationError when told to end.
+  /// Computes the rung's answer and its distance from the reference at all nodes of the user's mesh. A rung
+  /// that is close enough must also find an answer with a tenth more load if the golden's own element does.
+  /// Throws ComputationError if interrupted.
   Evaluation evaluate(const Rung& rung);
 
-  /// The error of the golden's own element on a mesh: what the mesh costs, whatever the method.
+  /// The error of the golden's own element on a mesh: the error due to the mesh, whatever the method.
   Evaluation evaluate_mesh(const LadderMesh& mesh);
 
  private:
-  /// All but the margin.
+  /// The evaluation without the reserve.
   Evaluation evaluate_answer(const Rung& rung);
   std::string margin_reason(const Rung& rung);
 
@@ -61,8 +60,8 @@ class Evaluator {
 /// Displacements (m) on a mesh at other points of the same body, at all times.
 Displacements interpolate(const Mesh& mesh, const Displacements& history, const NodalField& points);
 
-/// The same case on a coarser mesh, without rules for sets that have no node there; a table that names one
-/// is refused when the scene is made.
+/// The same case on a coarser mesh, without rules for sets that have no node there; making the scene fails if
+/// a table names one.
 CaseOnMesh on_mesh(const AnyGenerator& mesh, Case description);
 
 }  // namespace sandglass

@@ -13,9 +13,9 @@ namespace sandglass {
 
 /// The user's own mesh, or another one of the same body, with the steps of the user's case or longer ones.
 struct LadderMesh {
-  std::string difference = {};  ///< the counts of elements of a coarser one, what one is refined to, or both
+  std::string difference = {};  ///< the element counts of a coarser mesh, the size of a refined one, or both
   CaseOnMesh problem;
-  Scene scene;              ///< of this
+  Scene scene;              ///< of this mesh
   Displacements reference;  ///< the reference's displacements at its nodes, m
   std::string steps = {};   ///< how a motion takes longer steps; empty: it does not
 
@@ -25,19 +25,19 @@ struct LadderMesh {
   /// "own mesh" or the difference from it, and the steps if they are longer.
   std::string name() const;
 
-  /// The reference where it is farthest from rest.
+  /// The reference at its largest displacement.
   const NodalField& farthest() const;
 };
 
-/// A combination of method, precision and mesh: a rung of the ladder that `sandglass choose` climbs from the
-/// cheapest on.
+/// A combination of method, precision and mesh: a rung of the ladder that `sandglass choose` climbs, cheapest
+/// first.
 struct Rung {
   MethodChoice choice;
   const LadderMesh* mesh = nullptr;
-  std::string unfit = {};  ///< why it should not be used, whatever it costs; empty: fit
+  std::string unfit = {};  ///< why it should not be used at any cost; empty: fit
 };
 
-/// What the rungs of a ladder are made from.
+/// The choices for the rungs of a ladder.
 struct LadderPlan {
   std::vector<std::string> methods;  ///< none: all of the list
   double tolerance = 0.01;           ///< of the user
@@ -46,8 +46,8 @@ struct LadderPlan {
 
 /// All rungs of some meshes, not yet in order: every method of the list in double and in float. A method
 /// whose kappa affects the static answer appears with auto, half and twice that; an adaptive one with several
-/// accuracies around the user's tolerance. A method that has no such answer, at rest or in motion, or does
-/// not control hourglass modes, appears once, as unfit.
+/// accuracies around the user's tolerance. A method without such an answer, static or in motion, or without
+/// hourglass control appears once, as unfit.
 std::vector<Rung> make_ladder(const std::deque<LadderMesh>& meshes, const LadderPlan& plan);
 
 /// The name of a rung: "tl-perturbation kappa 0.00325 float".

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double smallest_ratio = 0.25;
 
-/// Softens the law against changes of volume; whether that was possible.
+/// Softens the law against changes of volume; returns whether that was possible.
 template <class Law>
 bool soften(Law& law, double factor) {
   if constexpr (requires { law.young_modulus, law.poisson_ratio; }) {

@@ -10,17 +10,17 @@ namespace sandglass {
 
 namespace {
 
-/// The share of the work that the motions are, to show progress.
+/// The motions' share of the work, to show progress.
 constexpr double of_motions = 0.8;
 
-/// What a motion depends on, among rungs: neither precision nor kappa changes its steps noticeably.
+/// The key of rungs that share a motion: neither precision nor kappa changes its steps noticeably.
 using MotionKey = std::tuple<const LadderMesh*, std::string, double>;
 
 MotionKey motion_key(const Rung& rung) {
   return {rung.mesh, rung.choice.method, rung.choice.accuracy};
 }
 
-/// Follows the motion of a rung. One that cannot be set up fails like one that breaks down.
+/// Follows the motion of a rung. A motion that cannot be set up counts as failed.
 OwnMotion follow(const Rung& rung, const Proceed& proceed) {
   try {
     MethodChoice choice = rung.choice;

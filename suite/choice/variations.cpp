@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::array<std::size_t, 2>, 12> edges{
     {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
-/// Calls visit(count) for every integer parameter of a generator; all of them are counts of elements.
+/// Calls visit(count) for every integer parameter of a generator; all are counts of elements.
 template <class Generator, class Visit>
 void for_each_count(Generator& generator, const Visit& visit) {
   const auto look = [&]<class Owner, class Value>(const Parameter<Owner, Value>& parameter) {
@@ -121,7 +121,7 @@ std::vector<int> zigzag(const Mesh& mesh) {
       reached.pop_back();
       for (const std::size_t next : neighbours[node]) {
         if (signs[next] == signs[node]) {
-          throw InputError("this mesh has no zigzag: it has a closed ring of an odd number of edges");
+          throw InputError("this mesh has no zigzag, because an odd number of its edges form a closed ring");
         }
         if (signs[next] != 0) continue;
         signs[next] = -signs[node];

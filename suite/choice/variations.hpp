@@ -18,7 +18,7 @@ std::vector<ElementCount> element_counts(const AnyGenerator& generator);
 /// The element counts as in a case file: "core_elements = 10, shell_layers = 2".
 std::string counts_text(const AnyGenerator& generator);
 
-/// Coarser meshes of the same body: with one element less across the thinnest part, and with three quarters
+/// Coarser meshes of the same body: with one element fewer across the thinnest part, and with three quarters
 /// and half of all counts, without duplicates and without `generator` itself.
 std::vector<AnyGenerator> coarser_meshes(const AnyGenerator& generator);
 
