@@ -1,4 +1,4 @@
-// Bodies side by side move as each would alone.
+// Bodies in a batch move as each would alone.
 #include "sandglass/batch.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-/// Slender bodies beyond their buckling loads: what is called stable is a minimum of the potential.
+/// Slender bodies beyond their buckling loads: answers reported as stable are minima of the potential.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-/// Checkpoints: a run that goes on from any of them tells and ends as the run that was never stopped, to the
-/// bit; a file that is not whole, or of another run, is refused.
+/// Checkpoints: a run resumed from any of them has the reports and results of an uninterrupted run, bit by
+/// bit; incomplete files and files of other runs are rejected.
 
 #include <gtest/gtest.h>
 

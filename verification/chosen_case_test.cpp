@@ -1,4 +1,4 @@
-/// The method that a case may have, and the case that `sandglass choose` writes.
+/// The [method] of a case, and the case that `sandglass choose` writes.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// The comparison with references: figures, limits, and the column against its golden.
+/// Comparison with references: figures, limits, and the column against its golden.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// How far hourglass modes hold under compression, where enhanced strains are known to fail (Wriggers and
+/// The stability of hourglass modes under compression, where enhanced strains are known to fail (Wriggers and
 /// Reese 1996, CMAME 135:201): the tangent of homogeneously deformed elements and blocks.
 
 #include <gtest/gtest.h>

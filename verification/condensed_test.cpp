@@ -1,4 +1,4 @@
-/// Condensation to the driven nodes: the linear method's answers, superposed, without a further error.
+/// Condensation to the driven nodes: superposition of the linear method's answers, without further error.
 
 #include <gtest/gtest.h>
 

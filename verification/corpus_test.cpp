@@ -1,4 +1,4 @@
-/// The fuzzers' corpus without a fuzzer: whatever the bytes, a reader returns or refuses them as wrong input.
+/// The fuzzers' corpus without a fuzzer: whatever the bytes, a reader accepts them or reports wrong input.
 
 #include <gtest/gtest.h>
 

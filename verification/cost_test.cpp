@@ -1,4 +1,4 @@
-/// What a step, a simulated second and an equilibrium cost: each figure is what its name says.
+/// The cost of a step, a simulated second and an equilibrium: each figure measures what its name says.
 
 #include "benchmark/cost.hpp"
 

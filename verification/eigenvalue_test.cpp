@@ -1,5 +1,6 @@
-/// True eigenvalues of elements and meshes: what uniform strains and bending must have exactly, and the bound
-/// of the stable step against the largest, in elements and meshes of every shape, at rest and far from it.
+/// True eigenvalues of elements and meshes: exact values for uniform strains and bending, and the bound of
+/// the stable step against the largest, in elements and meshes of every shape, undeformed and strongly
+/// deformed.
 
 #include <gtest/gtest.h>
 

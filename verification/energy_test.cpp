@@ -1,4 +1,4 @@
-/// The energy of motions that nothing drives or damps.
+/// The energy of free, undamped motions.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-/// Bodies at rest against SUNDIALS: the same elements, assembled plainly, brought to balance by KINSOL.
+/// Static equilibria against SUNDIALS: the same elements, assembled plainly and solved by KINSOL.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// Directions of fibres, and volumetric parts that replace those of laws.
+/// Directions of fibres, and volumetric parts that replace a law's own.
 
 #include "problem/fibres.hpp"
 

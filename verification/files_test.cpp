@@ -1,5 +1,4 @@
-/// Files: results as the architecture note lays them out, references that belong to their case, no rubbish
-/// left.
+/// Files: the layout of results, references that belong to their case, and no files left behind.
 
 #include <gtest/gtest.h>
 

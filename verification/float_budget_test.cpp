@@ -1,5 +1,5 @@
-/// What single precision costs: how far float answers may be from those of double, at rest and after many
-/// steps, in other units and far from the origin.
+/// The error of single precision: how far float answers may be from double ones, static and after many steps,
+/// in other units and far from the origin.
 
 #include <gtest/gtest.h>
 

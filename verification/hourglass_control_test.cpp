@@ -1,4 +1,4 @@
-/// Hourglass controls that stand for what one point misses, against the eight points that do not miss it.
+/// Hourglass controls that replace the energy that one point misses, against eight points, which include it.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// The largest frequency of a body: of the whole, followed as it deforms, and steps as long as it allows.
+/// The largest frequency of a whole body: its changes with deformation, and steps as long as it allows.
 
 #include "solve/largest_frequency.hpp"
 

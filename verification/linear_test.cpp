@@ -1,5 +1,4 @@
-/// Small-strain elasticity: right when nothing turns or strains much, wrong by known amounts when something
-/// does.
+/// Small-strain elasticity: right for small rotations and strains, wrong by known amounts for large ones.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// Manufactured solutions: how fast each method's answer comes near to an exact one of finite strain.
+/// Manufactured solutions: how fast each method converges to an exact answer at finite strain.
 
 #include "support/manufactured.hpp"
 

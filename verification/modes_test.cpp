@@ -1,4 +1,4 @@
-// The modal form of nodal values: butterflies against the sums they stand for.
+// The modal form of nodal values: butterflies against the sums that they replace.
 #include "element/modes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The kernels on other number types than double: packs compute what doubles compute, counting numbers count
-// it.
+// The kernels on other number types than double: packs compute the same as doubles, and counting numbers
+// count it.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -1,5 +1,4 @@
-/// The whole product of methods and laws, through the solver: what a kernel by itself cannot show goes wrong
-/// in pairs.
+/// All pairs of methods and laws, through the solver: mistakes of pairs that no single kernel shows.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// Random scenes come to rest, with load levels that nobody chose.
+/// Static equilibria of random scenes, with automatic load levels.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-/// Ranks that share the work on one body: the same bits for any number of them and of their threads, and no
-/// more traffic than the method needs. They are threads here (support/thread_ranks.hpp); test_ranks.py starts
-/// the program with mpirun.
+/// Ranks that share the work on one body: the same bits for any number of ranks and threads, and no more
+/// traffic than the method needs. They are threads here (support/thread_ranks.hpp); test_ranks.py starts the
+/// program with mpirun.
 
 #include <gtest/gtest.h>
 

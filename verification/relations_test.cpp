@@ -1,5 +1,5 @@
-/// Pairs of runs that must agree, on random problems: what a user may change without changing the answer, and
-/// what must follow from other answers. An entry of `relations` is all that a new one takes.
+/// Pairs of runs that must agree, on random problems: changes that must not affect the answer, and answers
+/// that must follow from others. A new one needs only an entry of `relations`.
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-/// Prints how near the bound of the stable step comes to the true largest eigenvalue, for every method, at
-/// rest and strongly deformed:
+/// Prints how close the bound of the stable step is to the true largest eigenvalue, for every method,
+/// undeformed and strongly deformed:
 ///
 ///     build/release/verification/sharpness [ELEMENTS [MESHES [SEED]]]
 ///
 /// with so many random elements and meshes for each method and law (see support/sharpness.hpp). Exits with 1
-/// when one is unsafe.
+/// if one is unsafe.
 
 #include "support/sharpness.hpp"
 

@@ -1,4 +1,4 @@
-/// The library as a program uses it: the same motion as `integrate`, views, snapshots, refusals.
+/// The library as used by a program: the same motion as `integrate`, views, snapshots, errors.
 
 #include <gtest/gtest.h>
 

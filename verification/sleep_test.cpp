@@ -1,5 +1,4 @@
-/// What sleeps: distances and parts of meshes in exact numbers, and that what is neglected is within the
-/// bound.
+/// Sleeping parts of bodies: exact distances and parts of meshes, and neglected motions within the bound.
 
 #include "solve/sleep.hpp"
 

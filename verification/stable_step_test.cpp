@@ -1,4 +1,4 @@
-/// The stable step: bounds that hold, and that are worth having.
+/// The stable step: bounds that hold and are sharp enough.
 
 #include "solve/stable_step.hpp"
 

@@ -1,5 +1,5 @@
-/// What results tell besides displacements: stresses of elements and reactions of sets, against closed forms,
-/// against the forces of the nodes, and against what is imposed.
+/// Further results: stresses of elements and reactions of sets, against closed forms, nodal forces and
+/// imposed loads.
 
 #include <gtest/gtest.h>
 

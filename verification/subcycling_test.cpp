@@ -1,5 +1,5 @@
-/// Small elements that take small steps alone: the averaged forces are those of a symmetric operator within
-/// the stable range, so that energy is kept; momentum, frequencies, bits.
+/// Subcycling of small elements: the averaged forces belong to a symmetric operator within the stable range,
+/// so that energy is conserved; momentum, frequencies, bits.
 
 #include "solve/subcycling.hpp"
 

@@ -1,5 +1,5 @@
-/// Tetrahedra against a second account of them, written node by node: both cuts of a hexahedron by hand, and
-/// averaged nodal pressures summed over a mesh.
+/// Tetrahedra against a second implementation, node by node: both cuts of a hexahedron by hand, and averaged
+/// nodal pressures summed over a mesh.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-/// Parts whose meshes do not match, tied: what nodes follow, the same answer as hanging nodes, wrong input.
+/// Tied parts with meshes that do not match: which nodes follow which, the same answer as hanging nodes,
+/// wrong input.
 
 #include <gtest/gtest.h>
 

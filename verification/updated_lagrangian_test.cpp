@@ -1,5 +1,5 @@
-/// The Updated Lagrangian methods: what all of them must share with Total Lagrangian ones, and how far apart
-/// the two may be.
+/// The Updated Lagrangian methods: common properties with Total Lagrangian ones, and how far apart the two
+/// may be.
 
 #include <gtest/gtest.h>
 

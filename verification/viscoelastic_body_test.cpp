@@ -1,4 +1,4 @@
-/// Bodies that relax: every method with a viscoelastic law, from one element to a case file.
+/// Viscoelastic bodies: every method with a viscoelastic law, from one element to a case file.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-/// Every number type speaks the vocabulary of scalar.hpp, and laws and elements computed on it are those of
-/// doubles. What a type has beside the value (lanes, a slope, a tally) is tested where it is used.
+/// Every number type has the functions of scalar.hpp, and laws and elements give the same values on it as on
+/// doubles. Further parts of a type (lanes, a slope, a tally) are tested where they are used.
 
 #include <gtest/gtest.h>
 
