@@ -244,8 +244,8 @@ double distance(const Scene& scene, const NodalField& a, const NodalField& b) {
   return largest_distance(a, b) / largest_imposed(scene);
 }
 
-/// What is asked for is what comes out. Little asked for gives the lowest level, very much the highest.
-/// Balances are told to 1e-8 of the forces.
+/// The error is as requested. A low accuracy gives the lowest level, a very high one the highest. Balances
+/// are accurate to 1e-8 of the forces.
 TEST(Adaptive, answers_are_as_near_as_asked_for) {
   const Scene scene = pressed_block(0.02);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;

@@ -48,7 +48,7 @@ MeshArrays block(bool skewed) {
           {{"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}}};
 }
 
-/// What body b does: its stiffness, its factor of the case's loads, its head's way.
+/// The stiffness of body b, its load factor and the path of its head.
 double stiffness_of(std::size_t b) {
   return 0.5 + 0.1 * static_cast<double>(b);
 }

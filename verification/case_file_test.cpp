@@ -107,9 +107,9 @@ TEST(CaseFile, dynamic_case_is_read_as_written) {
   EXPECT_EQ(c.dynamics.damping, 0.5);
 }
 
-/// What several entries say of a node adds up: uniform motion, a wave over the height of 3 m, and a spin of
-/// the top about its own centre of mass. Lumped masses of a plane of equal elements are symmetric, so that
-/// this is the middle of the top, (0.5, 1); spin (0, 0, 2) moves X by 2 (1 - y, x - 0.5, 0).
+/// Several entries for one node add up: uniform motion, a wave over the height of 3 m, and a spin of the top
+/// about its own centre of mass. Lumped masses of a plane of equal elements are symmetric, so that this is
+/// the middle of the top, (0.5, 1); spin (0, 0, 2) moves X by 2 (1 - y, x - 0.5, 0).
 TEST(CaseFile, initial_velocities_add_up) {
   const TemporaryFolder folder;
   const auto text = with("\"quasi-static\"", "\"dynamic\"") +
@@ -149,8 +149,8 @@ TEST(CaseFile, waves_stand_between_the_ends_of_the_set) {
   }
 }
 
-/// The centre of mass is that of the masses, not of the nodes: two elements of lengths 1 and 3 have theirs
-/// at 2, their nodes at (0 + 1 + 4) / 3.
+/// The centre of mass follows from masses, not from nodes: two elements of lengths 1 and 3 have theirs at 2,
+/// their nodes at (0 + 1 + 4) / 3.
 TEST(CaseFile, spin_is_about_the_centre_of_mass) {
   Mesh mesh = box({2.0, 1.0, 1.0}, {2, 1, 1});
   for (auto& X : mesh.points) X[0] = X[0] < 1.5 ? X[0] : 4.0;
@@ -236,12 +236,12 @@ void for_each_change(const Table& table, const Use& use) {
   std::apply([&](const auto&... parameter) { (with_change(parameter), ...); }, Table::parameters());
 }
 
-/// A case at rest or in motion, whose hash is that of a table in it.
+/// Checks the hash of a static or dynamic case with a table.
 struct HashedCase {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});
 
-  /// Whatever is declared of a table changes the hash if it `decides(name)` and only then. `put(case, table)`
-  /// puts the table into a case.
+  /// A declared parameter of a table changes the hash if and only if `decides(name)`. `put(case, table)` puts
+  /// the table into a case.
   template <class Table, class Put, class Decides>
   void expect(const Table& table, const Put& put, const Decides& decides) const {
     const auto hash = [&](const Table& one) {

@@ -117,8 +117,8 @@ TYPED_TEST(CheckpointTest, motion_goes_on_with_the_same_bits) {
   if constexpr (!is_condensed<TypeParam>) this->expect_same_with_laws(false, 5);
 }
 
-/// A condensed answer comes at once and has no point to go on from. A control that only damps breaks down on
-/// the first levels.
+/// A condensed answer takes one step and has no point from which to resume. A control that only damps breaks
+/// down on the first levels.
 TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
   if constexpr (is_condensed<TypeParam>) {
     this->expect_same(sample_law<NeoHookean>(0.45), true, 0);

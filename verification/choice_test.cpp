@@ -94,8 +94,8 @@ TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
   EXPECT_LT(choices.back().accuracy, 0.01);
 }
 
-/// What the table promises: cheapest first, adaptive rungs a tenth behind; up to the choice all are refused
-/// and told why; the choice is near enough; what costs more was not tried.
+/// The order of the table: cheapest first, adaptive rungs a tenth behind. Rungs before the choice are
+/// rejected with a reason; the choice is close enough; more expensive rungs were not tried.
 TEST(Choose, takes_the_first_that_suffices) {
   const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 0.02});
   ASSERT_TRUE(choice.chosen);
@@ -222,8 +222,8 @@ TEST(Choose, tells_what_real_time_allows) {
   }
 }
 
-/// A motion is chosen for as an answer at rest: by its error at all times, which is a run's own. What
-/// superposes static answers does not move; velocities are resisted by a control that knows nothing else.
+/// Motions are chosen for like static answers: by the error at all times, which equals the error of a run.
+/// Methods that superpose static answers are excluded; controls that resist only velocities are not.
 TEST(Choose, takes_motions) {
   Case description = cantilever(0.1);
   description.quasi_static = false;

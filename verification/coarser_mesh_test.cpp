@@ -131,7 +131,7 @@ TEST(Interpolation, gives_linear_fields_exactly_between_meshes_of_one_body) {
   }
 }
 
-/// Outside of a single element its trilinear form goes on, x y z and x y here; far away is an error.
+/// Outside a single element its trilinear form is extended, here x y z and x y; points far away are an error.
 TEST(Interpolation, refuses_points_far_away) {
   const Mesh cube = box({1.0, 1.0, 1.0}, {1, 1, 1});
   NodalField u;

@@ -76,7 +76,7 @@ double largest_entry(const HourglassBlock& block) {
   return largest;
 }
 
-/// What the tests compress: squeezed bars, sheets, and all round; one that is pulled.
+/// Deformations of the tests: compressed bars and sheets, compression from all sides, and one in tension.
 const std::vector<Vector> states{{1.2, 1.2, 0.7}, {1.4, 1.4, 0.5}, {2.2, 2.2, 0.2}, {1.6, 1.0, 0.6},
                                  {3.0, 1.0, 0.3}, {0.9, 0.9, 0.9}, {1.0, 1.0, 0.8}, {0.7, 0.7, 2.0}};
 

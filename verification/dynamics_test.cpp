@@ -89,9 +89,9 @@ TYPED_TEST(DynamicsTest, one_element_oscillates_with_its_frequency) {
   EXPECT_EQ(motion.time, recorder.frames.back().time);
 }
 
-/// Asked for times between steps of omega dt = 0.3, it tells the motion there: the same curve through a cubic
-/// that is (omega dt)^4 / 384 = 2e-5 of the amplitude off. A straight line would be a hundredth off, a step
-/// late three tenths.
+/// At requested times between steps of omega dt = 0.3, it reports the motion there: the same curve through a
+/// cubic that is (omega dt)^4 / 384 = 2e-5 of the amplitude off. A straight line would be a hundredth off, a
+/// step late three tenths.
 TYPED_TEST(DynamicsTest, tells_displacements_at_any_time) {
   struct Asking final : Observer {
     double next_sample() const override { return told.size() < times.size() ? times[told.size()] : 1e9; }

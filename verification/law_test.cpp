@@ -214,7 +214,7 @@ TYPED_TEST(LawTest, tangent_bound_is_sharp_at_rest) {
   }
 }
 
-/// For all L at once: the smallest eigenvalue of bound - tangent is not negative. From strong compression
+/// For all L together: the smallest eigenvalue of bound - tangent is not negative. From strong compression
 /// (0.3) to strong stretch (3).
 TYPED_TEST(LawTest, tangent_bound_holds) {
   constexpr double stiff = smallest_stiff_stretch<TypeParam>(0.3);

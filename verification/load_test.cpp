@@ -221,7 +221,7 @@ TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
 
 /// A free body under a force that follows the loading curve has the momentum F T / 2 at the end of the ramp,
 /// for the curve's mean is 1/2. Its first and third derivatives are the same at both ends, so that a sum over
-/// n equal steps gives that to n^-6 (Euler and Maclaurin), here 1e-9. A wrong time or factor shows at once.
+/// n equal steps gives that to n^-6 (Euler and Maclaurin), here 1e-9. A wrong time or factor shows clearly.
 TEST(Load, force_gives_a_free_body_its_momentum) {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   description.quasi_static = false;

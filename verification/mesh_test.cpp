@@ -71,7 +71,7 @@ void expect_closed(const Mesh& mesh) {
   }
 }
 
-/// What holds for every mesh that a generator makes.
+/// Properties of every generated mesh.
 void expect_sound(const Mesh& mesh) {
   ASSERT_FALSE(mesh.cells.empty());
   EXPECT_NO_THROW(require_positive_jacobians(mesh));

@@ -93,7 +93,7 @@ Scene short_column(const AnyLaw& law) {
   return make_scene(description, mesh, sets);
 }
 
-/// What becomes of a method on a scene, with errors up to `limit` from the golden.
+/// The outcome of a method on a scene, with errors up to `limit` from the golden.
 Finding found_on(const Scene& scene, std::string_view method, const NodalField& golden, double limit) {
   Observer silent;
   try {
@@ -106,7 +106,7 @@ Finding found_on(const Scene& scene, std::string_view method, const NodalField& 
   }
 }
 
-/// Every pair comes to rest on it, and is good or fails as its method is known to.
+/// Every pair finds its static equilibrium, and is good or fails as expected of its method.
 TEST(Pairs, every_control_runs_the_column_with_every_law) {
   for_each_type(Laws{}, []<class Law>() {
     const Scene scene = short_column(sample_law<Law>(0.45));

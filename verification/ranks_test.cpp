@@ -30,7 +30,7 @@ Scene block(const AnyLaw& law, bool quasi_static, const std::array<int, 3>& elem
   return make_scene(block_case(law, quasi_static, elements));
 }
 
-/// The bits of everything that a run tells.
+/// The bits of everything that a run reports.
 std::vector<std::uint64_t> told_by(const Scene& scene, const MethodChoice& choice) {
   KeepingRecorder told;
   const Model model(scene, choice);

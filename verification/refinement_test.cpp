@@ -20,7 +20,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// A scene on a refined mesh, held where its description says: sets are those of the refined mesh.
+/// A scene on a refined mesh, held as described, with the sets of the refined mesh.
 Scene scene_on(const RefinedMesh& refined, const Case& description, const NodeSets& sets) {
   Scene scene = make_scene(description, refined.mesh(), sets);
   scene.ties = to_free_nodes(refined.ties());

@@ -49,7 +49,7 @@ std::optional<Problem> enlarged(Problem problem) {
   return problem;
 }
 
-/// Everything that a run tells.
+/// Everything that a run reports.
 struct Told {
   std::string words;
   std::vector<std::uint64_t> bits;

@@ -57,7 +57,7 @@ class CellTest : public ::testing::Test {
   Answers answers;
 };
 
-/// The golden's own element is good wherever it comes to rest: the two runs differ in nothing.
+/// The golden's own element is good wherever it finds an equilibrium: the two runs are identical.
 TEST_F(CellTest, goldens_own_element_is_the_golden) {
   for (const double nu : {0.25, 0.499}) {
     const Cell c = cell("load,nu", cantilever(), "tl-mean-dilatation", 1.5, nu);

@@ -148,9 +148,9 @@ TYPED_TEST(StepperTest, relaxation_gives_the_same_bits_for_any_number_of_threads
   }
 }
 
-/// In single precision the residual stops falling at the rounding of the forces. That ends the run, is told,
-/// and the answer is good for as many digits as single precision gives: rounding 6e-8 in the forces of an
-/// element, times its condition K / mu = 50 and a few hundred for the block.
+/// In single precision the residual stops falling at the rounding of the forces. The run then ends and
+/// reports it, and the answer is good for as many digits as single precision gives: rounding 6e-8 in the
+/// forces of an element, times its condition K / mu = 50 and a few hundred for the block.
 TYPED_TEST(StepperTest, single_precision_ends_where_its_rounding_begins) {
   if (zero_energy_modes<TypeParam>() > 6) return;
   const Scene scene = driven_block({0.04, 0.0, 0.03});
@@ -358,7 +358,7 @@ Scene bent_bar(double size, double modulus, double density, const Tensor<double>
 constexpr double modulus = 3000.0;
 constexpr double density = 1000.0;
 
-/// What a scene answers: fields of displacement and velocity, and how many steps the motion took.
+/// The answer of a scene: fields of displacement and velocity, and the number of steps of the motion.
 struct Answers {
   std::vector<NodalField> fields;
   long steps = 0;

@@ -346,7 +346,7 @@ TEST(Subcycling, of_one_small_step_has_the_bits_of_none) {
   }
 }
 
-/// A run that goes on from a checkpoint has the same bits, whatever number of small steps it had there.
+/// A resumed run has the same bits, whatever its number of small steps at the checkpoint.
 TEST(Subcycling, goes_on_from_a_checkpoint) {
   struct Keeper final : Observer {
     void resumable(const std::function<Checkpoint()>& checkpoint) override {
@@ -362,7 +362,7 @@ TEST(Subcycling, goes_on_from_a_checkpoint) {
   EXPECT_EQ(integrate(model, silent, &keeper.kept).u, u);
 }
 
-/// What it cannot average is refused, by name.
+/// Features that it cannot average are rejected by name.
 TEST(Subcycling, refuses_what_depends_on_more_than_displacements) {
   const RefinedMesh refined = bar(6);
   Observer silent;

@@ -371,7 +371,7 @@ TEST(LoadCurve, is_linear_between_its_points) {
   EXPECT_EQ(LoadCurve{}.at(5.0, 0.3), 0.3);
 }
 
-/// At rest the loads are those of the end of their curves.
+/// Static answers use the loads at the end of their curves.
 TEST(LoadCurve, a_quasi_static_answer_is_that_of_its_end) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});

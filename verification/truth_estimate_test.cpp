@@ -100,7 +100,7 @@ TEST(LargestShare, takes_the_fewest_elements) {
   EXPECT_TRUE(largest_share({0, 0}, 0.5).empty());
 }
 
-/// What is refined in steps is what the case file says in one go, with its sets, materials and ties.
+/// Stepwise refinement gives the same scene as the case file, with its sets, materials and ties.
 TEST(Refined, is_the_case_with_one_more_rule) {
   const CaseOnMesh first = split(two_layers(), {1, 6});
   const Scene once = make_scene(first), twice = make_scene(split(first, {4}));
@@ -205,7 +205,7 @@ TEST(Relax, starts_from_the_answer_on_the_mesh_before) {
 }
 
 /// Between half and twice the error against the stored truth, largest and mean, for an accurate method and a
-/// poor one. The truths' own errors are within a third of the errors told here.
+/// poor one. The truths' own errors are within a third of these errors.
 TEST(TruthEstimate, is_about_the_error) {
   for (const auto* name : {"column", "twist", "stiff-core", "pressed-beam", "ellipsoid-touch"}) {
     const CaseOnMesh problem = case_named(name);

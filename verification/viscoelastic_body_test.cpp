@@ -277,7 +277,7 @@ Scene bent_block(const AnyLaw& law) {
   return make_scene(description, mesh, sets);
 }
 
-/// Where time plays no part forces and energies are those of the elastic body with the relaxed shear modulus.
+/// Without time, forces and energies equal the elastic body's with the relaxed shear modulus.
 TYPED_TEST(ViscoelasticBodyTest, without_time_it_is_the_elastic_body_with_the_relaxed_shear_modulus) {
   if constexpr (comparable<TypeParam>) {
     const Law law = sample_law<Law>(0.45);
