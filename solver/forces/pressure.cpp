@@ -43,8 +43,8 @@ class FacePressures final : public BodyForce {
   }
 
   /// A pressure p on a face with edges along xi and eta has the tangent p times the integral of N_I (dN_J/dxi
-  /// x dx/deta - ...), whose norm is at most p times half the sum of two edges, as those of the integrals of
-  /// N_I dN_J/dxi are 1 and |dx/deta| is at most half the longer edge.
+  /// x dx/deta - ...), whose norm is at most p times half the sum of two edges, because the norms of the
+  /// integrals of N_I dN_J/dxi are 1 and |dx/deta| is at most half the longer edge.
   void add_rates(Factors largest, const std::vector<double>& masses,
                  std::vector<LoadRates>& rates) const override {
     const double most = std::abs(value_) * largest[curve_];

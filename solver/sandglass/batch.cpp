@@ -163,7 +163,7 @@ class Batch<Real>::Parts {
     Numbers from, to;    // m, of each constraint, at the start and the end of a frame
     Number factor_from;  // of loads
     Number factor_to;
-    Number stiffness;  // over that of the case
+    Number stiffness;  // over the case's
   };
 
   /// A step of all bodies.

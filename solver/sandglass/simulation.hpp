@@ -108,8 +108,8 @@ class Simulation {
   /// The row of each node in views. Renumber your drawing once, and no frame needs a copy.
   std::span<const int> row_of_node() const;
 
-  /// The force (N) that holds or drives a set of nodes: the sum over its driven components, without what
-  /// accelerates the masses of the nodes themselves. Throws InputError like `move`.
+  /// The force (N) that holds or drives a set of nodes: the sum over its driven components, without the
+  /// inertia of the nodes themselves. Throws InputError like `move`.
   std::array<double, 3> reaction(const std::string& set) const;
 
   // The mesh, in its own numbering.

@@ -222,7 +222,7 @@ class CentralDifference {
     return true;
   }
 
-  /// Velocities (m/s) at the time of the displacements; those of driven nodes follow from their paths.
+  /// Velocities (m/s) at the time of the displacements; driven nodes have the velocities of their paths.
   NodalField velocities() const {
     NodalField v = leapfrog_.free_velocities();
     for (const Constraint& constraint : model_.scene().constraints) {

@@ -22,8 +22,8 @@ class Equilibrium {
   Equilibrium(const Model& model, const InternalForce<Real>& elements)
       : mixed_(model, elements), acceleration_(blocks()), depends_on_path_(elements.needs_increment()) {}
 
-  /// The body; its forces and displacements are those of the last evaluation. Callers that move it must set
-  /// its increment.
+  /// The body, with the forces and displacements of the last evaluation. Callers that move it must set its
+  /// increment.
   Body<Real>& body() { return mixed_.body(); }
   const Body<Real>& body() const { return mixed_.body(); }
 

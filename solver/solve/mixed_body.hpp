@@ -19,7 +19,7 @@ class MixedBody {
   /// The undeformed body of the model, linearized; `weigh` must follow.
   MixedBody(const Model& model, const InternalForce<Real>& elements);
 
-  /// The body; its forces are those of the last evaluation.
+  /// The body, with the forces of the last evaluation.
   Body<Real>& body() { return body_; }
   const Body<Real>& body() const { return body_; }
 

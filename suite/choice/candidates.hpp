@@ -6,7 +6,7 @@
 
 #include "assembly/method_entry.hpp"
 
-/// What a method contributes to the ladder.
+/// The rungs that a method adds to the ladder.
 namespace sandglass {
 
 /// Further strengths of the hourglass control, as multiples of `auto`; the best one for a scene is in this
@@ -20,7 +20,7 @@ inline constexpr std::array accuracy_shares{4.0, 2.0, 1.0, 0.5, 0.25};
 /// Why a method is not a candidate for a static answer, or else for a motion; empty if it is.
 std::string_view unfit(const MethodEntry& method, bool at_rest);
 
-/// The choices that a method contributes in the precision of `plain`.
+/// The choices that a method adds in the precision of `plain`.
 std::vector<MethodChoice> choices_of(const MethodEntry& method, const MethodChoice& plain, const AnyLaw& law,
                                      double tolerance);
 

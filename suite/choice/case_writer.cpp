@@ -138,7 +138,7 @@ std::string case_text(const Case& description, const MethodChoice& choice, const
   root.insert_or_assign("method", method_table(choice));
   return fmt::format(
       "# Written by `sandglass choose` from {}; its comments are not kept here.\n"
-      "# [method] is what `sandglass run` takes for this case.\n{}",
+      "# `sandglass run` uses [method] for this case.\n{}",
       description.file.filename().string(), toml_text(root));
 }
 

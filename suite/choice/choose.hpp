@@ -45,7 +45,7 @@ struct MeshAttempt {
 struct Choice {
   Demand demand;
   Reference reference;
-  std::deque<LadderMesh> meshes;           ///< those of rungs
+  std::deque<LadderMesh> meshes;           ///< the meshes of rungs
   std::vector<MeshAttempt> others = {};    ///< all other meshes that were tried
   std::vector<Attempt> attempts = {};      ///< from the cheapest to the costliest; those without a cost last
   std::optional<std::size_t> chosen = {};  ///< index into the attempts; none: nothing suffices
