@@ -275,7 +275,7 @@ TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing
   EXPECT_LT(largest_distance(force(here), force(far)), tolerance(here, 1.2e-7));
 }
 
-/// A number that would be ignored is refused.
+/// A number that would be ignored is rejected.
 TYPED_TEST(AssemblyTest, kappa_is_taken_or_refused) {
   const MethodChoice choice{std::string(TypeParam::name), 0.037};
   if (TypeParam::Hourglass::traits.takes_kappa) {

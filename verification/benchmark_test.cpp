@@ -135,7 +135,7 @@ TEST(Measure, takes_as_many_steps_in_every_state) {
   EXPECT_EQ(candidate.steps_in_state[1], candidate.steps_in_state[2]);
 }
 
-/// Tests that nothing is allocated would tell nothing were calls not counted.
+/// Tests of allocations would prove nothing if calls were not counted.
 TEST(Allocations, are_counted_with_any_alignment) {
   constexpr std::align_val_t alignment{128};
   const long before = allocations();

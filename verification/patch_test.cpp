@@ -114,7 +114,7 @@ class PatchTest : public ::testing::Test {
     const auto P = stress(H);
     const double tolerance = 1e-8 * largest_entry(P);
     for (const auto& found : stresses(scene, answer.u)) EXPECT_LT(largest_entry(found - P), tolerance);
-    // What results tell: the Cauchy stress, of small strains the stress itself.
+    // Results have the Cauchy stress; at small strains, the stress itself.
     const Tensor<double> F = identity<double>() + H;
     const Tensor<double> sigma =
         is_linear<typename Pair::Method> ? P : (1.0 / determinant(F)) * (P * transpose(F));

@@ -192,7 +192,7 @@ TEST(Outcome, says_that_elements_are_inverted) {
 }
 
 /// The residual must fall below the tolerance; to reach it is not enough. With the residual of an answer for
-/// tolerance the search goes the same way, bit by bit, and must go on from there.
+/// tolerance the search is the same, bit by bit, and must continue from there.
 TYPED_TEST(StepperTest, residual_at_the_tolerance_is_not_yet_rest) {
   Scene scene = driven_block({0.04, 0.0, 0.03});
   Observer silent;
@@ -223,7 +223,7 @@ TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
   EXPECT_NO_THROW(integrate(Model(scene, this->method()), silent));
 }
 
-/// Compression stiffens: a step that was stable at the start is refused on the way, with step and element. A
+/// Compression stiffens: a step that was stable at the start is rejected later, with step and element. A
 /// linear method does not know that, and keeps its step.
 TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
   Scene scene = driven_block({0.0, 0.0, -0.1}, 0.3);

@@ -121,7 +121,7 @@ class DampedCube {
  private:
   using Complex = std::complex<double>;
 
-  /// All at once, by the method of Durand and Kerner.
+  /// All together, by the method of Durand and Kerner.
   void find_roots() {
     const double size = std::pow(D_[0] / D_[4], 0.25);
     for (std::size_t j = 0; j < 4; ++j)

@@ -249,7 +249,7 @@ TYPED_TEST(ViscoelasticTest, kirchhoff_stress_is_that_of_the_piola_stress) {
   }
 }
 
-/// The largest stiffness of a further step of any length, from anywhere: below the bound for all L at once.
+/// The largest stiffness of a further step of any length, from any state: below the bound for all L together.
 TYPED_TEST(ViscoelasticTest, tangent_bound_holds) {
   const auto law = this->law();
   for (int n = 0; n < 300; ++n) {
