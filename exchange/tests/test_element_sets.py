@@ -8,7 +8,7 @@ from meshes import CELLS, CUBES, POINTS, write
 
 from common.program import CASES
 from common.result_file import last_displacement
-from exchange import abaqus_file, convert, hdf5_file, vtu_file
+from exchange import abaqus_file, abaqus_writer, convert, hdf5_file, vtu_file
 from exchange.foreign_mesh import HexMesh, to_hexahedra
 
 GMSH = """\
@@ -62,7 +62,7 @@ def test_cell_arrays(tmp_path):
 def test_what_is_written_is_read(tmp_path):
     mesh = HexMesh(POINTS, CELLS, {"foot": np.arange(4)}, {"upper": np.array([1])})
     vtu_file.write(tmp_path / "a.vtu", mesh, "vtu")
-    (tmp_path / "a.inp").write_text("\n".join(abaqus_file.mesh_lines(mesh)))
+    (tmp_path / "a.inp").write_text("\n".join(abaqus_writer.mesh_lines(mesh)))
     for path, read in ((tmp_path / "a.vtu", vtu_file.read), (tmp_path / "a.inp", abaqus_file.read)):
         again = to_hexahedra(read(path), path, print)
         assert list(again.element_sets["upper"]) == [1] and list(again.sets["foot"]) == [0, 1, 2, 3]

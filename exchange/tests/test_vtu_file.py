@@ -1,4 +1,4 @@
-"""VTK's unstructured grids in all encodings of meshio, and files that it would misread."""
+"""VTK's unstructured grids as meshio and VTK write them, and damaged ones."""
 
 import base64
 
@@ -7,6 +7,8 @@ import meshio
 import numpy as np
 import pytest
 from meshes import CELLS, POINTS, Refused, read, run, write
+
+from common.hexahedron import LEXICOGRAPHIC
 
 SETS = {
     "foot": np.array([1] * 4 + [0] * 8, dtype=np.uint8),
@@ -29,11 +31,19 @@ def test_encodings(tmp_path, capsys, options):
     assert sets == {"foot": [0, 1, 2, 3], "Fuß 2": [11]}
 
 
-def test_cells_that_the_library_leaves_out_are_refused(tmp_path, capsys):
+def test_voxels_have_the_corners_of_an_image(tmp_path, capsys):
+    path = write(tmp_path / "a.vtu", cells=CELLS[:, LEXICOGRAPHIC], binary=False)
+    before, types = path.read_text().split('Name="types"')
+    path.write_text(before + 'Name="types"' + types.replace("12\n12", "11\n11"))
+    points, cells, _, warnings = read(capsys, path)
+    assert (points == POINTS).all() and (cells == CELLS).all() and not warnings
+
+
+def test_a_kind_of_cells_that_has_no_name_here_is_refused_by_number(tmp_path, capsys):
     path = write(tmp_path / "a.vtu", binary=False)
     before, types = path.read_text().split('Name="types"')
-    path.write_text(before + 'Name="types"' + types.replace("12\n12", "12\n11"))
-    with pytest.raises(Refused, match="cells that meshio cannot handle .type 11"):
+    path.write_text(before + 'Name="types"' + types.replace("12\n12", "12\n42"))
+    with pytest.raises(Refused, match="1 of type 'VTK's type 42', besides 1 hex"):
         read(capsys, path)
 
 
