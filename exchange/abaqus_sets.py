@@ -36,20 +36,21 @@ class Resolver:
                 self.known[id(part), kind] = np.unique(np.concatenate([NONE, *ids]))
         self.blocks = [(b, first[id(part)]) for part in parts for b in part.blocks]
 
-    def members(self, part, kind, key, place):
-        """Sorted numbers of a set. Raises InputError where one does not exist."""
-        own, name = part, key
+    def members(self, part, kind, given, place):
+        """Sorted numbers of a set by its name. Raises InputError where one does not exist."""
+        own, key = part, given.upper()
+        name = key
         if key not in own.sets[kind] and "." in key:
             scope, name = key.split(".", 1)
             own = self.parts.get(scope, part)
         at = id(own), kind, name
         if at in self.found:
             if self.found[at] is None:
-                raise InputError(f"{place}: set '{key}' is a member of itself")
+                raise InputError(f"{place}: set '{given}' is a member of itself")
             return self.found[at]
         if name not in own.sets[kind]:
             what = "nodes" if kind == "NSET" else "elements"
-            raise InputError(f"{place}: '{key}' is not a number, and no set of {what} of this name")
+            raise InputError(f"{place}: set '{given}' of {what} is not defined in the file")
         self.found[at] = None
         spelled, entries = own.sets[kind][name]
         found = [self._entry(own, kind, spelled, *entry) for entry in entries]
@@ -59,11 +60,11 @@ class Resolver:
     def _entry(self, part, kind, spelled, place, instance, entry):
         own = self.parts[instance] if instance else part
         if isinstance(entry, tuple):
-            return self.nodes_of(self.members(own, "ELSET", entry[1].upper(), place))
+            return self.nodes_of(self.members(own, "ELSET", entry[1], place))
         if isinstance(entry, str):
             scope, dot, last = entry.upper().rpartition(".")
-            if not (dot and last.isdigit() and scope in self.parts):
-                return self.members(own, kind, entry.upper(), place)
+            if not (dot and last.isdecimal() and len(last) < 19 and scope in self.parts):
+                return self.members(own, kind, entry, place)
             own, entry = self.parts[scope], np.array([int(last)])
         known = self.known[id(own), kind]
         if isinstance(entry, range):  # of what exists

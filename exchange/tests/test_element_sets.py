@@ -98,6 +98,17 @@ def test_nifti_has_the_place_of_its_voxels(tmp_path, flip):
     assert np.allclose(middles, places / 1000, rtol=0, atol=1e-12)
 
 
+def test_a_scale_in_the_header_leaves_whole_labels(tmp_path):
+    """Times .1 in float, 10 is 1.00000001."""
+    nibabel = pytest.importorskip("nibabel")
+    nibabel.save(nibabel.Nifti1Image(LABELS * np.uint8(10), np.eye(4)), tmp_path / "a.nii")
+    data = bytearray((tmp_path / "a.nii").read_bytes())
+    data[112:120] = np.array([0.1, 0.0], "<f4").tobytes()  # scl_slope, scl_inter
+    (tmp_path / "a.nii").write_bytes(data)
+    assert (nibabel.load(tmp_path / "a.nii").get_fdata() != LABELS).any()
+    assert element_sets(tmp_path / "a.nii") == {"label-4": [0, 1, 2, 3], "label-9": [4]}
+
+
 @pytest.mark.parametrize(
     "labels, options, told",
     [
