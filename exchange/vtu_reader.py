@@ -1,7 +1,7 @@
 """Reads VTK's unstructured grids (.vtu): every version, encoding and compressor.
 
-Neither meshio nor VTK reads them for us: meshio 7.0 knows versions to 1.0, no voxels and no lz4;
-VTK 9.1 is ended by signals on damaged files, and its package conflicts with Debian's ParaView.
+Neither meshio nor VTK reads them for us: meshio knows versions to 1.0, no voxels and no lz4; VTK 9.1
+aborts or hangs on some damaged files, and its package conflicts with Debian's ParaView.
 """
 
 import base64

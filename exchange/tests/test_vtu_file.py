@@ -60,7 +60,6 @@ def test_what_vtk_writes(tmp_path, capsys, version, compressor):
         writer.SetFileName(str(tmp_path / "a.vtu"))
         writer.Write()
         data = (tmp_path / "a.vtu").read_bytes()
-        assert data.count(b' version="') == 2
         head, _, tail = data.partition(b'UnstructuredGrid" version="')
         new = head + b'UnstructuredGrid" version="' + version.encode() + tail[tail.index(b'"') :]
         (tmp_path / "a.vtu").write_bytes(new)
