@@ -1,4 +1,4 @@
-"""Reads and writes Abaqus and CalculiX input files (.inp): the mesh and its sets.
+"""Reads Abaqus and CalculiX input files (.inp): the mesh and its sets.
 
 meshio is not used: it ends a list of nodes at a comment, lets a second *NODE, or a second *NSET of
 the same name, replace the first, drops sets made of sets, mixes up the blocks of element sets, and
@@ -10,164 +10,283 @@ import re
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
+from exchange.abaqus_sets import NONE, Part, Resolver
+from exchange.foreign_mesh import HEXAHEDRON, SCOPE, Block, ForeignMesh, content
 
 GENERATING = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM")
 VOLUME = re.compile(r"(A?C|D?C|Q|G|GK|COH|E)3D\d|SC[68]R|CSS8|C3D")
 BRICK = re.compile(r"C3D8[A-Z]*")
+# The digits of a type are the number of its nodes, except those of beams and of one shell.
+NODES = re.compile(r"(?!V?U\d)[A-Z]+?(?:[23]D)?(\d+)")
+EXCEPTIONS = {"21": 2, "22": 3, "23": 2, "31": 2, "32": 3, "33": 2, "65": 6}
 
 
 def read(path):
-    """The ForeignMesh of an .inp file: all sets become node sets, sets of elements also element
-    sets.
+    """The ForeignMesh of an .inp file: sets of nodes and of elements become node sets, those of
+    elements element sets as well; of the same name in the same part, the set of nodes counts.
 
-    As in Abaqus, names of sets are not case-sensitive; the first spelling is kept. Raises
-    InputError naming the line.
+    Parts are read where *INSTANCE places them. As in Abaqus, names are not case-sensitive; the
+    first spelling is kept. Raises InputError naming the line.
     """
     reader = _Reader()
-    reader.read(path, 0)
+    reader.read(path, 0, None)
     return reader.mesh(path)
 
 
-class _Sets:
-    """Sets of numbers by name; several keywords may contribute to the same set."""
+class _Data:
+    """The data lines of a keyword: raw lines, of which the first is line `first` of a file."""
 
-    def __init__(self):
-        self.spelled, self.members = {}, {}
+    def __init__(self, path, first, raw):
+        self.path, self.first, self.raw = path, first, raw
+        self.lines = [line for line in raw if line.strip() and line.lstrip()[:2] != "**"]
 
-    def add(self, name, numbers):
-        """Adds numbers to the set of this name."""
-        self.spelled.setdefault(name.upper(), name)
-        self.members.setdefault(name.upper(), set()).update(numbers)
+    def fields(self):
+        """(place, fields) of each line; an empty field after a last comma counts."""
+        for number, line in enumerate(self.raw, self.first):
+            if line.strip() and line.lstrip()[:2] != "**":
+                yield f"{self.path}:{number}", [field.strip() for field in line.split(",")]
+
+    def numbers(self, kind, read):
+        """All numbers (n,), and where lines end in them. read: reads a field of a place."""
+        lines = [line.rstrip(", \t") for line in self.lines]
+        ends = np.cumsum([line.count(",") + 1 for line in lines], dtype=np.int64)
+        text = ",".join(lines)
+        if lines and not text.translate(_PLAIN):
+            found = np.fromstring(text, kind, sep=" , ") if _separated(text) else NONE
+            if len(found) == ends[-1] and (abs(found) < 2**53).all():
+                return found, ends
+        rows = []
+        for place, fields in self.fields():
+            while fields and not fields[-1]:
+                fields.pop()
+            rows.append([read(place, field) for field in fields])
+        ends = np.cumsum([len(row) for row in rows], dtype=np.int64)
+        return np.array([n for row in rows for n in row], dtype=kind), ends
+
+    def place(self, line):
+        """Where a line of `lines` is."""
+        return list(self.fields())[line][0]
+
+
+_PLAIN = str.maketrans("", "", "0123456789+-.eE, \t")
+
+
+def _separated(text):
+    """Whether no two numbers lack a comma between them."""
+    return not re.search(r"[^\s,][ \t]+[^\s,]", text)
 
 
 class _Reader:
     def __init__(self):
-        self.ids, self.points, self.blocks = [], [], []
-        self.nodes, self.elements = _Sets(), _Sets()
-        self.instances = 0
+        self.model = self.part = Part("")
+        self.parts, self.instances = {}, []
+        self.assembly = Part("Assembly")
 
-    def read(self, path, depth):
-        """Reads all keywords of a file and of the files it includes. Raises InputError."""
-        try:
-            text = path.read_text(encoding="utf-8", errors="replace")
-        except OSError as error:
-            raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-        for keyword, options, lines, where in _keywords(path, text):
+    def read(self, path, depth, before):
+        """Reads all keywords of a file and of the files it includes. before: the keyword and the
+        options that the first data lines belong to, or None. Raises InputError."""
+        for keyword, options, data, where in _keywords(path, before):
             if keyword == "INCLUDE":
                 if depth > 9 or not options.get("INPUT"):
                     raise InputError(f"{where}: *INCLUDE needs INPUT=FILE, nested at most ten deep")
-                self.read(path.parent / options["INPUT"], depth + 1)
-            elif keyword in GENERATING:
+                self.read(path.parent / options["INPUT"], depth + 1, before)
+                continue
+            before = keyword, options
+            if file := options.get("INPUT"):
+                if data.lines:
+                    raise InputError(f"{where}: *{keyword} has both INPUT and data lines")
+                other = path.parent / file
+                data = _Data(other, 1, _lines(other))
+            if keyword in GENERATING:
                 raise InputError(
                     f"{where}: *{keyword} is not supported; write all nodes and elements"
                 )
-            elif keyword == "INSTANCE":
-                self.instances += 1
-                if self.instances > 1 or lines:
-                    raise InputError(
-                        f"{where}: *INSTANCE: only one is allowed, neither translated nor rotated"
-                    )
-            elif keyword == "NODE":
-                self._read_nodes(options, lines, where)
-            elif keyword == "ELEMENT":
-                self._read_elements(options, lines, where)
-            elif keyword in ("NSET", "ELSET"):
-                self._read_set(keyword, options, lines, where)
+            if read := getattr(self, "_read_" + keyword.lower().replace(" ", "_"), None):
+                read(options, data, where)
 
-    def _read_nodes(self, options, lines, where):
+    def _read_part(self, options, data, where):
+        self.part = self.parts[options.get("NAME", "").upper()] = Part(options.get("NAME", ""))
+
+    def _read_assembly(self, options, data, where):
+        self.part = self.assembly
+        self.assembly.name = options.get("NAME") or "Assembly"
+
+    def _read_instance(self, options, data, where):
+        name, source = options.get("NAME", ""), self.parts.get(options.get("PART", "").upper())
+        if not name or source is None:
+            known = ", ".join(part.name for part in self.parts.values()) or "none"
+            raise InputError(f"{where}: *INSTANCE needs NAME= and PART=, of {known}")
+        if name.upper() in [part.name.upper() for part in self.instances]:
+            raise InputError(f"{where}: *INSTANCE: '{name}' is given twice; names must differ")
+        rows = [[_real(at, field) for field in fields if field] for at, fields in data.fields()]
+        if [len(row) for row in rows] not in ([], [3], [3, 7]):
+            raise InputError(
+                f"{where}: *INSTANCE: a line of three numbers (translation) and one of seven "
+                "(two points of an axis, an angle) are allowed"
+            )
+        self.part = Part(name)
+        for key in ("ids", "blocks"):
+            setattr(self.part, key, list(getattr(source, key)))
+        self.part.points = [_placed(points, rows, where) for points in source.points]
+        self.part.sets = {
+            kind: {key: (spelled, list(entries)) for key, (spelled, entries) in sets.items()}
+            for kind, sets in source.sets.items()
+        }
+        self.instances.append(self.part)
+
+    def _read_end_part(self, options, data, where):
+        self.part = self.model
+
+    _read_end_assembly = _read_end_part
+
+    def _read_end_instance(self, options, data, where):
+        self.part = self.assembly
+
+    def _read_node(self, options, data, where):
         if options.get("SYSTEM", "R").upper() != "R":
             raise InputError(f"{where}: *NODE, SYSTEM: rectangular coordinates are required")
-        for place, fields in lines:
-            if not 3 <= len(fields) <= 7:
-                raise InputError(f"{place}: a node needs an id and three coordinates")
-            self.ids.append(_whole(place, fields[0]))
-            xyz = [_real(place, field) for field in fields[1:4]]
-            self.points.append(xyz + [0.0] * (3 - len(xyz)))
+        table, ends = data.numbers(float, _real)
+        if (np.diff(ends, prepend=0) == 4).all() and (table[::4] == table[::4].astype(int)).all():
+            table = table.reshape(-1, 4)
+            ids, points = table[:, 0].astype(np.int64), table[:, 1:]
+        else:
+            ids, points = [], []
+            for place, fields in data.fields():
+                if not 3 <= len(fields) <= 7:
+                    raise InputError(f"{place}: a node needs an id and three coordinates")
+                ids.append(_whole(place, fields[0]))
+                xyz = [_real(place, field) for field in fields[1:4]]
+                points.append(xyz + [0.0] * (3 - len(xyz)))
+        self.part.ids.append(np.array(ids, dtype=np.int64))
+        self.part.points.append(np.array(points).reshape(-1, 3))
         if name := options.get("NSET"):
-            self.nodes.add(name, self.ids[len(self.ids) - len(lines) :])
+            self.part.add("NSET", name, where, self.part.ids[-1])
 
-    def _read_elements(self, options, lines, where):
+    def _read_element(self, options, data, where):
         kind = options.get("TYPE", "").upper()
         if not kind:
             raise InputError(f"{where}: *ELEMENT needs TYPE=")
-        if BRICK.fullmatch(kind):
-            numbers = [_whole(place, field) for place, fields in lines for field in fields if field]
-            if len(numbers) % 9:
-                raise InputError(f"{where}: {kind} needs an id and eight nodes for each element")
-            rows = np.array(numbers, dtype=np.int64).reshape(-1, 9)
-            self._add(Block(HEXAHEDRON, 3, rows[:, 0], rows[:, 1:]), options)
-            return
-        elements, alike = [[]], {}
-        for place, fields in lines:
-            elements[-1] += [_whole(place, field) for field in fields if field]
-            if fields[-1]:  # a line that ends with a comma is continued
-                elements.append([])
-        for element in filter(None, elements):
-            alike.setdefault(len(element), []).append(element)
-        for rows in alike.values():
-            table = np.array(rows, dtype=np.int64)
-            dimension = 3 if VOLUME.match(kind) else 2
-            self._add(Block(kind, dimension, table[:, 0], table[:, 1:]), options)
+        brick, digits = BRICK.fullmatch(kind), NODES.match(kind)
+        numbers, ends = data.numbers(np.int64, _whole)
+        width = 1 + EXCEPTIONS.get(digits[1], int(digits[1])) if digits else 0
+        starts = np.concatenate([[0], ends[:-1]])
+        wanted = np.arange(0, len(numbers), width) if width else starts
+        continued = [line.rstrip()[-1] == "," for line in data.lines]
+        if width and len(numbers) % width == 0 and np.isin(wanted, starts).all():
+            rows = [numbers.reshape(-1, width)]
+        elif brick:
+            # The first line at which no element begins, or after which one is too short.
+            lost = np.setdiff1d(wanted, starts)
+            at = max(0, int(np.searchsorted(ends, lost[0])) if len(lost) else len(ends) - 1)
+            place = data.place(at)
+            raise InputError(f"{place}: {kind} needs an id and eight nodes for each element")
+        elif any(continued):
+            place = data.place(continued.index(True))
+            raise InputError(
+                f"{place}: ends with a comma; where its element ends is unknown for type {kind}"
+            )
+        else:
+            alike = {}
+            for row in np.split(numbers, ends[:-1]):
+                alike.setdefault(len(row), []).append(row)
+            rows = [np.array(some) for some in alike.values()]
+        dimension = 3 if VOLUME.match(kind) else 2
+        for table in rows if data.lines else ():
+            block = Block(
+                HEXAHEDRON if brick else kind, dimension, table[:, 0].copy(), table[:, 1:]
+            )
+            self.part.blocks.append(block)
+            if name := options.get("ELSET"):
+                self.part.add("ELSET", name, where, block.ids)
 
-    def _add(self, block, options):
-        self.blocks.append(block)
-        if name := options.get("ELSET"):
-            self.elements.add(name, block.ids.tolist())
-
-    def _read_set(self, keyword, options, lines, where):
-        own = self.nodes if keyword == "NSET" else self.elements
-        name = options.get(keyword)
+    def _read_nset(self, options, data, where, kind="NSET"):
+        name, instance = options.get(kind), options.get("INSTANCE", "")
         if not name:
-            raise InputError(f"{where}: *{keyword} needs a name: {keyword}=NAME")
-        own.add(name, ())
-        if keyword == "NSET" and options.get("ELSET"):
-            own.add(name, self._nodes_of(self._members(where, self.elements, options["ELSET"])))
-        for place, fields in lines:
+            raise InputError(f"{where}: *{kind} needs a name: {kind}=NAME")
+        # In the assembly, what belongs to an instance is `instance.name`.
+        if instance and instance.upper() not in [part.name.upper() for part in self.instances]:
+            raise InputError(f"{where}: *{kind}: there is no instance '{instance}' before it")
+        self.part.add(kind, name, where)
+        if kind == "NSET" and options.get("ELSET"):
+            self.part.add(kind, name, where, ("ELSET", options["ELSET"]), instance=instance)
+        for place, fields in data.fields():
             fields = [field for field in fields if field]
             if "GENERATE" in options:
                 ends = [_whole(place, field) for field in fields]
                 step = ends[2] if len(ends) == 3 else 1
                 if not 2 <= len(ends) <= 3 or step < 1 or ends[1] < ends[0]:
                     raise InputError(f"{place}: GENERATE needs first, last, and a positive step")
-                if (ends[1] - ends[0]) // step >= 10**8:
-                    raise InputError(f"{place}: GENERATE gives more than 100 million numbers")
-                own.add(name, range(ends[0], ends[1] + 1, step))
-                continue
-            for field in fields:
-                known = field.upper() in own.members and not field.lstrip("+-").isdigit()
-                own.add(name, own.members[field.upper()] if known else [_whole(place, field)])
+                entries = [range(ends[0], ends[1] + 1, step)]
+            elif all(field.isdigit() for field in fields):
+                entries = [np.array([_whole(place, f) for f in fields], dtype=np.int64)]
+            else:
+                entries = [
+                    np.array([_whole(place, f)]) if f.lstrip("+-").isdigit() else f for f in fields
+                ]
+            self.part.add(kind, name, place, *entries, instance=instance)
 
-    def _members(self, where, sets, name):
-        if name.upper() not in sets.members:
-            raise InputError(f"{where}: set '{name}' must be defined before its use")
-        return sets.members[name.upper()]
-
-    def _nodes_of(self, elements):
-        chosen = np.fromiter(elements, dtype=np.int64)
-        found = [b.nodes[np.isin(b.ids, chosen)].ravel() for b in self.blocks]
-        return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *found])).tolist()
+    def _read_elset(self, options, data, where):
+        self._read_nset(options, data, where, "ELSET")
 
     def mesh(self, path):
-        """The ForeignMesh. Raises InputError if a set names an element that does not exist."""
-        sets, element_sets = {}, {}
-        known = np.concatenate([np.empty(0, dtype=np.int64), *(b.ids for b in self.blocks)])
-        for key, members in self.elements.members.items():
-            missing = np.setdiff1d(np.fromiter(members, dtype=np.int64), known)
-            if missing.size:
-                name = self.elements.spelled[key]
-                raise InputError(
-                    f"{path}: set '{name}' names element {missing[0]}, which does not exist"
-                )
-            spelled = self.elements.spelled[key]
-            element_sets[spelled] = np.array(sorted(members), dtype=np.int64)
-            if key not in self.nodes.members:  # a node set of the same name takes precedence
-                sets[spelled] = np.array(self._nodes_of(members), dtype=np.int64)
-        for key, members in self.nodes.members.items():
-            sets[self.nodes.spelled[key]] = np.array(sorted(members), dtype=np.int64)
-        blocks, points = _joined(self.blocks), np.array(self.points).reshape(-1, 3)
-        ids = np.array(self.ids, dtype=np.int64)
-        return ForeignMesh(ids, points, blocks, sets, element_sets=element_sets)
+        """The ForeignMesh. Raises InputError where a set names what does not exist."""
+        if self.parts and not self.instances:
+            if len(self.parts) > 1:
+                names = ", ".join(part.name for part in self.parts.values())
+                raise InputError(f"{path}: parts {names} are not placed; *INSTANCE is required")
+            self.instances = list(self.parts.values())
+        everywhere = [self.model, *self.instances, self.assembly]
+        spaces = [part for part in everywhere if part.ids or part.blocks]
+        single = len(spaces) < 2
+        first = {id(part): (0 if single else i * SCOPE) for i, part in enumerate(spaces)}
+        ids, points, blocks, sets, element_sets = [NONE], [np.empty((0, 3))], [], {}, {}
+        self.model.name = "Model" if self.instances else ""
+        for part in spaces:
+            base = first[id(part)]
+            if not single and any((abs(some) >= SCOPE).any() for some in part.ids):
+                raise InputError(f"{path}: numbers of nodes must be less than {SCOPE}")
+            ids += [some + base for some in part.ids]
+            points += part.points
+            blocks += [
+                Block(b.kind, b.dimension, b.ids + base, b.nodes + base) for b in part.blocks
+            ]
+        resolver, spelled = Resolver(everywhere, first), {}
+        for part in everywhere:
+            for key, (name, _) in (part.sets["ELSET"] | part.sets["NSET"]).items():
+                spelled.setdefault(key, name)
+            for key in part.sets["ELSET"]:
+                name = spelled[key]
+                found = resolver.members(part, "ELSET", key, path)
+                element_sets[part.name, name] = found
+                if key not in part.sets["NSET"]:  # a node set of the same name takes precedence
+                    sets[part.name, name] = resolver.nodes_of(found)
+            for key in part.sets["NSET"]:
+                sets[part.name, spelled[key]] = resolver.members(part, "NSET", key, path)
+        names = [] if single else [part.name for part in spaces]
+        return ForeignMesh(
+            np.concatenate(ids),
+            np.concatenate(points),
+            _joined(blocks),
+            sets,
+            element_sets=element_sets,
+            scopes=names,
+        )
+
+
+def _placed(points, rows, where):
+    """Points moved and then turned, as the data lines of *INSTANCE say."""
+    if rows:
+        points = points + rows[0]
+    if len(rows) < 2:
+        return points
+    start, end, angle = np.array(rows[1][:3]), np.array(rows[1][3:6]), np.radians(rows[1][6])
+    length = np.linalg.norm(end - start)
+    if not length > 0:
+        raise InputError(f"{where}: *INSTANCE: the two points of the axis must differ")
+    axis, arm = (end - start) / length, points - start
+    along = np.outer(arm @ axis, axis)
+    turned = along + np.cos(angle) * (arm - along) + np.sin(angle) * np.cross(axis, arm)
+    return start + turned
 
 
 def _joined(blocks):
@@ -186,26 +305,29 @@ def _joined(blocks):
     ]
 
 
-def _keywords(path, text):
-    """Yields (keyword, options, data lines, place); a data line is (place, fields)."""
-    current, lines = None, []
-    for number, line in enumerate(text.splitlines(), start=1):
-        place, line = f"{path}:{number}", line.strip()
-        if not line or line.startswith("**"):
-            continue
-        if not line.startswith("*"):
-            if current is None:
-                raise InputError(f"{place}: {line[:40]!r} comes before the first *KEYWORD")
-            if not lines and current[0].endswith(",") and line[0].isalpha():
-                current = (current[0] + line, current[1])  # the keyword's line is continued
-                continue
-            lines.append((place, [field.strip() for field in line.split(",")]))
-            continue
-        if current is not None:
-            yield *_parsed(current[0]), lines, current[1]
-        current, lines = (line, place), []
-    if current is not None:
-        yield *_parsed(current[0]), lines, current[1]
+def _lines(path):
+    """The lines of a text, whatever ends them. Raises InputError."""
+    text = content(path).decode("utf-8", "replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def _keywords(path, before):
+    """(keyword, options, _Data, place) one by one. before: as for _Reader.read."""
+    lines = _lines(path)
+    at = [i for i, line in enumerate(lines) if "*" in line and re.match(r"\s*\*(?!\*)", line)]
+    data = _Data(path, 1, lines[: at[0] if at else len(lines)])
+    if data.lines:
+        place, fields = next(data.fields())
+        if before is None:
+            text = ", ".join(fields)[:40]
+            raise InputError(f"{place}: {text!r} comes before the first *KEYWORD")
+        yield *before, data, place
+    for start, end in zip(at, [*at[1:], len(lines)]):
+        line, first = lines[start].strip(), start + 1
+        # The keyword's line is continued.
+        while line.endswith(",") and first < end and lines[first].strip()[:1].isalpha():
+            line, first = line + lines[first].strip(), first + 1
+        yield *_parsed(line), _Data(path, first + 1, lines[first:end]), f"{path}:{start + 1}"
 
 
 def _parsed(line):
@@ -233,43 +355,3 @@ def _real(place, text):
         return float(text.upper().replace("D", "E")) if text else 0.0
     except ValueError:
         raise InputError(f"{place}: {text!r} must be a number") from None
-
-
-def number(value):
-    """A number in at most 20 characters (longer ones are not read), exact if possible."""
-    texts = (repr(float(value)), f"{value:.13e}", f"{value:.12e}")
-    return next(text for text in texts if len(text) <= 20)
-
-
-def mesh_lines(mesh, element="C3D8", element_set=None):
-    """The lines of *NODE, *ELEMENT, *NSET and *ELSET of a HexMesh; ids count from one.
-
-    element: an eight-node brick type. element_set: name of a set of all elements, or None.
-    Raises InputError for a set name that the format does not allow.
-    """
-    lines = ["*NODE"]
-    lines += [f"{i}, " + ", ".join(map(number, point)) for i, point in enumerate(mesh.points, 1)]
-    # VTK and Abaqus number the vertices of a brick in the same order.
-    lines.append(f"*ELEMENT, TYPE={element}" + (f", ELSET={element_set}" if element_set else ""))
-    lines += [f"{i}, " + ", ".join(map(str, cell)) for i, cell in enumerate(mesh.cells + 1, 1)]
-    lines += _set_lines("NSET", mesh.sets) + _set_lines("ELSET", mesh.element_sets)
-    return lines
-
-
-def _set_lines(keyword, sets):
-    """The lines of sets, which count from zero. Raises InputError for a name."""
-    lines, spelled = [], {}
-    for name, members in sets.items():
-        if not name.isprintable() or '"' in name or len(name) > 80:
-            raise InputError(
-                f"set {name!r}: names in .inp must be printable, without quotes, at most 80 "
-                "characters"
-            )
-        other = spelled.setdefault(name.upper(), name)
-        if other != name:
-            raise InputError(f"sets '{other}' and '{name}': names in .inp are not case-sensitive")
-        plain = re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII)
-        lines.append(f"*{keyword}, {keyword}=" + (name if plain else f'"{name}"'))
-        ids = [str(member + 1) for member in members]
-        lines += [", ".join(ids[at : at + 16]) for at in range(0, len(ids), 16)]
-    return lines

@@ -24,8 +24,8 @@ try:
 
     from common.errors import InputError
     from common.files import write_whole
-    from exchange import abaqus_file, csv_file, decks, frd_file, gmsh_file, hdf5_file, image_file
-    from exchange import radioss_file, text_results, vtu_file
+    from exchange import abaqus_file, abaqus_writer, csv_file, decks, frd_file, gmsh_file, hdf5_file
+    from exchange import image_file, radioss_file, text_results, vtu_file
     from exchange.foreign_mesh import to_hexahedra
 except ImportError as error:
     print(f"{error.name} is not installed; files of other programs need packages {PACKAGES}")
@@ -80,7 +80,7 @@ def write_mesh(source, output, name):
     if name != "inp":
         vtu_file.write(output, mesh, name)
         return
-    lines = ["*HEADING", "sandglass", *abaqus_file.mesh_lines(mesh)]
+    lines = ["*HEADING", "sandglass", *abaqus_writer.mesh_lines(mesh)]
     output.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -9,8 +9,10 @@ from common.hexahedron import LEXICOGRAPHIC
 from exchange import orientation
 
 HEXAHEDRON = "hexahedron"
-SHOWN = 3  # of faulty items listed in a message
-LARGEST = 20.0  # m; a larger mesh was perhaps meant in millimetres
+SHOWN = 3  # of what is wrong, in a message
+LARGEST = 20.0  # m; what is larger was perhaps meant in millimetres
+SCOPE = 1 << 40  # numbers of instance i begin at i SCOPE, where a file has several
+ROUNDING = 1e-6  # of the diagonal: what a float or six digits leave of a coordinate
 
 
 @dataclass(frozen=True)
@@ -25,10 +27,12 @@ class Block:
 
 @dataclass
 class ForeignMesh:
-    """Nodes (n,) with points (n, 3), blocks of elements, and node sets: name -> ids of nodes.
+    """Nodes (n,) with points (n, 3), blocks of elements, and node sets: (scope, name) -> ids.
 
-    hint: how to make and save hexahedra with the program, for messages. element_sets: name -> ids
-    of elements; only hexahedra count.
+    A scope is what a name belongs to: an instance, the assembly, a group of some dimension; or "".
+    hint: how to make and save hexahedra with the program, for messages. element_sets: the same for
+    ids of elements; those of hexahedra count. scopes: names of the instances that number their
+    nodes and elements from i SCOPE on.
     """
 
     node_ids: np.ndarray
@@ -37,6 +41,15 @@ class ForeignMesh:
     sets: dict = field(default_factory=dict)
     hint: str = ""
     element_sets: dict = field(default_factory=dict)
+    scopes: list = field(default_factory=list)
+
+    def listed(self, ids):
+        """The first few numbers of nodes or elements, as the file has them."""
+        shown = [
+            f"{self.scopes[int(i) // SCOPE]}.{int(i) % SCOPE}" if self.scopes else str(i)
+            for i in ids[:SHOWN]
+        ]
+        return ", ".join(shown) + (", ..." if len(ids) > SHOWN else "")
 
 
 @dataclass(frozen=True)
@@ -61,42 +74,57 @@ def to_hexahedra(mesh, path, warn):
     order = _checked_nodes(mesh, path)
     block = _hexahedra(mesh, path)
     cells = _rows(mesh, order, block, path)
-    _reject(
-        path,
-        block.ids[[len(set(cell)) < 8 for cell in cells.tolist()]],
-        len(cells),
-        "name a node twice; a hexahedron has eight nodes",
-    )
-    cells = _oriented(mesh, block, cells, path, warn)
-    used, compact = np.unique(cells, return_inverse=True)
-    unused = np.setdiff1d(np.arange(len(mesh.points)), used)
-    if unused.size:
+    corners = np.sort(cells, axis=1)
+    twice = block.ids[(corners[:, 1:] == corners[:, :-1]).any(axis=1)]
+    _reject(mesh, path, twice, len(cells), "name a node twice; a hexahedron has eight nodes")
+    cells, outer = _oriented(mesh, block, cells, path, warn)
+    rank = np.full(len(mesh.points), -1)
+    rank[cells] = 0
+    if (lost := np.flatnonzero(rank < 0)).size:
         warn(
-            f"dropped {_count(unused.size, 'node')} of no hexahedron, hence without mass: "
-            + _listed(mesh.node_ids[unused])
+            f"dropped {_count(lost.size, 'node')} of no hexahedron, hence without mass: "
+            + mesh.listed(mesh.node_ids[lost])
         )
+    used = np.flatnonzero(rank == 0)
+    rank[used] = np.arange(len(used))
     points = mesh.points[used]
-    _warn_of_seams(points, mesh.node_ids[used], warn)
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    _warn_of_seams(mesh, cells, outer, ROUNDING * size, warn)
     if size > LARGEST:
         warn(f"the mesh is {size:.3g} m across: coordinates are read as metres")
     sets = {}
-    for name, ids in mesh.sets.items():
-        nodes = np.intersect1d(used, _find(mesh, order, ids, f"{path}: set '{name}'"))
-        if not nodes.size:
+    for (scope, name), ids in mesh.sets.items():
+        nodes = rank[_find(mesh, order, ids, f"{path}: set '{name}'")]
+        sets[scope, name] = np.unique(nodes[nodes >= 0])
+        if not sets[scope, name].size:
             warn(f"dropped set '{name}': it has no node of a hexahedron")
-        elif (plain := name.replace("/", "_")) in sets:
-            raise InputError(f"{path}: two sets are named '{plain}'; names must differ")
-        else:
-            sets[plain] = np.searchsorted(used, nodes)
-            if plain != name:
-                warn(f"set '{name}' is renamed '{plain}': names must not contain '/'")
-    element_sets = {}
-    for name, ids in mesh.element_sets.items():
-        members = np.flatnonzero(np.isin(block.ids, ids))
+    element_sets = {
+        key: np.flatnonzero(np.isin(block.ids, ids)) for key, ids in mesh.element_sets.items()
+    }
+    return HexMesh(points, rank[cells], _named(sets, path, warn), _named(element_sets, path))
+
+
+def _named(sets, path, warn=lambda text: None):
+    """name -> members, of (scope, name) -> members without the empty ones.
+
+    A name that means several things becomes SCOPE.NAME for each of them: used alone, it is refused,
+    as it is no set. Raises InputError where names clash.
+    """
+    alike, named = {}, {}
+    for (scope, name), members in sets.items():
         if members.size:
-            element_sets[name.replace("/", "_")] = members
-    return HexMesh(points, compact.reshape(cells.shape), sets, element_sets)
+            alike.setdefault(name, []).append((scope, members))
+    for name, some in alike.items():
+        same = all(np.array_equal(some[0][1], members) for _, members in some)
+        for scope, members in some[:1] if same else some:
+            full = name if same else f"{scope}.{name}"
+            plain = full.replace("/", "_")
+            if plain in named:
+                raise InputError(f"{path}: two sets are named '{plain}'; names must differ")
+            if plain != full:
+                warn(f"set '{full}' is renamed '{plain}': names must not contain '/'")
+            named[plain] = members
+    return named
 
 
 def _checked_nodes(mesh, path):
@@ -105,14 +133,16 @@ def _checked_nodes(mesh, path):
         raise InputError(f"{path}: has no nodes; a mesh of hexahedra is required")
     lost = mesh.node_ids[~np.isfinite(mesh.points).all(axis=1)]
     if lost.size:
-        raise InputError(f"{path}: coordinates must be finite; those of {_nodes(lost)} are not")
+        raise InputError(
+            f"{path}: coordinates must be finite; those of {_nodes(mesh, lost)} are not"
+        )
     order = np.argsort(mesh.node_ids, kind="stable")
     ids = mesh.node_ids[order]
     if ids[0] < 0:
         raise InputError(f"{path}: node {ids[0]}: ids of nodes must not be negative")
     twice = np.unique(ids[1:][ids[1:] == ids[:-1]])
     if twice.size:
-        raise InputError(f"{path}: {_nodes(twice)} given twice; ids of nodes must be unique")
+        raise InputError(f"{path}: {_nodes(mesh, twice)} given twice; ids of nodes must be unique")
     return order
 
 
@@ -137,10 +167,12 @@ def _hexahedra(mesh, path):
         raise InputError(f"{path}: has {kinds}; eight-node hexahedra are required{mesh.hint}")
     ids = np.concatenate([block.ids for block in found])
     nodes = np.concatenate([block.nodes for block in found])
-    kept = np.sort(np.unique(np.column_stack([ids, nodes]), axis=0, return_index=True)[1])
-    ids, nodes = ids[kept], nodes[kept]  # identical duplicates are allowed
-    values, counts = np.unique(ids, return_counts=True)
-    _reject(path, values[counts > 1], len(ids), "share an id with another; ids must be unique")
+    if len(np.unique(ids)) < len(ids):  # identical duplicates are allowed
+        kept = np.sort(np.unique(np.column_stack([ids, nodes]), axis=0, return_index=True)[1])
+        ids, nodes = ids[kept], nodes[kept]
+        values, counts = np.unique(ids, return_counts=True)
+        rule = "share an id with another; ids must be unique"
+        _reject(mesh, path, values[counts > 1], len(ids), rule)
     return Block(HEXAHEDRON, 3, ids, nodes)
 
 
@@ -153,7 +185,8 @@ def _rows(mesh, order, block, path):
         element = int(np.flatnonzero(~known.all(axis=1))[0])
         node = block.nodes[element][~known[element]][0]
         raise InputError(
-            f"{path}: element {block.ids[element]} names node {node}, which does not exist"
+            f"{path}: element {mesh.listed([block.ids[element]])} names node "
+            f"{mesh.listed([node])}, which does not exist"
         ) from None
 
 
@@ -164,12 +197,17 @@ def _find(mesh, order, ids, where):
     rows = order[at]
     missing = ids[mesh.node_ids[rows] != ids]
     if missing.size:
-        raise InputError(f"{where} names node {missing.flat[0]}, which does not exist")
+        raise InputError(
+            f"{where} names node {mesh.listed([missing.flat[0]])}, which does not exist"
+        )
     return rows
 
 
 def _oriented(mesh, block, cells, path, warn):
-    """The cells with mirrored ones renumbered. Raises InputError for tangled ones."""
+    """The cells with mirrored ones renumbered, and the nodes of their outer faces.
+
+    Raises InputError for tangled ones.
+    """
     state = orientation.classify(mesh.points, cells)
     tangled = np.flatnonzero(state == orientation.TANGLED)
     if tangled.size:
@@ -179,7 +217,7 @@ def _oriented(mesh, block, cells, path, warn):
             hint = "; they seem to be numbered with x fastest: swap nodes 3 and 4, and 7 and 8"
         centres = mesh.points[cells[tangled]].mean(axis=1)
         places = [
-            f"{block.ids[e]} at ({', '.join(f'{x:.6g}' for x in centre)})"
+            f"{mesh.listed([block.ids[e]])} at ({', '.join(f'{x:.6g}' for x in centre)})"
             for e, centre in zip(tangled[:SHOWN], centres)
         ]
         raise InputError(
@@ -193,44 +231,61 @@ def _oriented(mesh, block, cells, path, warn):
         cells[mirrored] = cells[mirrored][:, orientation.MIRROR]
         warn(
             f"{mirrored.size} of {len(cells)} elements had a mirrored node order and were "
-            f"renumbered: {_listed(block.ids[mirrored])}"
+            f"renumbered: {mesh.listed(block.ids[mirrored])}"
         )
-    pair = orientation.overlap(cells)
+    pair, outer = orientation.overlap(cells)
     if pair:
-        first, second = (block.ids[e] for e in pair)
+        first, second = (mesh.listed([block.ids[e]]) for e in pair)
         raise InputError(
             f"{path}: elements {first} and {second} lie on the same side of their common face, "
             "or share it with a third; elements must not overlap"
         )
-    return cells
+    return cells, outer
 
 
-def _warn_of_seams(points, ids, warn):
-    """Warns of coincident nodes: the body is not connected there."""
-    order = np.lexsort(points.T)
-    same = (points[order][1:] == points[order][:-1]).all(axis=1)
-    if same.any():
-        first = int(np.flatnonzero(same)[0])
+def _warn_of_seams(mesh, cells, outer, distance, warn):
+    """Warns of nodes at one place, to rounding: the body is not connected there. Two nodes of one
+    element are none: it is that thin."""
+    from scipy.spatial import cKDTree  # takes long to load
+
+    pairs = outer[cKDTree(mesh.points[outer]).query_pairs(distance, output_type="ndarray")]
+    if not len(pairs):
+        return
+    near = np.isin(cells, pairs)
+    some = cells[near.any(axis=1)]
+    joined = [(some == a).any(axis=1) & (some == b).any(axis=1) for a, b in pairs[:100]]
+    apart = [pair for pair, same in zip(pairs, joined) if not same.any()]
+    if apart:
+        number = len(np.unique(pairs[:, 1])) if len(apart) == len(joined) else len(apart)
+        gap = np.linalg.norm(mesh.points[apart[0][0]] - mesh.points[apart[0][1]])
+        first, second = (mesh.listed([mesh.node_ids[n]]) for n in apart[0])
+        how = "coincident with another" if gap == 0 else f"within {distance:.2g} m of another"
         warn(
-            f"{_count(int(same.sum()), 'node')} coincident with another, such as "
-            f"{ids[order[first]]} and {ids[order[first + 1]]}: the body is not connected there"
+            f"{_count(number, 'node')} {how}, such as {first} and {second}: "
+            "the body is not connected there"
         )
 
 
-def _reject(path, ids, total, rule):
+def _reject(mesh, path, ids, total, rule):
     """Raises InputError if there are elements that break a rule."""
     if len(ids):
-        raise InputError(f"{path}: {len(ids)} of {total} elements {rule}: {_listed(ids)}")
+        raise InputError(f"{path}: {len(ids)} of {total} elements {rule}: {mesh.listed(ids)}")
+
+
+def content(path):
+    """The bytes of a file of text without a byte order mark. Raises InputError."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise InputError(f"{path}: is text in UTF-16; save it as UTF-8")
+    return data.removeprefix(b"\xef\xbb\xbf")
 
 
 def _count(number, word):
     return f"{number} {word}{'' if number == 1 else 's'}"
 
 
-def _nodes(ids):
-    return f"{'node' if len(ids) == 1 else 'nodes'} {_listed(ids)}"
-
-
-def _listed(ids):
-    """The first few ids, as text."""
-    return ", ".join(map(str, ids[:SHOWN])) + (", ..." if len(ids) > SHOWN else "")
+def _nodes(mesh, ids):
+    return f"{'node' if len(ids) == 1 else 'nodes'} {mesh.listed(ids)}"

@@ -11,7 +11,7 @@ import re
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
+from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh, content
 
 # Gmsh's number of an element type: name, dimension, nodes.
 KINDS = {
@@ -45,7 +45,7 @@ HINT = (
 
 def read(path):
     """The ForeignMesh of a .msh file. Raises InputError."""
-    sections = _sections(path, path.read_bytes())
+    sections = _sections(path, content(path))
     for name in ("MeshFormat", "Nodes", "Elements"):
         if name not in sections:
             raise InputError(f"{path}: section ${name} is missing; not a Gmsh mesh, or truncated")
@@ -132,19 +132,13 @@ def _byte_order(path, header):
 
 
 def _names(path, section):
-    """(dimension, tag) -> name of the physical groups. Raises InputError if names clash."""
+    """(dimension, tag) -> name of the physical groups. Raises InputError."""
     names = {}
     for line in section.decode("utf-8", "replace").splitlines()[1:]:
         entry = re.fullmatch(r'\s*([0-3])\s+(-?\d+)\s+"(.+)"\s*', line)
         if not entry:
             raise InputError(f"{path}: $PhysicalNames: {line!r}: dimension, tag, name are required")
         group = int(entry[1]), int(entry[2])
-        for other, name in names.items():
-            if name == entry[3]:
-                raise InputError(
-                    f"{path}: {DIMENSIONS[other[0]]} {other[1]} and {DIMENSIONS[group[0]]} "
-                    f"{group[1]} are both called '{name}'; names of physical groups must differ"
-                )
         names[group] = entry[3]
     return names
 
@@ -153,24 +147,28 @@ class _Elements:
     """Collects blocks of elements, and the nodes and volumes of their groups."""
 
     def __init__(self, names):
-        self.names, self.blocks, self.groups = names, [], {name: [] for name in names.values()}
-        self.volumes = {}
+        self.names, self.blocks, self.volumes = names, [], {}
+        self.groups = {group: [] for group in names}
 
     def add(self, kind, ids, nodes, groups):
         """Elements of one kind (of KINDS), all in the physical groups of these tags."""
         name, dimension, _ = kind
         self.blocks.append(Block(name, dimension, ids, nodes))
         for tag in {abs(int(tag)) for tag in groups} - {0}:
-            group = self.names.get((dimension, tag), f"{DIMENSIONS[dimension]}-{tag}")
-            self.groups.setdefault(group, []).append(nodes.ravel())
+            self.groups.setdefault((dimension, tag), []).append(nodes.ravel())
             if dimension == 3:
-                self.volumes.setdefault(group, []).append(ids)
+                self.volumes.setdefault((dimension, tag), []).append(ids)
 
     def mesh(self, node_ids, points):
-        """The ForeignMesh."""
+        """The ForeignMesh. Groups of one name are told apart by dimension and tag."""
         none = np.empty(0, dtype=np.int64)
-        sets = {name: np.unique(np.concatenate([none, *n])) for name, n in self.groups.items()}
-        volumes = {name: np.unique(np.concatenate(ids)) for name, ids in self.volumes.items()}
+
+        def named(groups):
+            unique = {g: np.unique(np.concatenate([none, *some])) for g, some in groups.items()}
+            scopes = {g: f"{DIMENSIONS[g[0]]}-{g[1]}" for g in unique}
+            return {(scopes[g], self.names.get(g, scopes[g])): ids for g, ids in unique.items()}
+
+        sets, volumes = named(self.groups), named(self.volumes)
         return ForeignMesh(node_ids.astype(np.int64), points, self.blocks, sets, HINT, volumes)
 
 

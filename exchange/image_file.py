@@ -51,9 +51,13 @@ def _voxels(path, labels, map_, origin):
         labels = labels[..., 0]
     if labels.ndim != 3:
         raise InputError(f"{path}: has shape {labels.shape}; (nx, ny, nz) is required")
-    if not (np.isfinite(labels).all() and (labels == np.round(labels)).all()):
+    if labels.dtype.kind not in "biuf":
+        raise InputError(f"{path}: holds {labels.dtype}; labels must be whole numbers")
+    whole = np.round(labels)
+    # A scale in the header leaves the rounding of floats.
+    if not (abs(labels - whole) <= np.clip(1e-6 * abs(whole), 1e-6, 0.01)).all():
         raise InputError(f"{path}: labels must be whole numbers")
-    places = np.argwhere(labels)
+    places, labels = np.argwhere(whole), whole
     if not len(places):
         raise InputError(f"{path}: has no label other than 0; no voxel would be an element")
     values = labels[tuple(places.T)].astype(np.int64)
@@ -70,5 +74,5 @@ def _voxels(path, labels, map_, origin):
     points = np.stack(np.unravel_index(nodes, shape), axis=1) @ map_.T + origin
     ids = np.arange(len(places))
     block = Block(HEXAHEDRON, 3, ids, cells.reshape(-1, 8))
-    sets = {f"label-{name}": np.flatnonzero(values == name) for name in names}
+    sets = {("", f"label-{name}"): np.flatnonzero(values == name) for name in names}
     return ForeignMesh(np.arange(len(points)), points, [block], element_sets=sets)

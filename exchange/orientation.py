@@ -17,7 +17,8 @@ def classify(points, cells):
 
 
 def overlap(cells):
-    """Two cells that do not lie on opposite sides of their common face, or None.
+    """(two cells that do not lie on opposite sides of their common face, or None; the nodes of
+    faces of one cell only).
 
     cells: (m, 8), each of them RIGHT. Cells on opposite sides of a face list its nodes in opposite
     directions.
@@ -27,13 +28,16 @@ def overlap(cells):
     a, b, c, d = np.take_along_axis(faces, (first + np.arange(4)) % 4, axis=1).T
     keys = np.stack([a, np.minimum(b, d), np.maximum(b, d), c], axis=1)
     order = np.lexsort(np.sort(keys, axis=1).T)
-    same_nodes = (np.sort(keys, axis=1)[order][1:] == np.sort(keys, axis=1)[order][:-1]).all(axis=1)
-    same_edges = (keys[order][1:] == keys[order][:-1]).all(axis=1)
+    ordered, keys = np.sort(keys[order], axis=1), keys[order]
+    same_nodes = (ordered[1:] == ordered[:-1]).all(axis=1)
+    same_edges = (keys[1:] == keys[:-1]).all(axis=1)
     turned = (b < d)[order]
     third = np.zeros_like(same_nodes)
     third[1:] = same_nodes[1:] & same_nodes[:-1]
     wrong = third | (same_nodes & (~same_edges | (turned[1:] == turned[:-1])))
+    alone = ~(np.append(same_nodes, False) | np.insert(same_nodes, 0, False))
+    outer = np.unique(ordered[alone])
     if not wrong.any():
-        return None
+        return None, outer
     at = int(np.flatnonzero(wrong)[0])
-    return tuple(int(face) // 6 for face in order[at : at + 2])
+    return tuple(int(face) // 6 for face in order[at : at + 2]), outer

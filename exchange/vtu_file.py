@@ -1,14 +1,30 @@
-"""Reads and writes VTK's unstructured grids (.vtu) and writes XDMF, with meshio."""
-
-import contextlib
-import io
-import re
-import warnings
+"""Reads meshes and displacements from VTK's unstructured grids (.vtu); writes them and XDMF."""
 
 import numpy as np
 
 from common.errors import InputError
-from exchange.foreign_mesh import Block, ForeignMesh
+from common.hexahedron import LEXICOGRAPHIC
+from exchange.foreign_mesh import HEXAHEDRON, Block, ForeignMesh
+from exchange.vtu_reader import Grid
+
+# VTK's number of a cell: name, dimension; others count as volumes, which are refused.
+KINDS = {
+    1: ("vertex", 0),
+    3: ("line", 1),
+    5: ("triangle", 2),
+    8: ("pixel", 2),
+    9: ("quad", 2),
+    10: ("tetra", 3),
+    11: (HEXAHEDRON, 3),
+    12: (HEXAHEDRON, 3),
+    13: ("wedge", 3),
+    14: ("pyramid", 3),
+    21: ("quadratic edge", 1),
+    22: ("quadratic triangle", 2),
+    23: ("quadratic quad", 2),
+    25: ("quadratic hexahedron", 3),
+}
+VOXEL = 11
 
 # An array with more values does not hold labels, but perhaps element numbers.
 MOST_LABELS = 1000
@@ -23,36 +39,40 @@ def read(path):
     Likewise, integer cell arrays define element sets; one with other values (labels) defines a set
     NAME-LABEL for each.
     """
-    grid = _read(path)
-    ids, first = np.arange(len(grid.points)), 0
+    grid = Grid(path)
+    sizes, starts = np.diff(grid.offsets, prepend=0), np.append(0, grid.offsets)[:-1]
     blocks = []
-    for block in grid.cells:
-        numbers = np.arange(first, first + len(block.data))
-        first += len(block.data)
-        nodes = np.asarray(block.data, dtype=np.int64)
-        blocks.append(Block(block.type, block.dim, numbers, nodes))
+    for number in np.unique(grid.types).tolist():
+        kind, dimension = KINDS.get(number, (f"VTK's type {number}", 3))
+        for size in np.unique(sizes[grid.types == number]):
+            ids = np.flatnonzero((grid.types == number) & (sizes == size))
+            nodes = grid.connectivity[starts[ids][:, None] + np.arange(size)]
+            if kind == HEXAHEDRON and size != 8:
+                raise InputError(f"{path}: cell {ids[0]} has {size} nodes; a hexahedron has eight")
+            blocks.append(
+                Block(kind, dimension, ids, nodes[:, LEXICOGRAPHIC] if number == VOXEL else nodes)
+            )
     sets = {
-        name: np.flatnonzero(data)
+        ("", name): np.flatnonzero(data)
         for name, data in grid.point_data.items()
         if data.ndim == 1 and data.dtype.kind in "biu" and np.isin(data, (0, 1)).all()
     }
     element_sets = {}
-    for name, parts in grid.cell_data.items():
-        data = np.concatenate(parts)
+    for name, data in grid.cell_data.items():
         if data.ndim == 1 and data.dtype.kind in "biu":
             element_sets |= _labelled(name, data)
-    points = np.asarray(grid.points, dtype=float)
-    return ForeignMesh(ids, points, blocks, sets, element_sets=element_sets)
+    ids = np.arange(len(grid.points))
+    return ForeignMesh(ids, grid.points, blocks, sets, element_sets=element_sets)
 
 
 def _labelled(name, data):
     """The element sets of an integer cell array."""
     labels = np.unique(data)
     if np.isin(labels, (0, 1)).all():
-        return {name: np.flatnonzero(data)}
+        return {("", name): np.flatnonzero(data)}
     if len(labels) > MOST_LABELS:
         return {}
-    return {f"{name}-{label}": np.flatnonzero(data == label) for label in labels}
+    return {("", f"{name}-{label}"): np.flatnonzero(data == label) for label in labels}
 
 
 def read_displacement(path, field):
@@ -61,7 +81,7 @@ def read_displacement(path, field):
     field: name of the point array; None means one of DISPLACEMENTS, which is not case-sensitive.
     Raises InputError.
     """
-    grid = _read(path)
+    grid = Grid(path)
     vectors = {n: d for n, d in grid.point_data.items() if d.ndim == 2 and d.shape[1] == 3}
     wanted = [field] if field else [n for n in vectors if n.lower() in DISPLACEMENTS]
     if len(wanted) != 1 or wanted[0] not in vectors:
@@ -70,7 +90,7 @@ def read_displacement(path, field):
             f"{path}: cannot tell which point array holds the displacements; choose one with "
             f"--field NAME; its arrays of three components: {names}"
         )
-    return np.asarray(grid.points, dtype=float), np.asarray(vectors[wanted[0]], dtype=float)
+    return grid.points, np.asarray(vectors[wanted[0]], dtype=float)
 
 
 def write(path, mesh, kind):
@@ -91,32 +111,3 @@ def write(path, mesh, kind):
         meshio.vtu.write(path, grid)
     else:
         meshio.xdmf.write(path, grid, data_format="XML")
-
-
-def _read(path):
-    """meshio's grid of a file. Raises InputError if it cannot read the file or would misread it."""
-    import meshio
-
-    said = io.StringIO()
-    try:
-        with open(path, "rb") as file:
-            pieces = len(re.findall(rb"<Piece[\s>]", file.read()))
-        if pieces > 1:  # meshio would keep the cells of the last one only
-            raise InputError(f"{path}: has {pieces} pieces; one is required")
-        with contextlib.redirect_stderr(said), warnings.catch_warnings():
-            warnings.simplefilter("error")
-            grid = meshio.vtu.read(path)
-    except (InputError, MemoryError):
-        raise
-    except BaseException as error:  # a library may fail in any way on a damaged file
-        raise _refusal(path, str(error) or "it is damaged, or cut off") from error
-    if said.getvalue():  # meshio warns and continues if it skips something
-        raise _refusal(path, said.getvalue())
-    if grid.points.ndim != 2 or grid.points.shape[1] != 3:
-        raise InputError(f"{path}: points have {grid.points.shape[1:]} components; 3 are required")
-    return grid
-
-
-def _refusal(path, reason):
-    words = " ".join(reason.split()).removeprefix("Warning: ")
-    return InputError(f"{path}: cannot be read as a .vtu grid: {words[:200]}")

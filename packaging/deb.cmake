@@ -21,7 +21,7 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-
 # library, then packages for some files of other programs.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
   "libfmt-dev, libhdf5-dev, libmuparser-dev, libxxhash-dev, python3-meshio, python3-scipy")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, gmsh, paraview, python3-nibabel")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, gmsh, paraview, python3-lz4, python3-nibabel")
 
 # Licence and changes, where Debian expects them, only in the package.
 set(CHANGES ${CMAKE_BINARY_DIR}/changelog)

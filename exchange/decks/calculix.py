@@ -7,7 +7,7 @@ C10 (I1bar - 3) + C01 (I2bar - 3) + (J - 1)^2 / D1 is the project's with D1 = 2 
 
 import numpy as np
 
-from exchange.abaqus_file import mesh_lines, number
+from exchange.abaqus_writer import mesh_lines, number
 from exchange.decks.problem import refuse
 
 NAME, ENDING = "CalculiX", ".inp"

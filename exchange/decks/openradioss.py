@@ -4,7 +4,7 @@ Law 42, sum mu_p / alpha_p (lbar_1^alpha_p + ... - 3) + K/2 (J - 1)^2, covers th
 laws. It integrates in time: a quasi-static case becomes a damped motion.
 """
 
-from exchange.abaqus_file import number
+from exchange.abaqus_writer import number
 
 NAME, ENDING = "OpenRadioss", "_0000.rad"
 # Isolid, Icpre: physical stabilisation, viscous hourglass control, and eight points with a constant

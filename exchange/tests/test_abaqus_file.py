@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, damaged, read, run
 
-from exchange import abaqus_file
+from exchange import abaqus_writer
 from common.errors import InputError
 from exchange.foreign_mesh import HexMesh
 
@@ -22,6 +22,8 @@ def read_text(tmp_path, capsys, text):
         CUBES,
         CUBES.lower(),
         CUBES.replace("\n", "\r\n"),
+        "\ufeff" + CUBES.replace("\n", "\r"),
+        CUBES.replace("\n", ",\n").replace("*NODE,", "*NODE").replace("tissue,", "tissue"),
         CUBES.replace("\n3, ", "\n** a comment\n\n3, "),
         CUBES.replace("\n7, 1.", "\n*NODE, NSET=upper\n7, 1."),
         CUBES.replace("1., ", "1.0D+00, "),
@@ -56,8 +58,15 @@ def test_the_same_mesh_however_written(tmp_path, capsys, text):
         ("*ELSET, ELSET=both\n1\n*NSET, NSET=both\n12\n", {"both": [11]}),
         ("*ELSET, ELSET=BOTH\n1\n*NSET, NSET=both\n12\n", {"both": [11]}),
         ("*ELEMENT, TYPE=S4, ELSET=skin\n9, 1, 2, 3, 4\n", {"skin": [0, 1, 2, 3]}),
+        ("*ELEMENT, TYPE=B31, ELSET=rod\n9, 1, 2,\n10, 2, 3,\n", {"rod": [0, 1, 2]}),
+        (
+            "*ELEMENT, TYPE=M3D4, ELSET=skin\n9, 1, 2, 3, 4,\n10, 2, 3, 7, 6,\n",
+            {"skin": [0, 1, 2, 3, 5, 6]},  # neither node 10 nor any other of no face
+        ),
+        ("*NSET, NSET=Foot, GENERATE\n7, 900, 2\n", {"Foot": [6, 8, 10]}),
+        ("*NSET, NSET=a\nFoot, 3\n*NSET, NSET=foot\n1\n", {"a": [0, 2], "foot": [0]}),
         ("*ELEMENT, TYPE=S8R, ELSET=skin\n9, 1, 2, 3, 4,\n5, 6, 7, 8\n", {"skin": FIRST}),
-        ("*NSET, NSET=Foot, INSTANCE=a\n1\n*SURFACE, NAME=s\nFoot, S1\n", {"Foot": [0]}),
+        ("*NSET, NSET=Foot\n1\n*SURFACE, NAME=s\nFoot, S1\n", {"Foot": [0]}),
     ],
 )
 def test_sets(tmp_path, capsys, text, expected):
@@ -76,9 +85,72 @@ def test_what_gmsh_writes(tmp_path, capsys):
 def test_included_files(tmp_path, capsys):
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "nodes.inc").write_text(NODES)
-    text = "*INCLUDE, INPUT=parts/nodes.inc\n" + ELEMENTS
-    points, cells, _, _ = read_text(tmp_path, capsys, text)
-    assert (points == POINTS).all() and (cells == CELLS).all()
+    (tmp_path / "parts" / "nodes.txt").write_text(NODES.removeprefix("*NODE\n"))
+    for start in (
+        "*INCLUDE, INPUT=parts/nodes.inc\n",
+        "*NODE, INPUT=parts/nodes.txt\n",
+        "*NODE\n*INCLUDE, INPUT=parts/nodes.txt\n",
+    ):
+        points, cells, _, _ = read_text(tmp_path, capsys, start + ELEMENTS)
+        assert (points == POINTS).all() and (cells == CELLS).all()
+
+
+# As Abaqus/CAE writes it: one cube of CUBES twice, sets of the same name in part and assembly.
+ASSEMBLY = (
+    "*Part, name=Cube\n"
+    + CUBES[: CUBES.index("\n2, 5, 6") + 1]
+    + """*Nset, nset=Set-1, generate
+ 1, 8, 1
+*Nset, nset=Top
+ 5, 6, 7, 8
+*End Part
+*Part, name=Unused
+*Node
+1, 7., 7., 7.
+*End Part
+*Assembly, name=Assembly
+*Instance, name=Low, part=Cube
+*End Instance
+*Instance, name=High, part=Cube
+0., 0., 3.
+0., 0., 3., 0., 0., 4., 90.
+*End Instance
+*Nset, nset=Set-1, instance=Low, generate
+1, 4
+*Nset, nset=Both, instance=Low
+Top
+*Nset, nset=Both
+High.Top, High.1
+*End Assembly
+"""
+)
+
+
+def test_instances_are_placed_and_keep_their_sets(tmp_path, capsys):
+    """The second is moved by 3 in z, then turned by 90 degrees about that axis: x to y, y to -x."""
+    points, cells, sets, warnings = read_text(tmp_path, capsys, ASSEMBLY)
+    own = POINTS[:8]
+    turned = np.column_stack([-own[:, 1], own[:, 0], own[:, 2] + 3])
+    assert np.allclose(points, np.vstack([own, turned]), rtol=0, atol=1e-15)
+    assert (cells == [range(8), range(8, 16)]).all()
+    assert warnings.count("warning") == 1 and "dropped 8 nodes of no hexahedron" in warnings
+    assert sets == {
+        "tissue": list(range(16)),
+        "Assembly.Set-1": [0, 1, 2, 3],
+        "Low.Set-1": list(range(8)),
+        "High.Set-1": list(range(8, 16)),
+        "Low.Top": [4, 5, 6, 7],
+        "High.Top": [12, 13, 14, 15],
+        "Both": [4, 5, 6, 7, 8, 12, 13, 14, 15],
+    }
+
+
+def test_messages_name_the_instance(tmp_path, capsys):
+    text = ASSEMBLY.replace("0., 0., 3.\n0.", "0., 0., 1.\n0.").replace(", 4., 90.", ", 4., 0.")
+    *_, warnings = read_text(tmp_path, capsys, text)
+    assert "4 nodes coincident with another, such as Low.5 and High.1: the body" in warnings
+    with pytest.raises(Refused, match=":38: set 'Both' names node 99 of 'High', which does not"):
+        read_text(tmp_path, capsys, ASSEMBLY.replace("High.1\n", "High.99\n"))
 
 
 @pytest.mark.parametrize(
@@ -94,7 +166,7 @@ def test_included_files(tmp_path, capsys):
         ),
         (CUBES + "*ELEMENT, TYPE=C3D20R\n7, 1, 2, 3, 5\n", "1 of type 'C3D20R'"),
         (CUBES.replace("TYPE=C3D8R, ", ""), ":14: .ELEMENT needs TYPE="),
-        (CUBES.replace("2, 5, 6, 7,", "2, 5, 6,"), ":14: C3D8R needs an id and eight nodes"),
+        (CUBES.replace("2, 5, 6, 7,", "2, 5, 6,"), ":16: C3D8R needs an id and eight nodes"),
         (CUBES.replace("2, 5, 6, 7,", "2, 5, 6, x,"), ":16: 'x' must be a whole number"),
         (CUBES.replace("12, 0., 1.", "12, 0., l."), ":13: 'l.' must be a number"),
         (CUBES.replace("12, 0., 1., 2.", "12"), ":13: a node needs an id and three coordinates"),
@@ -107,18 +179,34 @@ def test_included_files(tmp_path, capsys):
             "1 of 2 elements share an id with another; ids must be unique: 1",
         ),
         (CUBES + "*NSET, NSET=Foot\n1, 13\n", "set 'Foot' names node 13, which does not exist"),
-        (CUBES + "*NSET, NSET=Foot\nToes\n", ":18: 'Toes' must be a whole number"),
+        (
+            CUBES + "*NSET, NSET=Foot\nToes\n",
+            ":18: set 'Toes' of nodes is not defined in the file",
+        ),
         (CUBES + "*NSET\n1\n", ":17: .NSET needs a name"),
+        (CUBES.replace("7, 8\n2, 5", "7\n8, 2, 5"), ":16: C3D8R needs an id and eight nodes"),
+        (CUBES + "*ELEMENT, TYPE=U1\n7, 1,\n8, 2,\n", ":18: ends with a comma; where its element"),
+        (CUBES + "*PART, NAME=p\n*END PART\n*INSTANCE, NAME=i, PART=q\n", "PART=, of p"),
+        ("*PART, NAME=p\n*END PART\n*PART, NAME=q\n*END PART\n", "parts p, q are not placed"),
+        (
+            "*PART, NAME=p\n*INSTANCE, NAME=i, PART=p\n1, 2\n",
+            ":2: .INSTANCE: a line of three numbers .translation. and one of seven",
+        ),
+        ("*NODE, INPUT=none.txt\n", "none.txt: cannot be read: No such file"),
+        ("*NODE, INPUT=cubes.inp\n1, 0., 0., 0.\n", ":1: .NODE has both INPUT and data lines"),
         (CUBES + "*NSET, NSET=Foot, GENERATE\n4, 1\n", ":18: GENERATE needs first, last"),
         (CUBES + "*NSET, NSET=Foot, GENERATE\n1, 4, 0\n", ":18: GENERATE needs first, last"),
-        (CUBES + "*NSET, NSET=Foot, GENERATE\n1, 999999999999\n", "more than 100 million"),
         (CUBES + "*ELSET, ELSET=up\n5\n", "set 'up' names element 5, which does not exist"),
-        (CUBES + "*NSET, NSET=a, ELSET=b\n", ":17: set 'b' must be defined before its use"),
+        (
+            CUBES + "*NSET, NSET=a, ELSET=b\n",
+            ":17: set 'b' of elements is not defined in the file",
+        ),
         (
             CUBES + "*INSTANCE, NAME=a\n1., 0., 0.\n",
-            ":17: .INSTANCE: only one is allowed, neither translated",
+            ":17: .INSTANCE needs NAME= and PART=, of none",
         ),
-        (CUBES + "*INSTANCE, NAME=a\n*INSTANCE, NAME=b\n", ":18: .INSTANCE"),
+        (CUBES + "*NSET, NSET=a\nb\n*NSET, NSET=b\nA\n", "set '[aA]' is a member of itself"),
+        (CUBES + "*NSET, NSET=a, INSTANCE=i\n1\n", ":17: .NSET: there is no instance 'i' before"),
         (CUBES + "*NGEN\n1, 5\n", ":17: .NGEN is not supported"),
         (CUBES.replace("*NODE", "*NODE, SYSTEM=C"), ":1: .NODE, SYSTEM: rectangular"),
         ("*INCLUDE, INPUT=none.inc\n", "none.inc: cannot be read"),
@@ -140,7 +228,7 @@ def test_what_is_written_is_read_again(tmp_path, capsys):
     points = POINTS / 3
     names = {"foot": [0, 1], "Fuß, left": [3], "2nd": list(range(12))}
     mesh = HexMesh(points, CELLS, {name: np.array(nodes) for name, nodes in names.items()})
-    lines = abaqus_file.mesh_lines(mesh)
+    lines = abaqus_writer.mesh_lines(mesh)
     found, cells, sets, warnings = read_text(tmp_path, capsys, "\n".join(lines))
     assert (found == points).all() and (cells == CELLS).all() and sets == names and not warnings
     assert max(map(len, lines)) <= 80
@@ -150,7 +238,7 @@ def test_what_is_written_is_read_again(tmp_path, capsys):
 def test_names_that_cannot_be_written(names):
     mesh = HexMesh(POINTS, CELLS, {name: np.array([0]) for name in names})
     with pytest.raises(InputError, match="names? in .inp"):
-        abaqus_file.mesh_lines(mesh)
+        abaqus_writer.mesh_lines(mesh)
 
 
 def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys):

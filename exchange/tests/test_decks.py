@@ -15,7 +15,7 @@ import pytest
 
 from common.errors import InputError
 from common.hexahedron import CUBE
-from exchange import abaqus_file, decks
+from exchange import abaqus_writer, decks
 from exchange.decks import calculix, febio, openradioss
 from exchange.decks.problem import CURVE_POINTS, Material, Motion, Problem, agreed
 from exchange.foreign_mesh import HexMesh
@@ -230,7 +230,7 @@ def test_unknown_materials_are_refused_by_every_program(program, key, value):
     ],
 )
 def test_numbers_have_no_more_than_the_20_characters_that_are_read(value, text):
-    assert abaqus_file.number(value) == text and len(text) <= 20
+    assert abaqus_writer.number(value) == text and len(text) <= 20
     assert abs(float(text) - value) <= 5e-13 * abs(value)  # 13 digits or more
 
 

@@ -8,7 +8,7 @@ from meshes import CELLS, CUBES, DATA, POINTS, write
 
 from common.program import CASES
 from common.result_file import last_displacement
-from exchange import abaqus_file, convert, hdf5_file, vtu_file
+from exchange import abaqus_file, abaqus_writer, convert, hdf5_file, vtu_file
 from exchange.foreign_mesh import HexMesh, to_hexahedra
 
 
@@ -42,7 +42,7 @@ def test_cell_arrays(tmp_path):
 def test_what_is_written_is_read(tmp_path):
     mesh = HexMesh(POINTS, CELLS, {"foot": np.arange(4)}, {"upper": np.array([1])})
     vtu_file.write(tmp_path / "a.vtu", mesh, "vtu")
-    (tmp_path / "a.inp").write_text("\n".join(abaqus_file.mesh_lines(mesh)))
+    (tmp_path / "a.inp").write_text("\n".join(abaqus_writer.mesh_lines(mesh)))
     for path, read in ((tmp_path / "a.vtu", vtu_file.read), (tmp_path / "a.inp", abaqus_file.read)):
         again = to_hexahedra(read(path), path, print)
         assert list(again.element_sets["upper"]) == [1] and list(again.sets["foot"]) == [0, 1, 2, 3]
@@ -76,6 +76,17 @@ def test_nifti_has_the_place_of_its_voxels(tmp_path, flip):
     middles = mesh.points[mesh.cells].mean(axis=1)
     places = np.argwhere(LABELS) * (2.0 * flip, 3.0, 4.0) + (10.0, 20.0, 30.0)
     assert np.allclose(middles, places / 1000, rtol=0, atol=1e-12)
+
+
+def test_a_scale_in_the_header_leaves_whole_labels(tmp_path):
+    """Times .1 in float, 10 is 1.00000001."""
+    nibabel = pytest.importorskip("nibabel")
+    nibabel.save(nibabel.Nifti1Image(LABELS * np.uint8(10), np.eye(4)), tmp_path / "a.nii")
+    data = bytearray((tmp_path / "a.nii").read_bytes())
+    data[112:120] = np.array([0.1, 0.0], "<f4").tobytes()  # scl_slope, scl_inter
+    (tmp_path / "a.nii").write_bytes(data)
+    assert (nibabel.load(tmp_path / "a.nii").get_fdata() != LABELS).any()
+    assert element_sets(tmp_path / "a.nii") == {"label-4": [0, 1, 2, 3], "label-9": [4]}
 
 
 @pytest.mark.parametrize(

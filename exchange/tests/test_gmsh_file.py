@@ -68,7 +68,6 @@ def edited(tmp_path, form, *changes):
         ("2.2", b" 9 2 10 25 ", b" 9 9 10 25 ", "1 of 12 elements name a node twice"),
         ("2.2", b"\n36\n", b"\n37\n", "Nodes"),
         ("2.2", b"\n36\n", b"\n-36\n", "Nodes"),
-        ("2.2", b'2 1 "foot"', b'2 1 "edge"', "curve 3 and surface 1 are both called 'edge'"),
         ("4.1", b'2 1 "foot"', b"2 1", r"\$PhysicalNames: '2 1': dimension, tag, name"),
         ("4.1", b"\n27 36 1 36\n", b"\n28 36 1 36\n", r"\$Nodes"),
         ("4.1", b"\n27 36 1 36\n", b"\n99999999999999999999 36 1 36\n", r"\$Nodes"),
@@ -79,6 +78,17 @@ def edited(tmp_path, form, *changes):
 def test_damage_is_named(tmp_path, capsys, form, old, new, told):
     with pytest.raises(Refused, match=told):
         read(capsys, edited(tmp_path, form, (old, new)))
+
+
+def test_groups_of_one_name_are_kept_apart(tmp_path, capsys):
+    """A curve and a surface: neither has the name alone."""
+    path = edited(tmp_path, "2.2", (b'2 1 "foot"', b'2 1 "edge"'))
+    points, _, sets, _ = read(capsys, path)
+    expected = expected_sets(points)
+    expected["surface-1.edge"], expected["curve-3.edge"] = expected.pop("foot"), expected.pop(
+        "edge"
+    )
+    assert sets == expected
 
 
 def test_node_without_element_is_left_out(tmp_path, capsys):

@@ -1,12 +1,15 @@
-"""VTK's unstructured grids in all encodings of meshio, and files that it would misread."""
+"""VTK's unstructured grids as meshio and VTK write them, and damaged ones."""
 
 import base64
+import sys
 
 import h5py
 import meshio
 import numpy as np
 import pytest
 from meshes import CELLS, POINTS, Refused, damaged, read, run, write
+
+from common.hexahedron import LEXICOGRAPHIC
 
 SETS = {
     "foot": np.array([1] * 4 + [0] * 8, dtype=np.uint8),
@@ -29,11 +32,56 @@ def test_encodings(tmp_path, capsys, options):
     assert sets == {"foot": [0, 1, 2, 3], "Fuß 2": [11]}
 
 
-def test_cells_that_the_library_leaves_out_are_refused(tmp_path, capsys):
+def test_voxels_have_the_corners_of_an_image(tmp_path, capsys):
+    path = write(tmp_path / "a.vtu", cells=CELLS[:, LEXICOGRAPHIC], binary=False)
+    before, types = path.read_text().split('Name="types"')
+    path.write_text(before + 'Name="types"' + types.replace("12\n12", "11\n11"))
+    points, cells, _, warnings = read(capsys, path)
+    assert (points == POINTS).all() and (cells == CELLS).all() and not warnings
+
+
+@pytest.mark.parametrize("version", ["0.1", "1.0", "2.0", "2.3"])
+@pytest.mark.parametrize("compressor", [None, "vtkZLib", "vtkLZ4", "vtkLZMA"])
+def test_what_vtk_writes(tmp_path, capsys, version, compressor):
+    """Debian's VTK writes the file, in each of its modes; newer ones write newer versions."""
+    pytest.importorskip("vtkmodules")
+    from vtkmodules import vtkIOCore, vtkIOXML
+
+    reader = vtkIOXML.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(write(tmp_path / "own.vtu", POINTS / 3, point_data=SETS)))
+    for mode, encoded in ((0, 0), (1, 0), (2, 0), (2, 1)):
+        writer = vtkIOXML.vtkXMLUnstructuredGridWriter()
+        writer.SetInputConnection(reader.GetOutputPort())
+        writer.SetDataMode(mode)
+        writer.SetEncodeAppendedData(encoded)
+        own = compressor and getattr(vtkIOCore, compressor + "DataCompressor")()
+        writer.SetCompressor(own)
+        writer.SetBlockSize(128)
+        writer.SetFileName(str(tmp_path / "a.vtu"))
+        writer.Write()
+        data = (tmp_path / "a.vtu").read_bytes()
+        head, _, tail = data.partition(b'UnstructuredGrid" version="')
+        new = head + b'UnstructuredGrid" version="' + version.encode() + tail[tail.index(b'"') :]
+        (tmp_path / "a.vtu").write_bytes(new)
+        points, cells, sets, warnings = read(capsys, tmp_path / "a.vtu")
+        assert np.allclose(points, POINTS / 3, rtol=0, atol=1e-10 if mode == 0 else 0)
+        assert (cells == CELLS).all() and not warnings
+        assert sets == {"foot": [0, 1, 2, 3], "Fuß 2": [11]}
+
+
+def test_a_compressor_without_its_package_is_named(tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "lz4.block", None)
+    text = write(tmp_path / "a.vtu", compression="zlib").read_text()
+    (tmp_path / "a.vtu").write_text(text.replace("vtkZLib", "vtkLZ4"))
+    with pytest.raises(Refused, match="a.vtu: is compressed with lz4, which needs package python3"):
+        read(capsys, tmp_path / "a.vtu")
+
+
+def test_a_kind_of_cells_that_has_no_name_here_is_refused_by_number(tmp_path, capsys):
     path = write(tmp_path / "a.vtu", binary=False)
     before, types = path.read_text().split('Name="types"')
-    path.write_text(before + 'Name="types"' + types.replace("12\n12", "12\n11"))
-    with pytest.raises(Refused, match="cells that meshio cannot handle .type 11"):
+    path.write_text(before + 'Name="types"' + types.replace("12\n12", "12\n42"))
+    with pytest.raises(Refused, match="1 of type 'VTK's type 42', besides 1 hex"):
         read(capsys, path)
 
 

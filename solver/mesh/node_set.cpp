@@ -44,6 +44,15 @@ const std::vector<int>& named_set(const std::map<std::string, std::vector<int>>&
   const auto found = sets.find(name);
   if (found == sets.end()) {
     const auto known = names_in(sets);
+    // Readers give a name of several sets as SCOPE.NAME.
+    std::string meant;
+    for (const auto& [other, members] : sets) {
+      if (other.ends_with('.' + name))
+        meant += fmt::format("{}'{}' ({})", meant.empty() ? "" : " or ", other, members.size());
+    }
+    if (!meant.empty()) {
+      throw InputError(fmt::format("{} means several sets of the file: write {}", place, meant));
+    }
     throw InputError(
         fmt::format("{} is not {} set of this case{}", place, member,
                     known.empty() ? ", which has none: " + origins : "; " + suggestion(name, known)));
