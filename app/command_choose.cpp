@@ -15,6 +15,7 @@
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
+#include "problem/held.hpp"
 
 namespace sandglass {
 
@@ -62,6 +63,7 @@ int run_choose(const ChooseOptions& options) {
   if (!options.budget.empty()) demand.budget = parse_budget(options.budget);
   require_threads(options.threads);
   const Scene scene = read_scene(find_case(options.name));
+  if (scene.description.quasi_static) require_held(scene);
   for (const auto& place : {options.output, options.json}) {
     if (!place.empty()) require_place(place, files_of(scene.description));
   }

@@ -5,6 +5,7 @@
 #include "app/commands.hpp"
 #include "app/deck_file.hpp"
 #include "app/foreign_files.hpp"
+#include "app/scene_report.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "comparison/mesh_quality.hpp"
@@ -89,10 +90,10 @@ void add_mesh_command(CLI::App& app) {
     fmt::print("{}: {} nodes, {} elements, smallest scaled Jacobian {:.3f}\n", options->output,
                scene.mesh.points.size(), scene.mesh.cells.size(), quality.smallest);
     print_quality(quality);
-    for (const auto& [name, nodes] : scene.sets) fmt::print("  set {}: {} nodes\n", name, nodes.size());
-    for (const auto& [name, elements] : scene.element_sets) {
-      fmt::print("  element set {}: {} elements\n", name, elements.size());
-    }
+    print_parts(scene);
+    print_sets(scene);
+    print_free_motions(scene);
+    warn_of_oddities(scene);
   });
 }
 

@@ -12,6 +12,7 @@
 #include "app/mpi_ranks.hpp"
 #include "app/run_observer.hpp"
 #include "app/run_report.hpp"
+#include "app/scene_report.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
@@ -22,6 +23,7 @@
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
+#include "problem/held.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/error_estimate.hpp"
 #include "solve/leapfrog.hpp"
@@ -283,8 +285,15 @@ int run_case(const RunOptions& options) {
   }
   const MethodChoice choice = choose_method(options, given, scene.description);
   const Model own(scene, choice);
-  if (!scene.description.quasi_static) require_steps(own);
+  if (scene.description.quasi_static) {
+    require_held(scene);
+  } else {
+    require_steps(own);
+  }
   print_problem(scene);  // what is wrong with the input has been said by now
+  print_parts(scene);
+  if (options.ranks->rank() == 0) warn_of_oddities(scene);
+  if (!scene.description.quasi_static) print_free_motions(scene);
   const auto refined = refine_as_requested(options, given, scene);
   std::optional<Model> on_refined;
   if (refined) on_refined.emplace(refined->mesh.scene, choice);

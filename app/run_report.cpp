@@ -25,9 +25,6 @@ constexpr double much_hourglass = 0.1;
 /// Above this multiple of the automatic kappa its control stiffens more than hourglass modes.
 constexpr double much_kappa = 20.0;
 
-/// Extent of a mesh from a file above which it is probably not in m, m.
-constexpr double most_length = 10.0;
-
 /// The unexplained share of the energy from which on a motion is suspect. Free motions gain at most a percent
 /// (energy_test), and the damping is summed from the rows of the history.
 constexpr double much_unexplained = 0.02, much_unexplained_if_damped = 0.1;
@@ -94,15 +91,6 @@ void print_problem(const Scene& scene) {
              mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass),
              plural(static_cast<long>(mesh.cells.size()), "element"),
              plural(static_cast<long>(mesh.points.size()), "node"), parts_text(scene));
-  const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-  if (std::holds_alternative<MeshFile>(scene.description.mesh) && longest > most_length) {
-    fmt::print(
-        stderr,
-        "warning: the mesh is {} long, and files are read in m: if it is in mm, multiply its points by "
-        "0.001 (no key does so), or give the whole case in mm, s, t, N and MPa, and read printed units "
-        "accordingly\n",
-        length_text(longest));
-  }
   for (const Material& material : scene.materials.list) {
     const CalledLaw law = elastic_law(kernel_law(material));
     const double K = law.bulk_modulus(), mu = law.shear_modulus();

@@ -7,6 +7,7 @@
 
 #include "math/rows.hpp"
 #include "mesh/face_load.hpp"
+#include "mesh/free_motions.hpp"
 #include "mesh/mesh_part.hpp"
 
 namespace sandglass {
@@ -70,6 +71,9 @@ class BodyForce {
 
   /// Adds the diagonal of its stiffness where nothing is deformed (N/m), with which steps are prepared.
   virtual void add_stiffness(AtNodes<Row<float>> diagonal) const = 0;
+
+  /// Adds what it holds at rest, in any motion and however little; nothing for loads.
+  virtual void add_holds(std::vector<Hold>& /*holds*/) const {}
 
   /// Adds what drives a body at the factor one (N), however it is directed; moments as forces at an arm (m).
   virtual void add_size(double arm, double& sum) const = 0;

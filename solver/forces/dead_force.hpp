@@ -38,7 +38,6 @@ struct DeadForce {
   }
   std::optional<BrokenRule> broken_rule() const;
 
-  bool holds() const { return false; }
   void scale(double factor);
   void resolve(ForceResolver& resolver) const;
 };

@@ -14,9 +14,9 @@ namespace sandglass {
 /// The list of kinds of forces, in the order in which they are summed. A new one is a header, its source and
 /// one entry here. Each holds the plain data of a table [[name]] of a case file, and has: name, summary, and
 /// parameters(), whose texts name node sets; only_in_motion, the parameter that has no effect in static
-/// cases, if any; by_mass, whether it depends on the density; holds(), whether it alone can hold a body in
-/// static equilibrium; scale(factor), which scales its load; and resolve(resolver), which adds its BodyForce
-/// on a mesh. The optional `one_of` names parameters of which at least one must be given.
+/// cases, if any; by_mass, whether it depends on the density; scale(factor), which scales its load; and
+/// resolve(resolver), which adds its BodyForce on a mesh. The optional `one_of` names parameters of which at
+/// least one must be given.
 using Forces = TypeList<DeadForce, Pressure, Gravity, Support>;
 
 /// The forces of a case: of each kind those that it names, in their order.

@@ -20,7 +20,6 @@ struct Gravity {
                       Parameter{&G::curve, "curve", "-", Range::any(), "how it follows time", false}};
   }
 
-  bool holds() const { return false; }
   void scale(double factor);
   void resolve(ForceResolver& resolver) const;
 };

@@ -26,7 +26,6 @@ struct Pressure {
         Parameter{&P::curve, "curve", "-", Range::any(), "how it follows time", false}};
   }
 
-  bool holds() const { return false; }
   void scale(double factor) { value *= factor; }
   void resolve(ForceResolver& resolver) const;
 };

@@ -1,0 +1,180 @@
+#include "app/scene_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/si_units.hpp"
+#include "comparison/comparison.hpp"
+#include "mesh/oddities.hpp"
+#include "mesh/parts.hpp"
+#include "problem/held.hpp"
+#include "problem/masses.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Extent of a mesh from a file above which it is probably not in m, m.
+constexpr double most_length = 10.0;
+
+/// How often a body's weight on its base may be its Young's modulus: gels of some metres are beyond the
+/// fraction that a body could stand, but not by far.
+constexpr double most_weight = 100.0;
+
+std::string plural(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string mass_text(double mass) {
+  return mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass);
+}
+
+std::string extent_text(const std::vector<int>& nodes, const NodalField& points) {
+  const auto [low, high] = bounding_box(values_at(nodes, points));
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < 3; ++i) {
+    words.push_back(low[i] == high[i] ? fmt::format("{} = {:.6g}", "xyz"[i], low[i])
+                                      : fmt::format("{} {:.6g} to {:.6g}", "xyz"[i], low[i], high[i]));
+  }
+  return fmt::format("{} m", fmt::join(words, ", "));
+}
+
+std::string shape_text(const SetShape& shape) {
+  if (shape.elements > 0) return fmt::format("volume of {}", plural(shape.elements, "element"));
+  if (shape.faces > 0) return fmt::format("surface of {}", plural(shape.faces, "face"));
+  return shape.edges > 0 ? "edge" : "points";
+}
+
+/// The node sets that the tables of a case name, those on answers too.
+std::set<std::string> used_sets(const Case& description) {
+  std::set<std::string> used = used_node_sets(description);
+  const Comparison comparison = read_comparison(description);
+  if (comparison.profile) used.insert(comparison.profile->set);
+  for (const PublishedValue& published : comparison.published) used.insert(published.set);
+  return used;
+}
+
+std::set<std::string> used_element_sets(const Case& description) {
+  std::set<std::string> used;
+  for (const CaseMaterial& material : description.materials) used.insert(material.elements);
+  for (const Refinement& refinement : description.refinements) used.insert(refinement.elements);
+  for (const NodeTie& tie : description.ties) used.insert(tie.elements);
+  return used;
+}
+
+void warn(const std::string& text) {
+  fmt::print(stderr, "warning: {}\n", text);
+}
+
+void warn_of_units(const Scene& scene) {
+  const auto [low, high] = bounding_box(scene.mesh.points);
+  const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  if (std::holds_alternative<MeshFile>(scene.description.mesh) && longest > most_length) {
+    warn(fmt::format(
+        "the mesh is {} long, and files are read in m: if it is in mm, multiply its points by 0.001 (no key "
+        "does so), or give the whole case in mm, s, t, N and MPa, and read printed units accordingly",
+        length_text(longest)));
+    return;
+  }
+  for (const Material& material : scene.materials.list) {
+    const double modulus = young_modulus(elastic_law(kernel_law(material)));
+    if (material.density * 9.81 * longest < most_weight * modulus) continue;
+    warn(
+        fmt::format("a body of {} with a Young's modulus of {} and a density of {:.4g} kg/m^3 would weigh "
+                    "{:.2g} times on "
+                    "its base what it resists: units are m, Pa and kg/m^3",
+                    length_text(longest), with_prefix(modulus, "Pa"), material.density,
+                    material.density * 9.81 * longest / modulus));
+  }
+}
+
+void warn_of_seams(const Scene& scene) {
+  const Seam seam = seam_of(scene.mesh, scene.ties, scene.boundary);
+  if (seam.pairs == 0) return;
+  const Vector& X = scene.mesh.points[at(seam.first)];
+  warn(fmt::format(
+      "{} of nodes of the boundary lie at one place, at most {:.2g} m apart, but are not joined{}: nodes {} "
+      "and {} at ({:.6g}, {:.6g}, {:.6g}) m, for instance; if this is no gap, merge them in the program that "
+      "made the mesh, or use [[tie]]",
+      plural(seam.pairs, "pair"), seam.distance, seam.between_parts ? ", and parts move as if apart" : "",
+      seam.first, seam.second, X[0], X[1], X[2]));
+}
+
+}  // namespace
+
+void print_parts(const Scene& scene) {
+  constexpr std::size_t most = 4;
+  const std::vector<int> parts = parts_of_nodes(scene.mesh, scene.ties);
+  struct Part {
+    std::vector<int> nodes;
+    std::size_t elements = 0;
+    double mass = 0.0;
+  };
+  std::vector<Part> all(at(number_of_parts(scene.mesh, scene.ties)));
+  if (all.size() < 2) return;
+  for (std::size_t n = 0; n < parts.size(); ++n)
+    if (parts[n] >= 0) all[at(parts[n])].nodes.push_back(static_cast<int>(n));
+  const auto masses = element_masses(scene.mesh, scene.materials);
+  for (std::size_t e = 0; e < masses.size(); ++e) {
+    Part& part = all[at(parts[at(scene.mesh.cells[e].front())])];
+    ++part.elements;
+    part.mass += masses[e];
+  }
+  std::ranges::stable_sort(all, std::ranges::greater{}, &Part::elements);
+  std::vector<std::string> words;
+  for (const Part& part : all) {
+    if (words.size() == most) break;
+    words.push_back(fmt::format("{}, {}, {}", plural(part.elements, "element"), mass_text(part.mass),
+                                extent_text(part.nodes, scene.mesh.points)));
+  }
+  if (all.size() > most) words.push_back(fmt::format("{} more", all.size() - most));
+  fmt::print("parts: {}\n", fmt::join(words, "; "));
+}
+
+void print_sets(const Scene& scene) {
+  const auto used = used_sets(scene.description), used_of_elements = used_element_sets(scene.description);
+  const auto note = [](const std::set<std::string>& names, const std::string& name) {
+    return names.contains(name) ? "" : "; no table uses it";
+  };
+  for (const auto& [name, nodes] : scene.sets) {
+    fmt::print("  set {}: {}", name, plural(nodes.size(), "node"));
+    if (!nodes.empty()) {
+      fmt::print(", {}, {}", shape_text(shape_of(scene.mesh, scene.boundary, nodes)),
+                 extent_text(nodes, scene.mesh.points));
+    }
+    fmt::print("{}\n", note(used, name));
+  }
+  for (const auto& [name, elements] : scene.element_sets) {
+    fmt::print("  element set {}: {}{}\n", name, plural(elements.size(), "element"),
+               note(used_of_elements, name));
+  }
+}
+
+void warn_of_oddities(const Scene& scene) {
+  const std::string file = scene.description.file.string();
+  const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
+  for (const NodeSetRule& rule : scene.description.sets) {
+    const std::string cut = cut_plane(scene.mesh, on_boundary, rule);
+    if (!cut.empty()) {
+      warn(fmt::format("{}: sets.{} {}, which seem to be one plane; if they are, widen the limits", file,
+                       rule.name, cut));
+    }
+  }
+  warn_of_seams(scene);
+  warn_of_units(scene);
+  std::vector<std::string> unused;
+  const auto used = used_sets(scene.description);
+  for (const NodeSetRule& rule : scene.description.sets)
+    if (!used.contains(rule.name)) unused.push_back(rule.name);
+  if (!unused.empty()) fmt::print("note: no table uses the sets {}\n", fmt::join(unused, ", "));
+}
+
+void print_free_motions(const Scene& scene) {
+  const std::string free = described_free_motions(scene);
+  if (!free.empty()) fmt::print("note: nothing holds {}\n", free);
+}
+
+}  // namespace sandglass
