@@ -36,8 +36,8 @@ std::string extent_text(const std::vector<int>& nodes, const NodalField& points)
   const auto [low, high] = bounding_box(values_at(nodes, points));
   std::vector<std::string> words;
   for (std::size_t i = 0; i < 3; ++i) {
-    words.push_back(low[i] == high[i] ? fmt::format("{} = {:.6g}", "xyz"[i], low[i])
-                                      : fmt::format("{} {:.6g} to {:.6g}", "xyz"[i], low[i], high[i]));
+    words.push_back(low[i] == high[i] ? fmt::format("{} = {:.9g}", "xyz"[i], low[i])
+                                      : fmt::format("{} {:.9g} to {:.9g}", "xyz"[i], low[i], high[i]));
   }
   return fmt::format("{} m", fmt::join(words, ", "));
 }
@@ -89,18 +89,6 @@ void warn_of_units(const Scene& scene) {
                     length_text(longest), with_prefix(modulus, "Pa"), material.density,
                     material.density * 9.81 * longest / modulus));
   }
-}
-
-void warn_of_seams(const Scene& scene) {
-  const Seam seam = seam_of(scene.mesh, scene.ties, scene.boundary);
-  if (seam.pairs == 0) return;
-  const Vector& X = scene.mesh.points[at(seam.first)];
-  warn(fmt::format(
-      "{} of nodes of the boundary lie at one place, at most {:.2g} m apart, but are not joined{}: nodes {} "
-      "and {} at ({:.6g}, {:.6g}, {:.6g}) m, for instance; if this is no gap, merge them in the program that "
-      "made the mesh, or use [[tie]]",
-      plural(seam.pairs, "pair"), seam.distance, seam.between_parts ? ", and parts move as if apart" : "",
-      seam.first, seam.second, X[0], X[1], X[2]));
 }
 
 }  // namespace
@@ -163,7 +151,8 @@ void warn_of_oddities(const Scene& scene) {
                        rule.name, cut));
     }
   }
-  warn_of_seams(scene);
+  const std::string seam = described(seam_of(scene.mesh, scene.ties, scene.boundary), scene.mesh);
+  if (!seam.empty()) warn(seam);
   warn_of_units(scene);
   std::vector<std::string> unused;
   const auto used = used_sets(scene.description);

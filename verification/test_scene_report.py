@@ -9,7 +9,7 @@ ORDER = (1, 2, 4, 3, 5, 6, 8, 7)
 
 
 def two_cubes(gap):
-    """An input of Abaqus: one cube of .1 m on another, each with nodes of its own, `gap` m apart."""
+    """An input of Abaqus: a cube of .1 m on another, each with its own nodes, `gap` m apart."""
     points = CORNERS + [(x, y, z + 0.1 + gap) for x, y, z in CORNERS]
     rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(points, 1)]
     cells = [
@@ -89,8 +89,8 @@ def test_a_loose_voxel_is_named(tmp_path):
     said = refusal(case)
     assert "65 elements in 2 parts" in said
     assert (
-        "nothing holds 1 of 65 elements around (0.0055, 0.0035, 0.0035) m against every translation "
-        "and rotation"
+        "nothing holds 1 of 65 elements around (0.0055, 0.0035, 0.0035) m "
+        "against every translation and rotation"
     ) in said
 
 

@@ -7,7 +7,6 @@
 #include <unordered_map>
 
 #include "mesh/edges.hpp"
-#include "mesh/parts.hpp"
 
 namespace sandglass {
 
@@ -75,7 +74,6 @@ Seam seam_of(const Mesh& mesh, const Ties& ties, const std::vector<Quadrilateral
   const double rounding = rounding_of(mesh);
   std::vector<bool> looked_at = nodes_of(boundary, mesh.points.size());
   for (const Tie& tie : ties) looked_at[at(tie.node)] = false;
-  const std::vector<int> parts = parts_of_nodes(mesh, ties);
   // Nodes by the cells of a grid; those at one place are in the same cell or in neighbours.
   const auto number = [&](double x, int shift) {
     return static_cast<std::int64_t>(std::floor(x / (4.0 * rounding))) + shift;
@@ -100,12 +98,22 @@ Seam seam_of(const Mesh& mesh, const Ties& ties, const std::vector<Quadrilateral
           seam.second = static_cast<int>(n);
         }
         seam.distance = std::max(seam.distance, apart);
-        seam.between_parts = seam.between_parts || parts[n] != parts[at(other)];
       }
     }
     grid[key(number(X[0], 0), number(X[1], 0), number(X[2], 0))].push_back(static_cast<int>(n));
   }
   return seam;
+}
+
+std::string described(const Seam& seam, const Mesh& mesh) {
+  if (seam.pairs == 0) return "";
+  const Vector& X = mesh.points[at(seam.first)];
+  return fmt::format(
+      "{} pair{} of boundary nodes lie at one place{}, but are not joined, such as {} and {} at ({:.6g}, "
+      "{:.6g}, {:.6g}) m; unless this is a gap, merge them in the program that made the mesh, or use [[tie]]",
+      seam.pairs, seam.pairs == 1 ? "" : "s",
+      seam.distance > 0.0 ? fmt::format(", up to {:.2g} m apart", seam.distance) : "", seam.first,
+      seam.second, X[0], X[1], X[2]);
 }
 
 }  // namespace sandglass

@@ -24,8 +24,10 @@ struct Seam {
   std::size_t pairs = 0;
   int first = -1, second = -1;  ///< one pair of nodes
   double distance = 0.0;        ///< the largest, m
-  bool between_parts = false;   ///< whether any pair is of two parts
 };
 Seam seam_of(const Mesh& mesh, const Ties& ties, const std::vector<Quadrilateral>& boundary);
+
+/// What is wrong with it and what to do, in words; empty without any pair.
+std::string described(const Seam& seam, const Mesh& mesh);
 
 }  // namespace sandglass

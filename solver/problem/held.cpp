@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "mesh/oddities.hpp"
 #include "mesh/parts.hpp"
 
 namespace sandglass {
@@ -154,6 +155,9 @@ std::string place_of(const RigidPiece& piece, const Mesh& mesh) {
              : fmt::format("{} of {} elements around {}", own, all, point_text(piece.centre, piece.radius));
 }
 
+/// Of how many elements of a piece the nodes are considered.
+constexpr std::size_t most_looked_at = 10000;
+
 /// Nodes and components that would hold a body without any stress: at each step the one that moves most.
 std::string remedy(const LooseBody& body, const Mesh& mesh) {
   struct Place {
@@ -170,16 +174,18 @@ std::string remedy(const LooseBody& body, const Mesh& mesh) {
     int node = 0;
     std::size_t component = 0, piece = 0;
     for (std::size_t p = 0; p < body.pieces.size(); ++p) {
-      for (const int e : body.pieces[p].elements) {
-        for (const int n : mesh.cells[at(e)]) {
+      const std::vector<int>& elements = body.pieces[p].elements;
+      for (std::size_t k = 0; k < elements.size(); k += 1 + elements.size() / most_looked_at) {
+        for (const int n : mesh.cells[at(elements[k])]) {
           Vector square{};
           for (std::size_t m = 0; m < motions.size(); ++m) {
             const Vector u = moved(m, p, mesh.points[at(n)]);
             for (std::size_t i = 0; i < 3; ++i) square[i] += u[i] * u[i];
           }
           for (std::size_t i = 0; i < 3; ++i) {
-            if (square[i] <= largest * (1.0 + resolved)) continue;
-            largest = square[i];
+            const double weight = chosen.contains(n) ? 4.0 * square[i] : square[i];  // few nodes are easier
+            if (weight <= largest * (1.0 + resolved)) continue;
+            largest = weight;
             node = n;
             component = i;
             piece = p;
@@ -213,6 +219,28 @@ std::string remedy(const LooseBody& body, const Mesh& mesh) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// What some loose bodies may do, in words.
+std::string described(const std::vector<LooseBody>& loose, const Mesh& mesh, bool with_remedy) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t b = 0; b < std::min(loose.size(), most); ++b) {
+    const LooseBody& body = loose[b];
+    for (std::size_t p = 0; p < std::min(body.pieces.size(), most); ++p) {
+      std::vector<RigidMotion> motions;
+      for (const auto& of_pieces : body.motions) motions.push_back(of_pieces[p]);
+      text += fmt::format("{}{} against {}", text.empty() ? "" : "; nothing holds ",
+                          place_of(body.pieces[p], mesh), motions_text(motions, body.pieces[p]));
+    }
+    if (body.pieces.size() > most) {
+      text += fmt::format("; and {} more pieces, joined to these by edges, single nodes or ties",
+                          body.pieces.size() - most);
+    }
+    if (with_remedy) text += fmt::format(" (to hold it, impose for instance {})", remedy(body, mesh));
+  }
+  if (loose.size() > most) text += fmt::format("; and {} more", loose.size() - most);
+  return text;
+}
+
 }  // namespace
 
 std::vector<LooseBody> free_motions(const Scene& scene) {
@@ -228,36 +256,23 @@ std::vector<LooseBody> free_motions(const Scene& scene) {
 }
 
 std::string described_free_motions(const Scene& scene) {
-  constexpr std::size_t most = 3;
-  const std::vector<LooseBody> loose = free_motions(scene);
-  std::string text;
-  for (std::size_t b = 0; b < std::min(loose.size(), most); ++b) {
-    const LooseBody& body = loose[b];
-    for (std::size_t p = 0; p < std::min(body.pieces.size(), most); ++p) {
-      std::vector<RigidMotion> motions;
-      for (const auto& of_pieces : body.motions) motions.push_back(of_pieces[p]);
-      text += fmt::format("{}{} against {}", text.empty() ? "" : "; nothing holds ",
-                          place_of(body.pieces[p], scene.mesh), motions_text(motions, body.pieces[p]));
-    }
-    if (body.pieces.size() > most)
-      text += fmt::format("; and {} more pieces, joined to these by edges, single nodes or ties",
-                          body.pieces.size() - most);
-    text += fmt::format(" (to hold it, impose for instance {})", remedy(body, scene.mesh));
-  }
-  if (loose.size() > most) text += fmt::format("; and {} more", loose.size() - most);
-  return text;
+  return described(free_motions(scene), scene.mesh, false);
 }
 
 void require_held(const Scene& scene) {
-  const std::string free = described_free_motions(scene);
-  if (free.empty()) return;
+  const std::vector<LooseBody> loose = free_motions(scene);
+  if (loose.empty()) return;
   const int parts = number_of_parts(scene.mesh, scene.ties);
+  std::string of_parts;
+  if (parts > 1) {
+    const std::string seam = described(seam_of(scene.mesh, scene.ties, scene.boundary), scene.mesh);
+    of_parts = fmt::format("this one has {} elements in {} parts; {}{}", scene.mesh.cells.size(), parts, seam,
+                           seam.empty() ? "" : "; ");
+  }
   throw InputError(fmt::format(
       "{}: a body at rest must be held against every motion as a whole, by [[displacement]], [[rotation]], "
       "[[support]] with a stiffness, or [[tie]] to a part that is held; {}nothing holds {}",
-      scene.description.file.string(),
-      parts > 1 ? fmt::format("this one has {} elements in {} parts; ", scene.mesh.cells.size(), parts) : "",
-      free));
+      scene.description.file.string(), of_parts, described(loose, scene.mesh, true)));
 }
 
 }  // namespace sandglass
