@@ -82,12 +82,12 @@ void warn_of_units(const Scene& scene) {
   for (const Material& material : scene.materials.list) {
     const double modulus = young_modulus(elastic_law(kernel_law(material)));
     if (material.density * 9.81 * longest < most_weight * modulus) continue;
-    warn(
-        fmt::format("a body of {} with a Young's modulus of {} and a density of {:.4g} kg/m^3 would weigh "
-                    "{:.2g} times on "
-                    "its base what it resists: units are m, Pa and kg/m^3",
-                    length_text(longest), with_prefix(modulus, "Pa"), material.density,
-                    material.density * 9.81 * longest / modulus));
+    fmt::print(
+        "note: a body of {} with a Young's modulus of {} and a density of {:.4g} kg/m^3 would weigh {:.2g} "
+        "times "
+        "what it resists: units are m, Pa and kg/m^3\n",
+        length_text(longest), with_prefix(modulus, "Pa"), material.density,
+        material.density * 9.81 * longest / modulus);
   }
 }
 
@@ -156,8 +156,9 @@ void warn_of_oddities(const Scene& scene) {
   warn_of_units(scene);
   std::vector<std::string> unused;
   const auto used = used_sets(scene.description);
-  for (const NodeSetRule& rule : scene.description.sets)
+  for (const NodeSetRule& rule : scene.description.sets) {
     if (!used.contains(rule.name)) unused.push_back(rule.name);
+  }
   if (!unused.empty()) fmt::print("note: no table uses the sets {}\n", fmt::join(unused, ", "));
 }
 
