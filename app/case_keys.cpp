@@ -96,7 +96,8 @@ constexpr std::string_view several_materials = R"(
 constexpr std::string_view sets_and_motions = R"(
 [sets] NAME = { surface = true, x = [low, high], y = ..., z = ..., cylinder = { axis = "z",
   center = [x, y], semi_axes = [a, b] }, ellipsoid = { center = [x, y, z], semi_axes = [a, b, c] } }
-  all conditions must hold; lengths in m; inf and -inf are allowed
+  all conditions must hold, within the rounding of files (5e-6 of the largest coordinate, at most a thousandth
+  of the shortest edge); lengths in m; inf and -inf are allowed
 
 [[displacement]] set = NAME, value = [x, y, z] in m, components = "xyz" (default: all)
 [[rotation]] set = NAME, axis = "x", "y", "z" or [x, y, z], angle in degrees, by the right-hand rule:

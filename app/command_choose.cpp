@@ -15,6 +15,7 @@
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/text_file.hpp"
+#include "problem/held.hpp"
 
 namespace sandglass {
 
@@ -63,6 +64,7 @@ int run_choose(const ChooseOptions& options) {
   require_threads(options.threads);
   const CaseOnMesh problem = with_mesh(find_case(options.name));
   const Scene scene = make_scene(problem);
+  if (scene.settings.quasi_static) require_held(scene);
   for (const auto& place : {options.output, options.json}) {
     if (!place.empty()) require_place(place, problem.description.files);
   }

@@ -5,6 +5,7 @@
 #include "app/commands.hpp"
 #include "app/deck_file.hpp"
 #include "app/foreign_files.hpp"
+#include "app/scene_report.hpp"
 #include "app/workspace.hpp"
 #include "base/error.hpp"
 #include "comparison/mesh_quality.hpp"
@@ -82,17 +83,18 @@ void add_mesh_command(CLI::App& app) {
                    "for a deck: the program's hourglass coefficient; default: its usual one")
       ->needs(deck);
   command->callback([options] {
-    const Scene scene = read_scene(find_case(options->name));
+    const CaseOnMesh problem = with_mesh(find_case(options->name));
+    const Scene scene = make_scene(problem);
     require_place(options->output, scene.settings.files);
     write(scene, *options);
     const QualityTable quality = quality_table(scene.mesh);
     fmt::print("{}: {} nodes, {} elements, smallest scaled Jacobian {:.3f}\n", options->output,
                scene.mesh.points.size(), scene.mesh.cells.size(), quality.smallest);
     print_quality(quality);
-    for (const auto& [name, nodes] : scene.sets) fmt::print("  set {}: {} nodes\n", name, nodes.size());
-    for (const auto& [name, elements] : scene.element_sets) {
-      fmt::print("  element set {}: {} elements\n", name, elements.size());
-    }
+    print_parts(scene);
+    print_sets(problem.description, scene);
+    print_free_motions(scene);
+    warn_of_oddities(problem.description, scene);
   });
 }
 

@@ -12,6 +12,7 @@
 #include "app/mpi_ranks.hpp"
 #include "app/run_observer.hpp"
 #include "app/run_report.hpp"
+#include "app/scene_report.hpp"
 #include "app/workspace.hpp"
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
@@ -22,6 +23,7 @@
 #include "io/case_file.hpp"
 #include "io/new_file.hpp"
 #include "io/result_file.hpp"
+#include "problem/held.hpp"
 #include "solve/central_difference.hpp"
 #include "solve/error_estimate.hpp"
 #include "solve/leapfrog.hpp"
@@ -286,8 +288,15 @@ int run_case(const RunOptions& options) {
   }
   const MethodChoice choice = choose_method(options, given, scene.settings);
   const Model own(scene, choice);
-  if (!scene.settings.quasi_static) require_steps(own);
+  if (scene.settings.quasi_static) {
+    require_held(scene);
+  } else {
+    require_steps(own);
+  }
   print_problem(problem.description, scene);  // the input has been checked by now
+  print_parts(scene);
+  if (options.ranks->rank() == 0) warn_of_oddities(problem.description, scene);
+  if (!scene.settings.quasi_static) print_free_motions(scene);
   const auto refined = refine_as_requested(options, given, problem, scene);
   std::optional<Model> on_refined;
   if (refined) on_refined.emplace(refined->mesh.scene, choice);

@@ -24,9 +24,6 @@ constexpr double much_hourglass = 0.1;
 /// Above this multiple of the automatic kappa its control stiffens more than hourglass modes.
 constexpr double much_kappa = 20.0;
 
-/// A mesh from a file that is longer than this (m) is probably not in m.
-constexpr double most_length = 10.0;
-
 /// The unexplained share of the energy above which a motion is suspect. Free motions gain at most a percent
 /// (energy_test); the damped energy is summed from the rows of the history.
 constexpr double much_unexplained = 0.02, much_unexplained_if_damped = 0.1;
@@ -70,6 +67,17 @@ bool dissipates(const Model& model) {
          method_named(model.choice().method).damps_only;
 }
 
+/// What a strain of 1e-12, far above that of rounded displacements, would store in the body, J.
+double energy_of_rounding(const Model& model) {
+  double energy = 0.0;
+  for (std::size_t e = 0; e < model.element_masses().size(); ++e) {
+    const Material& material = model.scene().materials.list[model.scene().materials.of(e)];
+    energy += 1e-24 * elastic_law(kernel_law(material)).bulk_modulus() * model.element_masses()[e] /
+              material.density;
+  }
+  return energy;
+}
+
 /// Nothing for a body in one piece.
 std::string parts_text(const Scene& scene) {
   const int parts = number_of_parts(scene.mesh, scene.ties);
@@ -93,15 +101,6 @@ void print_problem(const Case& description, const Scene& scene) {
              mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass),
              plural(static_cast<long>(mesh.cells.size()), "element"),
              plural(static_cast<long>(mesh.points.size()), "node"), parts_text(scene));
-  const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-  if (std::holds_alternative<MeshFile>(description.mesh) && longest > most_length) {
-    fmt::print(
-        stderr,
-        "warning: the mesh is {} long, and files are read in m: if it is in mm, multiply its points by "
-        "0.001 (no key does so), or give the whole case in mm, s, t, N and MPa, and read printed units "
-        "accordingly\n",
-        length_text(longest));
-  }
   for (const Material& material : scene.materials.list) {
     const CalledLaw law = elastic_law(kernel_law(material));
     const double K = law.bulk_modulus(), mu = law.shear_modulus();
@@ -224,7 +223,8 @@ void warn_of_suspect(const Model& model, const HistoryReport& history) {
   const CaseSettings& settings = model.scene().settings;
   const std::string& method = model.choice().method;
   const double share = history.hourglass_share(settings.quasi_static);
-  if (share > much_hourglass) {
+  const bool strained = !settings.quasi_static || history.last().strain > energy_of_rounding(model);
+  if (share > much_hourglass && strained) {
     fmt::print(
         stderr,
         "warning: hourglass energy is {:.3g} % of strain energy, above {:g} %: the hourglass control affects "

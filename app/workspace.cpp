@@ -10,6 +10,7 @@
 #include "comparison/comparison.hpp"
 #include "io/case_file.hpp"
 #include "io/project_folder.hpp"
+#include "problem/held.hpp"
 
 namespace sandglass {
 
@@ -119,6 +120,7 @@ std::deque<Scene> read_scenes(const std::vector<std::string>& names,
   for (auto& scene : cases) {
     if (fit(scene)) {
       scenes.push_back(read_scene(std::move(scene)));
+      if (scenes.back().description.quasi_static) require_held(scenes.back());
     } else if (!names.empty()) {
       throw InputError(fmt::format("{}: a dynamic case has no {}", scene.file.string(), has_not));
     }

@@ -7,6 +7,7 @@
 
 #include "math/rows.hpp"
 #include "mesh/face_load.hpp"
+#include "mesh/free_motions.hpp"
 #include "mesh/mesh_part.hpp"
 
 namespace sandglass {
@@ -70,6 +71,9 @@ class BodyForce {
 
   /// Adds the diagonal of its stiffness in the undeformed body (N/m), for the preconditioner.
   virtual void add_stiffness(AtNodes<Row<float>> diagonal) const = 0;
+
+  /// Adds the motions that it resists in static equilibrium, however small; loads resist none.
+  virtual void add_holds(std::vector<Hold>& /*holds*/) const {}
 
   /// Adds its magnitude at the factor one (N), whatever its direction; moments as forces at an arm (m).
   virtual void add_size(double arm, double& sum) const = 0;

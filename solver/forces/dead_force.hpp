@@ -37,7 +37,6 @@ struct DeadForce {
   }
   std::optional<BrokenRule> broken_rule() const;
 
-  bool holds() const { return false; }
   void resolve(ForceResolver& resolver) const;
 };
 

@@ -20,7 +20,6 @@ struct Gravity {
                       Parameter{&G::curve, "curve", "-", Range::any(), "factor over time", false}};
   }
 
-  bool holds() const { return false; }
   void resolve(ForceResolver& resolver) const;
 };
 

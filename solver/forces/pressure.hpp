@@ -24,7 +24,6 @@ struct Pressure {
                       Parameter{&P::curve, "curve", "-", Range::any(), "factor over time", false}};
   }
 
-  bool holds() const { return false; }
   void resolve(ForceResolver& resolver) const;
 };
 

@@ -62,6 +62,22 @@ class FaceSupports final : public BodyForce {
     });
   }
 
+  void add_holds(std::vector<Hold>& holds) const override {
+    if (support_.stiffness == 0.0) return;
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      for (const FacePoint& point : points_[k]) {
+        std::vector<Tie::Share> mean_of;
+        for (std::size_t I = 0; I < 4; ++I) mean_of.push_back({faces_[k][I], point.N[I]});
+        if (support_.only_normal) {
+          const auto& n = point.normal.entries;
+          holds.push_back({mean_of, {n[0] / point.area, n[1] / point.area, n[2] / point.area}});
+        } else {
+          for (const Vector& axis : coordinate_axes) holds.push_back({mean_of, axis});
+        }
+      }
+    }
+  }
+
   void add_size(double /*arm*/, double& /*sum*/) const override {}
   std::span<const NodalLoad> dead_loads() const override { return {}; }
 

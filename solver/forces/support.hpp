@@ -32,7 +32,6 @@ struct Support {
   }
   std::optional<BrokenRule> broken_rule() const;
 
-  bool holds() const { return stiffness > 0.0; }
   void resolve(ForceResolver& resolver) const;
 };
 

@@ -223,13 +223,6 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   for (const auto& name : tables_not_read) reader.leave(name);
   reader.finish();
   description.files = files_of(description);
-  bool held = !(description.displacements.empty() && description.rotations.empty());
-  description.forces.for_each([&](const auto& force) { held = held || force.holds(); });
-  if (description.quasi_static && !held) {
-    reader.fail(
-        "displacement",
-        "is missing; a quasi-static case needs at least one [[displacement]], [[rotation]] or [[support]]");
-  }
   return description;
 }
 

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.hpp"
 #include "base/names.hpp"
+#include "mesh/edges.hpp"
 
 namespace sandglass {
 
@@ -66,9 +70,17 @@ const std::vector<int>& named_set(const std::map<std::string, std::vector<int>>&
 
 }  // namespace
 
+double rounding_of(const Mesh& mesh) {
+  double largest = 0.0;
+  for (const Vector& X : mesh.points) {
+    for (const double x : X) largest = std::max(largest, std::abs(x));
+  }
+  return std::max(1e-9 * diagonal(mesh.points), std::min(5e-6 * largest, 1e-3 * shortest_edge(mesh)));
+}
+
 std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary,
                               const NodeSetRule& rule) {
-  const double tolerance = 1e-9 * diagonal(mesh.points);
+  const double tolerance = rounding_of(mesh);
   std::vector<int> nodes;
   for (std::size_t n = 0; n < mesh.points.size(); ++n) {
     if (rule.surface && !on_boundary[n]) continue;
@@ -77,8 +89,30 @@ std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boun
   return nodes;
 }
 
+std::string nearest_miss(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule) {
+  // The least tolerance with which the rule would select a node; all kinds of conditions are monotonous in
+  // it.
+  const auto first = [&](double tolerance) -> std::optional<std::size_t> {
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+      if ((!rule.surface || on_boundary[n]) && selects(rule, mesh.points[n], tolerance)) return n;
+    }
+    return std::nullopt;
+  };
+  double low = rounding_of(mesh), high = 2.0 * low;
+  for (; !first(high); high *= 2.0)
+    if (!std::isfinite(high)) return "no tolerance would take one";
+  while (high - low > 1e-3 * high) (first(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+  const std::size_t node = *first(high);
+  const Vector& X = mesh.points[node];
+  return fmt::format(
+      "the nearest, {} at ({:.9g}, {:.9g}, {:.9g}) m, is {:.3g} m outside: limits wider by that would take "
+      "it; "
+      "{:.2g} m are allowed for rounding",
+      node, X[0], X[1], X[2], high, rounding_of(mesh));
+}
+
 std::vector<int> select_elements(const Mesh& mesh, const NodeSetRule& rule) {
-  const double tolerance = 1e-9 * diagonal(mesh.points);
+  const double tolerance = rounding_of(mesh);
   std::vector<int> elements;
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {
     if (selects(rule, mean_at(mesh.cells[e], mesh.points), tolerance))

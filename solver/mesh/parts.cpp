@@ -1,38 +1,13 @@
 #include "mesh/parts.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "mesh/disjoint_sets.hpp"
 
 namespace sandglass {
 
-namespace {
-
-/// Sets of nodes that are joined step by step; the smallest node represents its set.
-class JoinedNodes {
- public:
-  explicit JoinedNodes(std::size_t nodes) : towards_least_(nodes) {
-    std::iota(towards_least_.begin(), towards_least_.end(), 0);
-  }
-
-  int least(int node) {
-    int& next = towards_least_[at(node)];
-    while (next != towards_least_[at(next)]) next = towards_least_[at(next)];
-    return next;
-  }
-
-  void join(int a, int b) {
-    const auto [low, high] = std::minmax({least(a), least(b)});
-    towards_least_[at(high)] = low;
-  }
-
- private:
-  std::vector<int> towards_least_;
-};
-
-}  // namespace
-
 std::vector<int> parts_of_nodes(const Mesh& mesh, const Ties& ties) {
-  JoinedNodes joined(mesh.points.size());
+  DisjointSets joined(mesh.points.size());
   std::vector<bool> used(mesh.points.size());
   for (const auto& cell : mesh.cells) {
     for (const int node : cell) {

@@ -192,9 +192,8 @@ Scene make_scene(const Case& description, Mesh mesh, NodeSets sets_of_file,
   for (const auto& rule : description.sets) {
     auto nodes = select_nodes(scene.mesh, on_boundary, rule);
     if (nodes.empty()) {
-      throw InputError(fmt::format(
-          "{}: sets.{} selects no node; its rule must hold for at least one of the {} nodes of the mesh",
-          file, rule.name, scene.mesh.points.size()));
+      throw InputError(fmt::format("{}: sets.{} selects no node of the {} of the mesh; {}", file, rule.name,
+                                   scene.mesh.points.size(), nearest_miss(scene.mesh, on_boundary, rule)));
     }
     scene.sets[rule.name] = std::move(nodes);
   }

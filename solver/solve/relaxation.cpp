@@ -8,6 +8,7 @@
 
 #include "assembly/method_entry.hpp"
 #include "base/error.hpp"
+#include "problem/held.hpp"
 #include "solve/adaption.hpp"
 #include "solve/condensed_answer.hpp"
 #include "solve/equilibrium.hpp"
@@ -399,6 +400,7 @@ class Search {
 }  // namespace
 
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
+  require_held(model.scene());
   const auto start = std::chrono::steady_clock::now();
   Relaxation result = method_named(model.choice().method).is_condensed
                           ? condensed_answer(model, observer)

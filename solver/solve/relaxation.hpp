@@ -33,7 +33,8 @@ struct Relaxation {
 /// Finds the static equilibrium with the settings of the case. The imposed displacements and forces grow in
 /// load levels (load_levels.hpp), each solved by `Equilibrium`, to a coarse tolerance except at the full
 /// load. A load level that fails is repeated with half the increment. A condensed method superposes its
-/// answer in one step. Throws ComputationError if an element remains inverted or no increment is small
+/// answer in one step. Throws InputError for a body that can move without deforming (held.hpp), and
+/// ComputationError if an element remains inverted or no increment is small
 /// enough. The search can be resumed from the start of every load level; with `from`, a checkpoint of the
 /// same model, it starts there, and nothing is reported twice. A condensed method has no checkpoints. If
 /// displacements (m) near the answer are given, from another method or a coarser mesh, the search first

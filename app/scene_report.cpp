@@ -1,0 +1,186 @@
+#include "app/scene_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/si_units.hpp"
+#include "comparison/comparison.hpp"
+#include "mesh/oddities.hpp"
+#include "mesh/parts.hpp"
+#include "problem/held.hpp"
+#include "problem/masses.hpp"
+
+namespace sandglass {
+
+namespace {
+
+/// Extent of a mesh from a file above which it is probably not in m, m.
+constexpr double most_length = 10.0;
+
+/// How often a body's weight on its base may be its Young's modulus: gels of some metres are beyond the
+/// fraction that a body could stand, but not by far.
+constexpr double most_weight = 100.0;
+
+std::string plural(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string mass_text(double mass) {
+  return mass < 0.9995 ? with_prefix(1e3 * mass, "g") : fmt::format("{:.3g} kg", mass);
+}
+
+std::string extent_text(const std::vector<int>& nodes, const NodalField& points) {
+  const auto [low, high] = bounding_box(values_at(nodes, points));
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < 3; ++i) {
+    words.push_back(low[i] == high[i] ? fmt::format("{} = {:.9g}", "xyz"[i], low[i])
+                                      : fmt::format("{} {:.9g} to {:.9g}", "xyz"[i], low[i], high[i]));
+  }
+  return fmt::format("{} m", fmt::join(words, ", "));
+}
+
+std::string shape_text(const SetShape& shape) {
+  if (shape.elements > 0) return fmt::format("volume of {}", plural(shape.elements, "element"));
+  if (shape.faces > 0) return fmt::format("surface of {}", plural(shape.faces, "face"));
+  return shape.edges > 0 ? "edge" : "points";
+}
+
+/// The names of the sets that the tables of a case use.
+struct UsedSets {
+  std::set<std::string> nodes;
+  std::set<std::string> elements;
+
+  /// Adds the sets of a table with declared parameters: the texts among them are names of sets.
+  template <class Table>
+  void add(const Table& table) {
+    const auto add_name = [&]<class Value>(const Parameter<Table, Value>& parameter) {
+      if constexpr (std::is_same_v<Value, std::string>) {
+        (parameter.name == "elements" ? elements : nodes).insert(table.*(parameter.member));
+      }
+    };
+    std::apply([&](const auto&... parameter) { (add_name(parameter), ...); }, Table::parameters());
+  }
+};
+
+/// The sets that a case names, including those of its comparisons.
+UsedSets used_sets(const Case& description) {
+  UsedSets used;
+  for (const CaseMaterial& material : description.materials) used.elements.insert(material.elements);
+  for (const auto& refinement : description.refinements) used.add(refinement);
+  for (const auto& tie : description.ties) used.add(tie);
+  for (const auto& imposed : description.displacements) used.nodes.insert(imposed.set);
+  for (const auto& turned : description.rotations) used.nodes.insert(turned.set);
+  description.forces.for_each([&](const auto& force) { used.add(force); });
+  for (const auto& start : description.velocities) used.add(start);
+  const Comparison comparison = read_comparison(description);
+  if (comparison.profile) used.nodes.insert(comparison.profile->set);
+  for (const PublishedValue& published : comparison.published) used.nodes.insert(published.set);
+  return used;
+}
+
+void warn(const std::string& text) {
+  fmt::print(stderr, "warning: {}\n", text);
+}
+
+void warn_of_units(const Case& description, const Scene& scene) {
+  const auto [low, high] = bounding_box(scene.mesh.points);
+  const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  if (std::holds_alternative<MeshFile>(description.mesh) && longest > most_length) {
+    warn(fmt::format(
+        "the mesh is {} long, and files are read in m: if it is in mm, multiply its points by 0.001 (no key "
+        "does so), or give the whole case in mm, s, t, N and MPa, and read printed units accordingly",
+        length_text(longest)));
+    return;
+  }
+  for (const Material& material : scene.materials.list) {
+    const double modulus = young_modulus(elastic_law(kernel_law(material)));
+    if (material.density * 9.81 * longest < most_weight * modulus) continue;
+    fmt::print(
+        "note: a body of {} with a Young's modulus of {} and a density of {:.4g} kg/m^3 would weigh {:.2g} "
+        "times "
+        "what it resists: units are m, Pa and kg/m^3\n",
+        length_text(longest), with_prefix(modulus, "Pa"), material.density,
+        material.density * 9.81 * longest / modulus);
+  }
+}
+
+}  // namespace
+
+void print_parts(const Scene& scene) {
+  constexpr std::size_t most = 4;
+  const std::vector<int> parts = parts_of_nodes(scene.mesh, scene.ties);
+  struct Part {
+    std::vector<int> nodes;
+    std::size_t elements = 0;
+    double mass = 0.0;
+  };
+  std::vector<Part> all(at(number_of_parts(scene.mesh, scene.ties)));
+  if (all.size() < 2) return;
+  for (std::size_t n = 0; n < parts.size(); ++n)
+    if (parts[n] >= 0) all[at(parts[n])].nodes.push_back(static_cast<int>(n));
+  const auto masses = element_masses(scene.mesh, scene.materials);
+  for (std::size_t e = 0; e < masses.size(); ++e) {
+    Part& part = all[at(parts[at(scene.mesh.cells[e].front())])];
+    ++part.elements;
+    part.mass += masses[e];
+  }
+  std::ranges::stable_sort(all, std::ranges::greater{}, &Part::elements);
+  std::vector<std::string> words;
+  for (const Part& part : all) {
+    if (words.size() == most) break;
+    words.push_back(fmt::format("{}, {}, {}", plural(part.elements, "element"), mass_text(part.mass),
+                                extent_text(part.nodes, scene.mesh.points)));
+  }
+  if (all.size() > most) words.push_back(fmt::format("{} more", all.size() - most));
+  fmt::print("parts: {}\n", fmt::join(words, "; "));
+}
+
+void print_sets(const Case& description, const Scene& scene) {
+  const UsedSets used = used_sets(description);
+  const auto note = [](const std::set<std::string>& names, const std::string& name) {
+    return names.contains(name) ? "" : "; no table uses it";
+  };
+  for (const auto& [name, nodes] : scene.sets) {
+    fmt::print("  set {}: {}", name, plural(nodes.size(), "node"));
+    if (!nodes.empty()) {
+      fmt::print(", {}, {}", shape_text(shape_of(scene.mesh, scene.boundary, nodes)),
+                 extent_text(nodes, scene.mesh.points));
+    }
+    fmt::print("{}\n", note(used.nodes, name));
+  }
+  for (const auto& [name, elements] : scene.element_sets) {
+    fmt::print("  element set {}: {}{}\n", name, plural(elements.size(), "element"),
+               note(used.elements, name));
+  }
+}
+
+void warn_of_oddities(const Case& description, const Scene& scene) {
+  const std::string file = description.file.string();
+  const auto on_boundary = nodes_of(scene.boundary, scene.mesh.points.size());
+  for (const NodeSetRule& rule : description.sets) {
+    const std::string cut = cut_plane(scene.mesh, on_boundary, rule);
+    if (!cut.empty()) {
+      warn(fmt::format("{}: sets.{} {}, which seem to be one plane; if they are, widen the limits", file,
+                       rule.name, cut));
+    }
+  }
+  const std::string seam = described(seam_of(scene.mesh, scene.ties, scene.boundary), scene.mesh);
+  if (!seam.empty()) warn(seam);
+  warn_of_units(description, scene);
+  std::vector<std::string> unused;
+  const UsedSets used = used_sets(description);
+  for (const NodeSetRule& rule : description.sets) {
+    if (!used.nodes.contains(rule.name)) unused.push_back(rule.name);
+  }
+  if (!unused.empty()) fmt::print("note: no table uses the sets {}\n", fmt::join(unused, ", "));
+}
+
+void print_free_motions(const Scene& scene) {
+  const std::string free = described_free_motions(scene);
+  if (!free.empty()) fmt::print("note: nothing holds {}\n", free);
+}
+
+}  // namespace sandglass

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace sandglass {
+
+/// Sets of the numbers from 0 on that are joined one after the other; the least number stands for its set.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : towards_least_(count) {
+    std::iota(towards_least_.begin(), towards_least_.end(), 0);
+  }
+
+  /// Paths are halved on the way.
+  int least(int member) {
+    for (int* next = &towards(member); *next != member; next = &towards(member))
+      member = *next = towards(*next);
+    return member;
+  }
+
+  void join(int a, int b) {
+    const auto [low, high] = std::minmax({least(a), least(b)});
+    towards(high) = low;
+  }
+
+ private:
+  int& towards(int member) { return towards_least_[static_cast<std::size_t>(member)]; }
+
+  std::vector<int> towards_least_;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,352 @@
+#include "mesh/free_motions.hpp"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "mesh/disjoint_sets.hpp"
+#include "mesh/node_elements.hpp"
+
+namespace sandglass {
+
+namespace {
+
+using Eigen::Index;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// The share of a motion at what is held up to which the motion is free.
+constexpr double tolerance = 1e-5;
+
+constexpr std::size_t most_pieces = 100;
+
+using Unknowns = Eigen::Matrix<double, 6, 1>;  // of a piece: translation and rotation
+
+/// Columns that span the motions which rows (each a displacement of what is held, as a linear function of the
+/// unknowns) leave free.
+Eigen::MatrixXd null_space(const RowMatrix& rows) {
+  const Index n = rows.cols();
+  if (rows.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
+  // Of many rows only the triangle of their QR decomposition is kept, which has the same singular values.
+  RowMatrix triangle = RowMatrix::Zero(n, n);
+  constexpr Index block = 512;
+  for (Index first = 0; first < rows.rows(); first += block) {
+    const Index count = std::min(block, rows.rows() - first);
+    RowMatrix stacked(n + count, n);
+    stacked << triangle, rows.middleRows(first, count);
+    triangle = RowMatrix(
+        Eigen::HouseholderQR<RowMatrix>(stacked).matrixQR().topRows(n).triangularView<Eigen::Upper>());
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
+  std::vector<Index> free;
+  for (Index k = 0; k < n; ++k) {
+    // The root of the mean square is at most the largest, and known without another look at the rows.
+    const double mean = svd.singularValues()[k] / std::sqrt(static_cast<double>(rows.rows()));
+    if (mean <= tolerance && (rows * svd.matrixV().col(k)).cwiseAbs().maxCoeff() <= tolerance)
+      free.push_back(k);
+  }
+  return svd.matrixV()(Eigen::all, free);
+}
+
+/// Elements that are rigid together, and how they are joined to others.
+class Pieces {
+ public:
+  Pieces(const Mesh& mesh, const Ties& ties) : mesh_(mesh), sets_(mesh.cells.size()) {
+    const NodeElements elements(mesh);
+    join_by_faces(elements);
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) node_element_.push_back(first_of(elements, n));
+    add_shared_nodes(elements);
+    add_ties(ties);
+    while (join_by_points()) {
+    }
+    number();
+  }
+
+  std::size_t count() const { return pieces_.size(); }
+  const RigidPiece& operator[](std::size_t p) const { return pieces_[p]; }
+
+  /// The piece that a node belongs to, any one of several; none for a node of no element.
+  std::optional<std::size_t> of_node(int node) const {
+    const int element = node_element_[at(node)];
+    if (element < 0) return std::nullopt;
+    return of_element(element);
+  }
+
+  /// Adds to a row what a displacement in a direction at a point of a piece is of its six unknowns, which
+  /// begin at `first`.
+  template <class Row>
+  void add(const Vector& X, const Vector& direction, double factor, std::size_t piece, Row&& row) const {
+    const auto& [elements, centre, radius] = pieces_[piece];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      row[static_cast<Index>(i)] += factor * direction[i];
+      row[static_cast<Index>(3 + i)] +=
+          factor * ((X[j] - centre[j]) * direction[k] - (X[k] - centre[k]) * direction[j]) / radius;
+    }
+  }
+
+  std::size_t of_element(int element) const { return at(piece_of_element_[at(element)]); }
+
+  /// Points, on a line, at which two pieces move as one, by an element of each.
+  const std::map<std::pair<int, int>, NodalField>& joints() const { return joints_; }
+
+  /// Ties to nodes of several pieces.
+  const Ties& other_ties() const { return other_ties_; }
+
+ private:
+  static int first_of(const NodeElements& elements, std::size_t node) {
+    const auto around = elements.around(static_cast<int>(node));
+    return around.empty() ? -1 : around.front();
+  }
+
+  void join_by_faces(const NodeElements& elements) {
+    // Three corners of a face are not on a line.
+    constexpr std::array<std::array<std::size_t, 3>, 6> faces{
+        {{0, 3, 2}, {4, 5, 6}, {0, 1, 5}, {1, 2, 6}, {2, 3, 7}, {3, 0, 4}}};
+    const auto has = [&](int node, int element) {
+      return std::ranges::binary_search(elements.around(node), element);
+    };
+    for (int e = 0; e < static_cast<int>(mesh_.cells.size()); ++e) {
+      const Hexahedron& cell = mesh_.cells[at(e)];
+      for (const auto& [a, b, c] : faces) {
+        for (const int other : elements.around(cell[a]))
+          if (other > e && has(cell[b], other) && has(cell[c], other)) sets_.join(e, other);
+      }
+    }
+  }
+
+  void add_shared_nodes(const NodeElements& elements) {
+    for (std::size_t n = 0; n < mesh_.points.size(); ++n) {
+      std::set<int> others;
+      for (const int element : elements.around(static_cast<int>(n))) others.insert(sets_.least(element));
+      for (const int other : others) add_joint(node_element_[n], other, mesh_.points[n]);
+    }
+  }
+
+  void add_ties(const Ties& ties) {
+    for (const Tie& tie : ties) {
+      const int own = node_element_[at(tie.node)];
+      if (own < 0) continue;
+      std::set<int> followed;
+      Vector X{};
+      for (const auto& [node, weight] : tie.mean_of) {
+        if (node_element_[at(node)] >= 0) followed.insert(sets_.least(node_element_[at(node)]));
+        for (std::size_t i = 0; i < 3; ++i) X[i] += weight * mesh_.points[at(node)][i];
+      }
+      if (followed.size() == 1) {
+        add_joint(own, *followed.begin(), X);
+      } else {
+        other_ties_.push_back(tie);
+      }
+    }
+  }
+
+  void add_joint(int a, int b, const Vector& X) {
+    const auto [low, high] = std::minmax({sets_.least(a), sets_.least(b)});
+    if (low != high) joints_[{low, high}].push_back(X);
+  }
+
+  /// Joins pieces whose joints are not on a line; whether there were any.
+  bool join_by_points() {
+    const auto before = std::exchange(joints_, {});
+    bool joined = false;
+    for (const auto& [pair, points] : before) {
+      if (on_a_line(points)) continue;
+      sets_.join(pair.first, pair.second);
+      joined = true;
+    }
+    for (const auto& [pair, points] : before) {
+      for (const Vector& X : points) add_joint(pair.first, pair.second, X);
+    }
+    return joined;
+  }
+
+  static bool on_a_line(const NodalField& points) {
+    Eigen::Matrix<double, 3, Eigen::Dynamic> arms(3, static_cast<Index>(points.size()));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      for (std::size_t i = 0; i < 3; ++i)
+        arms(static_cast<Index>(i), static_cast<Index>(k)) = points[k][i] - points[0][i];
+    }
+    Index farthest = 0;
+    const double length = arms.colwise().norm().maxCoeff(&farthest);
+    if (length == 0.0) return true;
+    const Eigen::Vector3d along = arms.col(farthest) / length;
+    const double off = (arms - along * (along.transpose() * arms)).colwise().norm().maxCoeff();
+    return off <= tolerance * length;
+  }
+
+  void number() {
+    for (int e = 0; e < static_cast<int>(mesh_.cells.size()); ++e) {
+      const int least = sets_.least(e);
+      piece_of_element_.push_back(least < e ? piece_of_element_[at(least)]
+                                            : static_cast<int>(pieces_.size()));
+      if (least == e) pieces_.emplace_back();
+      pieces_[of_element(e)].elements.push_back(e);
+    }
+    for (RigidPiece& piece : pieces_) {
+      NodalField corners;
+      for (const int e : piece.elements) {
+        for (const int node : mesh_.cells[at(e)]) corners.push_back(mesh_.points[at(node)]);
+      }
+      const auto [low, high] = bounding_box(corners);
+      for (std::size_t i = 0; i < 3; ++i) piece.centre[i] = 0.5 * (low[i] + high[i]);
+      piece.radius = 0.5 * distance(low, high);
+    }
+  }
+
+  const Mesh& mesh_;
+  DisjointSets sets_;              // of elements
+  std::vector<int> node_element_;  // one around each node, or -1
+  std::map<std::pair<int, int>, NodalField> joints_;
+  Ties other_ties_;
+  std::vector<int> piece_of_element_;
+  std::vector<RigidPiece> pieces_;
+};
+
+/// A linear function of the unknowns of some pieces that is zero.
+using Equation = std::map<std::size_t, Unknowns>;
+
+/// The mean of the displacements of nodes in a direction, as an equation.
+void add_mean(const Mesh& mesh, const Pieces& pieces, const std::vector<Tie::Share>& mean_of,
+              const Vector& direction, double factor, Equation& equation) {
+  for (const auto& [node, weight] : mean_of) {
+    const auto piece = pieces.of_node(node);
+    if (!piece) continue;
+    auto& row = equation.try_emplace(*piece, Unknowns::Zero()).first->second;
+    pieces.add(mesh.points[at(node)], direction, factor * weight, *piece, row);
+  }
+}
+
+/// The rows of equations in unknowns that are given by columns for each piece, side by side.
+RowMatrix rows_of(const std::vector<const Equation*>& equations,
+                  const std::map<std::size_t, std::pair<Index, const Eigen::MatrixXd*>>& columns,
+                  Index unknowns) {
+  RowMatrix rows = RowMatrix::Zero(static_cast<Index>(equations.size()), unknowns);
+  for (std::size_t k = 0; k < equations.size(); ++k) {
+    for (const auto& [piece, row] : *equations[k]) {
+      const auto found = columns.find(piece);
+      if (found == columns.end()) continue;
+      const auto& [first, free] = found->second;
+      rows.row(static_cast<Index>(k)).segment(first, free->cols()) = row.transpose() * *free;
+    }
+  }
+  return rows;
+}
+
+RigidMotion motion_of(const Unknowns& unknowns) {
+  RigidMotion motion{};
+  for (Index i = 0; i < 3; ++i) {
+    motion.translation[static_cast<std::size_t>(i)] = unknowns[i];
+    motion.rotation[static_cast<std::size_t>(i)] = unknowns[3 + i];
+  }
+  return motion;
+}
+
+}  // namespace
+
+std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const std::vector<Hold>& holds) {
+  const Pieces pieces(mesh, ties);
+  // What holds a piece by itself.
+  std::vector<std::vector<Unknowns>> own(pieces.count());
+  std::vector<Equation> joint;
+  const auto add_equation = [&](Equation equation) {
+    if (equation.size() == 1) {
+      own[equation.begin()->first].push_back(equation.begin()->second);
+    } else if (!equation.empty()) {
+      joint.push_back(std::move(equation));
+    }
+  };
+  for (const Hold& hold : holds) {
+    Equation equation;
+    add_mean(mesh, pieces, hold.mean_of, hold.direction, 1.0, equation);
+    add_equation(std::move(equation));
+  }
+  // What joins pieces.
+  for (const auto& [pair, points] : pieces.joints()) {
+    const std::size_t a = pieces.of_element(pair.first), b = pieces.of_element(pair.second);
+    for (const Vector& X : points) {
+      for (const Vector& axis : coordinate_axes) {
+        Equation equation{{a, Unknowns::Zero()}, {b, Unknowns::Zero()}};
+        pieces.add(X, axis, 1.0, a, equation[a]);
+        pieces.add(X, axis, -1.0, b, equation[b]);
+        add_equation(std::move(equation));
+      }
+    }
+  }
+  for (const Tie& tie : pieces.other_ties()) {
+    for (const Vector& axis : coordinate_axes) {
+      Equation equation;
+      add_mean(mesh, pieces, {{tie.node, 1.0}}, axis, 1.0, equation);
+      add_mean(mesh, pieces, tie.mean_of, axis, -1.0, equation);
+      add_equation(std::move(equation));
+    }
+  }
+  std::vector<Eigen::MatrixXd> free;
+  for (const auto& equations : own) {
+    RowMatrix rows(static_cast<Index>(equations.size()), 6);
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      rows.row(static_cast<Index>(k)) = equations[k].transpose();
+    free.push_back(null_space(rows));
+  }
+  // Pieces that are not held and hang together.
+  DisjointSets sets(pieces.count());
+  for (const Equation& equation : joint) {
+    std::optional<int> first;
+    for (const auto& [piece, row] : equation) {
+      if (free[piece].cols() == 0) continue;
+      if (first) sets.join(*first, static_cast<int>(piece));
+      first = static_cast<int>(piece);
+    }
+  }
+  struct Group {
+    std::map<std::size_t, std::pair<Index, const Eigen::MatrixXd*>> columns;
+    Index unknowns = 0;
+    std::vector<const Equation*> equations;
+  };
+  std::map<int, Group> groups;
+  for (std::size_t p = 0; p < pieces.count(); ++p) {
+    if (free[p].cols() == 0) continue;
+    Group& group = groups[sets.least(static_cast<int>(p))];
+    group.columns[p] = {group.unknowns, &free[p]};
+    group.unknowns += free[p].cols();
+  }
+  for (const Equation& equation : joint) {
+    for (const auto& [piece, row] : equation) {
+      if (free[piece].cols() == 0) continue;
+      groups.at(sets.least(static_cast<int>(piece))).equations.push_back(&equation);
+      break;
+    }
+  }
+  std::vector<LooseBody> loose;
+  for (const auto& [least, group] : groups) {
+    if (group.columns.size() > most_pieces) continue;
+    const Eigen::MatrixXd basis = null_space(rows_of(group.equations, group.columns, group.unknowns));
+    if (basis.cols() == 0) continue;
+    LooseBody body;
+    body.motions.resize(static_cast<std::size_t>(basis.cols()));
+    for (const auto& [piece, columns] : group.columns) {
+      const auto& [first, of_piece] = columns;
+      const Eigen::MatrixXd motions = *of_piece * basis.middleRows(first, of_piece->cols());
+      if (motions.cwiseAbs().maxCoeff() <= tolerance) continue;  // held by the others
+      body.pieces.push_back(pieces[piece]);
+      for (Index m = 0; m < basis.cols(); ++m)
+        body.motions[static_cast<std::size_t>(m)].push_back(motion_of(motions.col(m)));
+    }
+    loose.push_back(std::move(body));
+  }
+  return loose;
+}
+
+Vector displacement_of(const RigidMotion& motion, const RigidPiece& piece, const Vector& X) {
+  Vector u = motion.translation;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    u[i] += (motion.rotation[j] * (X[k] - piece.centre[k]) - motion.rotation[k] * (X[j] - piece.centre[j])) /
+            piece.radius;
+  }
+  return u;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "mesh/node_set.hpp"
+#include "mesh/ties.hpp"
+
+namespace sandglass {
+
+/// What of the mesh lies within a set of nodes: whole elements, boundary faces, edges of elements.
+struct SetShape {
+  std::size_t elements = 0, faces = 0, edges = 0;
+};
+SetShape shape_of(const Mesh& mesh, const std::vector<Quadrilateral>& boundary,
+                  const std::vector<int>& nodes);
+
+/// Where an end of an interval of a rule cuts nodes apart that seem to be meant for one plane, in words;
+/// empty if nowhere. These are four or more nodes whose coordinates differ by less than a fiftieth of the
+/// shortest edge, while all others are five times as far away.
+std::string cut_plane(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule);
+
+/// Nodes of the boundary that lie at one place, within the rounding of the mesh, but are not joined.
+struct Seam {
+  std::size_t pairs = 0;
+  int first = -1, second = -1;  ///< one pair of nodes
+  double distance = 0.0;        ///< the largest, m
+};
+Seam seam_of(const Mesh& mesh, const Ties& ties, const std::vector<Quadrilateral>& boundary);
+
+/// What is wrong with it and what to do, in words; empty without any pair.
+std::string described(const Seam& seam, const Mesh& mesh);
+
+}  // namespace sandglass
