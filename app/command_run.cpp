@@ -293,7 +293,7 @@ int run_case(const RunOptions& options) {
   } else {
     require_steps(own);
   }
-  print_problem(problem.description, scene);  // the input has been checked by now
+  print_problem(scene);  // the input has been checked by now
   print_parts(scene);
   if (options.ranks->rank() == 0) warn_of_oddities(problem.description, scene);
   if (!scene.settings.quasi_static) print_free_motions(scene);

@@ -86,7 +86,7 @@ std::string parts_text(const Scene& scene) {
 
 }  // namespace
 
-void print_problem(const Case& description, const Scene& scene) {
+void print_problem(const Scene& scene) {
   const Mesh& mesh = scene.mesh;
   double volume = 0.0, mass = 0.0;
   for (std::size_t e = 0; e < mesh.cells.size(); ++e) {

@@ -14,7 +14,7 @@
 namespace sandglass {
 
 /// Prints size, mass and stiffness of the body with units, so that a wrong unit shows.
-void print_problem(const Case& description, const Scene& scene);
+void print_problem(const Scene& scene);
 
 /// Prints the method, its kappa and the stable step of the undeformed body.
 void print_method(const Model& model);
