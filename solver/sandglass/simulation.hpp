@@ -56,7 +56,9 @@ struct NodalView {
 template <class Real>
 class Simulation {
  public:
-  /// The case of a file, at rest or with its initial velocities.
+  /// The case of a file, at rest or with its initial velocities. A mesh of another program is converted by a
+  /// process, SANDGLASS_PYTHON (else /usr/bin/python3) with convert.py from the folder SANDGLASS_EXCHANGE
+  /// (else exchange/), both variables of the environment; no other case starts one.
   explicit Simulation(const std::filesystem::path& case_file, const SimulationSettings& settings = {});
 
   /// The same with your own mesh: `case_text` is the text of a case file without [mesh]; its sets are added

@@ -28,6 +28,8 @@ struct CallRecord {
 template <class Law>
 class ObservedLaw {
  public:
+  static constexpr LawTraits traits{.isotropic = false};  // it observes small_strain_stress, too
+
   ObservedLaw(const Law& law, CallRecord& record) : law_(law), record_(record) {}
 
   // clang-format off
