@@ -91,6 +91,7 @@ def call(tmp_path, monkeypatch):
     def called(outcome, **given):
         monkeypatch.setattr(FakeWorker, "outcome", outcome)
         options = {"names": ["017"], "table": False, "jobs": 1, "timeout": 9.0, "random": 0}
+        options |= {"files": ["*"], "tests": []}
         code = run.run(SimpleNamespace(**options | given), threading.Event())
         rows = outcomes.rows_of(outcomes.TABLE.read_text())
         return code, next(row for name, row in rows.items() if name.startswith("017"))[2]
@@ -162,6 +163,8 @@ def test_random_mistakes_are_of_the_change_and_apply(tree):
     assert planted == plant(tree, "HEAD~1", 99, 7)
     assert list(plant(tree, "HEAD~1", 1, 7)) == list(planted)[:1]
     assert {mistake.line for mistake in planted} == {2, 3}
+    assert plant(tree, "HEAD~1", 99, 7, ["solver/*.cpp"]) == planted
+    assert not plant(tree, "HEAD~1", 99, 7, ["solver/*.hpp", "suite/*"])
     swapped = Mistake(
         "solver/a.cpp", 2, "order", ("  a = b;", "  c = d * a;"), ("  c = d * a;", "  a = b;")
     )
@@ -179,5 +182,9 @@ def test_random_mistakes_are_reported(tree, call, monkeypatch, capsys):
     assert "noticed by a.test\n    - " in text and "noticed: 2 of 2 that compile, 100 %" in text
     assert call(None, **given)[0] == 1
     assert "noticed: 0 of 2 that compile, 0 %" in capsys.readouterr().out
-    with pytest.raises(InputError, match="no lines of C"):
-        call(None, **given | {"since": "HEAD"})
+    for wrong, said in (({"since": "HEAD"}, "no lines of C"), ({"files": ["a"]}, "no lines of C")):
+        with pytest.raises(InputError, match=said):
+            call(None, **given | wrong)
+    monkeypatch.setattr(run, "programs_of", lambda _: [SimpleNamespace(name="load_test")])
+    with pytest.raises(InputError, match="--tests lod_test: allowed are load_test"):
+        call(None, **given | {"tests": ["lod_test"]})

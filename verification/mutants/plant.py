@@ -1,6 +1,7 @@
 """Plants mistakes at random in the C++ lines that a change adds."""
 
 import difflib
+import fnmatch
 import random
 import re
 import subprocess
@@ -113,14 +114,17 @@ def added_lines(root, since):
     return found
 
 
-def plant(root, since, count, seed):
+def plant(root, since, count, seed, globs=("*",)):
     """{Mistake: text of its file} of so many mistakes, fewer if there are no more.
 
+    Only in files that match one of the patterns, in which * stands for folders as well.
     Lines are drawn at random, then one of each line's mistakes; lines are drawn again only when
     every line has one. The same tree, revision and seed give the same mistakes.
     """
     texts, places = {}, []
     for file, added in sorted(added_lines(root, since).items()):
+        if not any(fnmatch.fnmatch(file, glob) for glob in globs):
+            continue
         texts[file] = git(root, "show", f"HEAD:{file}")
         lines = texts[file].splitlines()
         places += [mistakes_at(file, lines, number, added) for number in sorted(added)]

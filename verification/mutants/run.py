@@ -28,7 +28,7 @@ from common.errors import InputError
 from common.program import ROOT
 from patches import read_patch, read_patches
 from plant import git, plant
-from worker import OutOfTime, Stopped, Worker
+from worker import OutOfTime, Stopped, Worker, programs_of
 
 
 def tree_digest():
@@ -93,11 +93,16 @@ def run_patches(options, stop):
 
 def run_random(options, stop):
     """Plants mistakes at random in the lines of a change; returns their verdicts."""
-    planted = plant(ROOT, options.since, options.random, options.seed)
+    planted = plant(ROOT, options.since, options.random, options.seed, options.files)
     if not planted:
-        raise InputError(f"--since {options.since}: no lines of C++ were added since")
-    verdicts = []
-    with tempfile.TemporaryDirectory() as folder, Worker("HEAD", stop, options.jobs) as worker:
+        raise InputError(f"--since {options.since}: no lines of C++ were added in these files")
+    for name in options.tests:
+        known = [program.name for program in programs_of(ROOT)]
+        if name not in known:
+            raise InputError(f"--tests {name}: allowed are {', '.join(known)}")
+    verdicts, sources_only = [], all(mistake.file.endswith(".cpp") for mistake in planted)
+    worker = Worker("HEAD", stop, options.jobs, options.tests, sources_only)
+    with tempfile.TemporaryDirectory() as folder, worker:
         for number, (mistake, text) in enumerate(planted.items(), start=1):
             path = Path(folder) / f"{number:03}-{mistake.kind}.patch"
             path.write_text(mistake.patch(text), encoding="utf-8")
@@ -141,6 +146,8 @@ def main(arguments=None):
     add("--random", type=int, default=0, metavar="N", help="plant N mistakes at random instead")
     add("--seed", type=int, default=1, help="of --random (default 1)")
     add("--since", default="HEAD~1", metavar="REV", help="of --random: what changed (HEAD~1)")
+    add("--files", nargs="+", default=["*"], metavar="GLOB", help="of --random: 'solver/*.cpp'")
+    add("--tests", nargs="+", default=[], metavar="NAME", help="of --random: these, not all")
     add("--jobs", type=int, default=1, help="compilers side by side (default 1)")
     add("--timeout", type=float, default=1800, help="s of tests for each mutant (1800)")
     add("--table", action="store_true", help="write RESULTS.md, and run nothing")

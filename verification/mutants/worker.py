@@ -17,7 +17,13 @@ from pathlib import Path
 from affected import reached
 from common.program import ROOT
 
-PRESET = "quick"
+# How a copy is configured: for mistakes in headers, and for those in sources alone. A precompiled
+# header would outlive its mutant, and make each one compile everything. Without such mistakes a
+# mutant costs one source and one library: programs that link a shared one stay as they are, and
+# ccache knows all other objects from ordinary builds.
+FOR_HEADERS = ["--preset", "quick", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"]
+FOR_SOURCES = ["--preset", "developer", "-DBUILD_SHARED_LIBS=ON"]
+FOR_SOURCES += ["-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"]
 MEMORY = 8 << 30  # bytes that a test program may use: a mistake may allocate without end
 HANGS = 900  # s after which a program of tests is taken to hang
 # Folders of what is compiled into the program.
@@ -88,15 +94,17 @@ class Worker:
     """Use as a context manager: the copy is gone afterwards, and what ran in it has ended.
 
     revision: of git, which is copied. stop: threading.Event that ends everything with Stopped.
-    jobs: of compilers side by side.
+    jobs: of compilers side by side. tests: names of programs, in the order in which they are run;
+    all without one. sources_only: whether no mutant changes a header.
     """
 
-    def __init__(self, revision, stop, jobs=1):
-        self._revision, self._stop, self._jobs = revision, stop, jobs
-        self._kills = collections.Counter()
+    def __init__(self, revision, stop, jobs=1, tests=(), sources_only=False):
+        self._revision, self._stop, self._jobs, self._tests = revision, stop, jobs, tests
+        self._configuration = FOR_SOURCES if sources_only else FOR_HEADERS
+        self._kills, self._passed = collections.Counter(), set()
         self.folder, self._lock = _free_folder()
         self.tree = self.folder / "tree"
-        self.build = self.tree / "build" / PRESET
+        self.build = self.tree / "build/copy"
         self.cli = self.build / "sandglass"
         # The same paths in every run, so that ccache recognizes earlier compilations.
         own = {"CCACHE_BASEDIR": str(self.tree), "CCACHE_NOHASHDIR": "1"}
@@ -111,8 +119,7 @@ class Worker:
             archive = self.folder / "tree.tar"
             self._run(["git", "-C", ROOT, "archive", "-o", archive, self._revision])
             self._run(["tar", "-xf", archive, "-C", self.tree])
-            # A precompiled header would outlive its mutant, and make each one compile everything.
-            self._run(["cmake", "--preset", PRESET, "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"])
+            self._run(["cmake", *self._configuration, "-B", self.build])
         except BaseException:
             self.__exit__()
             raise
@@ -125,18 +132,22 @@ class Worker:
     def first_failure(self, patch, seconds):
         """Applies a Patch, then builds and runs tests, which take at most so many seconds in all.
 
-        Returns the first Failure or None. Programs that noticed most of the mutants before come
-        first; what the patch cannot change is not run. A test that fails in the tree without the
-        patch as well is a 'false alarm'. Raises OutOfTime. The tree is clean again afterwards.
+        Returns the first Failure or None. Programs that noticed most of the mutants of the same
+        files before come first; what the patch cannot change is not run. A test that fails in the
+        tree without the patch as well is a 'false alarm'. Raises OutOfTime. The tree is clean again
+        afterwards.
         """
-        programs = [one for one in programs_of(self.tree) if self._may_change(one, patch)]
-        programs.sort(key=lambda one: -self._kills[one.name])
+        programs = {one.name: one for one in programs_of(self.tree)}
+        programs = [programs[name] for name in self._tests or programs]
+        programs = [one for one in programs if self._may_change(one, patch)]
+        programs.sort(key=lambda one: -self._kills[patch.files, one.name])
         with self._applied(patch) as since:
             failure = self._failure(patch, programs, since, seconds)
         if failure and failure.kind != "broken":
-            self._kills[failure.program.name] += 1
-            if not self._passes(failure):
+            self._kills[patch.files, failure.program.name] += 1
+            if failure.by not in self._passed and not self._passes(failure):
                 return replace(failure, kind="false alarm")
+            self._passed.add(failure.by)
         return failure
 
     def _failure(self, patch, programs, since, seconds):
@@ -147,7 +158,7 @@ class Worker:
                 error = re.search(r"^.*error: .*$", text, re.MULTILINE)
                 return Failure("broken", error[0] if error else text[-300:], program)
             read = scripts & set(PYTHON_FOLDERS.get(program.name, ()))
-            if not read and self._binary(program).stat().st_mtime < since:
+            if not read and self._built(program) < since:
                 continue
             started = time.monotonic()
             found = self._test(program, seconds)
@@ -181,6 +192,13 @@ class Worker:
             )
         except OutOfTime:
             return False
+
+    def _built(self, program):
+        """When a program, or a shared library that it may link, was built last."""
+        files = [self._binary(program)]
+        if program.linked:
+            files += self.build.glob("solver/*.so")
+        return max(file.stat().st_mtime for file in files)
 
     def _binary(self, program):
         return self.cli if program.is_python else self.build / "verification" / program.name
@@ -228,7 +246,8 @@ class Worker:
     def _remove_built(self, since):
         """Removes the files built from a mutant; all others are up to date and stay."""
         for path in self.build.rglob("*"):
-            is_built = path.suffix in (".o", ".a") or (not path.suffix and os.access(path, os.X_OK))
+            is_program = not path.suffix and os.access(path, os.X_OK)
+            is_built = is_program or path.suffix in (".o", ".a", ".so")
             if is_built and path.is_file() and path.stat().st_mtime >= since:
                 path.unlink()
 
