@@ -144,6 +144,47 @@ TEST(Force, supports_act_on_plane_faces_as_derived) {
   }
 }
 
+/// Forces are minus the derivative of the potential, a pressure's on a closed surface. Potentials are below
+/// 1000 J and of second order at most in one coordinate, so that rounding over h is left: 1e-9.
+TEST(Force, derives_from_its_potential) {
+  const auto compare = [](const auto& kind) {
+    Surface surface;
+    surface.sets["all"].resize(12);
+    std::iota(surface.sets["all"].begin(), surface.sets["all"].end(), 0);
+    const auto force = surface.made(kind);
+    std::vector<int> places(12);
+    std::iota(places.begin(), places.end(), 0);
+    const std::vector<double> factors(2, largest_factor);
+    Rows<double> u(12), forces(12);
+    for (std::size_t n = 0; n < 12; ++n) {
+      for (std::size_t i = 0; i < 3; ++i) u[n][i] = 0.1 * std::sin(static_cast<double>(1 + 3 * n + i));
+    }
+    const Rows<double>& moved = u;
+    const NodalRows at_nodes{moved.data(), places};
+    force->add_forces(factors, {at_nodes, at_nodes, 1.0}, {forces.data(), places});
+    const auto potential = [&] {
+      double sum = 0.0;
+      force->add_potential(factors, at_nodes, sum);
+      return sum;
+    };
+    for (std::size_t n = 0; n < 12; ++n) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double h = 1e-3, there = u[n][i];
+        u[n][i] = there + h;
+        const double up = potential();
+        u[n][i] = there - h;
+        EXPECT_NEAR(forces[n][i], (potential() - up) / (2.0 * h), 1e-9) << force->traits().name << n;
+        u[n][i] = there;
+      }
+    }
+  };
+  compare(DeadForce{.set = "surface", .total = {1.0, 2.0, 3.0}, .moment = {4.0, 5.0, 6.0}});
+  compare(Gravity{{1.0, 2.0, 3.0}});
+  compare(Pressure{"all", 7.0});
+  compare(Support{"surface", 11.0, 0.0, false});
+  compare(Support{"surface", 11.0, 0.0, true});
+}
+
 /// Dead forces and weight come to one force, which is first whatever comes before it, sorted by curve and
 /// node.
 TEST(Force, dead_loads_are_added_up) {
