@@ -87,6 +87,8 @@ class Grid:
         found = {}
         for at, element in enumerate(piece.iterfind(f"{section}/DataArray")):
             name = element.get("Name", f"{section} {at}")
+            if element.get("type") == "String":
+                continue
             if name in found:
                 raise self.wrong(f"two arrays of <{section}> are named '{name}'")
             try:
@@ -132,7 +134,8 @@ class Grid:
     def values(self, element, name):
         """The numbers of a DataArray, one after the other."""
         kind, form = self.kind(element.get("type", "")), element.get("format", "ascii")
-        text = "".join(element.itertext())
+        # VTK puts its own remarks, such as ranges, into elements beside the numbers.
+        text = (element.text or "") + "".join(child.tail or "" for child in element)
         try:
             if form == "ascii":
                 words = text.split()
