@@ -1,6 +1,6 @@
 """Reads VTK's unstructured grids (.vtu): every version, encoding and compressor.
 
-Neither meshio nor VTK reads them for us: meshio knows versions to 1.0, no voxels and no lz4; VTK 9.1
+Neither meshio nor VTK reads them here: meshio knows versions to 1.0, no voxels, no lz4; VTK 9.1
 aborts or hangs on some damaged files, and its package conflicts with Debian's ParaView.
 """
 

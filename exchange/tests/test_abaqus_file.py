@@ -178,6 +178,8 @@ def test_messages_name_the_instance(tmp_path, capsys):
             CUBES.replace("\n2, 5, 6", "\n1, 5, 6"),
             "1 of 2 elements share an id with another; ids must be unique: 1",
         ),
+        (CUBES + "*NSET, NSET=Foot\n1, -1\n", ":18: set 'Foot' names node -1, which does not"),
+        (NODES + "*ELSET, ELSET=up\n1\n", ":15: set 'up' names element 1, which does not exist"),
         (CUBES + "*NSET, NSET=Foot\n1, 13\n", "set 'Foot' names node 13, which does not exist"),
         (
             CUBES + "*NSET, NSET=Foot\nToes\n",
