@@ -135,7 +135,8 @@ def test_instances_are_placed_and_keep_their_sets(tmp_path, capsys):
     assert (cells == [range(8), range(8, 16)]).all()
     assert warnings.count("warning") == 1 and "dropped 8 nodes of no hexahedron" in warnings
     assert sets == {
-        "tissue": list(range(16)),
+        "Low.tissue": list(range(8)),
+        "High.tissue": list(range(8, 16)),
         "Assembly.Set-1": [0, 1, 2, 3],
         "Low.Set-1": list(range(8)),
         "High.Set-1": list(range(8, 16)),
