@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, read, run
+from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, read
 
 from exchange import abaqus_writer
 from common.errors import InputError
@@ -242,18 +242,3 @@ def test_names_that_cannot_be_written(names):
     mesh = HexMesh(POINTS, CELLS, {name: np.array([0]) for name in names})
     with pytest.raises(InputError, match="names? in .inp"):
         abaqus_writer.mesh_lines(mesh)
-
-
-def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys):
-    text = CUBES + "*NSET, NSET=Foot, GENERATE\n1, 4, 1\n*ELSET, ELSET=up\n2\n"
-    random = np.random.default_rng(3)
-    path = tmp_path / "cubes.inp"
-    for _ in range(400):
-        changed = bytearray(text[: random.integers(1, len(text) + 1)], "ascii")
-        for at in random.integers(0, len(changed), 2):
-            changed[at] = random.integers(0, 256)
-        path.write_bytes(changed)
-        try:
-            run(capsys, "mesh", path, tmp_path / "out.h5")
-        except Refused as told:
-            assert "cubes.inp" in str(told)
