@@ -70,7 +70,8 @@ class Resolver:
         if isinstance(entry, range):  # of what exists
             some = known[np.searchsorted(known, entry[0]) : np.searchsorted(known, entry[-1] + 1)]
             entry = some[(some - entry[0]) % entry.step == 0]
-        missing = np.setdiff1d(entry, known)
+        at = np.minimum(np.searchsorted(known, entry), len(known) - 1)
+        missing = entry[known[at] != entry] if len(known) else entry
         if missing.size:
             what = "node" if kind == "NSET" else "element"
             where = f" of '{own.name}'" if own.name else ""

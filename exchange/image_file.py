@@ -53,11 +53,14 @@ def _voxels(path, labels, map_, origin):
         raise InputError(f"{path}: has shape {labels.shape}; (nx, ny, nz) is required")
     if labels.dtype.kind not in "biuf":
         raise InputError(f"{path}: holds {labels.dtype}; labels must be whole numbers")
-    whole = np.round(labels)
-    # A scale in the header leaves the rounding of floats.
-    if not (abs(labels - whole) <= np.clip(1e-6 * abs(whole), 1e-6, 0.01)).all():
-        raise InputError(f"{path}: labels must be whole numbers")
-    places, labels = np.argwhere(whole), whole
+    if labels.dtype.kind == "f":
+        whole = np.round(labels)
+        # A scale in the header leaves the rounding of floats.
+        near = abs(labels - whole) <= np.clip(1e-6 * abs(whole), 1e-6, 0.01)
+        if not (near & (abs(whole) < 2**53)).all():
+            raise InputError(f"{path}: labels must be whole numbers")
+        labels = whole
+    places = np.argwhere(labels)
     if not len(places):
         raise InputError(f"{path}: has no label other than 0; no voxel would be an element")
     values = labels[tuple(places.T)].astype(np.int64)

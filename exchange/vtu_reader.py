@@ -1,6 +1,6 @@
 """Reads VTK's unstructured grids (.vtu): every version, encoding and compressor.
 
-Neither meshio nor VTK reads them for us: meshio knows versions to 1.0, no voxels and no lz4; VTK 9.1
+Neither meshio nor VTK reads them here: meshio knows versions to 1.0, no voxels, no lz4; VTK 9.1
 aborts or hangs on some damaged files, and its package conflicts with Debian's ParaView.
 """
 
@@ -87,6 +87,8 @@ class Grid:
         found = {}
         for at, element in enumerate(piece.iterfind(f"{section}/DataArray")):
             name = element.get("Name", f"{section} {at}")
+            if element.get("type") == "String":
+                continue
             if name in found:
                 raise self.wrong(f"two arrays of <{section}> are named '{name}'")
             try:
@@ -132,7 +134,8 @@ class Grid:
     def values(self, element, name):
         """The numbers of a DataArray, one after the other."""
         kind, form = self.kind(element.get("type", "")), element.get("format", "ascii")
-        text = "".join(element.itertext())
+        # VTK puts its own remarks, such as ranges, into elements beside the numbers.
+        text = (element.text or "") + "".join(child.tail or "" for child in element)
         try:
             if form == "ascii":
                 words = text.split()

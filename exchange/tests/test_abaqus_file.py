@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, damaged, read, run
+from meshes import CELLS, CUBES, DATA, ELEMENTS, NODES, POINTS, Refused, read
 
 from exchange import abaqus_writer
 from common.errors import InputError
@@ -135,7 +135,8 @@ def test_instances_are_placed_and_keep_their_sets(tmp_path, capsys):
     assert (cells == [range(8), range(8, 16)]).all()
     assert warnings.count("warning") == 1 and "dropped 8 nodes of no hexahedron" in warnings
     assert sets == {
-        "tissue": list(range(16)),
+        "Low.tissue": list(range(8)),
+        "High.tissue": list(range(8, 16)),
         "Assembly.Set-1": [0, 1, 2, 3],
         "Low.Set-1": list(range(8)),
         "High.Set-1": list(range(8, 16)),
@@ -178,6 +179,8 @@ def test_messages_name_the_instance(tmp_path, capsys):
             CUBES.replace("\n2, 5, 6", "\n1, 5, 6"),
             "1 of 2 elements share an id with another; ids must be unique: 1",
         ),
+        (CUBES + "*NSET, NSET=Foot\n1, -1\n", ":18: set 'Foot' names node -1, which does not"),
+        (NODES + "*ELSET, ELSET=up\n1\n", ":15: set 'up' names element 1, which does not exist"),
         (CUBES + "*NSET, NSET=Foot\n1, 13\n", "set 'Foot' names node 13, which does not exist"),
         (
             CUBES + "*NSET, NSET=Foot\nToes\n",
@@ -239,14 +242,3 @@ def test_names_that_cannot_be_written(names):
     mesh = HexMesh(POINTS, CELLS, {name: np.array([0]) for name in names})
     with pytest.raises(InputError, match="names? in .inp"):
         abaqus_writer.mesh_lines(mesh)
-
-
-def test_whatever_happens_to_a_file_it_is_read_or_refused(tmp_path, capsys):
-    text = CUBES + "*NSET, NSET=Foot, GENERATE\n1, 4, 1\n*ELSET, ELSET=up\n2\n"
-    path = tmp_path / "cubes.inp"
-    for content in damaged(text.encode(), 2, 200, seed=3):
-        path.write_bytes(content)
-        try:
-            run(capsys, "mesh", path, tmp_path / "out.h5")
-        except Refused as told:
-            assert "cubes.inp" in str(told)

@@ -141,7 +141,7 @@ def test_a_file_of_another_kind_and_a_misspelt_key(tmp_path):
     [
         ("SANDGLASS_PYTHON", "/no/python3", "/no/python3: cannot be run: No such file or dir"),
         ("SANDGLASS_EXCHANGE", "/no/exchange", "/no/exchange/convert.py: is missing"),
-        ("PYTHONPATH", "meshio", "meshio is not installed; files of other programs need packag"),
+        ("PYTHONPATH", "scipy", "scipy is not installed; files of other programs need packages "),
         ("PYTHONPATH", "h5py", "h5py is not installed; files of other programs need packages "),
     ],
 )
