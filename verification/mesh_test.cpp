@@ -263,17 +263,30 @@ TEST(NodeSets, do_not_depend_on_the_unit_of_length) {
   }
 }
 
-/// Rules forgive a thousand-millionth of the body's diagonal, sqrt(3) of the edge here: nodes that are off a
-/// plane by a tenth of it are on it, by ten times it are not, in a body of a micrometre as in one of a
-/// thousand kilometres.
+/// Rules forgive what six digits round, 5e-6 of the largest coordinate: nodes that are off a plane by a
+/// little less are on it, by a little more are not, in a body of a micrometre as in one of a thousand
+/// kilometres.
 TEST(NodeSets, forgive_a_share_of_the_body_and_no_length) {
   for (const double size : {1e-6, 1.0, 1e6}) {
     Mesh mesh = box({size, size, size}, {1, 1, 1});
-    const std::array<double, 4> off{1e-10, -1e-10, 1e-8, -1e-8};  // of nodes 4 to 7, the upper ones
+    const std::array<double, 4> off{4.9e-6, -4.9e-6, 5.1e-6, -5.1e-6};  // of nodes 4 to 7, the upper ones
     for (std::size_t n = 0; n < 4; ++n) mesh.points[4 + n][2] *= 1.0 + off[n];
     const NodeSetRule top{"top", false, {{{}, {}, Interval{size, size}}}, {}};
     EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), top), (std::vector<int>{4, 5})) << "size " << size;
   }
+}
+
+/// But at most a thousandth of the shortest edge, where there are planes as near as that, or the body is far
+/// from the origin.
+TEST(NodeSets, keep_planes_of_nodes_apart) {
+  Mesh mesh = box({1.0, 1.0, 1.0}, {1, 1, 2});
+  for (Vector& X : mesh.points) X[2] = X[2] == 0.5 ? 1.0 - 1e-6 : X[2];
+  const NodeSetRule top{"top", false, {{{}, {}, Interval{1.0, 1.0}}}, {}};
+  EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), top).size(), 4U);
+  Mesh far = box({1.0, 1.0, 1.0}, {1, 1, 2});
+  for (Vector& X : far.points) X[2] += 1e6;
+  const NodeSetRule middle{"middle", false, {{{}, {}, Interval{1e6 + 0.5 - 9e-4, 1e6 + 0.5 - 9e-4}}}, {}};
+  EXPECT_EQ(select_nodes(far, boundary_nodes(far), middle).size(), 0U);
 }
 
 /// The elliptic cylinder by its definition, along each axis, with the other coordinates in the order of the
