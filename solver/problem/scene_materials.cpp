@@ -1,10 +1,9 @@
-#include "problem/scene_rules.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "problem/scene_rules.hpp"
 
 namespace sandglass {
 

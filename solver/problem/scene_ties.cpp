@@ -1,5 +1,3 @@
-#include "problem/scene_rules.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "mesh/interpolation.hpp"
+#include "problem/scene_rules.hpp"
 
 namespace sandglass {
 
