@@ -46,8 +46,13 @@ std::string head_text(const Scene& scene, const Choice& choice) {
                           demand.threads, demand.threads == 1 ? "" : "s", answers_per_second));
 }
 
+<<<<<<< HEAD
 /// The numbered meshes, and those rejected for every method.
 std::string meshes_text(const Scene& scene, const Choice& choice) {
+=======
+/// The meshes by their numbers, and those that no method can stand on.
+std::string meshes_text(const Choice& choice) {
+>>>>>>> problem
   std::string text;
   const auto add = [&](const std::string& number, const std::string& name, const Evaluation& evaluation) {
     text += line(fmt::format("mesh {}: {}{}{}", number, name,
@@ -156,7 +161,7 @@ std::string rungs_text(const Choice& choice) {
 }  // namespace
 
 std::string choose_table(const Scene& scene, const Choice& choice) {
-  std::string text = head_text(scene, choice) + meshes_text(scene, choice) + rungs_text(choice);
+  std::string text = head_text(scene, choice) + meshes_text(choice) + rungs_text(choice);
   for (const auto& remark : remarks(choice)) text += line("note: " + remark);
   if (!choice.chosen) return text;
   const Attempt& chosen = choice.attempts[*choice.chosen];

@@ -173,7 +173,7 @@ double budget_of_energy(const Swing& swing, double steps) {
 
 TEST_P(FloatBudgetTest, after_a_hundred_thousand_steps) {
   constexpr long steps = 100000;
-  const Scene scene = vibrating_block(steps);
+  const Scene scene = make_scene(vibrating_block(steps));
   Recorder exact, rounded;
   const Motion motion_exact = motion(scene, Precision::double_precision, exact);
   const Motion motion_rounded = motion(scene, Precision::single_precision, rounded);

@@ -251,7 +251,7 @@ TEST(RefineUntilWithin, refines_no_more_than_is_asked) {
 TEST(RefineUntilWithin, searches_as_long_as_the_accuracy_needs) {
   const AccurateMesh found = refine_until_within(0.1, case_named("ellipsoid-touch"), 1);
   const NodalField exact = at_rest(found.scene, {"tl-mean-dilatation"}).u;
-  const double left = largest_distance(exact, found.u) / displacement_unit(scene, exact);
+  const double left = largest_distance(exact, found.u) / displacement_unit(found.scene, exact);
   EXPECT_LT(left, 0.2 * 0.1);
   EXPECT_GT(left, 1e-4);
 }

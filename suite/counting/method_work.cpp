@@ -16,8 +16,11 @@ MethodWork work_with(const Law& law) {
 /// The law is behind calls, so that each method is compiled for two laws instead of all.
 template <class Method>
 MethodWork work_of_form(const KernelLaw& law) {
-  const auto* viscoelastic = std::get_if<Viscoelastic<CalledLaw>>(&law);
-  return viscoelastic != nullptr ? work_with<Method>(*viscoelastic) : work_with<Method>(elastic_law(law));
+  if constexpr (knows_law<Method, Viscoelastic<CalledLaw>>) {
+    const auto* viscoelastic = std::get_if<Viscoelastic<CalledLaw>>(&law);
+    if (viscoelastic != nullptr) return work_with<Method>(*viscoelastic);
+  }
+  return work_with<Method>(elastic_law(law));
 }
 
 }  // namespace
