@@ -46,13 +46,8 @@ std::string head_text(const Scene& scene, const Choice& choice) {
                           demand.threads, demand.threads == 1 ? "" : "s", answers_per_second));
 }
 
-<<<<<<< HEAD
 /// The numbered meshes, and those rejected for every method.
-std::string meshes_text(const Scene& scene, const Choice& choice) {
-=======
-/// The meshes by their numbers, and those that no method can stand on.
 std::string meshes_text(const Choice& choice) {
->>>>>>> problem
   std::string text;
   const auto add = [&](const std::string& number, const std::string& name, const Evaluation& evaluation) {
     text += line(fmt::format("mesh {}: {}{}{}", number, name,
