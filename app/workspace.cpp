@@ -120,7 +120,7 @@ std::deque<Scene> read_scenes(const std::vector<std::string>& names,
   for (auto& scene : cases) {
     if (fit(scene)) {
       scenes.push_back(read_scene(std::move(scene)));
-      if (scenes.back().description.quasi_static) require_held(scenes.back());
+      if (scenes.back().settings.quasi_static) require_held(scenes.back());
     } else if (!names.empty()) {
       throw InputError(fmt::format("{}: a dynamic case has no {}", scene.file.string(), has_not));
     }

@@ -108,6 +108,7 @@ T TableReader::convert(const toml::node& node, const std::string& key) const {
       if (array->size() == 2 * values.size()) expected += "; decimals have a point, such as 0.1";
       if (array->size() != values.size()) fail_type(key, node, expected);
     } else {
+      if (array->empty()) fail(key, "= [] must have at least one entry");
       values.resize(array->size());
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
