@@ -259,23 +259,5 @@ TEST(Force, acts_on_a_part_as_on_its_faces_alone) {
   compare(Support{"surface", 11.0, 0.5, false});
 }
 
-/// Forces grow with a factor as their load does; a support is none.
-TEST(Force, scales_with_its_load) {
-  DeadForce dead{.set = "a", .total = {1.0, 2.0, 3.0}, .moment = {4.0, 5.0, 6.0}};
-  dead.scale(-3.0);
-  EXPECT_EQ(dead.total, (Vector{-3.0, -6.0, -9.0}));
-  EXPECT_EQ(dead.moment, (Vector{-12.0, -15.0, -18.0}));
-  Gravity weight{{1.0, 2.0, 3.0}};
-  weight.scale(-3.0);
-  EXPECT_EQ(weight.value, (Vector{-3.0, -6.0, -9.0}));
-  Pressure pressure{"a", 2.0};
-  pressure.scale(-3.0);
-  EXPECT_EQ(pressure.value, -6.0);
-  Support support{"a", 2.0, 3.0};
-  support.scale(-3.0);
-  EXPECT_EQ(support.stiffness, 2.0);
-  EXPECT_EQ(support.damping, 3.0);
-}
-
 }  // namespace
 }  // namespace sandglass::verification
