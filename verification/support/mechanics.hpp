@@ -39,7 +39,7 @@ inline Verdict energy_balance(const Problem& problem, const Answer& own, RandomG
   if (problem.at_rest() || step == 0.0 || !own.failure.empty() || !is_conservative(problem)) return {};
   const auto imbalance = [&](double time_step) {
     Problem again = problem;
-    again.settings.dynamics.time_step = time_step;
+    again.description.dynamics.time_step = time_step;
     std::vector<HistoryRow> rows;
     const Answer answer = answer_of(again, nullptr, &rows);
     double largest = 0.0;
