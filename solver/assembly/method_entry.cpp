@@ -16,7 +16,8 @@ template <class Method>
 MethodEntry entry_of() {
   using Hourglass = typename Method::Hourglass;
   using Owner = KernelOwner<Method>;
-  Kernels<double> (*const scalar)() = &scalar_kernels<Owner>;
+  // Volatile, as GCC takes the address of a weak instance of a template for one that is not null.
+  Kernels<double> (*volatile scalar)() = &scalar_kernels<Owner>;
   return {.name = Method::name,
           .summary = Method::summary,
           .integration_points = integration_points<Method>,
