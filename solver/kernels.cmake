@@ -31,6 +31,11 @@ add_called_law(sandglass_packed "Pack<float>" math/pack.hpp packed_float)
 add_called_law(sandglass_packed "double" math/scalar.hpp scalar_double)
 add_called_law(sandglass_packed "Dual<double>" math/dual.hpp dual)
 
+foreach(REAL double float)
+  set(NUMBER "Pack<${REAL}>")
+  add_generated(sandglass_packed assembly/batch_kernels_source.cpp.in batch_${REAL}.cpp)
+endforeach()
+
 # For each method its kernels for the number types that run. The header of a method, its type and its name are one word: tl_none.hpp,
 # TlNone, tl-none.
 file(GLOB METHODS CONFIGURE_DEPENDS element/methods/*.hpp)

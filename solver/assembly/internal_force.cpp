@@ -31,7 +31,7 @@ void require_sensible(const MethodChoice& choice, const MethodEntry& method) {
 }  // namespace
 
 bool has_scalar_kernels() {
-  return methods().front().scalar_double.assemble != nullptr;
+  return methods().front().scalar_double != nullptr;
 }
 
 AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& materials,
@@ -51,7 +51,7 @@ AnyInternalForce make_internal_force(const Mesh& mesh, const Materials& material
     if (!has_scalar_kernels()) {
       throw InputError("kernel: this program has no scalar kernels; sandglass-scalar has");
     }
-    return method.scalar_double.assemble(mesh, materials, settings, team);
+    return method.scalar_double().assemble(mesh, materials, settings, team);
   }
   if (choice.precision == Precision::double_precision) {
     return method.packed_double.assemble(mesh, materials, settings, team);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "assembly/assemble.hpp"
-#include "assembly/batch_force.hpp"
 #include "assembly/method_entry.hpp"
 
 /// The definitions of `kernels`, for the source files that kernels.cmake makes for each method.
@@ -11,7 +10,6 @@ template <class Method, class Number>
 Kernels<Number> kernels() {
   Kernels<Number> own;
   if constexpr (std::is_same_v<KernelOwner<Method>, Method>) own.assemble = &assemble<Method, Number>;
-  if constexpr (batches<Method>) own.assemble_batch = &assemble_batch<Method, Number>;
   return own;
 }
 

@@ -12,12 +12,17 @@ namespace sandglass {
 
 namespace {
 
+template <class Method, class Number>
+Kernels<Number> packed_kernels() {
+  Kernels<Number> own = kernels<Method, Number>();
+  own.assemble_batch = batch_kernels<Number>(Method::name);
+  return own;
+}
+
 template <class Method>
 MethodEntry entry_of() {
   using Hourglass = typename Method::Hourglass;
   using Owner = KernelOwner<Method>;
-  // Volatile, as GCC takes the address of a weak instance of a template for one that is not null.
-  Kernels<double> (*volatile scalar)() = &scalar_kernels<Owner>;
   return {.name = Method::name,
           .summary = Method::summary,
           .integration_points = integration_points<Method>,
@@ -30,9 +35,9 @@ MethodEntry entry_of() {
           .is_condensed = is_condensed<Method>,
           .knows_viscoelasticity = knows_law<Method, Viscoelastic<CalledLaw>>,
           .levels = level_names<Method>(),
-          .packed_double = kernels<Owner, Pack<double>>(),
-          .packed_float = kernels<Owner, Pack<float>>(),
-          .scalar_double = scalar != nullptr ? scalar() : Kernels<double>{},
+          .packed_double = packed_kernels<Owner, Pack<double>>(),
+          .packed_float = packed_kernels<Owner, Pack<float>>(),
+          .scalar_double = &scalar_kernels<Owner>,
           .auto_kappa = [](const CalledLaw& law, KappaModulus modulus) -> std::optional<double> {
             if constexpr (Hourglass::traits.takes_kappa) return Hourglass::auto_kappa(law, modulus);
             return std::nullopt;

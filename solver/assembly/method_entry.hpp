@@ -51,7 +51,7 @@ struct MethodEntry {
 
   Kernels<Pack<double>> packed_double = {};
   Kernels<Pack<float>> packed_float = {};
-  Kernels<double> scalar_double = {};  ///< none unless a program links `sandglass_scalar`
+  Kernels<double> (*scalar_double)() = nullptr;  ///< null unless a program links `sandglass_scalar`
 
   /// The value of `auto` for kappa; none if the method takes no kappa.
   std::optional<double> (*auto_kappa)(const CalledLaw&, KappaModulus) = nullptr;
@@ -68,6 +68,15 @@ Kernels<Number> kernels();
 /// for these kernels serve tests and benchmarks alone.
 template <class Method>
 [[gnu::weak]] Kernels<double> scalar_kernels();
+
+/// The kernels for bodies side by side of the method called `name`; null unless it states `Batches`. They are
+/// compiled apart from those of single bodies, as the compiler inlines less in large sources.
+template <class Number>
+AssembleBatch<Number>* batch_kernels(std::string_view name);
+template <>
+AssembleBatch<Pack<double>>* batch_kernels<Pack<double>>(std::string_view name);
+template <>
+AssembleBatch<Pack<float>>* batch_kernels<Pack<float>>(std::string_view name);
 
 /// All methods, in the order of the list in `element/methods.hpp`.
 const std::vector<MethodEntry>& methods();
