@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "base/error.hpp"
+#include "io/hdf5_file.hpp"
 
 #ifdef SANDGLASS_MPI
 #include <hdf5.h>
@@ -26,7 +27,7 @@ namespace {
 /// The most numbers that MPI counts in one call.
 constexpr std::size_t most = std::size_t{1} << 30;
 
-class MpiRanks final : public Ranks {
+class MpiRanks final : public Ranks, public WritesHdf5Together {
  public:
   MpiRanks() {
     int given = 0;  // only the main thread calls MPI

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -45,10 +44,6 @@ class Ranks {
 
   /// Sends each rank's own part of `data`, from bounds[rank] to bounds[rank + 1], to all others.
   virtual void gather(std::byte* /*data*/, std::span<const std::size_t> /*bounds*/) const {}
-
-  /// Lets all ranks write one HDF5 file: changes its list of access properties, and that of each transfer.
-  virtual void open_together(std::int64_t /*access*/) const {}
-  virtual void write_together(std::int64_t /*transfer*/) const {}
 
   /// Whether all ranks come to their end with this one, which a rank in an error waits a little for.
   virtual bool all_end() const { return true; }

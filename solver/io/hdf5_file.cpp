@@ -18,6 +18,11 @@ namespace sandglass {
 
 namespace {
 
+/// How these ranks write a file together; null for those that do not.
+const WritesHdf5Together* shared_writer(const Ranks& ranks) {
+  return dynamic_cast<const WritesHdf5Together*>(&ranks);
+}
+
 /// An HDF5 identifier that closes itself.
 class Identifier {
  public:
@@ -160,7 +165,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path, Storage storage) {
   const Identifier creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose),
       access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (handle->storage.sealed) H5Pset_userblock(creation.get(), seal_size);
-  ranks.open_together(access.get());
+  if (const auto* shared = shared_writer(ranks)) shared->open_together(access.get());
   handle->file =
       H5Fcreate(temporary_path(path, process).c_str(), H5F_ACC_TRUNC, creation.get(), access.get());
   handle->require_written(handle->file >= 0, "cannot be completed");
@@ -248,7 +253,7 @@ void Hdf5File::write(const std::string& name, const std::vector<std::size_t>& sh
     H5Sselect_none(memory.get());
   }
   const Identifier transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
-  handle_->storage.ranks->write_together(transfer.get());
+  if (const auto* shared = shared_writer(*handle_->storage.ranks)) shared->write_together(transfer.get());
   const T* from = entries.data() + (shape[0] > 0 ? entries.size() / shape[0] * first : 0);
   handle_->require_written(
       H5Dwrite(set.get(), native(T{}), memory.get(), space.get(), transfer.get(), from) >= 0,

@@ -18,6 +18,15 @@ struct FileArray {
   std::vector<T> entries;
 };
 
+/// What ranks that write one HDF5 file together implement beside `Ranks`: each changes a property list of
+/// HDF5, whose handles (hid_t) are 64-bit integers here because programs without HDF5's header include this.
+class WritesHdf5Together {
+ public:
+  virtual ~WritesHdf5Together() = default;
+  virtual void open_together(std::int64_t access) const = 0;
+  virtual void write_together(std::int64_t transfer) const = 0;
+};
+
 /// How a file is stored.
 struct Storage {
   bool compressed = true;  ///< for large datasets: smaller, but many times slower

@@ -35,6 +35,8 @@ struct QuadraticVolume : SumOfParts<Law> {
 /// volumetric part.
 template <class Law>
 struct VolumeOfElastic : SumOfParts<Law> {
+  static constexpr LawTraits traits{};  // as the elastic law, unless its axes are given
+
   double shear_modulus() const { return law().elastic().shear_modulus(); }
   double bulk_modulus() const { return law().elastic().bulk_modulus(); }
 
