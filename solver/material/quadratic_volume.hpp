@@ -35,7 +35,7 @@ struct QuadraticVolume : SumOfParts<Law> {
 /// volumetric part.
 template <class Law>
 struct VolumeOfElastic : SumOfParts<Law> {
-  static constexpr LawTraits traits{};  // as the elastic law, unless its axes are given
+  static constexpr LawTraits traits{};  // of its use in kernels, where axes are those of space
 
   double shear_modulus() const { return law().elastic().shear_modulus(); }
   double bulk_modulus() const { return law().elastic().bulk_modulus(); }
