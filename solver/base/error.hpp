@@ -12,7 +12,7 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How a computation broke down, where that is known.
+/// How a computation broke down, if known.
 enum class Breakdown { other, inverted, not_finite, no_balance };
 
 /// The computation failed: it diverged, an element inverted, or it was interrupted. The command line exits

@@ -18,7 +18,7 @@ inline constexpr auto joined_characters = [] {
 
 }  // namespace detail
 
-/// Constant texts, one after another, as one constant text.
+/// Constant texts, concatenated at compile time.
 template <const std::string_view&... parts>
 inline constexpr std::string_view joined_text{detail::joined_characters<parts...>.data(),
                                               detail::joined_characters<parts...>.size()};

@@ -6,11 +6,11 @@
 
 namespace sandglass {
 
-/// The known name nearest to `name`, or "" when none is near enough for `name` to be a typo. Letters that are
-/// missing, added, wrong or swapped with the next count; dashes before a name do not make it longer.
+/// The known name nearest to `name`, or "" if none is near enough for `name` to be a typo. Missing, added,
+/// wrong and swapped letters count; dashes before a name do not count as letters.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// "; did you mean 'x'?", or "" when no known name is near enough.
+/// "; did you mean 'x'?", or "" if no known name is near enough.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known);
 
 /// The sentence "did you mean 'x'? known: a, b, c" that ends an error about an unknown name; of many known

@@ -8,8 +8,8 @@
 
 namespace sandglass {
 
-/// During its lifetime, subnormal numbers are zero in the thread that created it. Ahead of every wave the
-/// displacements fade into such numbers, and processors are a hundred times slower with them.
+/// During its lifetime, the thread that created it treats subnormal numbers as zero. Ahead of every wave,
+/// displacements decay to such numbers, which are a hundred times slower.
 class FlushSubnormals {
  public:
   FlushSubnormals() {

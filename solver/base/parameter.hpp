@@ -21,7 +21,7 @@ struct Range {
     return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
   }
 
-  /// The interval as people write it: "(0, 0.5)", "[1, inf)".
+  /// The interval in the usual notation: "(0, 0.5)", "[1, inf)".
   std::string text() const {
     return fmt::format("{}{}, {}{}", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
   }
@@ -42,7 +42,7 @@ struct Parameter {
   std::string_view unit;
   Range range;
   std::string_view meaning;
-  bool required = true;  ///< when false, the member's initial value is the default
+  bool required = true;  ///< if false, the member's initial value is the default
 };
 
 // Clang up to 16 does not deduce the template arguments of an aggregate.
@@ -50,15 +50,15 @@ template <class Owner, class Value>
 Parameter(Value Owner::*, std::string_view, std::string_view, Range, std::string_view, bool = true)
     -> Parameter<Owner, Value>;
 
-/// A broken rule that involves several parameters, so that no range can express it. An `Owner` with such
+/// A broken rule that no range can express, because it involves several parameters. An `Owner` with such
 /// rules has a function `std::optional<BrokenRule> broken_rule() const`, which the reader of case files
 /// calls.
 struct BrokenRule {
-  std::string parameter;  ///< the one that the message is about
-  std::string message;    ///< what follows its name: value, rule, what is allowed
+  std::string parameter;  ///< to which the message refers
+  std::string message;    ///< the text after its name: value, rule, what is allowed
 };
 
-/// The declarations of a base class as those of a class derived from it.
+/// The declarations of a base class, for a class derived from it.
 template <class Derived, class Parameters>
 constexpr auto inherited_parameters(const Parameters& parameters) {
   const auto inherited = []<class Owner, class Value>(const Parameter<Owner, Value>& p) {

@@ -8,7 +8,7 @@
 
 namespace sandglass {
 
-/// Processes that share the work on one body; the base class is a process alone. All hold the whole model,
+/// Processes that share the work on one body; the base class is a single process. All hold the whole model,
 /// make the same decisions, and call these functions in the same order.
 class Ranks {
  public:
@@ -20,13 +20,13 @@ class Ranks {
   virtual int rank() const { return 0; }
   virtual int count() const { return 1; }
 
-  /// Data to and from the ranks below and above; empty where there is none.
+  /// Data to and from the ranks below and above; empty if there is no such rank.
   struct Exchange {
     std::span<const std::byte> to_below, to_above;
     std::span<std::byte> from_below, from_above;
   };
 
-  /// What exchanges have taken so far, on this rank.
+  /// The traffic of this rank so far.
   struct Traffic {
     long exchanges = 0;
     long messages = 0;  ///< sent
@@ -34,24 +34,24 @@ class Ranks {
   };
   virtual Traffic traffic() const { return {}; }
 
-  /// Begins an exchange. Its data must not be touched until `finish` returns.
+  /// Begins an exchange. The data must not be touched until `finish` returns.
   virtual void start(const Exchange& /*exchange*/) const {}
   virtual void finish() const {}
 
-  /// Adds up over the ranks, number by number. With each number from one rank and zeros from the others this
-  /// is exact, and puts together what ranks computed apart.
+  /// Sums over the ranks, number by number. If each number comes from one rank and the others have zeros, the
+  /// sum is exact: it combines results of separate ranks.
   virtual void sum(std::span<double> /*numbers*/) const {}
 
   /// Sends each rank's own part of `data`, from bounds[rank] to bounds[rank + 1], to all others.
   virtual void gather(std::byte* /*data*/, std::span<const std::size_t> /*bounds*/) const {}
 
-  /// Whether all ranks come to their end with this one, which a rank in an error waits a little for.
+  /// Whether all ranks finish together with this one; after an error, a rank waits briefly for that.
   virtual bool all_end() const { return true; }
 
-  /// Ends all ranks at once.
+  /// Ends all ranks immediately.
   virtual void abort(int /*exit_code*/) const {}
 
-  /// One value of each rank.
+  /// One value from each rank.
   std::vector<double> of_all(double value) const {
     std::vector<double> values(static_cast<std::size_t>(count()));
     values[static_cast<std::size_t>(rank())] = value;
@@ -70,7 +70,7 @@ class Ranks {
   }
 };
 
-/// Who shares the work of loops: the ranks, and the threads of each.
+/// The workers that share loops: the ranks, and the threads of each.
 struct Team {
   int threads = 1;
   std::shared_ptr<const Ranks> ranks = std::make_shared<const Ranks>();

@@ -18,8 +18,7 @@ constexpr void for_each_type(TypeList<Types...> /*list*/, Visitor&& visit) {
   (visit.template operator()<Types>(), ...);
 }
 
-/// Calls `visit.template operator()<Type>()` for the type whose `name` is `name`; returns whether there is
-/// one.
+/// Calls `visit.template operator()<Type>()` for the type whose `name` is `name`; returns whether it exists.
 template <class... Types, class Visitor>
 bool with_named_type(TypeList<Types...> /*list*/, std::string_view name, Visitor&& visit) {
   return ((Types::name == name && (visit.template operator()<Types>(), true)) || ...);
@@ -33,7 +32,7 @@ std::vector<std::string> names_of(TypeList<Types...> /*list*/) {
 
 namespace detail {
 
-// Without bodies: they are for their types alone.
+// Without bodies: only their types are used.
 template <class... Types>
 std::variant<Types...> variant_of(TypeList<Types...>);
 template <template <class> class Wrapper, class... Types>
@@ -52,7 +51,7 @@ struct Concatenated<TypeList<First...>, TypeList<Second...>, Rest...> {
 
 }  // namespace detail
 
-/// Lists one after another as one list.
+/// The concatenation of lists.
 template <class... Lists>
 using Concatenated = typename detail::Concatenated<Lists...>::type;
 
@@ -60,7 +59,7 @@ using Concatenated = typename detail::Concatenated<Lists...>::type;
 template <template <class> class Wrapper, class List>
 using Wrapped = decltype(detail::wrapped<Wrapper>(List{}));
 
-/// A value that is one of the types of a list.
+/// A value of one of the types of a list.
 template <class List>
 using VariantOf = decltype(detail::variant_of(List{}));
 

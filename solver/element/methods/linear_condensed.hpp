@@ -10,7 +10,7 @@ struct LinearCondensed
     : MethodWith<Linear::Kinematics, Linear::Hourglass, Condensed, SharesKernelsOf<Linear>> {
   static constexpr std::string_view name = "linear-condensed";
   static constexpr std::string_view summary =
-      "linear, solved once for all loads: answers are superposed from the response to unit displacements";
+      "linear, solved once for all loads: superposes the response to unit displacements";
 };
 
 }  // namespace sandglass

@@ -10,7 +10,8 @@ namespace sandglass {
 
 struct T4Anp : MethodWith<Tetrahedra<NodalPressure>, NoHourglassControl> {
   static constexpr std::string_view name = "t4-anp";
-  static constexpr std::string_view summary = "the same tetrahedra with pressures averaged at the nodes";
+  static constexpr std::string_view summary =
+      "linear tetrahedra like t4, with pressures averaged at the nodes";
 };
 
 }  // namespace sandglass

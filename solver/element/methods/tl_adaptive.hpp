@@ -15,7 +15,7 @@ struct TlAdaptive : MethodWith<OnePoint, ModalSamplingControl,
                                AdaptsAmong<TlModalSampling, TlFourPoint, TlMeanDilatation>> {
   static constexpr std::string_view name = "tl-adaptive";
   static constexpr std::string_view summary =
-      "one, four or eight points, each element as many as the requested accuracy needs";
+      "one, four or eight points per element, as the requested accuracy needs";
 };
 
 }  // namespace sandglass

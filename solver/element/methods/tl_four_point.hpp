@@ -11,7 +11,8 @@ namespace sandglass {
 struct TlFourPoint : MethodWith<FourPoint, LastModeControl> {
   static constexpr std::string_view name = "tl-four-point";
   static constexpr std::string_view summary =
-      "four points on the element's mean parallelepiped, one pressure: nearly eight, from one point's memory";
+      "four points on the element's mean parallelepiped, one pressure: nearly as good as eight, with one "
+      "point's memory";
 };
 
 }  // namespace sandglass

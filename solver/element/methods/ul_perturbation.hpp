@@ -13,7 +13,7 @@ struct UlPerturbation
     : MethodWith<UpdatedOnePoint, RatePerturbationControl, AtSmallStrainLike<TlPerturbation>> {
   static constexpr std::string_view name = "ul-perturbation";
   static constexpr std::string_view summary =
-      "one point, Updated Lagrangian, the same control integrated in time and rotated, as in ABAQUS";
+      "one point, Updated Lagrangian, perturbation control integrated in time and rotated, as in ABAQUS";
 };
 
 }  // namespace sandglass
