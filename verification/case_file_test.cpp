@@ -532,8 +532,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"node_driven_twice_differently",
                 with("set = \"top\"\nvalue", "set = \"bottom\"\nvalue"),
                 {"node 0 is given two displacements in x: 0 by set 'bottom' and 0.5 by set 'bottom'"}},
-        BadCase{
-            "no_displacement", good.substr(0, good.find("[[displacement]]")), {"displacement is missing"}},
         BadCase{"velocity_of_a_static_answer",
                 good + "[[velocity]]\nvalue = [0.0, 0.0, 1.0]\n",
                 {"velocity is not a key"}},

@@ -124,7 +124,7 @@ TEST(Refined, wrong_numbers_are_refused) {
   };
   EXPECT_NE(message("numbers = [8]\n").find("refine.numbers = 8 must be below 8"), std::string::npos);
   EXPECT_NE(message("numbers = [-1]\n").find("refine.numbers = -1"), std::string::npos);
-  EXPECT_NE(message("numbers = []\n").find("at least one element"), std::string::npos);
+  EXPECT_NE(message("numbers = []\n").find("at least one entry"), std::string::npos);
   EXPECT_NE(message("numbers = [1]\nelements = \"upper\"\n").find("one of the three"), std::string::npos);
   EXPECT_NE(message("numbers = [1]\ndepth = 2\n").find("depth"), std::string::npos);
 }
