@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "app/si_units.hpp"
 #include "comparison/comparison.hpp"
