@@ -33,7 +33,7 @@ ANSWERS = {
     "Is my answer accurate?": "estimates the distance of an answer from the exact one",
     "How do I make a body of several materials?": '[[materials]] elements = "core"',
     "How do I model tissue that relaxes?": 'law = "viscoelastic-neo-hookean"',
-    "How long is a time step?": "A step is .9 of the longest that is surely stable",
+    "How long is a time step?": "A step is 0.9 of the longest step that is guaranteed to be stable",
     "How do I use it from Python?": "PYTHONPATH=build/release/python",
     "How do I add a law?": "solver/material/demiray.hpp",
     "Why does my mesh fold?": "Zigzags from node to node are hourglass modes",

@@ -36,7 +36,7 @@ def test_a_line_per_program_and_ratio_in_the_order_of_the_meshes(tmp_path):
         axes = Axes()
         panel.draw(axes)
         assert axes.lines == expected
-    assert "2560 elements, 4 s" in seconds.alt
+    assert "4 for 2560 elements" in seconds.alt
 
 
 @pytest.mark.parametrize(

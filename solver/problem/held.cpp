@@ -118,7 +118,9 @@ std::string rotation_text(const RigidMotion& motion, const RigidPiece& piece, bo
 
 /// The motions of a piece in words.
 std::string motions_text(const std::vector<RigidMotion>& motions, const RigidPiece& piece) {
-  const auto [rotations, translations] = basis_of(motions);
+  const Basis basis = basis_of(motions);
+  const std::vector<RigidMotion>& rotations = basis.rotations;
+  const std::vector<Vector>& translations = basis.translations;
   if (rotations.size() + translations.size() == 6) return "every translation and rotation";
   std::vector<std::string> words, directions;
   for (const Vector& t : translations) directions.push_back(direction_text(t));

@@ -91,9 +91,9 @@ void make_constraints(const Case& description, Scene& scene) {
   for (const auto& [at_node, origin] : imposed) {
     if (!is_tied(scene.ties, at_node.first)) scene.constraints.push_back(origin.constraint);
   }
-  for (auto& [set, constraints] : scene.driven) {
-    for_each_constraint(scene.constraints, scene.sets.at(set),
-                        [&](std::size_t k, std::size_t /*n*/) { constraints.push_back(k); });
+  for (DrivenSet& driven : scene.driven) {
+    for_each_constraint(scene.constraints, scene.sets.at(driven.name),
+                        [&](std::size_t k, std::size_t /*n*/) { driven.constraints.push_back(k); });
   }
 }
 
@@ -176,7 +176,7 @@ Scene make_scene(const Case& description, Mesh mesh, NodeSets sets_of_file,
                  ElementSets element_sets_of_file) {
   const std::string file = description.file.string();
   Scene scene;
-  scene.settings = description;
+  scene.settings = static_cast<const CaseSettings&>(description);
   scene.case_hash = case_hash(description);
   scene.mesh = std::move(mesh);
   scene.sets = std::move(sets_of_file);
