@@ -134,7 +134,8 @@ TEST(Trial, shapes_body_and_motion_alike) {
   description.mesh = BoxMesh{{1.0, 1.0, 1.0}, {2, 2, 2}};
   description.sets = {plane("low", 2, 0.0), plane("high", 2, 1.0)};
   description.displacements = {{"low", {}}, {"high", {0.1, 0.0, 0.2}}};
-  const Scene scene = scene_of({.description = description, .choice = {"tl-none"}, .aspect = 2.0, .skew = 0.5});
+  const Scene scene =
+      scene_of({.description = description, .choice = {"tl-none"}, .aspect = 2.0, .skew = 0.5});
   const auto [low, high] = bounding_box(scene.mesh.points);
   EXPECT_EQ(high[2], 2.0);
   EXPECT_EQ(high[0], 2.0);  // 1 + 0.5 * 2
