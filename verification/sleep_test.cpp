@@ -220,10 +220,10 @@ TEST(Sleep, is_refused_where_it_has_no_sense) {
   EXPECT_THROW(scene.awake("linear-condensed", 0.01), InputError) << "it answers at once";
   const Touched untouched({8, 8, 3}, 0.0);
   EXPECT_THROW(untouched.awake("tl-perturbation", 0.01), InputError);
-  const auto refusal = [](const Scene& scene) {
+  const auto refusal = [](const Scene& refused) {
     Observer nobody;
     try {
-      relax_awake(scene, {.method = "tl-perturbation"}, 0.01, nobody);
+      relax_awake(refused, {.method = "tl-perturbation"}, 0.01, nobody);
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -266,7 +266,7 @@ TEST(OnPart, keeps_what_the_scene_has_there) {
   EXPECT_EQ(held, 3 * rim);
   for (const auto& [name, set] : scene.sets) {
     std::size_t inside = 0;
-    for (const int node : whole.sets.at(name)) inside += part.part_of[index(node)] >= 0 ? 1 : 0;
+    for (const int node : whole.sets.at(name)) inside += part.part_of[index(node)] >= 0 ? 1U : 0U;
     EXPECT_EQ(set.size(), inside) << name;
     for (const int node : set)
       EXPECT_TRUE(std::ranges::binary_search(whole.sets.at(name), part.node_of[index(node)])) << name;

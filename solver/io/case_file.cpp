@@ -197,9 +197,9 @@ Case read_case(const CaseTables& tables, const std::filesystem::path& path, cons
   };
   description.sets = read_sets("sets", true);
   description.element_sets = read_sets("element_sets", false);
-  const auto read_tables = [&]<class Table>(std::vector<Table>& tables) {
+  const auto read_tables = [&]<class Table>(std::vector<Table>& found) {
     for (TableReader& table : reader.tables(std::string(Table::name))) {
-      table.parameters(tables.emplace_back());
+      table.parameters(found.emplace_back());
       table.finish();
     }
   };
