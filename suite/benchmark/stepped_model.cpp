@@ -146,7 +146,7 @@ Scene box_scene(int elements, Shapes shapes) {
       }
     }
   }
-  return make_scene(std::move(description), std::move(mesh));
+  return make_scene(description, std::move(mesh));
 }
 
 double element_size(const Scene& scene) {
