@@ -90,7 +90,7 @@ choose block.toml --methods tl-nothing | 'tl-nothing' & known
 choose block.toml --threads 0 | --threads = 0
 choose block.toml --json /dev/null/choice.json | /dev/null/choice.json
 choose block.toml --output /dev/null/chosen.toml | /dev/null/chosen.toml
-choose block.toml -o block.toml | another file
+choose block.toml -o block.toml | is an input of this command
 
 stability block.toml --map lode | 'lode' & did you mean 'load'
 stability block.toml --map load,load | --map & two different ones
@@ -111,7 +111,7 @@ bench --elements many | --elements
 bench --rest --elements 8 | --rest
 bench --rest --repetitions 8 | --rest
 bench --rest --methods tl-ful | did you mean 'tl-full'?
-bench --rest bar-wave | bar-wave.toml: a dynamic case has no rest to come to
+bench --rest bar-wave | bar-wave.toml: a dynamic case has no static equilibrium to time
 bench --repetitions 0 | --repetitions = 0 must be in [1, 1000000]
 bench --elements 8 --repetitions 1 --methods tl-none --json none/b.json |
   b.json: cannot be written

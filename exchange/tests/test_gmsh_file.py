@@ -63,7 +63,7 @@ def edited(tmp_path, form, *changes):
         ("2.2", b"\n2 0.1 0 0\n", b"\n2 0.1 x 0\n", "invalid number"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n1 0.1 0 0\n", "node 1 given twice"),
         ("2.2", b"\n2 0.1 0 0\n", b"\n-2 0.1 0 0\n", "node -2: ids of nodes must not be negative"),
-        ("2.2", b"\n2 0.1 0 0\n", b"\n2.5 0.1 0 0\n", "no whole number"),
+        ("2.2", b"\n2 0.1 0 0\n", b"\n2.5 0.1 0 0\n", "not a whole number"),
         ("2.2", b" 9 2 10 25 ", b" 9 99 10 25 ", "element .* names node 99, which does not exist"),
         ("2.2", b" 9 2 10 25 ", b" 9 9 10 25 ", "1 of 12 elements name a node twice"),
         ("2.2", b"\n36\n", b"\n37\n", "Nodes"),
