@@ -9,10 +9,10 @@ from common.hexahedron import LEXICOGRAPHIC
 from exchange import orientation
 
 HEXAHEDRON = "hexahedron"
-SHOWN = 3  # of what is wrong, in a message
-LARGEST = 20.0  # m; what is larger was perhaps meant in millimetres
+SHOWN = 3  # of faulty items listed in a message
+LARGEST = 20.0  # m; a larger mesh was perhaps meant in millimetres
 SCOPE = 1 << 40  # numbers of instance i begin at i SCOPE, where a file has several
-ROUNDING = 1e-6  # of the diagonal: what a float or six digits leave of a coordinate
+ROUNDING = 1e-6  # of the diagonal: the error of coordinates in single precision or six digits
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Block:
 class ForeignMesh:
     """Nodes (n,) with points (n, 3), blocks of elements, and node sets: (scope, name) -> ids.
 
-    A scope is what a name belongs to: an instance, the assembly, a group of some dimension; or "".
+    The scope of a name is an instance, the assembly, or the dimension of a group; "" without any.
     hint: how to make and save hexahedra with the program, for messages. element_sets: the same for
     ids of elements; those of hexahedra count. scopes: names of the instances that number their
     nodes and elements from i SCOPE on.
@@ -107,8 +107,8 @@ def to_hexahedra(mesh, path, warn):
 def _named(sets, path, warn=lambda text: None):
     """name -> members, of (scope, name) -> members without the empty ones.
 
-    A name that means several things becomes SCOPE.NAME for each of them: used alone, it is refused,
-    as it is no set. Raises InputError where names clash.
+    A name with several meanings becomes SCOPE.NAME for each of them; alone it names no set, so a
+    case that uses it is refused. Raises InputError if names clash.
     """
     alike, named = {}, {}
     for (scope, name), members in sets.items():
@@ -244,8 +244,10 @@ def _oriented(mesh, block, cells, path, warn):
 
 
 def _warn_of_seams(mesh, cells, outer, distance, warn):
-    """Warns of nodes at one place, to rounding: the body is not connected there. Two nodes of one
-    element are none: it is that thin."""
+    """Warns of nodes that coincide up to rounding, where the body is not connected.
+
+    Two nodes of the same element do not count: the element is that thin.
+    """
     from scipy.spatial import cKDTree  # takes long to load
 
     pairs = outer[cKDTree(mesh.points[outer]).query_pairs(distance, output_type="ndarray")]

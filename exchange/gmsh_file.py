@@ -160,7 +160,7 @@ class _Elements:
                 self.volumes.setdefault((dimension, tag), []).append(ids)
 
     def mesh(self, node_ids, points):
-        """The ForeignMesh. Groups of one name are told apart by dimension and tag."""
+        """The ForeignMesh. Dimension and tag distinguish groups of the same name."""
         none = np.empty(0, dtype=np.int64)
 
         def named(groups):

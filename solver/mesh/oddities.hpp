@@ -7,15 +7,15 @@
 
 namespace sandglass {
 
-/// What of the mesh lies within a set of nodes: whole elements, boundary faces, edges of elements.
+/// The number of elements, boundary faces and edges of elements with all their nodes in a set.
 struct SetShape {
   std::size_t elements = 0, faces = 0, edges = 0;
 };
 SetShape shape_of(const Mesh& mesh, const std::vector<Quadrilateral>& boundary,
                   const std::vector<int>& nodes);
 
-/// Where an end of an interval of a rule cuts nodes apart that seem to be meant for one plane, in words;
-/// empty if nowhere. These are four or more nodes whose coordinates differ by less than a fiftieth of the
+/// A description of nodes that seem to be one plane but are divided by the end of a rule's interval; empty if
+/// there are none. These are four or more nodes whose coordinates differ by less than a fiftieth of the
 /// shortest edge, while all others are five times as far away.
 std::string cut_plane(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule);
 
@@ -27,7 +27,7 @@ struct Seam {
 };
 Seam seam_of(const Mesh& mesh, const Ties& ties, const std::vector<Quadrilateral>& boundary);
 
-/// What is wrong with it and what to do, in words; empty without any pair.
+/// The fault and its remedy as text; empty without any pair.
 std::string described(const Seam& seam, const Mesh& mesh);
 
 }  // namespace sandglass

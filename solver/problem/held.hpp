@@ -10,11 +10,11 @@ namespace sandglass {
 /// The rigid motions against which neither constraints nor forces hold a body.
 std::vector<LooseBody> free_motions(const Scene& scene);
 
-/// What nothing holds, in words: for each piece of the body how many elements and where, its free motions,
-/// and nodes that would hold it; empty if all is held. At most three pieces are named.
+/// A description of the pieces that nothing holds, at most three: their elements, place and free motions;
+/// empty if the whole body is held.
 std::string described_free_motions(const Scene& scene);
 
-/// Throws InputError with these words for a scene that is to be at rest, if anything is free.
+/// Throws InputError if a piece of the body is free: with this description and nodes that would hold it.
 void require_held(const Scene& scene);
 
 }  // namespace sandglass
