@@ -15,7 +15,7 @@ HEAD = """# Mutants
 
 Made by `verification/mutants/run.py` on {day}, revision {revision}: {counts}.
 
-Each row names the first test that failed. `README.md` says how the mutants were chosen.
+Each row names the first test that failed. `README.md` describes how the mutants were chosen.
 
 """
 
