@@ -329,8 +329,8 @@ TEST(Adaptive, motion_keeps_its_energy) {
   }
 }
 
-/// Single precision stops at its roundoff, and its elements settle only then. The error is the same, and so
-/// are the levels, or higher since there are more lanes to fill. Lower are only those that roundoff decides,
+/// Single precision stops at its roundoff, and its elements settle only then: answers are as accurate, and
+/// levels equal, or higher because there are more lanes to fill. Lower ones are those that roundoff decides,
 /// together with their mirror images.
 TEST(Adaptive, floats_settle_too) {
   const Scene scene = pressed_block(0.02);

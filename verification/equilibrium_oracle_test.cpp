@@ -141,7 +141,7 @@ void expect_the_balance_that_is_remembered(const Scene& scene, const Law& law) {
   using Kernel = FormulationOf<Method, Law>;
   using Assembly = PlainAssembly<Kernel, Law>;
   MethodChoice choice{std::string(Method::name)};
-  choice.kernel = KernelWidth::scalar;  // one element per lane group: its history is a sequence of numbers
+  choice.kernel = KernelWidth::scalar;  // one element at a time: its history is a sequence of numbers
   const Model model(scene, choice);
   const auto& elements = *std::get<0>(model.internal_force());
   Observer silent;

@@ -62,7 +62,7 @@ TEST(Distances, margins_mark_cubes) {
   EXPECT_EQ(marked(), 217U);
   margin[node(4, 4, 5)] = 2;  // inside the larger one
   EXPECT_EQ(marked(), 217U);
-  margin[node(4, 4, 7)] = 2;  // 4 x 4 elements, a layer outside of it
+  margin[node(4, 4, 7)] = 2;  // one new layer of 4 x 4 elements
   EXPECT_EQ(marked(), 217U + 16U);
 }
 
