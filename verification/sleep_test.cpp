@@ -40,7 +40,7 @@ TEST(Distances, no_way_is_told) {
 }
 
 /// A margin of m around an inner node of a lattice marks a cube of 2 m elements per edge, around two nodes
-/// the union; where two margins overlap, the larger one counts.
+/// the union; where two margins meet, the larger one extends further.
 TEST(Distances, margins_mark_cubes) {
   const Mesh mesh = box({8, 8, 8}, {8, 8, 8});
   const Distances distances(mesh);
