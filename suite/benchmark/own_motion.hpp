@@ -12,8 +12,9 @@ namespace sandglass {
 /// The time (s) in which a shear wave crosses a scene's body; the slowest wave if materials differ.
 double crossing_time(const Scene& scene);
 
-/// The scene in motion: a dynamic case as it is; a quasi-static one as a damped motion to its full load in
-/// `own_motion_crossings` crossing times, as in a program that computes the scene step by step.
+/// The scene in motion: a dynamic case as it is; a quasi-static one as a damped motion, during which the load
+/// grows to its full value in `own_motion_crossings` crossing times, as in a program that computes the scene
+/// step by step.
 Scene in_own_motion(const Scene& scene);
 
 /// The duration of a quasi-static case's damped motion in crossing times, during all of which its load grows.

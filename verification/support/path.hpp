@@ -14,7 +14,8 @@ class Path {
       : elements_(std::get<0>(make_internal_force(mesh, law, choice, density))),
         state_(elements_->undeformed()) {}
 
-  /// Moves to displacements u (m) in some time (s), infinite by default, and returns the forces there (N).
+  /// Moves to displacements u (m) in a time `step` (s), by default so long that it plays no part, and returns
+  /// the forces there (N).
   NodalField to(const NodalField& u, double step = std::numeric_limits<double>::infinity()) {
     state_.step = step;
     const Rows<double> rows = to_rows<double>(u, elements_->layout());

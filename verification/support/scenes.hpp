@@ -94,7 +94,8 @@ inline double total_energy(const HistoryRow& row) {
   return row.kinetic + row.strain + row.hourglass;
 }
 
-/// The largest difference between work and energy, over the total work at the end, which must be positive.
+/// The largest difference between the work done and the total energy in any row, over the total work at
+/// the end, which must be positive.
 inline double energy_imbalance(const std::vector<HistoryRow>& rows) {
   const double work = rows.back().external_work;
   EXPECT_GT(work, 0.0);
