@@ -72,7 +72,7 @@ Displacements twin_of(const Scene& scene) {
   return std::move(answer.u);
 }
 
-/// The verdict that displacements alone allow. Energies are unknown, so locking is never found.
+/// The verdict that displacements allow. Without energies, locking is never found.
 Finding finding_of(const Scene& scene, const References& references, const Displacements& u) {
   const double unit = displacement_unit(scene, *references.golden);
   Symptoms found = symptoms(scene, u, 0.0, *references.golden, unit);

@@ -96,7 +96,7 @@ char letter(const Cell& cell) {
   return 'R';
 }
 
-/// One below the other, as all side by side would be too wide; y points upwards.
+/// One map below the other, as all side by side would be too wide; y points upwards.
 void print_map(const Map& map, const std::vector<Cell>& cells) {
   fmt::print("\n{} over {}: {}\n", map.y == nullptr ? "all" : map.y->name, map.x->name,
              fmt::join(map.xs, " "));

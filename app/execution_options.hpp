@@ -55,7 +55,7 @@ inline void require_count(const char* option, int value, int most) {
   throw InputError(fmt::format("{} = {} must be in [1, {}]", option, value, most));
 }
 
-/// More threads than this are taken for a typing error.
+/// More threads than this count as a typing error.
 inline void require_threads(int threads) {
   require_count("--threads", threads, 1024);
 }

@@ -67,7 +67,7 @@ bool dissipates(const Model& model) {
          method_named(model.choice().method).damps_only;
 }
 
-/// What a strain of 1e-12, far above that of rounded displacements, would store in the body, J.
+/// The energy (J) that a strain of 1e-12, far above that of rounded displacements, would store in the body.
 double energy_of_rounding(const Model& model) {
   double energy = 0.0;
   for (std::size_t e = 0; e < model.element_masses().size(); ++e) {
@@ -78,7 +78,7 @@ double energy_of_rounding(const Model& model) {
   return energy;
 }
 
-/// Nothing for a body in one piece.
+/// Empty for a body in one piece.
 std::string parts_text(const Scene& scene) {
   const int parts = number_of_parts(scene.mesh, scene.ties);
   return parts > 1 ? fmt::format("; {} separate parts", parts) : "";

@@ -18,11 +18,11 @@ namespace sandglass {
 
 namespace {
 
-/// Extent of a mesh from a file above which it is probably not in m, m.
+/// The extent (m) of a mesh from a file above which it is probably not in m.
 constexpr double most_length = 10.0;
 
-/// How often a body's weight on its base may be its Young's modulus: gels of some metres are beyond the
-/// fraction that a body could stand, but not by far.
+/// The largest plausible ratio of a body's weight per area of its base to its Young's modulus: gels of a few
+/// metres exceed what a body could bear, but not by far.
 constexpr double most_weight = 100.0;
 
 std::string plural(std::size_t count, std::string_view what) {
@@ -49,7 +49,7 @@ std::string shape_text(const SetShape& shape) {
   return shape.edges > 0 ? "edge" : "points";
 }
 
-/// The names of the sets that the tables of a case use.
+/// The sets that the tables of a case use, by name.
 struct UsedSets {
   std::set<std::string> nodes;
   std::set<std::string> elements;

@@ -16,7 +16,7 @@ void print_sets(const Case& description, const Scene& scene);
 /// that are not joined, units; and a note on sets that no table uses.
 void warn_of_oddities(const Case& description, const Scene& scene);
 
-/// The motions that nothing holds, if there are any.
+/// The free motions of a scene's body, if there are any.
 void print_free_motions(const Scene& scene);
 
 }  // namespace sandglass

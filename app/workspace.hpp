@@ -25,7 +25,7 @@ std::vector<Case> find_cases(const std::string& name_or_path);
 Case find_case(const std::string& name_or_path);
 
 /// The scenes of the cases that `fit`, among the cases named by path or name, or all canonical ones if there
-/// are no names. Throws InputError for a named dynamic case that does not fit, with the thing that it lacks.
+/// are no names. Throws InputError for a named dynamic case that does not fit, naming what it lacks.
 std::deque<Scene> read_scenes(const std::vector<std::string>& names,
                               const std::function<bool(const Case&)>& fit, const std::string& has_not);
 

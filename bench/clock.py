@@ -21,11 +21,11 @@ class Clocked:
 
 
 def run(command, folder=None, environment=None, processor=None):
-    """Run a command and time it: Clocked.
+    """Runs a command and times it: Clocked.
 
-    folder, environment: those of the process; None means the current ones. processor: the number
-    of the one to bind it to, with all its threads; None means any. Raises InputError if it cannot
-    be started.
+    folder, environment: of the process; None means the current ones. processor: the number of the
+    one to which it is bound with all its threads; None means any. Raises InputError if it cannot be
+    started.
     """
     pinned = (lambda: os.sched_setaffinity(0, {processor})) if processor is not None else None
     with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:

@@ -19,7 +19,7 @@ if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 
-import measuring  # first: reference/ may do without UFL afterwards
+import measuring  # first: reference/ may then do without UFL
 
 import peer_runs
 from common.command import command_line, option, whole_number
@@ -37,7 +37,7 @@ BEAM = Path(__file__).with_name("beam.toml.in").read_text()
 
 
 def time_sandglass(path):
-    """(method, seconds, evaluations, None) of every method, the median of ROUNDS in turn."""
+    """(method, seconds, evaluations, None) of every method, each the median of ROUNDS in turn."""
     found = {method: [] for method in METHODS}
     for _ in range(ROUNDS):
         for method in METHODS:
@@ -48,7 +48,7 @@ def time_sandglass(path):
 
 
 def implicit_programs():
-    """FEniCSx and CalculiX, each with an element; those that are not installed are named."""
+    """FEniCSx and CalculiX, each with an element; names those that are not installed."""
     found = []
     has_fenicsx = importlib.util.find_spec("dolfinx") is not None
     for program, path, element in (
@@ -63,7 +63,7 @@ def implicit_programs():
 
 
 def time_implicit(path, folder, versions, programs):
-    """(program, seconds, None, Newton iterations) of each of the implicit programs."""
+    """(program, seconds, None, Newton iterations) of each implicit program."""
     bench = peer_runs.Bench(path, folder)
     for program, element in programs:
         program.environment, program.processor = bench.environment, bench.processor
@@ -73,7 +73,7 @@ def time_implicit(path, folder, versions, programs):
 
 
 def time_beam(width, ratio, programs, versions):
-    """Records of one mesh and Poisson's ratio, as far as the programs got, and an exit code."""
+    """Records of one mesh and Poisson's ratio from all programs that succeeded; an exit code."""
     found, code = [], 0
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "beam.toml"
@@ -90,7 +90,7 @@ def time_beam(width, ratio, programs, versions):
 
 
 def measure(options):
-    """Measure, print, store. Returns the exit code. Raises InputError."""
+    """Measures, prints, stores. Returns the exit code. Raises InputError."""
     smallest = 5 * WIDTHS[0] ** 3
     if options.most < smallest:
         raise InputError(f"--most: {options.most} is less than {smallest}, the smallest mesh")

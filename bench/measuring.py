@@ -1,4 +1,4 @@
-"""What the measurements of this folder share: cases, the machine, times to rest, tables."""
+"""Code shared by the measurements of this folder: cases, the machine, times to rest, tables."""
 
 import importlib.util
 import os
@@ -18,16 +18,16 @@ from common.files import read_toml
 from common.program import CASES, binary, output_of
 
 JSON = option("--json", type=writable, metavar="FILE", help="the records and the machine")
-# What `sandglass run` prints of a body at rest: evaluations, seconds.
+# The line of `sandglass run` about a static answer: evaluations, seconds.
 EQUILIBRIUM = (
     r"^static equilibrium \(.*\): (\d+) evaluations?(?: and \d+ of its stability)?, (\S+) s; "
 )
 
 
 def rest_of(case, method, *options):
-    """(evaluations, seconds) of the search for rest of `sandglass run`, and what it printed.
+    """(evaluations, seconds) of `sandglass run`'s search for equilibrium, and its output.
 
-    Raises InputError or ComputationError, also if it does not state them.
+    Raises InputError or ComputationError, also if the output lacks them.
     """
     text = output_of(binary(), "run", case, "-m", method, *options)
     rest = re.search(EQUILIBRIUM, text, re.MULTILINE)

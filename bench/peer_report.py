@@ -5,7 +5,7 @@ import statistics
 from measuring import table
 from rest_search import WITHIN
 
-# The golden element's explicit twin, the reference for motions.
+# The explicit method of the golden's element, the reference for motions.
 TWIN = "tl-mean-dilatation"
 NOTES_AT_REST = """
 The same answer by different methods. CalculiX, FEBio and FEniCSx use Newton's method with a direct
@@ -36,7 +36,7 @@ def percent(fraction):
 
 
 def spread(seconds):
-    """Median and range of a list of seconds, as text."""
+    """Median and range of a list of seconds as text."""
     return f"{statistics.median(seconds):.3g} ({min(seconds):.3g} to {max(seconds):.3g})"
 
 
@@ -82,7 +82,7 @@ def shown(records, columns):
 
 
 def report(document, steps):
-    """The text. document: of `ci/peers --json`. steps: of the motion."""
+    """The text. document: from `ci/peers --json`. steps: of the motion."""
     loads = "{load_average_before:.2f} to {load_average_after:.2f}".format(**document)
     programs = [f"sandglass {document['sandglass']}"]
     programs += ["{name} {build} {version} {about}".format(**p) for p in document["programs"]]

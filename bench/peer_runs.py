@@ -1,4 +1,4 @@
-"""The runs timed by bench/peers.py: one program on one case, at rest or in motion.
+"""The runs timed by bench/peers.py: one program on one case, static or in motion.
 
 A run is a function without arguments that returns a Run. Each works in a new folder.
 """
@@ -25,11 +25,11 @@ from rivals.program import Run
 
 # Largest speed of imposed displacements over the shear wave speed; strains are of this order.
 SPEED = 0.1
-CURVE_RATE = 15 / 8  # the steepest that the loading curve of eq. 15 is
+CURVE_RATE = 15 / 8  # the largest slope of the loading curve of eq. 15
 # The longer run of a motion has at least three times the steps and, in programs that step quickly,
-# this many elements times steps, half a second, so that its excess is clear of the start-up time.
+# this many elements times steps, half a second, so that the difference exceeds the start-up time.
 MANY = 4e6
-# What `sandglass run` says of its steps in motion, and of its evaluations at rest.
+# The lines of `sandglass run` about the steps of a motion, and the evaluations of a static run.
 STEPS = r"in (\d+) steps of"
 EVALUATIONS = r"equilibrium \(.*\): (\d+) evaluation"
 
@@ -68,7 +68,7 @@ class Bench:
         return done
 
     def build(self):
-        """Compiler and flags of Sandglass, in words."""
+        """Compiler and flags of Sandglass as text."""
         output = self.folder / "provenance.json"
         self.sandglass("flops", "--json", output)
         found = json.loads(output.read_text(encoding="utf-8"))
@@ -76,8 +76,8 @@ class Bench:
 
     @property
     def kappa(self):
-        """The hourglass stiffness of eq. 12 that tl-perturbation takes for a neo-Hookean material:
-        E / 9 over lambda + 2 mu."""
+        """The hourglass stiffness of eq. 12 that tl-perturbation uses for a neo-Hookean material: E
+        / 9 over lambda + 2 mu."""
         poisson = self.material["poisson_ratio"]
         return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson) / 9
 
@@ -104,7 +104,7 @@ class Bench:
     def displacement(self, answer):
         """The displacements (n, 3), m, of any answer that `sandglass score` reads.
 
-        Raises ComputationError for an answer that is none.
+        Raises ComputationError for an invalid answer.
         """
         output = self.folder / "displacement.h5"
         try:
@@ -133,7 +133,7 @@ class Bench:
     def write_case(self, share, **dynamics):
         """Writes the case as a dynamic one, with a share of its displacements; returns its path.
 
-        dynamics: entries of [dynamics]. Raises InputError for a case that cannot be moved.
+        dynamics: entries of [dynamics]. Raises InputError for a case that has no motion.
         """
         if self.case.rotations or self.case.forces:
             raise InputError(f"{self.path}: explicit runs support only [[displacement]]")
@@ -151,7 +151,7 @@ class Bench:
         return path
 
     def own_step(self, method="tl-perturbation"):
-        """The step, s, that a method of Sandglass takes by default near the undeformed state."""
+        """The default step, s, of a method of Sandglass near the undeformed state."""
         span = self.mesh.largest_imposed() / self.shear_wave_speed
         done = self.sandglass("run", self.write_case(1e-6, duration=span), "-m", method)
         return span / _said(STEPS, done.output)
@@ -162,7 +162,7 @@ class Bench:
         return np.linalg.norm(np.ptp(self.mesh.points, axis=0)) / self.shear_wave_speed
 
     def mean_step(self, method):
-        """The mean step, s, that a method of Sandglass takes in a damped motion to the whole load.
+        """The mean step, s, of a method of Sandglass in a damped motion to the whole load.
 
         Raises ComputationError if the motion fails.
         """
@@ -173,7 +173,7 @@ class Bench:
 
 
 def run_of(bench, program, element, case, motion=None):
-    """A run: a program's answer to a case. motion: (time step in s, steps); None: at rest."""
+    """A run: a program's answer to a case. motion: (time step in s, steps); None: static."""
     return lambda: program.run(bench.deck(case, program, element), motion)
 
 
@@ -192,8 +192,8 @@ def own_run(bench, method, precision, case, counted):
 class Motion:
     """A share of a case's displacements, imposed with inertia within a number of steps.
 
-    share: that for which they move at SPEED, at most one. Raises InputError for a case that cannot
-    be run like this.
+    share: the one at which they move with SPEED, at most one. Raises InputError for a case that
+    cannot be run like this.
     """
 
     def __init__(self, bench, steps, methods):
@@ -209,7 +209,7 @@ class Motion:
         return self.bench.write_case(self.share, duration=duration, time_step=self.time_step)
 
     def of(self, longer):
-        """(time step in s, steps). longer: as of write_case()."""
+        """(time step in s, steps). longer: as in write_case()."""
         return self.time_step, self.steps * longer
 
     def longer(self, quick):
@@ -221,7 +221,7 @@ class Motion:
         return max(3, round(least))
 
     def largest_imposed(self):
-        """Of the displacements, m."""
+        """The largest of the imposed displacements, m."""
         return self.share * self.bench.mesh.largest_imposed()
 
 

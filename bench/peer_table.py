@@ -1,4 +1,4 @@
-"""The tables of bench/README.md from the entries of results/ that the authors of Sandglass made.
+"""The tables of bench/README.md, from the entries of results/ by the authors of Sandglass.
 
 Usage: /usr/bin/python3 bench/peer_table.py
 """
@@ -14,7 +14,7 @@ from measuring import table
 from results.entry import entry_files, read_entry
 
 AUTHORS = "the authors of Sandglass"
-# Builds for this processor are shown where there are several; the others are in the entries.
+# Of several builds, the one for this processor is shown; the others are in the entries.
 OTHER_BUILDS = ("shipped", "plain")
 
 
@@ -35,7 +35,7 @@ COLUMNS = (
 
 
 def row_of(entry):
-    """What a table shows of an entry."""
+    """The cells of an entry's row."""
     errors = {name: figures["max"] for name, figures in entry["errors"].items()}
     return (
         dict.fromkeys(key for _, key, _ in COLUMNS)

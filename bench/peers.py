@@ -18,7 +18,7 @@ if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 
-import measuring  # first: reference/ may do without UFL afterwards
+import measuring  # first: reference/ may then do without UFL
 
 import peer_runs
 from common.accuracy import relative_errors
@@ -32,11 +32,11 @@ from rivals import PROGRAMS
 METHODS = ("tl-perturbation", "tl-four-point", "tl-mean-dilatation", "tl-full")
 AT_REST = (*METHODS, "tl-energy-sampling")
 IN_MOTION = (*METHODS, "ul-perturbation")
-# Computed in single precision as well, for programs that do so.
+# Methods that are also computed in single precision, like programs that use it.
 IN_FLOAT = ("tl-perturbation", "tl-mean-dilatation")
 NEWTON, RELAXATION, EXPLICIT = "Newton", "search for rest", "central differences"
 DAMPED = "damped motion"
-# What a way to solve counts: explicit steps, load steps of Newton's method, evaluations of forces.
+# The unit of cost of each way: explicit steps, load steps of Newton's method, evaluations.
 COUNTED = {NEWTON: "load_steps", RELAXATION: "evaluations", EXPLICIT: "steps", DAMPED: "steps"}
 
 
@@ -44,7 +44,7 @@ class Row:
     """A program with an element, and its timed runs.
 
     runs: name -> function that returns a Run; timed in this order in every round. more: figures of
-    the record that are known beforehand.
+    the record that are known before.
     """
 
     def __init__(self, program, element, solve, runs, **more):
@@ -62,10 +62,10 @@ class Row:
         words = [self.program, self.more["build"], self.element, self.more["precision"]]
         name = "-".join(word.lower().replace(" ", "-") for word in words if word)
         answer = self.clocked["answer"][0].answer
-        return name + (answer.suffix or answer.name[-4:])  # an animation file has no ending
+        return name + (answer.suffix or answer.name[-4:])  # an animation file has no extension
 
     def round(self):
-        """Time every run once more; a row that failed is skipped."""
+        """Times every run once more; skips a failed row."""
         if self.failure:
             return
         print(f"{self.program} {self.element}, {self.solve}", file=sys.stderr, flush=True)
@@ -89,7 +89,7 @@ class Row:
             record["processor_seconds_of_runs"] = [run.processor_seconds for run in answers]
             record["processor_seconds"] = statistics.median(record["processor_seconds_of_runs"])
             record[COUNTED[self.solve]] = answers[0].steps
-            if "duration" in self.more:  # the program may have taken shorter steps than asked for
+            if "duration" in self.more:  # the program may have taken shorter steps than requested
                 record["time_step"] = self.more["duration"] / answers[0].steps
             record["iterations"] = answers[0].iterations or None
             if COUNTED[self.solve] == "steps":
@@ -106,7 +106,7 @@ class Row:
 
 
 def rows_at_rest(bench, programs, options):
-    """A row for each program, element and method, at rest."""
+    """A static row for each program, element and method."""
     rows, found = [], {}
     for program, element in elements_of(bench, programs, options):
         more = {"precision": program.precision, "build": program.build}
@@ -134,9 +134,9 @@ def step_of(bench, method):
 
 
 def damped_row(bench, program, element, found, more):
-    """The row of a program that finds rest by a damped motion.
+    """The row of a program that finds static answers by a damped motion.
 
-    found: (deck, element) -> Way or ComputationError, which all builds of a program share; filled.
+    found: (deck, element) -> Way or ComputationError, shared by all builds of a program; filled.
     more: figures of the record.
     """
     search, key = RestSearch(bench, program, element), (program.deck, element)
@@ -182,12 +182,12 @@ def rows_in_motion(motion, programs, options):
 
 
 def precisions_of(method):
-    """The numbers in which a method of Sandglass is timed."""
+    """The precisions in which a method of Sandglass is timed."""
     return ("double", "float") if method in IN_FLOAT else ("double",)
 
 
 def elements_of(bench, programs, options):
-    """(program, Element) of all that are asked for."""
+    """(program, Element) of all requested ones."""
     pairs = [(p, e) for p in programs for e in p.elements(bench)]
     if not options.elements:
         return pairs
@@ -199,7 +199,7 @@ def elements_of(bench, programs, options):
 
 
 def motion_methods(options):
-    """The methods of Sandglass to compare in motion; they always include the twin."""
+    """The methods of Sandglass to compare in motion; always includes the golden's."""
     return list(dict.fromkeys([*(options.methods or IN_MOTION), TWIN]))
 
 
@@ -244,7 +244,7 @@ def records_in_motion(bench, motion, rows):
 
 
 def programs_of(options):
-    """The programs that are asked for, by --program and --about."""
+    """The programs requested by --program and --about."""
     about = {}
     for text in options.about or ():
         key, separator, words = text.partition("=")
@@ -268,7 +268,7 @@ def programs_of(options):
 
 
 def measure(options):
-    """Measure, print, store. Returns the exit code. Raises InputError."""
+    """Measures, prints, stores. Returns the exit code. Raises InputError."""
     programs = programs_of(options)
     path = measuring.case_path(options.case)
     place = measuring.machine()
@@ -315,7 +315,7 @@ def measure(options):
 
 
 def keep_answers(rows, folder):
-    """Copies the answers at rest to a folder, under the names that their records have."""
+    """Copies static answers to a folder, under the names in their records."""
     folder.mkdir(parents=True, exist_ok=True)
     for row in filter(lambda row: row.sound, rows):
         shutil.copy(row.clocked["answer"][0].answer, folder / row.answer_name())

@@ -34,12 +34,12 @@ CANONICAL = (
     "cylinder-stretch",
 )
 WITHIN = 0.3
-STEPS = 10  # of a frame, at whose end driven nodes are moved
+STEPS = 10  # of a frame; driven nodes move at its end
 FOLDER = os.environ.get("SANDGLASS_PYTHON_FOLDER", str(ROOT / "build" / "release" / "python"))
 
 
 def predictions(case, methods, folder):
-    """(motion, rungs) of `choose`: of the case's own mesh, as methods come, with a step.
+    """(motion, rungs) of `choose`: those on the case's own mesh with a step and automatic kappa.
 
     motion: duration (s) and damping (1/s) of the case's own motion. rungs: its records.
     """
@@ -75,7 +75,7 @@ def case_with_method(case, rung, folder):
 
 def simulated(sandglass, path, precision, motion):
     """Processor seconds per simulated second of the case's own motion: the median of three
-    simulations, or of as many as half a second holds."""
+    simulations, or of as many as fit into half a second."""
     found = []
     while len(found) < 3 or sum(found) * motion["duration"] < 0.5:
         body = sandglass.Simulation(path, precision=precision, damping=motion["damping"])
@@ -108,7 +108,7 @@ def is_near(pair):
 
 
 def pairs_of(sandglass, case, methods):
-    """As `measured`, where pairs that differed are medians of three measurements."""
+    """As `measured`, but pairs that differed are medians of three measurements."""
     found = measured(sandglass, case, methods)
     far = {key: [pair] for key, pair in found.items() if not is_near(pair)}
     for _ in range(2 if far else 0):

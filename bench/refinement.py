@@ -20,7 +20,7 @@ if __name__ == "__main__":
     TREE = Path(__file__).resolve().parent.parent
     sys.path[1:1] = [str(TREE), str(TREE / "reference")]
 
-import measuring  # first: reference/ may do without UFL afterwards
+import measuring  # first: reference/ may then do without UFL
 
 from case_file import find_case
 from common.accuracy import relative_errors
@@ -35,19 +35,19 @@ METHOD = "tl-mean-dilatation"
 NAMES = ("ellipsoid-indentation", "ellipsoid-touch", "column", "cylinder-compression")
 ACCURACIES = (0.08, 0.04, 0.02, 0.01, 0.005, 0.0025)
 ROUNDS = 3
-REST, ENOUGH = 1e-8, 1e-3  # residuals: of cases, and of answers that are only compared with truths
+REST, ENOUGH = 1e-8, 1e-3  # residuals: of cases, and of answers only compared with truths
 WHOLE = '\n[element_sets.everything]\nx = [-inf, inf]\n\n[[refine]]\nelements = "everything"\n'
 
 
 def uniform_text(text, splits, residual):
-    """The text of a case file, all elements split so often, searches ended at a residual."""
+    """The text of a case file with all elements split `splits` times, and a residual to reach."""
     more = f"[relaxation]\ntolerance = {residual}\n"
     text = text.replace("[relaxation]\n", more) if "[relaxation]\n" in text else text + "\n" + more
     return text + (WHOLE + f"depth = {splits}\n" if splits else "")
 
 
 def outcome_of(result, truth):
-    """Elements, and the distance of the last frame from the truth, as read_reference() has it."""
+    """Elements, and the distance of the last frame from the truth, as read by read_reference()."""
     _, exact, attributes = truth
     with h5py.File(result) as file:
         elements = len(file["mesh/cells"])
@@ -58,7 +58,7 @@ def outcome_of(result, truth):
 
 
 def time_uniform(name, splits, residual, result):
-    """Seconds to a residual on the mesh with all elements split so often."""
+    """Seconds to a residual on the mesh with all elements split this often."""
     case = result.with_name(f"{name}.toml")
     text = find_case(CASES, name).read_text(encoding="utf-8")
     case.write_text(uniform_text(text, splits, residual), encoding="utf-8")
@@ -67,7 +67,7 @@ def time_uniform(name, splits, residual, result):
 
 
 def time_refined(name, accuracy, result):
-    """Seconds to an answer on a mesh that is refined until it is that near to the truth."""
+    """Seconds to an answer on a mesh refined until it is this close to the truth."""
     options = ("-o", result, "--against", "truth", "--accuracy", accuracy)
     for _ in range(ROUNDS):
         _, on_the_mesh, text = measuring.rest_of(name, METHOD, *options)
@@ -78,7 +78,7 @@ def time_refined(name, accuracy, result):
 
 
 def ways(name, most, result):
-    """(what is recorded of it, its seconds in turn) of each way to an answer."""
+    """(record, function that yields seconds) of each way to an answer."""
     elements = 0
     for splits in range(4):
         if splits == 0 or 8 * elements <= most:
@@ -92,7 +92,7 @@ def ways(name, most, result):
 
 
 def measure_case(name, most):
-    """(records, exit code) of a case. A way that fails ends those of its kind."""
+    """(records, exit code) of a case. A failed way ends those of its kind."""
     truth, records = read_reference(path_of("truth", name)), []
     with tempfile.TemporaryDirectory() as folder:
         result = Path(folder) / "result.h5"
@@ -124,7 +124,7 @@ def show(record):
 
 
 def measure(options):
-    """Measure, print, store. Returns the exit code. Raises InputError."""
+    """Measures, prints, stores. Returns the exit code. Raises InputError."""
     place, records, worst = measuring.machine(), [], 0
     for name in options.cases or NAMES:
         found, code = measure_case(name, options.most)

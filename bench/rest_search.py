@@ -1,10 +1,9 @@
-"""The quickest way to rest of a program that only integrates in time.
+"""The fastest static answer of a program that only integrates in time.
 
 Such a program reaches a quasi-static answer by a damped motion, whose step, duration and damping
-its user has to choose. Here they are searched for, in its favour: first the longest step with
-which the answer stays sound, then the shortest motion whose end differs by less than WITHIN of
-the imposed displacement from that of a long, slow one. The search is not part of the seconds to
-rest.
+its user has to choose. They are searched for here, in its favour: first the longest step with which
+the answer stays sound, then the shortest motion whose end differs by less than WITHIN of the
+imposed displacement from that of a long, slow one. The search is not part of the seconds to rest.
 """
 
 from dataclasses import dataclass
@@ -17,18 +16,18 @@ from common.errors import ComputationError
 from exchange.decks.problem import STEP_FRACTION
 
 WITHIN = 1e-3
-# Durations and dampings in units of the time in which a shear wave crosses the body.
+# Durations and dampings in units of the crossing time of shear waves.
 SLOW, SLOW_DAMPING = 40, 2.0
 DURATIONS = (20, 14, 10, 7, 5, 3.5, 2.5)
 DAMPINGS = (0.5, 1.0, 2.0, 4.0)
-TRIED = 10  # crossings of the motions that try a step
+TRIED = 10  # crossings of the motions that test a step
 GROWTH, TRIES = 1.1, 12
-SOUND = 1e-2  # largest change of the answer by a longer step, of the imposed displacement
+SOUND = 1e-2  # largest change of the answer by a longer step, over the imposed displacement
 
 
 @dataclass(frozen=True)
 class Way:
-    """How a program comes to rest.
+    """A program's motion to a static answer.
 
     case: path of the damped motion. time_step, duration: s. damping: 1/s.
     """
@@ -53,7 +52,7 @@ class RestSearch:
         return STEP_FRACTION * self.bench.own_step()
 
     def quickest(self):
-        """The quickest Way. Raises ComputationError if the slow motion fails."""
+        """The fastest Way. Raises ComputationError if the slow motion fails."""
         slow = self._answer(self._way(SLOW, SLOW_DAMPING, self.base_step))
         step = self._longest_step()
         best = self._way(SLOW, SLOW_DAMPING, step)

@@ -1,4 +1,4 @@
-"""How the cost grows: what is stored, one step count for all rounds, wrong input."""
+"""Growth of cost: stored records, equal step counts in all rounds, wrong input."""
 
 import pytest
 

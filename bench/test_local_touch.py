@@ -1,4 +1,4 @@
-"""The touched block: its case, the output, and that sleep's error is within its limit."""
+"""The touched block: its case, the output, and the error of sleep within its limit."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What measurements share: what the program prints of a search for rest, tables."""
+"""Shared parts of measurements: the output of a static run, tables."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What the entries of our own comparison say, and what the README says of them."""
+"""Entries of our own comparison, and the README's statements about them."""
 
 import pytest
 
@@ -42,21 +42,21 @@ def test_febio_finds_the_golden(measured):
 @pytest.mark.parametrize(
     "program, element, method, most",
     [
-        # The same element, masses and central differences: what twelve digits leave of a motion.
+        # Same element, masses and central differences: the error of twelve digits in a motion.
         ("FEBio", "three-field-solid", "tl-mean-dilatation", 1e-10),
-        # It takes the load half a step later, which is of second order in the step.
+        # It applies the load half a step later, an effect of second order in the step.
         ("CalculiX", "C3D8", "tl-full", 1e-4),
     ],
 )
 def test_the_same_element_moves_alike(measured, program, element, method, most):
-    """On the column, whose elements are bricks: lumped masses are the same by every rule."""
+    """On the column, whose elements are bricks, so that all rules give the same lumped masses."""
     for entry in rows(measured, program, element, "column"):
         assert entry["nearest_motion"]["method"] == method
         assert entry["nearest_motion"]["difference"] < most
 
 
 def test_niftysim_at_our_kappa_finds_the_answer_of_the_perturbation_control(measured):
-    """Its gradients are those at the centre, which differ from the mean ones on skew elements."""
+    """Its gradients are those at the centre, which differ from the mean ones on skewed elements."""
     for entry in rows(measured, "NiftySim", "H8 0.00649"):
         for ours in rows(measured, "Sandglass", "tl-perturbation", entry["case"]):
             difference = entry["errors"]["golden"]["max"] - ours["errors"]["golden"]["max"]

@@ -35,16 +35,16 @@ def test_the_same_element_gives_the_same_answers(block, capsys):
     assert set(rest) == {"C3D8", "C3D8R", "tl-perturbation", "tl-full"}
     # Six digits are written, and both stop at residuals of 1e-8 of the reactions.
     assert abs(rest["C3D8"]["twin"] - rest["tl-full"]["twin"]) < 1e-5
-    assert rest["C3D8"]["twin"] > 0.1 > 10 * rest["C3D8R"]["twin"]  # one of the two locks
+    assert rest["C3D8"]["twin"] > 0.1 > 10 * rest["C3D8R"]["twin"]  # one of the two elements locks
     motion = {record["element"]: record for record in document["in_motion"]}
     assert motion["C3D8"]["nearest"]["method"] == "tl-full"
     # Both are of second order: they may differ by half a squared step, of 60, times the largest
-    # acceleration of the loading curve, 5.77 of what is imposed over the squared ramp.
+    # acceleration of the loading curve, 5.77 of the imposed displacement over the squared ramp.
     assert motion["C3D8"]["nearest"]["difference"] < 5.77 / 2 / 60**2
     assert motion["C3D8"]["to_twin"] > 0.05
     for record in document["in_motion"]:
         assert record["steps"] == 60 and record["ns_of_rounds"] == [record["ns_per_element_step"]]
-        assert record["golden"] is record["truth"] is None  # there is none of a motion
+        assert record["golden"] is record["truth"] is None  # motions have none
     for record in (*document["at_rest"], *document["in_motion"]):
         (seconds,) = record["seconds_of_runs"]
         assert 0 < record["processor_seconds"] < seconds + 0.02  # one thread; clocks tick at 10 ms

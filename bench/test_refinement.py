@@ -1,4 +1,4 @@
-"""Error to the truth over time: what is stored, wrong input."""
+"""Error over time: stored records, wrong input."""
 
 import refinement
 from test_measuring import measured
@@ -14,7 +14,7 @@ def test_uniform_and_refined_meshes_come_nearer_to_the_truth(tmp_path, monkeypat
     assert [record.get("splits") for record in records] == [0, 0, 1, 1, None, None]
     assert [record["elements"] for record in records[:5]] == [270, 270, 2160, 2160, 270]
     assert 270 < records[5]["elements"] < 2160
-    # An error that falls with the square of the element size; .5 for what the edges spoil.
+    # An error that falls with the square of the element size; .5 allows for the effect of edges.
     assert records[2]["error_max"] < 0.5 * records[0]["error_max"]
     assert records[5]["error_max"] <= 0.006 < records[4]["error_max"] <= 0.02
     assert all(record["seconds"] > 0 and record["error_rms"] > 0 for record in records)

@@ -1,4 +1,4 @@
-"""The search for the quickest way to rest, with a program whose errors are a formula."""
+"""The search for the fastest way, with a program whose errors follow a formula."""
 
 import math
 from types import SimpleNamespace
@@ -34,7 +34,7 @@ class Body:
         return case
 
     def displacement(self, answer):
-        """The exact one, but for what the motion leaves."""
+        """The exact displacement, except for the error of the motion."""
         return answer
 
 
@@ -45,7 +45,7 @@ class Program:
         self.longest, self.runs = longest, 0
 
     def run(self, deck, motion):
-        """Diverges with steps that are too long."""
+        """Diverges if steps are too long."""
         self.runs += 1
         step, steps = motion
         assert step == deck["time_step"] and step * steps == pytest.approx(deck["duration"])

@@ -1,4 +1,4 @@
-"""How other programs are run and what of their output is read; CalculiX itself if installed."""
+"""How other programs are run and their output is read; CalculiX itself if installed."""
 
 import shutil
 from pathlib import Path
@@ -95,7 +95,7 @@ def test_what_ccx_tells_is_read(tmp_path):
 
 @pytest.mark.parametrize("motion, told", [((0.5, 3), None), ((0.5, 4), "at 1.50000E.00 s of 2 s")])
 def test_a_motion_of_ccx_must_reach_its_end(tmp_path, motion, told):
-    """1.5 s in steps of .25 s: it halves those asked for."""
+    """1.5 s in steps of .25 s: half of those requested."""
     (tmp_path / "frd").write_text(FRD)
     said = "echo 'SELECTED time increment: 0.25'; echo 'Total CalculiX Time: 1.5'"
     program, deck = stand_in(tmp_path, CalculiX, f"cp frd case.frd; {said}")
@@ -211,6 +211,6 @@ def test_ccx_stretches_a_brick_as_the_energy_says(tmp_path, element):
     found = program.run(deck, None)
     lateral = _lateral_stretch(1.25)
     exact = CORNERS * [lateral - 1, lateral - 1, 0.25]
-    # Six digits are written: up to 5e-6 of a number is lost. Newton's method leaves 1e-8.
+    # Six digits are written, a loss of up to 5e-6 of a number. Newton's method leaves 1e-8.
     assert np.abs(frd_file.read(found.answer)[1] - exact).max() < 5e-6 * 0.25 + 1e-8
     assert found.steps <= found.iterations

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""The sources that clang-tidy looks at after a change.
+"""The sources that clang-tidy checks after a change.
 
-    ci/affected.py SOURCE...    prints which of them, and on stderr why
+    ci/affected.py SOURCE...    prints these sources, and on stderr the reason
 
-A change is what differs from the revision in .ci/linted, of which `ci/lint all` found nothing.
-Every changed source is looked at. A finding in a header shows in any source that includes it: for
-the changed headers that no changed source includes, as few others are added as include them all.
-What a change of a header means for the other sources that include it is left to `ci/lint all`. All
-sources are looked at where that revision is not in this clone (a shallow one), or the checks
+A change is any difference from the revision in .ci/linted, where `ci/lint all` found nothing.
+Every changed source is checked. A finding in a header shows up in any source that includes it: for
+changed headers that no changed source includes, as few others are added as include them all.
+Effects of a changed header on the other sources that include it are left to `ci/lint all`. All
+sources are checked if that revision is not in this clone (a shallow one), or if the checks
 themselves changed.
 """
 
@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDERS = ("solver", "suite", ".")  # where includes are written from
+FOLDERS = ("solver", "suite", ".")  # the folders from which includes are written
 CHECKS = {".clang-tidy", "ci/tidy.py"}
 
 
@@ -52,7 +52,7 @@ def reached(root, source):
 
 
 def affected(root, sources, changed):
-    """The changed sources, then as few others as include the changed headers that are left."""
+    """The changed sources, and as few others as include the remaining changed headers."""
     headers = {source: reached(root, source) & changed for source in sources}
     found = [source for source in sources if source in changed]
     left = set().union(*headers.values()).difference(*(headers[source] for source in found))
@@ -63,7 +63,7 @@ def affected(root, sources, changed):
 
 
 def chosen(root, sources):
-    """(the sources to look at, why)."""
+    """(the sources to check, why)."""
     revision, changed = changed_files(root)
     if changed is None:
         return sources, f"{revision[:12]}, the revision in .ci/linted, is not in this clone"
@@ -73,7 +73,7 @@ def chosen(root, sources):
 
 
 def main(*sources):
-    """Prints the sources to look at, and on stderr how many they are and why."""
+    """Prints the sources to check, and on stderr their number and the reason."""
     found, why = chosen(ROOT, sources)
     print(f"clang-tidy of {len(found)} of {len(sources)} sources: {why}", file=sys.stderr)
     print(*found, sep="\n", end="\n" if found else "")

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""clang-tidy, as ccache remembers it: what was clean and has not changed is not looked at again.
+"""clang-tidy with a cache: ccache remembers clean sources, which are not checked again.
 
     ci/tidy.py BUILD SOURCE...    checks the sources as BUILD/compile_commands.json compiles them
 
 ccache remembers objects, so this file is also the "compiler" that it calls (FLAGS -c SOURCE -o
-OBJECT, or -E to hash what is included): one whose object says that clang-tidy found nothing.
+OBJECT, or -E to hash what is included): one whose object means that clang-tidy found nothing.
 Findings are not remembered.
 """
 
@@ -19,7 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 REMEMBERS = {
-    "CCACHE_BASEDIR": str(ROOT),  # what one clone has checked, the next need not
+    "CCACHE_BASEDIR": str(ROOT),  # results of one clone serve the next
     "CCACHE_COMMENTS": "1",  # NOLINT is one
     "CCACHE_COMPILERCHECK": "clang-tidy --version",
     "CCACHE_COMPILERTYPE": "gcc",
@@ -28,7 +28,7 @@ REMEMBERS = {
 
 
 def check(command, directory):
-    """Exit status of clang-tidy for a compile command (words), from memory where it was 0."""
+    """Exit status of clang-tidy for a compile command (words), from the cache if it was 0."""
     compiler, *flags = command
     with tempfile.TemporaryDirectory() as folder:
         flags[flags.index("-o") + 1] = f"{folder}/clean"
@@ -50,7 +50,7 @@ def as_compiler(arguments):
     kept = [line for line in done.stderr.splitlines() if "warnings generated" not in line]
     print(*kept, sep="\n", end="\n" if kept else "", file=sys.stderr)
     if done.returncode == 0:
-        Path(clean).write_text("clean\n")  # ccache keeps no empty object
+        Path(clean).write_text("clean\n")  # ccache does not store empty objects
     return done.returncode
 
 

@@ -39,7 +39,7 @@ breathe_default_project = "sandglass"
 autodoc_member_order = "bysource"
 default_role = "code"  # docstrings have their code between single backquotes
 
-# Every name must lead somewhere, but those of other libraries and of template parameters.
+# Every name must resolve, except those of other libraries and of template parameters.
 nitpick_ignore_regex = [
     (r"cpp:.*", r"(sandglass|std|std::.*|size_t|Real|Parts)"),
     (r"py:.*", r"(os\.PathLike|object|numpy.*|handle|int\d+|float\d+)"),
@@ -50,7 +50,7 @@ html_title = "Sandglass"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_copy_source = False
-# Formulas need no network: Debian's copy of MathJax goes along (site_extension.py).
+# Formulas need no network: site_extension.py adds Debian's copy of MathJax.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
 mathjax2_config = {
     "showMathMenu": False,
@@ -58,11 +58,11 @@ mathjax2_config = {
     "tex2jax": {"ignoreClass": "mathjax_ignore", "processClass": "math"},
 }
 linkcheck_timeout = 20
-linkcheck_ignore = [r"(\.\./)*report/index\.html"]  # which `ci/site` puts there
+linkcheck_ignore = [r"(\.\./)*report/index\.html"]  # put there by `ci/site`
 
 
 def setup(app):
-    """Says on the page of the Python interface where the module is missing."""
+    """Without the module, replaces the page of the Python interface by a note."""
 
     def without_module(_app, name, source):
         if name == "api/python" and importlib.util.find_spec("sandglass") is None:

@@ -26,7 +26,7 @@ from common.errors import InputError
 from common.program import ROOT, binary
 
 DOCS = ROOT / "docs"
-# What `ci/site` puts beside the documentation, and where.
+# Published by `ci/site` next to the documentation, and where.
 PUBLISHED = {"build/report/index.html": "report/index.html"}
 MATHJAX = Path("/usr/share/javascript/mathjax")  # Debian's libjs-mathjax
 MATHJAX_PARTS = """
@@ -116,13 +116,13 @@ def wrap(code, link):
 
 
 class Printed(Directive):
-    """What a command of the program prints, the words of the command as they are."""
+    """The output of a command of the program; the argument is the command's words."""
 
     required_arguments = 1
     final_argument_whitespace = True
 
     def run(self):
-        """The command's output as a block; where there is no program, what would show it."""
+        """The output as a block; a note if there is no program."""
         words = self.arguments[0]
         try:
             program = binary()
@@ -138,13 +138,13 @@ class Printed(Directive):
 
 
 def folded(line, width=102):
-    """A line in parts that fit on a page, the later ones below the last column of the first."""
+    """A line split into parts that fit on a page, later ones below the last column of the first."""
     column = max((gap.end() for gap in re.finditer(r" {2,}", line[:width])), default=0)
     return textwrap.fill(line, width, subsequent_indent=" " * column, break_on_hyphens=False)
 
 
 class Table(Directive):
-    """A table of Markdown texts that is not typed: titles and rows, lists of texts."""
+    """A table of Markdown texts generated from data: titles and rows, lists of texts."""
 
     def run(self):
         """The table."""
@@ -157,7 +157,7 @@ class Table(Directive):
 
 
 class Failures(Table):
-    """How often each method fails on the stored maps, and how."""
+    """The number and kinds of failures of each method on the stored maps."""
 
     def content_of(self):
         """A row for each method and a column for each case."""
@@ -176,7 +176,7 @@ class Failures(Table):
 
 
 def tell(cells):
-    """How many of the cells of a method are good, and what the others are."""
+    """The number of good cells of a method, and the findings of the others."""
     asked = [cell for cell in cells if not cell["golden_failed"] and not cell["refused"]]
     kinds = collections.Counter(cell["finding"] for cell in asked)
     bad = [f"{count} {kind}" for kind, count in kinds.most_common() if kind != "good"]
@@ -184,7 +184,7 @@ def tell(cells):
 
 
 class Machines(Table):
-    """Where what was measured: the machine that each stored file names."""
+    """The machines of measurements, as named in the stored files."""
 
     def content_of(self):
         """A row for each kind of stored file."""
@@ -192,7 +192,7 @@ class Machines(Table):
 
 
 def machines():
-    """(files, machine, how it was built) of everything that was measured and is stored."""
+    """(files, machine, build) of every stored measurement."""
     found = collections.defaultdict(set)
     for pattern in ("reports/figures/*.json", "reports/maps/*.json"):
         for file in sorted(ROOT.glob(pattern)):
@@ -211,14 +211,14 @@ def machines():
 
 
 def built(data):
-    """How the program was built with which a file was measured."""
+    """The build of the program with which a file was measured."""
     if "build_flags" in data:
         return f"{data['compiler']}; {data['build_flags']}"
     return data.get("build") or f"version {data['versions']['sandglass']}"
 
 
 def blocks_of_code(_app, _what, _name, _object, _options, lines):
-    """Makes indented lines of a docstring code for reStructuredText, as they are in Markdown."""
+    """Turns indented lines of a docstring into code for reStructuredText, as in Markdown."""
     for k in range(len(lines) - 1, 0, -1):
         opens = lines[k].startswith("    ") and not lines[k - 1].strip()
         if opens and not lines[k - 2].startswith("    "):
@@ -226,7 +226,7 @@ def blocks_of_code(_app, _what, _name, _object, _options, lines):
 
 
 def take_mathjax_along(app, error):
-    """Copies what pages need of MathJax, so that formulas show without a network."""
+    """Copies the parts of MathJax that pages need, so that formulas work without a network."""
     if error or app.builder.format != "html":
         return
     target = Path(app.outdir) / "_static/mathjax"

@@ -1,4 +1,4 @@
-"""Packages, where they are made, are installed and used on a bare Debian; one version for all."""
+"""Packages are installed and used on a bare Debian where they are built; one version everywhere."""
 
 import re
 import sys
@@ -16,7 +16,7 @@ def found(pattern, file):
 
 
 def test_one_version_everywhere():
-    """CMakeLists.txt has it; the newest entry of the changelog has its date, too."""
+    """CMakeLists.txt defines it; the newest entry of the changelog has its date, too."""
     (version,) = found(r"^project\(sandglass VERSION (\d+\.\d+\.\d+) ", "CMakeLists.txt")
     newest = found(r"^## Unreleased\n(?:(?!## ).*\n)*## (\S+) - (\d{4}-\d\d-\d\d)$", "CHANGELOG.md")
     assert newest[0] == version
@@ -44,6 +44,6 @@ def test_without_packages_it_says_what_to_do(tmp_path):
 
 @pytest.mark.skipif(why_not(PACKAGES) != "", reason=why_not(PACKAGES))
 def test_they_are_installed_and_used_on_a_bare_debian():
-    """Minutes, most of them for what apt fetches."""
+    """Takes minutes, mostly for downloads by apt."""
     done = ran(*TRY, timeout=3600 * PATIENCE)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -25,7 +25,7 @@ from common.errors import ComputationError, InputError  # noqa: E402
 SUITE = "bookworm"
 HOME = "/root/try"
 PACKAGES = {"deb": "sandglass_*.deb", "whl": "sandglass-*.whl"}
-# Enters the system $0 for the command $1: its view of this machine is the way to the packages.
+# Enters the system $0 for the command $1: its view of this machine leads to the packages.
 ENTER = f"""
 set -e
 for shared in /etc/apt /etc/ssl/certs /etc/resolv.conf /etc/hosts; do
@@ -43,7 +43,7 @@ find_package(sandglass {} REQUIRED)
 
 
 class BareDebian:
-    """A minimal Debian 12 in a folder, made where there is none."""
+    """A minimal Debian 12 in a folder, made if missing."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -61,7 +61,7 @@ class BareDebian:
         self.home.mkdir()
 
     def run(self, command, says="", code=0):
-        """Runs a command, which must end with a code and print a text. Raises ComputationError."""
+        """Runs a command and checks its exit code and output. Raises ComputationError."""
         start = time.monotonic()
         alone = ["unshare", "--mount", "--pid", "--fork", "--kill-child"]
         done = _run([*alone, "bash", "-c", ENTER, self.folder, command])
@@ -82,14 +82,14 @@ def _end(done):
 
 
 def _mirror():
-    """Where apt of this machine has its packages from, if that can be told."""
+    """The package source of this machine's apt, if known."""
     sources = ["/etc/apt/sources.list.d/debian.sources", "/etc/apt/sources.list"]
     texts = [Path(source).read_text() for source in sources if os.path.exists(source)]
     return re.findall(r"^(?:URIs: *|deb +(?:\[.*?\] +)?)(\S+)", "\n".join(texts), re.M)[:1]
 
 
 def first_case():
-    """Name and text of the first case that README.md tells to save, and how to run it."""
+    """Name and text of the first case in README.md, and the command that runs it."""
     parts = readme.parts((ROOT / "README.md").read_text())
     (case, *_) = [part for part in parts if part.kind == "file" and "[case]" in part.text]
     commands = [part.text for part in parts if f"sandglass run {case.path}" in part.text]
@@ -106,7 +106,7 @@ def use(system, case, run, module_in):
     system.run(f"{activate}{run}", says="static equilibrium")
     system.run(f"{activate}sandglass choose {case} --tolerance 5% -o chosen.toml")
     system.run(f"{activate}sandglass run chosen.toml -o chosen.h5", says="static equilibrium")
-    # Meshes of other programs are read by scripts that are found beside the program or the module.
+    # Scripts next to the program or the module read meshes of other programs.
     system.run(f"{activate}sandglass mesh hook.toml -o hook.h5")
     script = "import sandglass; sandglass.Simulation('hook.toml').settle(); "
     script += "print(sandglass.__file__, sandglass.__version__)"
@@ -142,7 +142,7 @@ def try_packages(system, deb, wheel):
         (system.home / "later/CMakeLists.txt").write_text(LATER.format(version))
         system.run("cmake -S later -B later/build", says=f'version "{version}"', code=1)
 
-    # The wheel finds nothing of the package, but the libraries that came with it.
+    # The wheel must not need the package, only the libraries that it contains.
     system.run("apt-get remove -y sandglass")
     system.run("ls /usr/bin/sandglass /usr/share/sandglass", says="cannot access", code=2)
     system.run("apt-get install -y --no-install-recommends python3-venv")
@@ -155,7 +155,7 @@ def try_packages(system, deb, wheel):
 
 
 def why_not(folder):
-    """Why the packages in a folder cannot be tried on this machine; empty where they can."""
+    """The reason why packages in a folder cannot be tried on this machine; empty if they can."""
     if os.geteuid() != 0:
         return "making a bare Debian needs root"
     for tool in ("debootstrap", "unshare"):

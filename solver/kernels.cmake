@@ -1,5 +1,5 @@
-# Sources that are made from the lists of methods and number types, so that a build costs methods + laws: a change of one method
-# compiles its own.
+# Sources generated from the lists of methods and number types, so that a build costs methods + laws: a change of one method compiles
+# only its own.
 
 # Makes `output` from a template, in the folder `kernels` of the caller's build folder, and adds it to a target.
 function(add_generated target template output)
@@ -36,8 +36,8 @@ foreach(REAL double float)
   add_generated(sandglass_packed assembly/batch_kernels_source.cpp.in batch_${REAL}.cpp)
 endforeach()
 
-# For each method its kernels for the number types that run. The header of a method, its type and its name are one word: tl_none.hpp,
-# TlNone, tl-none.
+# The kernels of each method for the number types that run. A method's header, type and name are spelt alike: tl_none.hpp, TlNone,
+# tl-none.
 file(GLOB METHODS CONFIGURE_DEPENDS element/methods/*.hpp)
 foreach(HEADER IN LISTS METHODS)
   get_filename_component(METHOD ${HEADER} NAME_WE)

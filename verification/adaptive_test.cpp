@@ -16,7 +16,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// A block of distorted elements, large enough for several chunks, pressed hard on a part of its top.
+/// A block of distorted elements, large enough for several chunks, pressed hard on part of its top.
 CaseOnMesh pressed_block_case(double press, const std::array<int, 3>& elements = {6, 6, 8}) {
   Case description = plain_case(level_law());
   Mesh mesh = box({0.06, 0.06, 0.08}, elements);
@@ -56,8 +56,8 @@ NodalField forces(const InternalForce<double>& elements, State<double> state) {
   return to_field(force, elements.layout());
 }
 
-/// The same numbers, to the bit where products are not contracted; else within the roundoff of a few hundred
-/// operations on the largest of them.
+/// Equal bit by bit if products are not contracted; otherwise within the roundoff of a few hundred operations
+/// on the largest of the numbers.
 void expect_same(std::vector<double> found, const std::vector<double>& expected) {
   ASSERT_EQ(found.size(), expected.size());
 #ifdef SANDGLASS_STRICT_FP
@@ -75,8 +75,8 @@ std::vector<double> numbers_in(const NodalField& field) {
   return numbers;
 }
 
-/// With all elements at one level the method is that level's method: forces, energies, det F and bounds of
-/// the step.
+/// With all elements at one level, the method equals that level's method: forces, energies, det F and bounds
+/// of the step.
 TEST(Adaptive, every_level_by_itself_is_its_method) {
   const Scene scene = pressed_block(0.01);
   const NodalField u = some_displacements(scene.mesh);
@@ -117,8 +117,8 @@ NodalVectors<double> element_force(const Scene& scene, const NodalField& u, std:
   return element_force<EightPointKernel>(scene, u, e);
 }
 
-/// Elements of all levels, mixed at random, add up as they do one by one; and any number of threads gives the
-/// same bits.
+/// With elements at randomly mixed levels, the forces are the sum of those of single elements, and any number
+/// of threads gives the same bits.
 TEST(Adaptive, mixed_levels_add_up) {
   const Scene scene = pressed_block(0.01);
   const NodalField u = some_displacements(scene.mesh);
@@ -156,8 +156,8 @@ TEST(Adaptive, mixed_levels_add_up) {
 
 using Defects = std::vector<std::array<double, 2>>;
 
-/// What becomes of levels where the lanes that a level leaves empty in a chunk go to those elements of the
-/// level below that come nearest to needing it.
+/// The levels once the empty lanes that a level leaves in a chunk are given to those elements of the level
+/// below that are closest to needing it.
 std::vector<double> with_full_lanes(std::vector<double> levels, const Layout& layout,
                                     const Defects& defects) {
   constexpr std::size_t lanes = Lanes<Pack<double>>::width;
@@ -182,8 +182,8 @@ std::vector<double> with_full_lanes(std::vector<double> levels, const Layout& la
   return levels;
 }
 
-/// Levels are chosen by the rule, computed here element by element: the lowest whose force, less that of
-/// eight points, displaces no node by more than the length; and no lane is wasted.
+/// Levels follow the rule, computed here element by element: the lowest level whose force differs from that
+/// of eight points by too little to displace any node by more than the length; and no lane is left empty.
 TEST(Adaptive, levels_follow_the_rule) {
   const Scene scene = pressed_block(0.01, {8, 8, 12});
   const NodalField u = some_displacements(scene.mesh);
@@ -211,7 +211,7 @@ TEST(Adaptive, levels_follow_the_rule) {
       all.push_back(largest);
     }
   }
-  // Half of the numbers lie below the length: all levels come up. It is no number of them, up to roundoff.
+  // Half of the numbers lie below the length, so all levels occur; it equals none of them up to roundoff.
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
   const double length = *middle * 1.0001;
@@ -244,8 +244,8 @@ double distance(const Scene& scene, const NodalField& a, const NodalField& b) {
   return largest_distance(a, b) / largest_imposed(scene);
 }
 
-/// The error is as requested. A low accuracy gives the lowest level, a very high one the highest. Balances
-/// are accurate to 1e-8 of the forces.
+/// The error stays below the requested accuracy. A low accuracy gives the lowest level, a very high one the
+/// highest. Answers balance to 1e-8 of the forces.
 TEST(Adaptive, answers_are_as_near_as_asked_for) {
   const Scene scene = pressed_block(0.02);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
@@ -260,7 +260,7 @@ TEST(Adaptive, answers_are_as_near_as_asked_for) {
   EXPECT_LT(distance(scene, high, exact), 1e-7);
 }
 
-/// Keeps the frames and the largest difference between energy and work, over the work.
+/// Keeps the frames and the largest difference between energy and work.
 class FrameRecorder final : public Observer {
  public:
   void frame(const Frame& frame) override { frames.push_back(frame); }
@@ -273,10 +273,10 @@ class FrameRecorder final : public Observer {
   std::vector<Frame> frames;
   double work = 0.0;         ///< J, largest
   double imbalance = 0.0;    ///< J
-  double unexplained = 0.0;  ///< J, of the imbalance, by what changes of levels brought
+  double unexplained = 0.0;  ///< J, part of the imbalance that changes of level do not explain
 };
 
-/// The answer is in equilibrium at the levels reported with it, and those are the levels that it requires.
+/// The answer is in equilibrium at the levels reported with it, and no element needs a higher level.
 TEST(Adaptive, answers_rest_at_their_levels) {
   const Scene scene = pressed_block(0.02);
   const MethodChoice choice{.method = "tl-adaptive", .accuracy = 0.005};
@@ -294,12 +294,12 @@ TEST(Adaptive, answers_rest_at_their_levels) {
   EXPECT_EQ(Adaption<double>(model, body).apply(body, Demotion::never).promoted, 0U);
 }
 
-/// In motion elements only go up. Each that does brings the energy that it holds more at its new level, the
-/// work of a difference of forces that the accuracy keeps small. A beam that is bent and let vibrate for many
-/// periods, until most of its elements have gone up, gains 10 times the accuracy of the work put into it;
-/// were elements to go down again, it would gain without end. The history tells that gain: what is left is
-/// that of a fixed method, whose energy swings by the square of the step, and half a step's change of
-/// velocities where forces change at once, 2.7 times as much together.
+/// In motion, elements only move to higher levels. Each change adds the difference of the element's energies,
+/// the work of a difference of forces that the accuracy keeps small. A bent beam that vibrates for many
+/// periods, until most of its elements have changed, gains 10 times the accuracy of the work put into it; if
+/// elements could return to lower levels, it would gain without end. The history reports that gain. The rest
+/// is the imbalance of a fixed method, whose energy oscillates by the square of the step, plus half a step's
+/// change of velocities where forces jump, 2.7 times as much together.
 TEST(Adaptive, motion_keeps_its_energy) {
   Case description = plain_case(level_law());
   const Mesh mesh = box({0.02, 0.02, 0.1}, {3, 3, 12});
@@ -329,9 +329,9 @@ TEST(Adaptive, motion_keeps_its_energy) {
   }
 }
 
-/// Single precision stops at its rounding, and only then do its elements settle: as near, and at the same
-/// levels or higher ones, for it has more lanes to fill, but for those that roundoff decides, which come with
-/// their mirror images.
+/// Single precision stops at its roundoff, and its elements settle only then: answers are as accurate, and
+/// levels equal, or higher because there are more lanes to fill. Lower ones are those that roundoff decides,
+/// together with their mirror images.
 TEST(Adaptive, floats_settle_too) {
   const Scene scene = pressed_block(0.02);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;
@@ -350,7 +350,7 @@ TEST(Adaptive, floats_settle_too) {
   }
 }
 
-/// Imposed by forces alone, the largest displacement there is stands for the imposed one.
+/// With forces alone, the largest displacement takes the place of the imposed one.
 TEST(Adaptive, forces_alone_wake_elements_too) {
   CaseOnMesh problem = pressed_block_case(0.0);
   problem.description.displacements.pop_back();
@@ -363,8 +363,8 @@ TEST(Adaptive, forces_alone_wake_elements_too) {
   EXPECT_GT(largest_distance(at_rest(scene, {"tl-modal-sampling"}).u, exact), 3.0 * 0.002 * unit);
 }
 
-/// Along a beam that a pressure bends the errors of elements add up to several times what each may make: its
-/// answer is as near as asked for, at more levels than elements by themselves need.
+/// Along a beam bent by a pressure, the errors of elements add up to several times the error that each is
+/// allowed. The answer is still as accurate as requested, at higher levels than single elements need.
 TEST(Adaptive, errors_that_add_up_count_as_a_whole) {
   Case description = plain_case(level_law());
   const Mesh mesh = box({0.02, 0.02, 0.1}, {4, 4, 20});
@@ -389,7 +389,7 @@ TEST(Adaptive, errors_that_add_up_count_as_a_whole) {
             mesh.cells.size() / 20);
 }
 
-/// The estimate is the error of whatever method, but for the hundredth of the forces that is left.
+/// The estimate is the error of any method, up to the hundredth of the forces at which its solution stops.
 TEST(ErrorEstimate, is_the_error) {
   const Scene scene = pressed_block(0.02);
   const NodalField exact = at_rest(scene, {"tl-mean-dilatation"}).u;

@@ -1,5 +1,5 @@
-/// The time loop's order of nodes and elements, and what must not depend on it: number of threads, width of
-/// the kernel, precision.
+/// The order of nodes and elements in the time loop, and independence of results from the number of threads,
+/// the width of the kernel and the precision.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ namespace {
 
 const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.49};
 
-/// A ring of hexahedra that closes on itself: a strip without an end.
+/// A ring of hexahedra: a strip that closes on itself.
 Mesh ring(int n) {
   Mesh mesh;
   for (int k = 0; k < n; ++k) {
@@ -65,7 +65,7 @@ std::vector<Mesh> meshes() {
           CylinderMesh{.radius = 0.05, .height = 0.1, .core_elements = 4, .rings = 3, .layers = 9}.build()};
 }
 
-/// A displacement field that no element sees as linear, at most a tenth of a small element, and less where
+/// A displacement field that is not linear in any element, at most a tenth of a small element, and less where
 /// that would invert an element of the method.
 NodalField wavy(const Mesh& mesh, const std::string& method) {
   RandomGeometry random(3);
@@ -85,8 +85,8 @@ NodalField wavy(const Mesh& mesh, const std::string& method) {
   }
 }
 
-/// Each element stands once, between two faces that hold just its nodes, in an orientation that keeps its
-/// volume positive; spare lanes hold none.
+/// Each element occurs once, between two faces that hold exactly its nodes, oriented so that its volume is
+/// positive; spare lanes hold none.
 TEST(LayoutTest, every_element_stands_once_between_its_faces) {
   for (const Mesh& mesh : meshes()) {
     for (const int width : {1, 2, 4, 8, 16}) {
@@ -150,7 +150,7 @@ TEST(LayoutTest, chunks_of_one_parity_share_no_row) {
   }
 }
 
-/// Going along strips is worth it only if they are long: in a box they run from side to side of a chunk.
+/// Strips pay only if they are long: in a box they run from side to side of a chunk.
 TEST(LayoutTest, strips_of_a_box_are_long_and_lanes_are_filled) {
   const Layout layout = make_layout(box({3, 2, 2.5}, {24, 16, 20}), 8);
   std::size_t packs = 0;
@@ -163,7 +163,7 @@ template <class Method>
 class AssemblyTest : public ::testing::Test {};
 TYPED_TEST_SUITE(AssemblyTest, MethodTypes, EntryName);
 
-/// Two steps of a path, so that methods that remember have something to remember.
+/// Forces after two steps of a path, so that methods with memory have something to remember.
 NodalField forces(const Mesh& mesh, const MethodChoice& choice) {
   Path path(mesh, law, choice);
   const NodalField u = wavy(mesh, choice.method);
@@ -175,8 +175,8 @@ NodalField forces(const Mesh& mesh, const MethodChoice& choice) {
   return path.to(u);
 }
 
-/// A face between two elements is summed in another order than node by node; each nodal force is a sum of at
-/// most eight elements' forces of bulk modulus times size squared.
+/// Nodal forces at a face between two elements are not summed in the order of the nodes; each is a sum of at
+/// most eight elements' forces, of the order of the bulk modulus times size squared.
 double tolerance(const Mesh& mesh, double epsilon) {
   const double area = std::pow(mean_gradient(gather(mesh.points, mesh.cells.front())).volume, 2.0 / 3.0);
   return 64 * epsilon * law.bulk_modulus() * area;
@@ -234,10 +234,10 @@ TYPED_TEST(AssemblyTest, single_precision_is_as_near_as_its_digits) {
   }
 }
 
-/// Energies of equal elements add up without drift: were they added in single precision, each of the last of
-/// so many would be rounded by the whole sum's digits, all in one direction. A node's displacement is at
-/// most 2.5 and rounded to 6e-8 of that, strains to twice that of .1, and energies go with their squares:
-/// 6e-6; the rest is the kernel's rounding.
+/// Energies of equal elements add up without drift: summed in single precision, the last of so many would all
+/// be rounded in the same direction, by the digits of the whole sum. A node's displacement is at most 2.5 and
+/// rounded to 6e-8 of that, strains to twice that over .1, and energies go with their squares: 6e-6; the rest
+/// is the kernel's rounding.
 TYPED_TEST(AssemblyTest, energies_of_many_elements_add_up_in_single_precision) {
   const Mesh mesh = box({24, 24, 24}, {24, 24, 24});
   NodalField u;
@@ -255,9 +255,9 @@ TYPED_TEST(AssemblyTest, energies_of_many_elements_add_up_in_single_precision) {
   EXPECT_NEAR(found.hourglass, wanted.hourglass, 1e-5 * wanted.strain);
 }
 
-/// A body 1000 of its lengths from the origin: coordinates enter in differences or from the body's middle, so
-/// that single precision loses no more there than at the origin, up to the rounding of the coordinates
-/// themselves, which is in double.
+/// A body 1000 of its lengths from the origin: coordinates enter as differences or relative to the body's
+/// middle, so single precision loses no more than at the origin, except for the rounding of the coordinates
+/// themselves, which is that of double precision.
 TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing) {
   const Mesh here = box({1, 1, 2}, {3, 3, 6});
   Mesh far = here;
@@ -275,7 +275,7 @@ TYPED_TEST(AssemblyTest, distance_from_the_origin_costs_single_precision_nothing
   EXPECT_LT(largest_distance(force(here), force(far)), tolerance(here, 1.2e-7));
 }
 
-/// A number that would be ignored is rejected.
+/// A kappa that would be ignored is rejected.
 TYPED_TEST(AssemblyTest, kappa_is_taken_or_refused) {
   const MethodChoice choice{std::string(TypeParam::name), 0.037};
   if (TypeParam::Hourglass::traits.takes_kappa) {
@@ -285,7 +285,7 @@ TYPED_TEST(AssemblyTest, kappa_is_taken_or_refused) {
   }
 }
 
-/// Dynamics in full: the same bits from any number of threads.
+/// A complete motion: the same bits for any number of threads.
 TYPED_TEST(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads) {
   Case description = plain_case(law);
   description.quasi_static = false;
@@ -315,8 +315,8 @@ TYPED_TEST(AssemblyTest, motion_is_the_same_to_the_bit_for_any_number_of_threads
   }
 }
 
-/// Displacements that fade out below the normal numbers count as none, and the caller's arithmetic is as
-/// before.
+/// Displacements that decay into the subnormal range count as zero, and the caller's floating-point mode is
+/// restored.
 TEST(SubnormalTest, fading_displacements_give_no_force_and_leave_the_processor_as_it_was) {
   const Mesh mesh = box({1, 1, 1}, {2, 2, 2});
   const auto elements =
@@ -330,8 +330,8 @@ TEST(SubnormalTest, fading_displacements_give_no_force_and_leave_the_processor_a
   EXPECT_GT(tiny * less, 0.0F);
 }
 
-/// The compact method does not know the form for parallelepipeds: all that an element tells must be the same
-/// with it, for laws of all kinds. Bounds and energies are sums like the forces, and rounded as they are.
+/// The compact method has no special form for parallelepipeds: all its results must equal those of the method
+/// that has one, for laws of all kinds. Bounds and energies are sums like the forces, with the same rounding.
 TEST(ParallelepipedTest, form_for_them_gives_what_the_general_one_gives) {
   const Mesh mesh = sheared_box();
   ASSERT_EQ(shapes_in(mesh), Shapes::parallelepipeds);
@@ -364,7 +364,7 @@ TEST(ParallelepipedTest, form_for_them_gives_what_the_general_one_gives) {
   }
 }
 
-/// A node that has moved by a billionth of an edge is no roundoff: c = 0 would be wrong by as much.
+/// A node moved by a billionth of an edge is not roundoff: c = 0 would be wrong by as much.
 TEST(ParallelepipedTest, is_not_what_differs_from_one_by_more_than_roundoff) {
   Mesh mesh = sheared_box();
   for (auto& X : mesh.points) X[1] += 100.0;  // coordinates are now rounded to 1e-14

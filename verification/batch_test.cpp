@@ -15,8 +15,8 @@ namespace {
 constexpr double step = 1e-3;  // s; stable for all bodies below
 constexpr int steps = 100;
 
-/// A block of two materials on a foot. Its head is driven, a side is pushed by a force with a curve of its
-/// own; it starts with a velocity and is damped.
+/// A block of two materials on a fixed foot, damped, with an initial velocity. Its head is driven, and a
+/// force with a load curve of its own pushes its side.
 std::string text_of(double stiffness, const std::string& law = "neo-hookean") {
   const auto material = [&](double modulus) {
     const std::string E = std::to_string(stiffness * modulus);
@@ -40,7 +40,7 @@ std::string text_of(double stiffness, const std::string& law = "neo-hookean") {
 
 MeshArrays block(bool skewed) {
   Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
-  for (Vector& X : mesh.points) {  // away from the sets of the case
+  for (Vector& X : mesh.points) {  // nodes in sets of the case stay
     if (skewed && X[0] > 0.01 && X[0] < 0.09 && X[2] > 0.01 && X[2] < 0.19) X[1] += 0.1 * X[0] * X[1];
   }
   return {mesh.points,
@@ -59,8 +59,8 @@ Vector head_of(std::size_t b) {
   return {1e-3 * static_cast<double>(b), 0.0, 0.01 - 2e-3 * static_cast<double>(b)};
 }
 
-/// The largest distance between bodies of a batch and their simulations, over 0.03 m, and between the forces
-/// on their heads, over the largest.
+/// The largest distance between the bodies of a batch and simulations of each, over 0.03 m, and between the
+/// forces on their heads, over the largest.
 template <class Real>
 std::pair<double, double> distance_from_simulations(bool skewed, const std::string& law,
                                                     const SimulationSettings& settings) {
@@ -113,9 +113,9 @@ struct Setting {
 
 class BatchTest : public ::testing::TestWithParam<Setting> {};
 
-// Both take 100 equal steps; forces are summed in another order, and stiffness multiplies them afterwards. A
-// rounding of a force, of which 24 numbers are added at a node, is a displacement of at most that share of
-// the motion, and at most grows with the square of the steps. Other mistakes show in the first digits.
+// Both take 100 equal steps, but sum forces in another order, and the batch multiplies by the stiffness
+// afterwards. A force is a sum of 24 numbers at a node; its rounding displaces a node by at most that share
+// of the motion, and grows at most with the square of the steps. Other mistakes change the first digits.
 TEST_P(BatchTest, bodies_move_as_each_would_alone) {
   const auto& [method, skewed, law] = GetParam();
   constexpr double growth = 24.0 * steps * steps;
@@ -124,8 +124,8 @@ TEST_P(BatchTest, bodies_move_as_each_would_alone) {
   EXPECT_LT(force, 10.0 * growth * 0x1p-53);
 }
 
-// In single precision that bound would be .014, too wide to see a mistake. Roundings have both signs and do
-// not all add up: the bound here grows with the number of steps, not with its square.
+// In single precision that bound would be .014, too wide to reveal a mistake. Roundings have both signs and
+// partly cancel, so the bound here grows with the number of steps, not with its square.
 TEST_P(BatchTest, in_single_precision_too) {
   const auto& [method, skewed, law] = GetParam();
   const auto [u, force] = distance_from_simulations<float>(skewed, law, {.method = method});
@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, BatchTest,
                                            Setting{"tl-mean-dilatation", true, "neo-hookean"},
                                            Setting{"tl-mean-dilatation", false, "yeoh"}));
 
-// Frames of many steps, in which the step is chosen anew.
+// Frames of many steps, each with a newly chosen step.
 TEST(Batch, driven_nodes_and_forces_go_straight) {
   Batch<double> batch(block(true), text_of(1.0), 9);
   Simulation<double> alone(block(true), text_of(1.0));
@@ -153,7 +153,7 @@ TEST(Batch, driven_nodes_and_forces_go_straight) {
   const NodalView<double> u = alone.displacements();
   for (std::size_t node = 0; node < 45; ++node) {
     for (std::size_t i = 0; i < 3; ++i) {
-      // About 60 steps; a step that follows from bounds of the same elements differs by rounding only.
+      // About 60 steps; steps chosen from bounds of the same elements differ only by rounding.
       EXPECT_NEAR(batch.displacement(8, node)[i], u[index(alone.row_of_node()[node])][i], 1e-11);
     }
   }
@@ -180,7 +180,7 @@ TEST(Batch, the_step_is_that_of_the_stiffest_body) {
   EXPECT_NEAR(batch.step_size(), longest / 2.0, 1e-12 * longest);
 }
 
-// As in Simulation, the step shortens while one body is pressed to half its height.
+// As in Simulation, the step becomes shorter when one body is pressed to half its height.
 TEST(Batch, the_step_shortens_as_one_body_stiffens) {
   Batch<double> batch(block(false), text_of(1.0), 10, {.damping = 15.0});
   Simulation<double> alone(block(false), text_of(1.0), {.damping = 15.0});

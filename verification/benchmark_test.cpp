@@ -1,4 +1,4 @@
-/// Figures computed by the benchmark from its times; wrong results are not timed.
+/// Figures that the benchmark computes from its times; methods with wrong forces are not timed.
 
 #include <gtest/gtest.h>
 
@@ -121,7 +121,7 @@ TEST(Measure, wrong_forces_get_no_time) {
   EXPECT_EQ(right.checks, 1);
 }
 
-/// A mean over states is one of as many steps in each; only the length of batches is measured in the first.
+/// A mean over states has equally many steps in each; only the first determines the length of batches.
 TEST(Measure, takes_as_many_steps_in_every_state) {
   const NodalField reference{{1.0, 0.0, 0.0}};
   Fake candidate(1.0, 3);
@@ -135,7 +135,7 @@ TEST(Measure, takes_as_many_steps_in_every_state) {
   EXPECT_EQ(candidate.steps_in_state[1], candidate.steps_in_state[2]);
 }
 
-/// Tests of allocations would prove nothing if calls were not counted.
+/// Tests of allocations would prove nothing if the counter missed some.
 TEST(Allocations, are_counted_with_any_alignment) {
   constexpr std::align_val_t alignment{128};
   const long before = allocations();
@@ -181,7 +181,7 @@ class SteppedModelTest : public ::testing::Test {};
 
 TYPED_TEST_SUITE(SteppedModelTest, MethodTypes, EntryName);
 
-// Ten thousand steps are far more than a batch has; an unstable scheme is at infinity by then.
+// Ten thousand steps are far more than a batch has; an unstable scheme overflows within them.
 TYPED_TEST(SteppedModelTest, stays_healthy_for_good) {
   const Scene scene = box_scene(64);
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
@@ -259,14 +259,14 @@ TEST(Records, are_disturbed_where_quartiles_are_far_apart) {
   EXPECT_TRUE(is_disturbed(record));
 }
 
-/// A made-up error that falls as 1 / (1 + n) is below 1 / k from n = k on; every limit is found to the very
-/// evaluation, with as many looks as the last one has binary digits.
+/// A made-up error that falls as 1 / (1 + n) is below 1 / k from n = k on; bisection finds each limit
+/// exactly, with as many evaluations as the last one's number has binary digits.
 TEST(Rest, bisection_finds_the_first_below) {
   int looks = 0;
   const auto error = [&](long n) {
     ++looks;
     EXPECT_GE(n, 0);
-    EXPECT_LT(n, 1000);  // at the last one the error is known to be below
+    EXPECT_LT(n, 1000);  // the error is known to be below at the last one
     return 1.0 / static_cast<double>(1 + n);
   };
   for (const long k : {1L, 2L, 99L, 100L, 511L, 512L, 999L, 1000L}) {
@@ -278,7 +278,7 @@ TEST(Rest, bisection_finds_the_first_below) {
   EXPECT_EQ(first_below(0, 0.5, error), 0);
 }
 
-/// An error that rises again: the bisection finds one of the crossings.
+/// An error that rises again: bisection finds one of the crossings.
 TEST(Rest, bisection_finds_a_crossing_where_there_are_more) {
   const auto error = [](long n) { return n < 10 || (n >= 40 && n < 60) ? 1.0 : 0.0; };
   const long found = first_below(100, 0.5, error);

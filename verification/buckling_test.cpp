@@ -15,9 +15,9 @@
 namespace sandglass::verification {
 namespace {
 
-/// A scene of its own for each number: columns that are clamped at one end or, but for their length, at both,
-/// and arches with clamped ends; Poisson's ratio from 0 to .499; loaded by half to three times what beam
-/// theory says they bear, with side forces of a hundredth of that, a ten thousandth or none.
+/// A different scene for each number: columns clamped at one end, or at both but free to shorten, and arches
+/// with clamped ends; Poisson's ratio from 0 to .499; loads of half to three times what beam theory allows,
+/// with side forces of a hundredth of that, a ten thousandth or none.
 class SlenderScene {
  public:
   SlenderScene(long seed, long number) : random_(static_cast<std::uint64_t>(9000011 * seed + number)) {
@@ -32,7 +32,7 @@ class SlenderScene {
     is_arch_ ? make_arch() : make_column();
   }
 
-  /// In motion with strong damping for so many times the slowest time of a straight beam, or at rest.
+  /// A motion with strong damping for this many of a straight beam's slowest times, or static for 0.
   Scene scene(double times = 0.0) const {
     Case description = plain_case(law_);
     description.displacements = {{"foot", {}}};
@@ -74,7 +74,7 @@ class SlenderScene {
     guided_ = random_.uniform(0.0, 1.0) < 0.3;
     const double pi = std::numbers::pi;
     const double force = load_ * (guided_ ? 4.0 : 0.25) * pi * pi * bending_stiffness() / (length_ * length_);
-    if (guided_) side_ = 0.0;  // it would be held
+    if (guided_) side_ = 0.0;  // the guide would carry it
     force_ = {side_ * force * random_.uniform(-1.0, 1.0), side_ * force, -force};
   }
 
@@ -157,8 +157,8 @@ std::vector<std::string> methods_with_a_potential(const Scene& scene) {
   return names;
 }
 
-/// Some answers of slender bodies are another minimum than the one where a slow motion ends: one in fifty may
-/// be, and none of the few scenes. More scenes, with a row for each: SANDGLASS_SCENES=200 buckling_test.
+/// Stable answers may be another minimum than the end of a slow motion: at most one in fifty, none of these
+/// few scenes. SANDGLASS_SCENES=200 buckling_test runs more scenes and prints a row for each.
 TEST(Buckling, what_is_called_stable_is_a_minimum) {
   constexpr long usual = 13;  // one for each method
   const long first = from_environment("SANDGLASS_FIRST", 0),
@@ -189,7 +189,7 @@ TEST(Buckling, what_is_called_stable_is_a_minimum) {
         left += found.stability == Stability::saddle_left ? 1 : 0;
         EXPECT_GT(least, 0.0) << which;
       }
-      // Levels of a motion are others; and without a side force it may stay straight.
+      // An adaptive method has other levels in motion, and without a side force a motion may stay straight.
       if (slender.side() > 0.0 && !method_named(method).adapts()) {
         Observer silent;
         const Motion motion = integrate(Model(slender.scene(400.0), {method}), silent);

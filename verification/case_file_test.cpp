@@ -130,8 +130,8 @@ TEST(CaseFile, initial_velocities_add_up) {
   EXPECT_TRUE(read_scene(folder.write("good.toml", good)).initial_velocities.empty());
 }
 
-/// Half waves are counted between the ends of the set, wherever it is: two along x from -2 to 1 and three
-/// along z from 5 to 7, with their product.
+/// Half waves span the set from end to end, wherever it is: two along x from -2 to 1 and three along z from 5
+/// to 7, as a product.
 TEST(CaseFile, waves_stand_between_the_ends_of_the_set) {
   Mesh mesh = box({3.0, 1.0, 2.0}, {4, 1, 5});
   for (auto& X : mesh.points) X = {X[0] - 2.0, X[1], X[2] + 5.0};
@@ -149,8 +149,8 @@ TEST(CaseFile, waves_stand_between_the_ends_of_the_set) {
   }
 }
 
-/// The centre of mass follows from masses, not from nodes: two elements of lengths 1 and 3 have theirs at 2,
-/// their nodes at (0 + 1 + 4) / 3.
+/// The centre of mass follows from masses, not from the mean of the nodes: two elements of lengths 1 and 3
+/// have theirs at 2, their nodes at (0 + 1 + 4) / 3.
 TEST(CaseFile, spin_is_about_the_centre_of_mass) {
   Mesh mesh = box({2.0, 1.0, 1.0}, {2, 1, 1});
   for (auto& X : mesh.points) X[0] = X[0] < 1.5 ? X[0] : 4.0;
@@ -216,8 +216,8 @@ void change(Value& value) {
   }
 }
 
-/// Calls use(name, changed) for all declared parameters of a table, and of tables in it, with the table in
-/// which that one is another.
+/// Calls use(name, changed) for each declared parameter of a table and of the tables in it; `changed` is the
+/// table with another value for that parameter alone.
 template <class Table, class Use>
 void for_each_change(const Table& table, const Use& use) {
   const auto with_change = [&]<class Value>(const Parameter<Table, Value>& parameter) {
@@ -297,7 +297,7 @@ TEST(CaseFile, hash_follows_every_declared_field_that_decides_the_answer) {
   }
 }
 
-/// The fields of tables that are not declared, each changed in the text of a case.
+/// Fields of tables without declared parameters, each changed in the text of a case.
 TEST(CaseFile, hash_follows_the_fields_of_other_tables) {
   const TemporaryFolder folder;
   const auto hash = [&](const std::string& text) {
@@ -348,7 +348,7 @@ const std::string program = "[[published.programs]]\nprogram = \"b\"\nsource = \
 struct BadCase {
   const char* name;
   std::string text;
-  std::vector<std::string> said;  ///< what the error must contain, beside the file's name
+  std::vector<std::string> said;  ///< required parts of the message, besides the file's name
 };
 
 void PrintTo(const BadCase& bad, std::ostream* stream) {
@@ -600,7 +600,7 @@ TEST(CaseFile, empty_sets_of_a_mesh_file_move_nothing) {
                        "displacement.set = '" + set + "' has no node in the mesh"));
 }
 
-/// A mesh written and read back with its sets is the same scene.
+/// A mesh written to a file and read back with its sets gives the same scene.
 TEST(CaseFile, mesh_file_gives_the_same_scene) {
   const TemporaryFolder folder;
   const Scene scene = read_scene(folder.write("good.toml", good));

@@ -15,7 +15,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// A block on its foot, whose head is moved and whose side is loaded.
+/// A block on its foot, with a driven head and a load on its side.
 CaseOnMesh loaded_block_case(const AnyLaw& law, bool quasi_static) {
   Case description = plain_case(law);
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
@@ -26,7 +26,7 @@ CaseOnMesh loaded_block_case(const AnyLaw& law, bool quasi_static) {
   description.forces.of<DeadForce>() = {{"side", {0.1, 0.2, 0.0}, {}}};
   description.relaxation.levels = 4;
   description.relaxation.tolerance = 1e-6;
-  description.relaxation.max_steps = 600;  // runs that come to rest need fewer
+  description.relaxation.max_steps = 600;  // quasi-static runs need fewer
   description.quasi_static = quasi_static;
   description.dynamics.duration = 0.1;
   description.dynamics.ramp_time = 0.05;
@@ -40,8 +40,8 @@ Scene loaded_block(const AnyLaw& law, bool quasi_static) {
   return make_scene(loaded_block_case(law, quasi_static));
 }
 
-/// How a run ended: the bits, and what it says of itself. One that breaks down says that, and is compared all
-/// the same: viscous control finds no rest.
+/// How a run ended: its bits and its outcome. A failed run is compared by its message: viscous control finds
+/// no equilibrium.
 struct Ending {
   std::vector<std::uint64_t> bits;
   std::string words;
@@ -67,7 +67,7 @@ Ending run(const Scene& scene, const MethodChoice& choice, KeepingRecorder& reco
   }
 }
 
-/// Resumes from every checkpoint, through the file, with another number of threads.
+/// Resumes from every checkpoint, read back from its file, with another number of threads.
 void expect_same_from_everywhere(const Scene& scene, MethodChoice choice, std::size_t at_least) {
   const TemporaryFolder folder;
   const Identity identity{{"method", choice.method}};
@@ -101,7 +101,7 @@ class CheckpointTest : public ::testing::Test {
     }
   }
 
-  /// With the first law, and with one that remembers where the method runs it.
+  /// With the first law, and with a viscoelastic one if the method supports it.
   static void expect_same_with_laws(bool quasi_static, std::size_t points) {
     expect_same(sample_law<NeoHookean>(0.45), quasi_static, points);
     using Remembering = Viscoelastic<NeoHookean>;
@@ -117,8 +117,8 @@ TYPED_TEST(CheckpointTest, motion_goes_on_with_the_same_bits) {
   if constexpr (!is_condensed<TypeParam>) this->expect_same_with_laws(false, 5);
 }
 
-/// A condensed answer takes one step and has no point from which to resume. A control that only damps breaks
-/// down on the first levels.
+/// A condensed answer is one step without a point to resume from. A control that only damps fails on the
+/// first levels.
 TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
   if constexpr (is_condensed<TypeParam>) {
     this->expect_same(sample_law<NeoHookean>(0.45), true, 0);
@@ -127,7 +127,7 @@ TYPED_TEST(CheckpointTest, relaxation_goes_on_with_the_same_bits) {
   }
 }
 
-/// Load levels that failed and were retried at half the distance are part of the resumed state.
+/// Load levels that failed and were retried at half the distance are part of the state.
 TEST(Checkpoint, goes_on_after_levels_that_failed) {
   CaseOnMesh problem = loaded_block_case(sample_law<NeoHookean>(0.45), true);
   problem.description.displacements[1].value = {0.0, 0.0, -0.17};
@@ -141,7 +141,7 @@ TEST(Checkpoint, goes_on_after_levels_that_failed) {
   expect_same_from_everywhere(scene, {"tl-perturbation", {}}, 3);
 }
 
-/// A load that reverses is part of the resumed state, in each of its phases.
+/// A load that reverses is part of the state, in each of its phases.
 TEST(Checkpoint, goes_on_in_every_cycle) {
   Scene scene = loaded_block(sample_law<NeoHookean>(0.45), true);
   scene.settings.relaxation.cycles = 2;
@@ -151,7 +151,7 @@ TEST(Checkpoint, goes_on_in_every_cycle) {
   expect_same_from_everywhere(scene, {"ul-perturbation", {}}, 10);
 }
 
-/// Every entry of a checkpoint is required: with any array missing, or one number added, it is rejected.
+/// A checkpoint needs every entry: with any array missing, or longer by one number, it is rejected.
 TEST(Checkpoint, of_another_shape_is_refused) {
   for (const bool quasi_static : {false, true}) {
     const Scene scene = loaded_block(sample_law<NeoHookean>(0.45), quasi_static);
@@ -221,7 +221,7 @@ TEST_F(CheckpointFileTest, of_another_run_is_refused_and_told_in_what) {
   EXPECT_TRUE(contains(text, "delete it to start again"));
 }
 
-/// No bit can change unseen, be it in the seal, in the library's own structures, in numbers or behind them.
+/// A changed byte is noticed wherever it is: in the seal, in HDF5's own structures, in numbers or after them.
 TEST_F(CheckpointFileTest, with_any_byte_changed_is_refused) {
   write_checkpoint_file(path, identity, sample());
   std::ostringstream stream;
@@ -250,9 +250,9 @@ TEST_F(CheckpointFileTest, of_another_mesh_is_refused) {
                        "'/frames/0000/jacobian' must have the shape (2)"));
 }
 
-/// Temporary files of killed programs are removed with the next checkpoint; all other files stay.
+/// The next checkpoint removes temporary files of killed programs and leaves all other files.
 TEST_F(CheckpointFileTest, removes_what_killed_programs_left) {
-  const std::string unused = "999999999";  // above what Linux gives to processes
+  const std::string unused = "999999999";  // above the largest process id of Linux
   const auto ours = fmt::format("run.h5.{}.part", getppid());
   for (const auto& name :
        {"run.h5." + unused + ".part", ours, std::string("run.h5.x1.part"), "other.h5." + unused + ".part"}) {

@@ -50,7 +50,7 @@ Scene scene_of_case(const Case& description) {
   return make_scene(with_mesh(description));
 }
 
-/// A rung's mesh that is the user's own.
+/// The user's own mesh as a mesh of the ladder.
 LadderMesh own_mesh(const Case& description, Displacements reference = {}) {
   return {{}, with_mesh(description), scene_of_case(description), std::move(reference)};
 }
@@ -63,8 +63,8 @@ Choice choose_quietly(const Case& description, const Demand& demand) {
   return choose(with_mesh(description), demand, [](double, const std::string&) { return true; });
 }
 
-/// Every method of the list is there in both precisions, or listed as unfit; one with a kappa that matters
-/// with other strengths, too.
+/// The ladder has every method in both precisions, or lists it as unfit; a method whose kappa matters, with
+/// other values too.
 TEST(Ladder, has_every_method) {
   std::deque<LadderMesh> meshes;
   meshes.push_back(own_mesh(cantilever(0.1)));
@@ -86,7 +86,7 @@ TEST(Ladder, has_every_method) {
   EXPECT_EQ(make_ladder(meshes, {.methods = {"linear"}}).size(), 6u);
 }
 
-/// An adaptive method is on several rungs, with accuracies on both sides of the requested one.
+/// An adaptive method has several rungs, with accuracies on both sides of the requested one.
 TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
   const auto choices = choices_of(method_named("tl-adaptive"), {"tl-adaptive"}, NeoHookean{}, 0.01);
   ASSERT_GE(choices.size(), 3u);
@@ -94,8 +94,8 @@ TEST(Ladder, has_several_rungs_for_an_adaptive_method) {
   EXPECT_LT(choices.back().accuracy, 0.01);
 }
 
-/// The order of the table: cheapest first, adaptive rungs a tenth behind. Rungs before the choice are
-/// rejected with a reason; the choice is close enough; more expensive rungs were not tried.
+/// The order of the table: cheapest first, with a tenth added to the cost of adaptive rungs. Rungs before the
+/// choice are rejected with a reason; the choice is accurate enough; more expensive rungs were not tried.
 TEST(Choose, takes_the_first_that_suffices) {
   const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 0.02});
   ASSERT_TRUE(choice.chosen);
@@ -146,8 +146,8 @@ TEST(Choose, predicts_what_a_run_gives) {
   for (const auto& mesh : choice.others) EXPECT_FALSE(mesh.kept);
 }
 
-/// Against the truth, the mesh of a column and coarser ones are refined until the golden's own element is
-/// near enough; rungs on what suffices are tried, and a mesh with more elements than that is not.
+/// Against the truth, a column's mesh and coarser ones are refined until the golden's element is accurate
+/// enough on them. The rungs on sufficient meshes are tried; a mesh with more elements than these is not.
 TEST(Choose, refines_meshes_against_the_truth) {
   const auto file = std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "column.toml";
   const Choice choice = choose_quietly(
@@ -170,7 +170,7 @@ TEST(Choose, refines_meshes_against_the_truth) {
   }
 }
 
-/// Small strains suffice for a small motion, and not for a large one, whatever the numbers and the kappa.
+/// Small strains suffice for a small motion and not for a large one, in either precision and with any kappa.
 TEST(Choose, takes_small_strains_for_small_motions_only) {
   const std::vector<std::string> linear_ones{"linear", "linear-condensed"};
   const Choice small = choose_quietly(cantilever(1e-3), {.tolerance = 0.05, .methods = linear_ones});
@@ -183,7 +183,7 @@ TEST(Choose, takes_small_strains_for_small_motions_only) {
   EXPECT_TRUE(contains(remarks(large).back(), "the most accurate rung"));
 }
 
-/// The golden's own element in double is the reference, to the bit: nothing can ask for more.
+/// The golden's element in double precision is the reference, bit by bit: no tolerance is too strict for it.
 TEST(Choose, always_has_the_reference_itself) {
   const Choice choice = choose_quietly(cantilever(0.3), {.tolerance = 1e-15});
   ASSERT_TRUE(choice.chosen);
@@ -192,7 +192,7 @@ TEST(Choose, always_has_the_reference_itself) {
   EXPECT_EQ(*chosen.evaluation.error, 0.0);
 }
 
-/// Nothing is as fast as a picosecond; what is too expensive is not computed unless all is asked for.
+/// No method is as fast as a picosecond; rungs over the budget are computed only if all are requested.
 TEST(Choose, keeps_within_the_budget) {
   Demand demand{.tolerance = 0.05, .budget = 1e-12, .methods = {"tl-perturbation"}};
   Choice choice = choose_quietly(cantilever(0.1), demand);
@@ -208,8 +208,8 @@ TEST(Choose, keeps_within_the_budget) {
   for (const auto& attempt : choice.attempts) EXPECT_TRUE(attempt.evaluation.error);
 }
 
-/// A soft body has ten milliseconds for a step, ten thousand times what a machine needs; one with a stiffness
-/// of 3e17 Pa has a nanosecond for some 1e4 operations, which none can do.
+/// A soft body allows ten milliseconds for a step, ten thousand times what a machine needs; one with a
+/// stiffness of 3e17 Pa allows a nanosecond for some 1e4 operations, which no machine achieves.
 TEST(Choose, tells_what_real_time_allows) {
   Case description = cantilever(0.1);
   const Demand demand{.tolerance = 0.5, .real_time = true, .methods = {"tl-perturbation"}};
@@ -222,7 +222,7 @@ TEST(Choose, tells_what_real_time_allows) {
   }
 }
 
-/// Motions are chosen for like static answers: by the error at all times, which equals the error of a run.
+/// Motions are chosen as static answers are: by the error at all times, which equals the error of a run.
 /// Methods that superpose static answers are excluded; controls that resist only velocities are not.
 TEST(Choose, takes_motions) {
   Case description = cantilever(0.1);
@@ -256,9 +256,9 @@ TEST(Choose, takes_motions) {
   EXPECT_EQ(compared, 6 + 2 + 2);
 }
 
-/// Longer steps are rungs like others: all that are left are near enough with the golden's own element, their
-/// steps are longer by what the body's frequency gives on a block (a third at least) and, with softer bulk
-/// moduli, by more; a stricter tolerance leaves fewer.
+/// Longer steps are rungs like others. All that remain are accurate enough with the golden's element. The
+/// body's frequency alone lengthens the steps of a block by at least a third, softer bulk moduli lengthen
+/// them further, and a stricter tolerance leaves fewer rungs.
 TEST(Choose, takes_longer_steps_where_they_suffice) {
   Case description = cantilever(0.1);
   description.quasi_static = false;
@@ -283,8 +283,8 @@ TEST(Choose, takes_longer_steps_where_they_suffice) {
   EXPECT_LT(steps_of(1e-5).size(), steps.size());
 }
 
-/// Softened moduli keep what a beam's frequency depends on: E, but for a root, and a Poisson's ratio whose
-/// distance from 1/2 grows by the factor. A law without these parameters only gets the body's steps.
+/// Softer moduli keep what the frequency of a beam depends on: E changes by a root only, and the distance of
+/// Poisson's ratio from 1/2 grows by the factor. A law without these parameters gets only the body's steps.
 TEST(LongerSteps, soften_what_can_be_softened) {
   Case description = cantilever(0.1);
   description.quasi_static = false;
@@ -296,7 +296,7 @@ TEST(LongerSteps, soften_what_can_be_softened) {
   EXPECT_NEAR(law.poisson_ratio, 0.45, 1e-15);
   EXPECT_NEAR(law.young_modulus, 3000.0 * std::sqrt(1.49 / 1.45), 1e-9);
   description.dynamics.body_frequency = 1;
-  EXPECT_EQ(longer_steps(with_mesh(description)).size(), 4u);  // it has these steps
+  EXPECT_EQ(longer_steps(with_mesh(description)).size(), 4u);  // it already has the body's steps
   description.dynamics.body_frequency = 0;
   description.materials.front().law = Ogden{.mu1 = 800.0, .alpha1 = 3.0, .K = 5e4};
   EXPECT_EQ(longer_steps(with_mesh(description)).size(), 1u);
@@ -331,8 +331,8 @@ class EvaluatorTest : public ::testing::Test {
   }
 };
 
-/// Small strains turn elements under a pressed node inside out at some depth, where the golden's own element
-/// gives way: beyond 1/1.1 of that depth there is no reserve, before it there is.
+/// With small strains, elements under a pressed node turn inside out at some depth, which the golden's
+/// element survives: beyond 1/1.1 of that depth there is no reserve, before it there is.
 TEST_F(EvaluatorTest, asks_for_a_reserve_of_load) {
   double low = 0.0, high = 1.0;
   ASSERT_TRUE(inverts(pushed_cube(high)));
@@ -347,8 +347,8 @@ TEST_F(EvaluatorTest, asks_for_a_reserve_of_load) {
   EXPECT_EQ(evaluated(pushed_cube(low / 1.11), {"linear-condensed"}, 10.0).reason, "");
 }
 
-/// A body that is pressed to a twentieth along x, and can move nowhere else, cannot be pressed by a tenth
-/// more, by no method: nobody is asked for what the golden's own element has not.
+/// A body pressed to a twentieth of its length along x, and held otherwise, cannot be pressed by another
+/// tenth with any method: no rung needs a reserve that the golden's element does not have.
 TEST_F(EvaluatorTest, asks_nobody_for_what_the_golden_has_not) {
   Case description = cantilever(0.0);
   description.displacements[1].value = {-0.95, 0.0, 0.0};
@@ -365,7 +365,7 @@ TEST_F(EvaluatorTest, asks_nobody_for_what_the_golden_has_not) {
   EXPECT_NEAR(found.smallest_jacobian.value_or(0.0), 0.05, 1e-9);
 }
 
-/// Displacement elements lock as Poisson's ratio nears one half; without volume to keep they do not.
+/// Full integration locks as Poisson's ratio nears one half; a tiny kappa lets nodes zigzag.
 TEST_F(EvaluatorTest, names_locking_and_hourglassing) {
   Case description = cantilever(0.2);
   std::get<NeoHookean>(description.materials.front().law).poisson_ratio = 0.4999;
@@ -373,7 +373,7 @@ TEST_F(EvaluatorTest, names_locking_and_hourglassing) {
   EXPECT_TRUE(contains(evaluated(cantilever(0.2), {"tl-perturbation", 1e-5}, 0.01).reason, "nodes zigzag"));
 }
 
-/// A truth that is known to a percent cannot show that anything is within a tenth of that.
+/// A truth with an error of a percent cannot show that another error is within a tenth of that.
 TEST(Reference, that_is_stored_tells_its_own_error) {
   const CaseOnMesh problem = with_mesh(read_case_file(fs::path(SANDGLASS_SOURCE) / "cases" / "column.toml"));
   const Scene scene = make_scene(problem);
@@ -384,10 +384,10 @@ TEST(Reference, that_is_stored_tells_its_own_error) {
   EXPECT_EQ(truth.unit, largest_imposed(scene));
   const Reference computed = make_reference(scene, "", go_on),
                   golden = make_reference(scene, "golden", go_on);
-  // That of the others is their distance from this truth, as everywhere else.
+  // The error of the others is their distance from this truth.
   EXPECT_EQ(*golden.own.largest, accuracy(golden.u, truth.u, nullptr, golden.unit).max_relative_error);
   EXPECT_LT(largest_distance(computed.u.front(), golden.u.front()), 1e-6 * golden.unit);
-  EXPECT_NEAR(*computed.own.largest, *golden.own.largest, 1e-6);  // by the triangle's inequality
+  EXPECT_NEAR(*computed.own.largest, *golden.own.largest, 1e-6);  // by the triangle inequality
   Demand demand{.tolerance = 0.5 * *truth.own.largest, .against = "truth", .methods = {"tl-mean-dilatation"}};
   const Choice choice = choose(problem, demand, [](double, const std::string&) { return true; });
   EXPECT_FALSE(choice.chosen);

@@ -85,7 +85,7 @@ TEST_F(MethodTableTest, is_read_strictly) {
   EXPECT_TRUE(contains(refused("name = \"tl-perturbation\"\nkapa = 1\n"), "did you mean 'kappa'"));
 }
 
-/// Every committed case, and every variant, comes back as itself from another folder, with its method.
+/// Every committed case and variant, written to another folder and read back, is the same, with its method.
 TEST(CaseWriter, gives_back_every_case) {
   const TemporaryFolder folder;
   const MethodChoice choice{
@@ -116,8 +116,8 @@ TEST(CaseWriter, gives_back_every_case) {
   EXPECT_GE(written, 20);
 }
 
-/// On a coarser mesh the case is another one, which has what the run needs: here the profile's nodes would
-/// not be there.
+/// A coarser mesh makes another case, with only what the run needs: the profile's nodes, for example, do not
+/// exist on the coarser mesh.
 TEST_F(MethodTableTest, goes_with_a_coarser_mesh) {
   const Case original = read("");
   for (const auto& mesh : coarser_meshes(std::get<AnyGenerator>(original.mesh))) {
@@ -132,8 +132,8 @@ TEST_F(MethodTableTest, goes_with_a_coarser_mesh) {
   }
 }
 
-/// A set that one table alone names is still there on a coarser mesh, whichever table it is; a set that no
-/// table names may have no node there.
+/// A set that only one table names keeps its nodes on a coarser mesh, whichever table it is; a set that no
+/// table names may lose them.
 TEST_F(MethodTableTest, keeps_every_set_that_a_table_names_on_coarser_meshes) {
   std::map<std::string, std::string> tables{
       {"refine", "[[refine]]\naround = \"lone\"\n"},
@@ -149,7 +149,7 @@ TEST_F(MethodTableTest, keeps_every_set_that_a_table_names_on_coarser_meshes) {
   tables["force"] = "[[force]]\nset = \"lone\"\ntotal = [0.1, 0.0, 0.0]\n";
   tables["support"] = "[[support]]\nset = \"lone\"\nstiffness = 1e3\n";
   for (const auto& [name, table] : tables) {
-    // Its nodes are in the middle of the lower end and the corners of no element that they are tied to.
+    // In the middle of the lower end; none of its nodes is a corner of an element that it is tied to.
     Case original = read("[element_sets]\nlower = { z = [0.0, 0.1] }\n" + table);
     original.sets.push_back({.name = "lone", .surface = true});
     original.sets.back().within[2] = Interval{0.0, 0.0};
@@ -163,7 +163,7 @@ TEST_F(MethodTableTest, keeps_every_set_that_a_table_names_on_coarser_meshes) {
   }
 }
 
-/// Longer steps are written; softer moduli make it another case, whose references are not its own.
+/// Longer steps are written; softer moduli make another case, to which the references do not apply.
 TEST_F(MethodTableTest, goes_with_longer_steps) {
   const Case plain = read_case_file(fs::path(SANDGLASS_SOURCE) / "cases" / "plucked-beam.toml");
   std::vector<Case> originals{plain};
@@ -182,7 +182,7 @@ TEST_F(MethodTableTest, goes_with_longer_steps) {
   }
 }
 
-/// On a refined mesh it names the elements that are split, besides what it said of refinement.
+/// A refined case lists the elements that are split, besides its own [[refine]] tables.
 TEST_F(MethodTableTest, goes_with_a_refined_mesh) {
   for (const std::string more : {"", "\n[[refine]]\naround = \"foot\"\n"}) {
     const Case original = read(more);

@@ -15,7 +15,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// The values and places of one element's trilinear form, summed from the shape functions.
+/// The value of one element's trilinear form, summed from the shape functions; of nodes, the position.
 Vector trilinear_form(const Hexahedron& cell, const NodalField& field, const Vector& xi) {
   Vector value{};
   for (int I = 0; I < 8; ++I) {
@@ -27,7 +27,7 @@ Vector trilinear_form(const Hexahedron& cell, const NodalField& field, const Vec
   return value;
 }
 
-/// Independent values in [-1, 1] at every node: no element continues its neighbour's form.
+/// Independent values in [-1, 1] at every node: no element's form continues into its neighbours.
 NodalField random_field(const Mesh& mesh, RandomGeometry& random) {
   NodalField field(mesh.points.size());
   for (Vector& value : field) {
@@ -36,14 +36,14 @@ NodalField random_field(const Mesh& mesh, RandomGeometry& random) {
   return field;
 }
 
-/// Roundoff of a value, for values in [-1, 1]. A place X, summed from eight products, is wrong by 12 half
-/// units in the last place of its size, 1.3e-15 |X|; the parent point by that times 2 / h, as is the value
-/// along each of three axes, where a trilinear form of such values changes by at most 1: 8e-15 |X| / h. In
-/// the meshes here |X| / h is at most 12.
+/// Roundoff of a value, for values in [-1, 1]. A position X, summed from eight products, is wrong by 12 half
+/// units in the last place of its size, 1.3e-15 |X|. The parent point is wrong by that times 2 / h, and so is
+/// the value along each of three axes, along which a trilinear form of such values changes by at most 1:
+/// 8e-15 |X| / h. In the meshes here |X| / h is at most 12.
 constexpr double roundoff = 1e-13;
 
-/// The element that holds a point gives the value, also close to its faces, where the neighbours' forms are
-/// only just outside.
+/// The value comes from the element that contains the point, also close to its faces, where points are barely
+/// outside of the neighbours.
 TEST(Interpolation, takes_the_element_that_holds_the_point) {
   RandomGeometry random(19);
   auto generators = plain_generators();
@@ -69,7 +69,7 @@ TEST(Interpolation, takes_the_element_that_holds_the_point) {
   }
 }
 
-/// A third of an element's half outside the middle of a face, every other element is farther in parent
+/// Outside the middle of a face by 0.3 of an element's half edge, every other element is farther in parent
 /// coordinates.
 TEST(Interpolation, continues_the_nearest_element_outside) {
   RandomGeometry random(20);
@@ -82,7 +82,7 @@ TEST(Interpolation, continues_the_nearest_element_outside) {
         for (double& component : xi) component = random.uniform(-0.5, 0.5);
         xi[axis] = side;
         const Vector X = trilinear_form(cell, mesh.points, xi);
-        if (X[axis] > 0.0 && X[axis] < 2.0 + static_cast<double>(axis)) continue;  // another element holds it
+        if (X[axis] > 0.0 && X[axis] < 2.0 + static_cast<double>(axis)) continue;  // in another element
         const Vector found = interpolate(mesh, field, {X})[0];
         const Vector expected = trilinear_form(cell, field, xi);
         for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], roundoff);
@@ -91,7 +91,7 @@ TEST(Interpolation, continues_the_nearest_element_outside) {
   }
 }
 
-/// A body ten thousand of its lengths away: its places are rounded by as much more, and still found.
+/// A body ten thousand of its lengths away: positions lose as many digits, and are still found.
 TEST(Interpolation, finds_points_far_from_the_origin) {
   RandomGeometry random(21);
   constexpr double far = 1e4;
@@ -111,9 +111,9 @@ TEST(Interpolation, finds_points_far_from_the_origin) {
   }
 }
 
-/// Trilinear forms hold linear fields, and continue them outside: the field at the nodes of the finer mesh,
-/// some of them outside a coarser one with a curved boundary, is the linear one up to the same roundoff,
-/// times its gradient.
+/// Trilinear forms reproduce linear fields and extend them. At the nodes of the finer mesh, some of them
+/// outside a coarser one with a curved boundary, the field is linear up to the same roundoff times its
+/// gradient.
 TEST(Interpolation, gives_linear_fields_exactly_between_meshes_of_one_body) {
   const Tensor<double> H{0.3, -0.2, 0.1, 0.5, 0.7, -0.4, 0.2, 0.9, -0.6};
   for (const auto& generator : plain_generators()) {
@@ -131,7 +131,7 @@ TEST(Interpolation, gives_linear_fields_exactly_between_meshes_of_one_body) {
   }
 }
 
-/// Outside a single element its trilinear form is extended, here x y z and x y; points far away are an error.
+/// Outside a single element its trilinear form is extended, here x y z and x y; distant points are an error.
 TEST(Interpolation, refuses_points_far_away) {
   const Mesh cube = box({1.0, 1.0, 1.0}, {1, 1, 1});
   NodalField u;

@@ -1,7 +1,7 @@
 """The program under test and the small case that its tests use.
 
-The program is the one that SANDGLASS_BINARY in the environment names, else build/release/sandglass.
-Of a slow one, SANDGLASS_PATIENCE says how many times longer its commands may take.
+SANDGLASS_BINARY in the environment names the program; without it, it is build/release/sandglass.
+For a slow one, SANDGLASS_PATIENCE multiplies the time that its commands may take.
 """
 
 import json
@@ -35,13 +35,13 @@ reason = "a test"
 
 
 def dynamic(text, **numbers):
-    """A quasi-static case in motion. numbers: of its table [dynamics]."""
+    """A quasi-static case made dynamic. numbers: entries of its table [dynamics]."""
     keys = "".join(f"{key} = {value}\n" for key, value in numbers.items())
     return text.replace('"quasi-static"', '"dynamic"') + "\n[dynamics]\n" + keys
 
 
 def ran(*command, **options):
-    """The outcome of any command, with its output. options: of subprocess.run."""
+    """The outcome of any command, with its output. options: for subprocess.run."""
     words = [str(word) for word in command]
     return subprocess.run(words, capture_output=True, text=True, **options)
 
@@ -49,7 +49,7 @@ def ran(*command, **options):
 def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
     """Runs the program; returns its outcome with its output.
 
-    code: the exit code that it must end with. told: a text, or several, that its errors must have.
+    code: the expected exit code. told: one or more texts that its errors must contain.
     """
     done = ran(program, *arguments, timeout=120 * PATIENCE, **options)
     assert code in (None, done.returncode), f"{done.returncode}: {done.stdout}{done.stderr}"
@@ -59,7 +59,7 @@ def sandglass(*arguments, program=BINARY, code=None, told=(), **options):
 
 
 def documented(command, *more, **options):
-    """(outcome, document): of sandglass() with --json. command: its words in one text."""
+    """(outcome, document) of sandglass() with --json. command: its words in one text."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "document.json"
         outcome = sandglass(*command.split(), *more, "--json", file, **options)

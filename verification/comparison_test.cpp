@@ -32,8 +32,8 @@ TEST(Accuracy, figures_of_a_field_made_by_hand) {
   EXPECT_FALSE(accuracy(u, reference, nullptr, 2.0).profile_relative_error.has_value());
 }
 
-/// Over time every figure is the largest of all times, be they different ones, and the worst is that of the
-/// largest distance.
+/// Over time, every figure is its largest value at any time, and the worst time is that of the largest
+/// distance.
 TEST(Accuracy, over_time_is_the_worst) {
   const Displacements reference(3, NodalField(4));
   Displacements u = reference;
@@ -95,7 +95,7 @@ TEST_F(LimitTest, figure_and_reference_are_the_ones_asked_for) {
   expected.figure = "rms_relative_error";
   EXPECT_EQ(check(expected, curve).figure, 0.1);
   expected.reference = "truth";
-  EXPECT_FALSE(check(expected, curve).holds);  // there is none
+  EXPECT_FALSE(check(expected, curve).holds);  // no such verdict
 }
 
 TEST_F(LimitTest, limits_are_for_double) {
@@ -113,7 +113,7 @@ TEST_F(LimitTest, what_was_not_computed_does_not_hold) {
   EXPECT_FALSE(check(above("tl-full", 0.0), curve).holds);
 }
 
-/// Not at rest: it may prove that a method fails, never that it is accurate.
+/// A run that did not reach equilibrium may prove that a method fails, never that it is accurate.
 TEST_F(LimitTest, unfinished_run_proves_no_accuracy) {
   const std::vector<Verdict> unfinished{verdict("tl-full", {}, false, 0.01, "failed: not at rest")};
   EXPECT_FALSE(check(below("tl-full", "auto", 0.1), unfinished).holds);
@@ -133,8 +133,8 @@ TEST(Verdict, json_has_every_figure_and_null_for_what_is_not_there) {
   }
 }
 
-/// The cost of a step, of a simulated second, of a search and of a motion stand apart: none takes the place
-/// of another.
+/// The costs of a step, a simulated second, a static solution and a motion are separate: none replaces
+/// another.
 TEST(Verdict, json_names_each_kind_of_cost) {
   Verdict v = verdict("tl-none", {}, false, 0.5);
   v.elements = 1000;
@@ -160,7 +160,7 @@ TEST(Verdict, json_names_each_kind_of_cost) {
   }
 }
 
-/// An inversion is a status of the verdict, not the end of the program.
+/// An inversion sets the status of the verdict; it does not end the program.
 TEST(Verdict, failed_computation_becomes_a_status) {
   Case description = plain_case(sample_law<NeoHookean>(0.49));
   const Mesh mesh = box({0.1, 0.1, 0.1}, {1, 1, 1});
@@ -179,8 +179,8 @@ TEST(Verdict, failed_computation_becomes_a_status) {
 }
 
 /// The column of the paper against the golden of another program (FEniCSx, Q1-P0). Mean dilatation solves the
-/// same problem: 1e-6 is what two solvers leave that stop at residuals of 1e-8 and below. Without control the
-/// column must hourglass visibly, the paper's figure 3(b).
+/// same problem: two solvers that stop at residuals of 1e-8 and below agree to 1e-6. Without control the
+/// column must hourglass visibly, as in the paper's figure 3(b).
 TEST(Golden, column) {
   const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "column.toml");
   const References references = read_references(scene);

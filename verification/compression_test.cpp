@@ -27,7 +27,7 @@ NodalVectors<double> hourglass_mode(int n) {
   return mode;
 }
 
-/// The block at displacements u, reached from rest in one step.
+/// The block at displacements u, reached from the undeformed shape in one step.
 template <class Kernel, class Law>
 HourglassBlock hourglass_block(const NodalVectors<double>& X, const NodalVectors<double>& u, const Law& law) {
   const auto element = dual_element<Kernel>(Kernel::precompute(X, law, {}));
@@ -76,7 +76,7 @@ double largest_entry(const HourglassBlock& block) {
   return largest;
 }
 
-/// Deformations of the tests: compressed bars and sheets, compression from all sides, and one in tension.
+/// States of the tests: compressed bars and sheets, compression from all sides, and one in tension.
 const std::vector<Vector> states{{1.2, 1.2, 0.7}, {1.4, 1.4, 0.5}, {2.2, 2.2, 0.2}, {1.6, 1.0, 0.6},
                                  {3.0, 1.0, 0.3}, {0.9, 0.9, 0.9}, {1.0, 1.0, 0.8}, {0.7, 0.7, 2.0}};
 
@@ -88,12 +88,12 @@ template <class Pair>
 class RestControlTest : public ::testing::Test {};
 TYPED_TEST_SUITE(RestControlTest, ElasticMethodWithLawTypes, EntryName);
 
-/// The strain energy of one point depends on the mean gradient alone, which hourglass modes leave: their
-/// tangent is that of the control, at every stretch. A control that does not follow keeps what it was at
-/// rest; one that follows has phi F^-T K F^-1 of it, and by Ostrowski's theorem at least phi lambda_min(K)
-/// over the square of the largest stretch. So no compression, no pressure and no law takes an hourglass
-/// mode's stiffness away from a control that has one: a method that added the pressure's share of the modes,
-/// as elements of eight points and Updated Lagrangian ones do, would not pass.
+/// With one point, strain energy depends only on the mean gradient, to which hourglass modes do not
+/// contribute: their tangent is the control's, at every stretch. A control that does not follow the
+/// deformation keeps its undeformed tangent K; one that follows has phi F^-T K F^-1 and, by Ostrowski's
+/// theorem, at least phi lambda_min(K) over the square of the largest stretch. So no compression, pressure or
+/// law removes the stiffness of an hourglass mode if the control has any. A method that added the pressure's
+/// share of the modes, as elements with eight points and Updated Lagrangian ones do, would fail.
 TYPED_TEST(RestControlTest, no_compression_softens_hourglass_modes_to_nothing) {
   using Method = typename TypeParam::Method;
   using Hourglass = typename Method::Hourglass;
@@ -119,7 +119,7 @@ TYPED_TEST(RestControlTest, no_compression_softens_hourglass_modes_to_nothing) {
           for (int n = 0; n < 12; ++n) expected(m, n) *= phi / (f[index(m % 3)] * f[index(n % 3)]);
         }
       }
-      // Roundoff of a product of stresses and gradients, of the order of the body's own stiffness K l.
+      // Roundoff of a product of stresses and gradients, of the order of the element's own stiffness K l.
       const double roundoff = 1e-13 * law.bulk_modulus() * edges[0];
       EXPECT_LT(largest_entry(block - expected), roundoff + 1e-12 * largest_entry(expected));
       if constexpr (Hourglass::traits.active) {
@@ -158,8 +158,8 @@ class RebuiltControlTest : public ::testing::Test {
   const NeoHookean law = sample_law<NeoHookean>(0.49);
   const NodalVectors<double> X = box_nodes(edges);
 
-  /// The block from its parts: what the control gives to a box of the deformed shape at rest, and sigma times
-  /// the second derivative of the volume, for f_I = sigma dv/dx_I.
+  /// The block as the sum of its parts: the control of a box that has the deformed shape when undeformed, and
+  /// sigma times the second derivative of the volume, since f_I = sigma dv/dx_I.
   HourglassBlock expected(const Vector& f) const {
     const auto x = box_nodes({edges[0] * f[0], edges[1] * f[1], edges[2] * f[2]});
     const Tensor<double> F = identity<double>() + gradient_of(f);
@@ -174,8 +174,8 @@ class RebuiltControlTest : public ::testing::Test {
 };
 TYPED_TEST_SUITE(RebuiltControlTest, UpdatedLagrangianTypes, EntryName);
 
-/// Forces of the mean current gradient are stress times the derivative of the volume, whose second derivative
-/// hourglass modes feel: stress adds to the control, with either sign.
+/// Forces of the mean current gradient are stress times the derivative of the volume, and hourglass modes
+/// change its second derivative: stress adds to the control, with either sign.
 TYPED_TEST(RebuiltControlTest, stress_acts_on_hourglass_modes_through_the_curvature_of_the_volume) {
   for (const Vector& f : states) {
     const HourglassBlock block =
@@ -185,10 +185,10 @@ TYPED_TEST(RebuiltControlTest, stress_acts_on_hourglass_modes_through_the_curvat
   }
 }
 
-/// So there is a pressure at which a single element's control gives way, unlike above: the curvature has
-/// eigenvalues of both signs, for none of its diagonal entries differs from zero. Pressed all round, an
-/// element is a smaller one of its kind, its control K and curvature B in proportion to its edges, and P B is
-/// no less than K along the mode of B's largest eigenvalue once P is the ratio of their largest.
+/// So, unlike above, a single element's control gives way at some pressure: the curvature has eigenvalues of
+/// both signs, since its diagonal is zero. Pressure from all sides shrinks an element without changing its
+/// shape, and its control K and curvature B are proportional to its edges; P B is no less than K along the
+/// mode of B's largest eigenvalue once P is the ratio of their largest eigenvalues.
 TYPED_TEST(RebuiltControlTest, pressure_takes_hourglass_modes_away) {
   using Element = typename TestFixture::Kernel;
   const auto largest = [](const HourglassBlock& block) { return eigenvalues(block).back(); };
@@ -205,7 +205,7 @@ TYPED_TEST(RebuiltControlTest, pressure_takes_hourglass_modes_away) {
 
 // Eight points.
 
-/// The lateral stretch that frees sides of stress: those in x, and those in y too or held there.
+/// The lateral stretch at which sides are free of stress: those in x, and those in y too unless held.
 Vector free_sides(const NeoHookean& law, double stretch, bool plane) {
   double low = 0.1, high = 20.0;
   for (int n = 0; n < 200; ++n) {
@@ -221,13 +221,13 @@ template <class Method>
 class EightPointTest : public ::testing::Test {};
 TYPED_TEST_SUITE(EightPointTest, MethodTypes, EntryName);
 
-/// A free cube of neo-Hookean material between two plates that let its nodes go: of the modes that twist its
-/// faces, q_1 about x, q_2 about y, q_3 about z, the gradients have no trace and no product with F, so that
-/// their second variation is mu J^(-2/3) (g : g + c tr(G G)), G = g F^-1. Here c = I1/3 - p J^(5/3) / mu,
-/// which is the square of the stretch a of a side without stress. Between (q_1, q_2, q_3) that is a matrix of
-/// ones with c / (2 f_i f_j) beside. It is singular at a / stretch = sqrt(3) under uniaxial stress, at any
-/// Poisson's ratio (3^(-1/3) = 0.693 when incompressible), and where a^2 (1 + 1 / stretch^2) = 4 in plane
-/// strain (0.800). Pressure plays no part: full integration and one pressure give way together.
+/// A free cube of neo-Hookean material between frictionless plates that do not pull: for the modes that twist
+/// its faces, q_1 about x, q_2 about y, q_3 about z, gradients have no trace and no product with F, so that
+/// the second variation is mu J^(-2/3) (g : g + c tr(G G)), G = g F^-1. Here c = I1/3 - p J^(5/3) / mu, which
+/// is the square of the stretch a of a stress-free side. Between (q_1, q_2, q_3) this is a matrix of ones
+/// with c / (2 f_i f_j) off the diagonal. It is singular at a / stretch = sqrt(3) under uniaxial stress, at
+/// any Poisson's ratio (3^(-1/3) = 0.693 when incompressible), and where a^2 (1 + 1 / stretch^2) = 4 in plane
+/// strain (0.800). Pressure has no influence: full integration and mean dilatation fail together.
 TYPED_TEST(EightPointTest, twisting_modes_of_a_free_cube_give_way_at_the_stretch_of_theory) {
   if constexpr (integration_points<TypeParam> != 8) {
     GTEST_SKIP() << "other points";
@@ -247,8 +247,8 @@ TYPED_TEST(EightPointTest, twisting_modes_of_a_free_cube_give_way_at_the_stretch
         ASSERT_LT(smallest(low), 0.0);
         for (int n = 0; n < 45; ++n) (smallest(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
         const double a = free_sides(law, low, plane)[0];
-        // Bisected to 1e-13; roundoff of forces over the slope of the eigenvalue, both of the order of K and
-        // mu.
+        // Bisection to 1e-13; the roundoff of forces over the slope of the eigenvalue, both of the order of K
+        // and mu.
         if (plane) {
           EXPECT_NEAR(a * a * (1.0 + 1.0 / (low * low)), 4.0, 1e-8);
         } else {
@@ -261,7 +261,7 @@ TYPED_TEST(EightPointTest, twisting_modes_of_a_free_cube_give_way_at_the_stretch
 
 // Blocks of elements.
 
-/// A cube of n^3 elements of which some components are free.
+/// A cube of n^3 elements, some of whose components are free.
 class Block {
  public:
   Block(std::string_view method, const NeoHookean& law, int n, bool plates)
@@ -277,15 +277,15 @@ class Block {
     }
   }
 
-  /// The least eigenvalue (N/m) of the symmetric part of the tangent at principal stretches, rigid motions of
-  /// the free sides aside, and the share of the square of its mode that hourglass amplitudes have.
+  /// The smallest eigenvalue (N/m) of the symmetric part of the tangent at principal stretches, except for
+  /// rigid motions of the free sides, and the share of hourglass amplitudes in the square of its mode.
   std::pair<double, double> least(const Vector& stretches) const {
     NodalField u = mesh_.points;
     for (auto& d : u) {
       for (std::size_t i = 0; i < 3; ++i) d[i] *= stretches[i] - 1.0;
     }
     const State<double> there = reached(elements_->undeformed(), u).first;
-    // Differences of forces linear to 1e-6 of an element's size, known to 1e-16 over that: 1e-9 of stiffness.
+    // Differences of forces, linear up to 1e-6 of a size and rounded to 1e-16 over that: 1e-9 of stiffness.
     constexpr double step = 1e-6;
     const std::size_t size = free_.size();
     std::vector<double> K(size * size);
@@ -303,7 +303,7 @@ class Block {
       }
     }
     const auto modes = symmetric_eigenpairs(K.data(), static_cast<int>(size));
-    // The three rigid motions between plates, two slides and a turn, come among the first where they exist.
+    // Between plates, three rigid motions (two slides, a turn) are among the first modes if they exist.
     for (const auto& [value, vector] : modes) {
       if (std::abs(value) < 1e-6 * modes.back().first) continue;
       NodalField v(mesh_.points.size());
@@ -315,7 +315,7 @@ class Block {
   }
 
  private:
-  /// Goes on to displacements u: the state there and the forces.
+  /// Continues to displacements u; returns the state there and the forces.
   std::pair<State<double>, NodalField> reached(State<double> state, const NodalField& u) const {
     const Rows<double> rows = to_rows<double>(u, elements_->layout());
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -337,9 +337,9 @@ class BlockTest : public ::testing::Test {};
 TYPED_TEST_SUITE(BlockTest, MethodTypes, EntryName);
 
 /// A homogeneous body whose whole boundary is held is stable in every state in which its law is strongly
-/// elliptic (van Hove 1947), as the neo-Hookean law is, whatever the pressure; a negative eigenvalue here
-/// would be the element's own. What single elements lose to pressure, neighbours give back: the volume of the
-/// whole does not change.
+/// elliptic (van Hove 1947), as the neo-Hookean law is at any pressure; a negative eigenvalue here would be
+/// the element's fault. Stiffness that single elements lose to pressure, their neighbours restore, since the
+/// volume of the whole does not change.
 TYPED_TEST(BlockTest, blocks_with_a_held_boundary_stay_stable_as_the_continuum_does) {
   const auto law = sample_law<NeoHookean>(0.49);
   const Block block(TypeParam::name, law, 3, false);
@@ -349,9 +349,9 @@ TYPED_TEST(BlockTest, blocks_with_a_held_boundary_stay_stable_as_the_continuum_d
   }
 }
 
-/// A block between two plates without friction is pressed to 0.55 of its height. Its free sides wrinkle, like
-/// those of any half-space of this material, where stretch^(3/2) = 0.296, at 0.444 (Biot 1963), and not
-/// before. Elements that hourglass do, and their mode is an hourglass mode.
+/// A block between two frictionless plates is pressed to 0.55 of its height. Its free sides wrinkle, like
+/// those of any half-space of this material, only once stretch^(3/2) = 0.296, at 0.444 (Biot 1963). Elements
+/// that hourglass give way earlier, in an hourglass mode.
 TYPED_TEST(BlockTest, blocks_between_plates_do_not_hourglass_before_the_sides_wrinkle) {
   const auto law = sample_law<NeoHookean>(0.49);
   const Block block(TypeParam::name, law, 4, true);

@@ -1,4 +1,4 @@
-/// Condensation to the driven nodes: superposition of the linear method's answers, without further error.
+/// Condensation to the driven nodes: exact superposition of the linear method's answers.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 const MethodChoice linear_method{"linear"};
 const MethodChoice condensed_method{"linear-condensed"};
 
-/// A residual of 1e-12 leaves errors of 1e-12 times the condition of the bar, some hundred.
+/// A residual of 1e-12 leaves errors of 1e-12 times the condition number of the bar, a few hundred.
 constexpr double relaxed_tolerance = 1e-9;
 
 TEST(CondensedTest, answer_is_that_of_the_linear_method) {
@@ -31,12 +31,12 @@ TEST(CondensedTest, answer_is_that_of_the_linear_method) {
   }
 }
 
-/// Only a part of a node's components may be imposed; the others find their place.
+/// Only some of a node's components may be imposed; the others remain free.
 TEST(CondensedTest, free_components_of_driven_nodes_are_free) {
   const Scene scene = distorted_bar({0.0, 0.0, 0.02}, {false, false, true});
   const NodalField u = relaxed(scene, condensed_method);
   EXPECT_LT(largest_distance(u, relaxed(scene, linear_method)), relaxed_tolerance * largest_imposed(scene));
-  EXPECT_GT(std::abs(u[index(scene.sets.at("head").front())][0]), 1e-4);  // it contracts
+  EXPECT_GT(std::abs(u[index(scene.sets.at("head").front())][0]), 1e-4);  // the head contracts
 }
 
 TEST(CondensedTest, takes_one_step_and_tells_its_residual_and_its_work) {
@@ -49,7 +49,7 @@ TEST(CondensedTest, takes_one_step_and_tells_its_residual_and_its_work) {
   EXPECT_GT(answer.residual, 0.0);
   ASSERT_EQ(recorder.frames.size(), 2U);
   EXPECT_EQ(recorder.frames.back().u, answer.u);
-  // The force grows in proportion: the work of the imposed displacements is all the energy there is.
+  // Force and displacement are proportional: the work of imposed displacements is the only energy.
   const HistoryRow& row = recorder.rows.back();
   EXPECT_NEAR(row.external_work, row.strain + row.hourglass, 1e-11 * row.strain);
 }
@@ -61,7 +61,7 @@ TEST(CondensedTest, single_precision_is_as_near_as_its_digits) {
   Observer silent;
   const Relaxation answer = relax(Model(scene, choice), silent);
   EXPECT_TRUE(in_equilibrium(answer));
-  // Columns, products and sums of six are rounded once each.
+  // Columns, products and sums of six numbers are each rounded once.
   EXPECT_LT(largest_distance(answer.u, relaxed(scene, condensed_method)), 8 * 6e-8 * largest_imposed(scene));
 }
 
@@ -85,8 +85,8 @@ TEST(CondensedTest, answers_superpose) {
   }
 }
 
-/// S is symmetric, for energy is; moving all handles alike moves the body, which takes no force and moves
-/// every node by as much.
+/// S is symmetric because an energy exists. Moving all handles by the same vector needs no force and moves
+/// every node by this vector.
 TEST(CondensedTest, stiffness_is_symmetric_and_blind_to_translation) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02});
   for (const Handles& handles : {handles_of_sets(scene), handles_of_nodes(scene)}) {
@@ -110,7 +110,7 @@ TEST(CondensedTest, stiffness_is_symmetric_and_blind_to_translation) {
   }
 }
 
-/// Forces on handles are the reactions of the linear method, node by node and summed over a set.
+/// Forces on handles are the reactions of the linear method, for single nodes and for sets.
 TEST(CondensedTest, forces_are_the_reactions_of_the_linear_method) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02});
   const NodalField u = relaxed(scene, linear_method);
@@ -143,7 +143,7 @@ TEST(CondensedTest, forces_are_the_reactions_of_the_linear_method) {
   EXPECT_LT(largest_distance(f, exact), relaxed_tolerance * size);
 }
 
-/// A subset of nodes may be requested; their values are those of the whole answer, in the requested order.
+/// Requested nodes have the values of the whole answer, in the requested order.
 TEST(CondensedTest, outputs_are_the_nodes_asked_for) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02});
   const std::vector<Vector> d{{}, {0.03, -0.01, 0.02}};
@@ -165,7 +165,7 @@ TEST(CondensedTest, update_allocates_nothing) {
   std::vector<Vector> f(2);
   NodalField u(scene.mesh.points.size());
   const long before = allocations();
-  EXPECT_GT(before, 0);  // they are counted
+  EXPECT_GT(before, 0);  // allocations are counted
   response.displacements(d, u);
   response.forces(d, f);
   EXPECT_EQ(allocations(), before);
@@ -173,7 +173,7 @@ TEST(CondensedTest, update_allocates_nothing) {
 
 TEST(CondensedTest, threads_do_not_change_a_bit) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02}, {true, true, true}, 2);
-  ASSERT_GT(3 * scene.mesh.points.size(), 4U * 512);  // several blocks to share out
+  ASSERT_GT(3 * scene.mesh.points.size(), 4U * 512);  // several blocks to distribute
   const auto response = response_of_sets(scene);
   const std::vector<Vector> d{{0.01, 0.0, 0.0}, {0.03, -0.01, 0.02}};
   NodalField alone(scene.mesh.points.size());
@@ -185,7 +185,7 @@ TEST(CondensedTest, threads_do_not_change_a_bit) {
   }
 }
 
-/// Nodes may be led one by one: the head is twisted and bulges, as the linear method relaxes it.
+/// Driven nodes may move independently: the head twists and bulges as in the linear method's solution.
 TEST(CondensedTest, driven_nodes_may_move_each_by_itself) {
   const Scene bar = distorted_bar({});
   const auto twist = [](const Vector& X) {
@@ -210,9 +210,9 @@ TEST(CondensedTest, driven_nodes_may_move_each_by_itself) {
             relaxed_tolerance * largest_imposed(twisted));
 }
 
-/// Imposed forces superpose on imposed displacements: at free nodes the internal forces of the linear method
-/// are the load, and what the handles carry balances all of it. Reciprocity (Maxwell and Betti) ties the
-/// forces on held handles under a load to the displacements at the load when handles move: R = -response^T f.
+/// Loads superpose on imposed displacements: at free nodes the internal forces of the linear method equal the
+/// load, and the forces on handles balance all of it. By reciprocity (Maxwell and Betti), forces on held
+/// handles under a load follow from displacements at the load when handles move: R = -response^T f.
 TEST(CondensedTest, loads_superpose) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02});
   NodalField load(scene.mesh.points.size());
@@ -253,8 +253,8 @@ TEST(CondensedTest, loads_superpose) {
   }
 }
 
-/// Two loads with factors of their own are one load that is their sum, to the rounding of displacements of
-/// some centimetres and of forces of a tenth.
+/// Two loads with factors of their own equal their sum as one load, up to roundoff of displacements of some
+/// centimetres and of forces of a tenth.
 TEST(CondensedTest, loads_have_factors_of_their_own) {
   const Scene scene = distorted_bar({0.03, -0.01, 0.02});
   NodalField one(scene.mesh.points.size()), other = one, sum = one;
@@ -279,7 +279,7 @@ TEST(CondensedTest, loads_have_factors_of_their_own) {
   EXPECT_LT(largest_distance(f, f_sum), 1e-12);
 }
 
-/// A node of two sets moves with the first.
+/// A node of two sets follows the first.
 TEST(CondensedTest, nodes_of_two_sets_follow_the_first) {
   CaseOnMesh bar = distorted_bar_case({0.0, 0.0, 0.02});
   const int shared = bar.sets.at("head").front();
@@ -315,7 +315,7 @@ TEST(CondensedTest, scenes_that_it_cannot_answer_are_refused) {
   EXPECT_TRUE(
       contains(input_error([&] { response_of_sets(moving, {"tl-perturbation"}); }), "no constant stiffness"));
 
-  // Held on one edge, a body turns freely about it.
+  // Held at one edge only, a body turns freely about it.
   NodeSets sets;
   impose_field(
       nodes_where(mesh.points, [](const Vector& X) { return X[0] == 0.0 && X[1] == 0.0; }), mesh.points,
@@ -330,7 +330,7 @@ TEST(CondensedTest, scenes_that_it_cannot_answer_are_refused) {
   }
 }
 
-/// Layers reach everything, and what is joined is at most one layer apart.
+/// Layers include every node, and neighbours are at most one layer apart.
 TEST(LayersTest, neighbours_are_at_most_a_layer_apart) {
   // A ring of nine, a pair next to it, and a single one.
   std::vector<std::vector<int>> neighbours(12);
@@ -347,7 +347,7 @@ TEST(LayersTest, neighbours_are_at_most_a_layer_apart) {
   EXPECT_EQ(layers[7], (std::vector<int>{11}));
 }
 
-/// Solves A x = b for a matrix with layers of different sizes, one of them empty, whose product with x is
+/// Solves A x = b for a matrix with layers of different sizes, one of them empty; b is the product with x,
 /// formed entry by entry.
 TEST(LayeredCholeskyTest, solves_what_was_added) {
   const std::vector<int> sizes{3, 5, 1, 0, 4, 7};
@@ -362,11 +362,11 @@ TEST(LayeredCholeskyTest, solves_what_was_added) {
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column <= row; ++column) {
       if (layer[index(row)] - layer[index(column)] > 1) continue;
-      // Diagonally dominant: at most 16 others of at most 1 in a row.
+      // Diagonally dominant: at most 16 others, each at most 1, in a row.
       const double value = row == column ? 20.0 + random.uniform(0, 1) : random.uniform(-1, 1);
       factor.add(row, column, 0.25 * value);
       factor.add(row, column, 0.75 * value);
-      factor.add(column, row, row == column ? 0.0 : value);  // the upper half is left out
+      factor.add(column, row, row == column ? 0.0 : value);  // the upper half is ignored
       b[index(row)] += value * x[index(column)];
       if (row != column) b[index(column)] += value * x[index(row)];
     }
@@ -380,7 +380,7 @@ TEST(LayeredCholeskyTest, refuses_what_is_not_positive_definite) {
   LayeredCholesky factor({1, 1});
   factor.add(0, 0, 1.0);
   factor.add(1, 0, 1.0);
-  factor.add(1, 1, 1.0 + 1e-16);  // singular but for roundoff
+  factor.add(1, 1, 1.0 + 1e-16);  // singular up to roundoff
   EXPECT_THROW(factor.factorise(), ComputationError);
 }
 

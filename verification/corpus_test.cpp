@@ -1,4 +1,4 @@
-/// The fuzzers' corpus without a fuzzer: whatever the bytes, a reader accepts them or reports wrong input.
+/// The fuzzers' corpus without a fuzzer: readers accept any bytes or report invalid input.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// The cost of a step, a simulated second and an equilibrium: each figure measures what its name says.
+/// The costs of a step, a simulated second and an equilibrium: each figure measures what its name says.
 
 #include "benchmark/cost.hpp"
 
@@ -34,8 +34,8 @@ MeshArrays block(const std::array<int, 3>& elements = {2, 2, 4}) {
           {{"head", nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.19; })}}};
 }
 
-/// A block whose head is loaded, without its mesh; so light that its own motion takes .12 s, not about the
-/// second that a curve over the share of the load would take.
+/// A block with a loaded head, without its mesh; so light that its own motion takes .12 s instead of about
+/// the second of a curve over the share of the load.
 std::string text_of(const std::string& load) {
   const std::string whole =
       replaced(box_case("block", "[1.0, 1.0, 1.0]", "[1, 1, 1]"), "density = 1000.0", "density = 10.0");
@@ -57,7 +57,7 @@ double smooth(double t) {
   return t * t * t * (10.0 + t * (6.0 * t - 15.0));
 }
 
-/// The motion of a simulation that a program drives along the loading curve: time over number of steps.
+/// The mean step of a simulation that a program drives along the loading curve: time over number of steps.
 double mean_step_of_simulation(const std::string& method, const std::string& load, double duration,
                                double damping) {
   Simulation<double> simulation(block(), text_of(load), {.method = method, .damping = damping});
@@ -73,9 +73,9 @@ double mean_step_of_simulation(const std::string& method, const std::string& loa
 
 class OwnMotionTest : public ::testing::TestWithParam<const char*> {};
 
-/// The step that counts is the motion's. Of a block pressed by 40 % it is between those at both ends, and
-/// what a simulation of the same motion takes: both choose their steps in the same way, so they differ by the
-/// one step that ends at the duration. A slower motion has the same mean step, or it would be the speed's.
+/// The cost uses the steps of the motion. For a block pressed by 40 % the mean step lies between those at
+/// both ends and equals that of a simulation: both choose steps alike and differ only by the last one, which
+/// ends at the duration. A slower motion has the same mean step, so speed does not matter.
 TEST_P(OwnMotionTest, has_the_steps_of_a_simulation) {
   const Scene scene = scene_of(pressed(0.08));
   const MethodChoice choice{.method = GetParam()};
@@ -86,17 +86,17 @@ TEST_P(OwnMotionTest, has_the_steps_of_a_simulation) {
               1e-12);
   const double simulated = mean_step_of_simulation(GetParam(), pressed(0.08), own_motion_crossings * crossing,
                                                    own_motion_damping / crossing);
-  // Steps of a run are equal to its end, so that after every change they are up to one part of their number
-  // shorter.
+  // A run divides the time left into equal steps, so that each change shortens them by up to one part of
+  // their number.
   EXPECT_NEAR(*motion.mean_step, simulated, 0.015 * simulated);
   const double slower =
       mean_step_of_simulation(GetParam(), pressed(0.08), 7.0 * crossing, own_motion_damping / crossing);
-  // The cautious steps of the first half crossing count twice as much.
+  // Over a shorter motion, the cautious steps of the first half crossing count twice as much.
   EXPECT_NEAR(*motion.mean_step, slower, 0.04 * slower);
   const Model model(scene, choice);
   const double at_rest = 0.9 * stable_step(model, NodalField(scene.mesh.points.size())).step;
   const double at_end = 0.9 * stable_step(model, motion.end).step;
-  EXPECT_LT(at_end, 0.8 * at_rest);  // or the test would not tell them apart
+  EXPECT_LT(at_end, 0.8 * at_rest);  // otherwise the test could not distinguish them
   EXPECT_LT(*motion.mean_step, 0.95 * at_rest);
   EXPECT_GT(*motion.mean_step, 1.05 * at_end);
 }
@@ -109,8 +109,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, OwnMotionTest,
                            return name;
                          });
 
-/// The elements of a method that adapts wake on the way: steps are timed with the levels on the way, not of
-/// the end alone, and their choice is one of the checks. Of another method there is one state.
+/// Elements of an adaptive method change levels during the motion: steps are timed with the levels at several
+/// times, not only at the end, and the cost includes the checks of levels. Other methods have one state.
 TEST(OwnMotion, keeps_levels_on_the_way) {
   const Scene scene = scene_of(pressed(0.08));
   const MethodChoice adaptive{.method = "tl-adaptive", .accuracy = 0.01};
@@ -136,8 +136,8 @@ TEST(OwnMotion, keeps_levels_on_the_way) {
   EXPECT_EQ(make_stepped_model(scene, {"tl-perturbation"}, &plain)->states(), 1U);
 }
 
-/// It ends near the equilibrium: its speed is a fifth of a crossing a time, its damping twice the lowest
-/// frequency's. A curve over the share of the load is followed too: one that returns ends at rest.
+/// The slow, damped motion ends near the equilibrium. Curves over the share of the load are followed too:
+/// with one that returns to zero, the body returns as well.
 TEST(OwnMotion, ends_near_the_equilibrium) {
   Observer silent;
   const std::string force = "[[force]]\nset = \"head\"\ntotal = [0.0, 0.0, 2.0]\n";
@@ -155,8 +155,8 @@ TEST(OwnMotion, ends_near_the_equilibrium) {
             0.05 * largest);
 }
 
-/// An element all of whose nodes are driven, the head through the foot, has no motion and no cost of a
-/// simulated second; why is said.
+/// An element all of whose nodes are driven has no motion and no cost of a simulated second; the reason is
+/// given.
 TEST(OwnMotion, says_why_it_fails) {
   const Scene scene = read_scene(text_of(pressed(0.25)), checked(block({1, 1, 1})));
   const OwnMotion motion = follow_own_motion(scene, {"tl-perturbation"}, proceed);
@@ -176,7 +176,7 @@ TEST(OwnMotion, ends_when_told) {
   EXPECT_THROW(follow_own_motion(scene, {"tl-perturbation"}, [](double) { return false; }), ComputationError);
 }
 
-/// A dynamic case is its own motion.
+/// The own motion of a dynamic case is the case itself.
 TEST(OwnMotion, of_a_dynamic_case_is_the_case) {
   Scene scene = scene_of(pressed(0.02));
   scene.settings.quasi_static = false;
@@ -184,8 +184,8 @@ TEST(OwnMotion, of_a_dynamic_case_is_the_case) {
   EXPECT_NEAR(*follow_own_motion(scene, {"tl-perturbation"}, proceed).mean_step, 1e-4, 1e-13);
 }
 
-/// A simulated second is what its steps take, a thousand answers of a condensed method; a kappa costs what
-/// its method does.
+/// A simulated second costs as much as its steps, or a thousand answers of a condensed method; the cost does
+/// not depend on kappa.
 TEST(StepCost, follows_from_step_and_mean_step) {
   const Scene scene = scene_of(pressed(0.02));
   const OwnMotion motion = follow_own_motion(scene, {"tl-perturbation"}, proceed);

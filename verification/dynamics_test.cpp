@@ -27,7 +27,7 @@ DynamicsSettings settings(double duration, double time_step) {
   return chosen;
 }
 
-/// One cube on three planes of symmetry, thrown outward with `speed` along all axes: it breathes,
+/// One cube on three planes of symmetry with an initial outward velocity `speed` along all axes: it breathes,
 /// u_i = q X_i / h, with the same mass rho h^3 / 8 at four nodes for each of the three directions.
 Scene breathing_cube(const AnyLaw& law, double h, double speed) {
   Case scene = plain_case(law, density);
@@ -45,7 +45,7 @@ Scene breathing_cube(const AnyLaw& law, double h, double speed) {
   return make_scene(scene, mesh, sets);
 }
 
-/// The generator numbers lattice points with x fastest, so the free corner of a single cube comes last.
+/// Lattice points are numbered with x fastest, so the free corner of a single cube comes last.
 constexpr std::size_t corner = 7;
 
 template <class Pair>
@@ -58,19 +58,19 @@ class DynamicsTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(DynamicsTest, SteppedPairTypes, EntryName);
 
-/// A small breathing oscillation has omega^2 = 6 K / (rho h^2): the force V 3 K (q/h) / (4 h) on the mass
-/// rho V / 8. Central differences follow it exactly in their own frequency, sin(phi / 2) = omega dt / 2: with
-/// u(0) = 0, u_n = v0 dt sin(n phi) / sin(phi), and the velocity OF THAT TIME is v_n = v0 cos(n phi). A wrong
-/// lumped mass changes phi, a velocity half a step or a step late the phase.
+/// A small breathing oscillation has omega^2 = 6 K / (rho h^2): the force V 3 K (q/h) / (4 h) on the mass rho
+/// V / 8. Central differences follow it exactly at their own frequency, sin(phi / 2) = omega dt / 2: with
+/// u(0) = 0, u_n = v0 dt sin(n phi) / sin(phi), and the velocity AT THE SAME TIME is v_n = v0 cos(n phi). A
+/// wrong lumped mass changes phi; a velocity that is half a step or a step late changes the phase.
 TYPED_TEST(DynamicsTest, one_element_oscillates_with_its_frequency) {
   const double h = 0.02;
-  const double speed = 1e-6;  // amplitude / h = 1e-5 at most: the nonlinearity stays below 1e-4 of the answer
+  const double speed = 1e-6;  // amplitude / h <= 1e-5: nonlinearity changes less than 1e-4 of the answer
   const auto law = this->law();
   Scene scene = breathing_cube(law, h, speed);
   const double omega = std::sqrt(6 * law.bulk_modulus() / (density * h * h));
   const double dt = 0.3 / omega;
   scene.settings.dynamics = settings(40 * dt, dt);
-  scene.settings.dynamics.frames = 1000;  // more than steps: a frame each
+  scene.settings.dynamics.frames = 1000;  // more than there are steps: one frame per step
   const Model model(scene, {this->method(), {}});
   Recorder recorder;
   const Motion motion = integrate(model, recorder);
@@ -89,9 +89,9 @@ TYPED_TEST(DynamicsTest, one_element_oscillates_with_its_frequency) {
   EXPECT_EQ(motion.time, recorder.frames.back().time);
 }
 
-/// At requested times between steps of omega dt = 0.3, it reports the motion there: the same curve through a
-/// cubic that is (omega dt)^4 / 384 = 2e-5 of the amplitude off. A straight line would be a hundredth off, a
-/// step late three tenths.
+/// Displacements at times between steps, with omega dt = 0.3, come from a cubic through the motion, which is
+/// (omega dt)^4 / 384 = 2e-5 of the amplitude off. A straight line would be a hundredth off, a step's delay
+/// three tenths.
 TYPED_TEST(DynamicsTest, tells_displacements_at_any_time) {
   struct Asking final : Observer {
     double next_sample() const override { return told.size() < times.size() ? times[told.size()] : 1e9; }
@@ -115,8 +115,8 @@ TYPED_TEST(DynamicsTest, tells_displacements_at_any_time) {
   }
 }
 
-/// The same cube with a large amplitude is one nonlinear equation, 12 m q'' = -dW/dq with W = V W(q/h I),
-/// solved here with Runge-Kutta to roundoff. Displacement and velocity approach it with the square of the
+/// The same cube with a large amplitude obeys one nonlinear equation, 12 m q'' = -dW/dq with W = V W(q/h I),
+/// solved here to roundoff with Runge-Kutta. Displacement and velocity converge to it with the square of the
 /// step.
 TYPED_TEST(DynamicsTest, converges_with_second_order_in_displacement_and_velocity) {
   const double h = 0.02;
@@ -162,7 +162,7 @@ TYPED_TEST(DynamicsTest, converges_with_second_order_in_displacement_and_velocit
   }
 }
 
-/// A free body keeps its velocity: u = v t, to the roundoff of adding up steps.
+/// A free body keeps its velocity: u = v t, up to the roundoff of summed steps.
 TYPED_TEST(DynamicsTest, free_body_moves_uniformly) {
   Case description = plain_case(this->law(), density);
   description.quasi_static = false;
@@ -173,7 +173,7 @@ TYPED_TEST(DynamicsTest, free_body_moves_uniformly) {
   const Model model(scene, {this->method(), {}});
   Recorder recorder;
   const Motion motion = integrate(model, recorder);
-  EXPECT_NEAR(motion.time, 0.5, 1e-12);  // the last step ends where the user said
+  EXPECT_NEAR(motion.time, 0.5, 1e-12);  // the last step ends at the requested time
   for (std::size_t n = 0; n < motion.u.size(); ++n) {
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_NEAR(motion.v[n][i], velocity[i], 1e-10);
@@ -186,8 +186,8 @@ TYPED_TEST(DynamicsTest, free_body_moves_uniformly) {
   }
 }
 
-/// A block held at its foot and thrown sideways exchanges kinetic and strain energy over some periods. Their
-/// sum is kept up to a part of (omega dt)^2, without drift, and better with half the step.
+/// A block held at its foot, moving sideways at first, exchanges kinetic and strain energy. Their sum is
+/// constant up to a fraction of (omega dt)^2, without drift, and closer with half the step.
 TYPED_TEST(DynamicsTest, energy_is_conserved_to_second_order) {
   const auto largest_change = [&](double fraction) {
     Case description = plain_case(this->law(), density);
@@ -215,7 +215,7 @@ TYPED_TEST(DynamicsTest, energy_is_conserved_to_second_order) {
   };
   const double coarse = largest_change(0.4);
   const double fine = largest_change(0.2);
-  // (omega dt)^2 is .01 to .1; terms of second order cancel in part, so that the ratio may be below 4.
+  // (omega dt)^2 is .01 to .1; second-order terms partly cancel, so the ratio may be below 4.
   EXPECT_LT(coarse, 2e-3);
   EXPECT_LT(fine, 6e-4);
   EXPECT_GT(coarse / fine, 1.9);
@@ -234,7 +234,7 @@ TYPED_TEST(DynamicsTest, work_of_driven_nodes_balances_energies) {
     const Model probe(scene, {this->method(), {}});
     const double dt = fraction * stable_step(probe, NodalField(mesh.points.size())).step;
     scene.settings.dynamics = settings(0.15, dt);
-    scene.settings.dynamics.ramp_time = 0.1;  // fast enough that waves run
+    scene.settings.dynamics.ramp_time = 0.1;  // fast enough to cause waves
     const Model model(scene, {this->method(), {}});
     Recorder recorder;
     integrate(model, recorder);
@@ -242,13 +242,13 @@ TYPED_TEST(DynamicsTest, work_of_driven_nodes_balances_energies) {
   };
   const double coarse = imbalance(0.4);
   const double fine = imbalance(0.2);
-  // (omega dt)^2 is .01 to .1; terms of second order cancel in part, so that the ratio may be below 4.
+  // (omega dt)^2 is .01 to .1; second-order terms partly cancel, so the ratio may be below 4.
   EXPECT_LT(coarse, 2e-3);
   EXPECT_LT(fine, 6e-4);
   EXPECT_GT(coarse / fine, 1.9);
 }
 
-/// A free body with damping c slows down as exp(-c t); displacement and velocity to second order.
+/// A free body with damping c slows down as exp(-c t); displacement and velocity are of second order.
 TEST(Dynamics, damping_slows_a_free_body_with_second_order) {
   const double damping = 2.0;
   std::array<double, 2> error_u{};
@@ -272,7 +272,7 @@ TEST(Dynamics, damping_slows_a_free_body_with_second_order) {
   EXPECT_NEAR(error_v[0] / error_v[1], 4.0, 0.5);
 }
 
-/// Driven nodes move with the velocity of the loading curve, at the time of the frame.
+/// Driven nodes have the velocity of the loading curve at the time of the frame.
 TEST(Dynamics, velocity_of_driven_nodes_is_that_of_the_loading_curve) {
   Case description = plain_case(sample_law<NeoHookean>(0.45), density);
   description.quasi_static = false;

@@ -1,6 +1,6 @@
-/// True eigenvalues of elements and meshes: exact values for uniform strains and bending, and the bound of
-/// the stable step against the largest, in elements and meshes of every shape, undeformed and strongly
-/// deformed.
+/// True eigenvalues of elements and meshes: exact values for uniform strains and bending, and the largest
+/// eigenvalue against the bound of the stable step, in elements and meshes of every shape, undeformed and
+/// strongly deformed.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ class EigenvalueTest : public ::testing::Test {
  protected:
   using Tangent = MeshTangent<typename Pair::Kernel, typename Pair::Law>;
 
-  /// K u (N) of one element at rest, corners at X.
+  /// K u (N) of one undeformed element with corners at X.
   static NodalVectors<double> force(const Mesh& mesh, const NodalVectors<double>& u,
                                     const typename Pair::Law& law, std::optional<double> kappa = {}) {
     NodalField v(8);
@@ -37,9 +37,9 @@ class EigenvalueTest : public ::testing::Test {
     return mesh;
   }
 
-  /// Energy of a bar along i that couples bend in the plane i, j over the exact one, E/2 V l_j^2 / 3 for
-  /// u_i = x_i x_j (see hourglass_forms_test.cpp). Its width is free: of u_k = b x_j x_k the bar takes what
-  /// has the least energy, which is b = -nu in a real one. u_j is the same at all corners.
+  /// Energy of a bar along i under pure bending in the plane i, j over the exact energy, E/2 V l_j^2 / 3 for
+  /// u_i = x_i x_j (see hourglass_forms_test.cpp). The bar is free to change its width: of u_k = b x_j x_k it
+  /// takes the amount with the least energy, which is b = -nu in a real bar. u_j is the same at all corners.
   static double bending_over_exact(const std::array<double, 3>& half, int i, int j, double nu,
                                    std::optional<double> kappa = {}) {
     const Mesh mesh = brick(half);
@@ -58,7 +58,7 @@ class EigenvalueTest : public ::testing::Test {
     return (own - mixed * mixed / free) / (young_modulus_of(law) * V * l * l / 3);
   }
 
-  /// The same of a bar along k that twists, u_i = x_j x_k and u_j = -x_i x_k: a shear of x_j and of -x_i
+  /// The same for torsion of a bar along k, u_i = x_j x_k and u_j = -x_i x_k: a shear of x_j and of -x_i
   /// against k, with mu/2 V (l_i^2 + l_j^2) / 3 if sections stay plane.
   static double torsion_over_exact(const std::array<double, 3>& half, int k, double nu) {
     const Mesh mesh = brick(half);
@@ -92,9 +92,9 @@ class EigenvalueTest : public ::testing::Test {
 using AllPairs = detail::AsTestTypes<PairsOf<Methods>>::type;
 TYPED_TEST_SUITE(EigenvalueTest, AllPairs, EntryName);
 
-/// On a cube of edge h a dilation and every uniform strain without trace are eigenvectors. Stress is 3 K and
+/// On a cube of edge h, a dilation and every uniform strain without trace are eigenvectors. Stress is 3 K and
 /// 2 mu times the strain, f_I = V sigma h_I, and h_I = X_I / (2 h^2): the eigenvalues are 3 K h / 2 and mu h,
-/// for every method and every law that knows no directions.
+/// for every method and every isotropic law.
 TYPED_TEST(EigenvalueTest, uniform_strains_of_a_cube_have_their_moduli) {
   using Law = typename TypeParam::Law;
   if (!is_isotropic<Law>) return;
@@ -182,9 +182,9 @@ TYPED_TEST(EigenvalueTest, bending_and_torsion_energies) {
   }
 }
 
-// The bound of the stable step, in the way that runs use it. All pairs of methods and laws together meet
-// 10,000 elements and more than 100 meshes, at rest and strongly deformed; verification/sharpness.cpp prints
-// the distribution of more.
+// The bound of the stable step as runs use it. All pairs of methods and laws together test 10,000 elements
+// and more than 100 meshes, undeformed and strongly deformed; verification/sharpness.cpp prints the
+// distribution of more.
 
 TYPED_TEST(EigenvalueTest, step_is_safe_for_elements_at_rest) {
   this->expect_safe(true, at_rest, 190);
@@ -202,9 +202,9 @@ TYPED_TEST(EigenvalueTest, step_is_safe_for_strongly_deformed_meshes) {
   this->expect_safe(false, strongly_deformed, 2);
 }
 
-/// The smallest elements that a bound without the curvature of current geometry would miss: unit cubes bent
-/// by patterns of 0.2 of an edge. In the Updated Lagrangian formulation the true eigenvalue was 1.011 of such
-/// a bound for u_x = 0.2 eta zeta, 1.084 with u_z = 0.2 xi eta beside it, nearly incompressible.
+/// The smallest elements for which a bound without the curvature of current geometry is unsafe: unit cubes
+/// bent by patterns of 0.2 of an edge. In the Updated Lagrangian formulation the true eigenvalue was 1.011 of
+/// such a bound for u_x = 0.2 eta zeta, 1.084 together with u_z = 0.2 xi eta, nearly incompressible.
 TYPED_TEST(EigenvalueTest, step_is_safe_for_bent_cubes) {
   using Law = typename TypeParam::Law;
   const Mesh cube = this->brick({0.5, 0.5, 0.5});
@@ -227,7 +227,7 @@ TYPED_TEST(EigenvalueTest, step_is_safe_for_bent_cubes) {
   }
 }
 
-/// A user's kappa may let the hourglass modes set the step of deformed elements.
+/// With a user's kappa, hourglass modes may set the step of deformed elements.
 TYPED_TEST(EigenvalueTest, step_is_safe_with_a_stiff_hourglass_control) {
   using Law = typename TypeParam::Law;
   if (!TypeParam::Method::Hourglass::traits.takes_kappa) return;

@@ -20,8 +20,8 @@ T triple_product(const NodalVectors<T>& X, int a, int b, int c) {
       Tensor<T>{{X(a, 0), X(a, 1), X(a, 2), X(b, 0), X(b, 1), X(b, 2), X(c, 0), X(c, 1), X(c, 2)}});
 }
 
-/// The volume of the trilinear hexahedron in closed form, without shape functions or quadrature: under a
-/// bilinear face lies the mean of what lies under its two triangulations (divergence theorem).
+/// The volume of the trilinear hexahedron in closed form, without shape functions or quadrature: the volume
+/// under a bilinear face is the mean of those under its two triangulations (divergence theorem).
 template <class T>
 T closed_form_volume(const NodalVectors<T>& X) {
   constexpr int faces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
@@ -34,7 +34,7 @@ T closed_form_volume(const NodalVectors<T>& X) {
   return sum * T(1.0 / 12.0);
 }
 
-/// Coordinates relative to the first node: the oracle's triple products cancel far from the origin.
+/// Coordinates relative to the first node: far from the origin, triple products lose digits by cancellation.
 NodalVectors<double> centred(NodalVectors<double> X) {
   for (int I = 7; I >= 0; --I) {
     for (int i = 0; i < 3; ++i) X(I, i) -= X(0, i);
@@ -42,7 +42,7 @@ NodalVectors<double> centred(NodalVectors<double> X) {
   return X;
 }
 
-/// Roundoff of a volume whose coordinates are up to a few sizes from the origin and sheared.
+/// Roundoff of a volume whose coordinates are sheared and up to a few sizes from the origin.
 constexpr double volume_tolerance = 1e-12;
 
 TEST(Hexahedron, volume_is_exact) {
@@ -55,7 +55,7 @@ TEST(Hexahedron, volume_is_exact) {
     centre_error =
         std::max(centre_error, std::abs(8.0 * determinant(parent_jacobian(X, {0, 0, 0})) / V - 1.0));
   }
-  // The samples distinguish the exact volume from the common 8 det J(0).
+  // Samples that distinguish the exact volume from the common 8 det J(0).
   EXPECT_GT(centre_error, 0.01);
 }
 
@@ -70,7 +70,7 @@ TEST(Hexahedron, mean_gradients_are_the_derivatives_of_the_volume) {
     const auto centre = point_gradient(X, {0, 0, 0}).gradient;
     centre_error = std::max(centre_error, largest_entry(centre - mean.h) / largest_entry(mean.h));
   }
-  EXPECT_GT(centre_error, 0.01);  // the samples distinguish mean from centre gradients
+  EXPECT_GT(centre_error, 0.01);  // samples that distinguish mean from centre gradients
 }
 
 TEST(Hexahedron, mean_gradients_reproduce_constant_and_linear_fields) {
@@ -83,7 +83,7 @@ TEST(Hexahedron, mean_gradients_reproduce_constant_and_linear_fields) {
       for (int I = 0; I < 8; ++I) sum += h(I, i);
       EXPECT_NEAR(sum, 0.0, 64 * eps * largest_entry(h));
     }
-    const double scale = 8.0 * largest_entry(X) * largest_entry(h);  // what the sums below add up
+    const double scale = 8.0 * largest_entry(X) * largest_entry(h);  // the magnitude of the sums below
     EXPECT_LT(largest_entry(transpose(X) * h - identity<double>()), 16 * eps * scale);
   }
 }
@@ -117,7 +117,7 @@ TEST(Hexahedron, hourglass_shape_vectors_are_orthogonal_to_linear_fields) {
       for (int I = 0; I < 8; ++I) sum += gamma(I, a);
       EXPECT_NEAR(sum, 0.0, 64 * eps * scale);
     }
-    // Zero would be orthogonal too; gamma has the size of the base vectors.
+    // Zero would be orthogonal too, but gamma has the size of the base vectors.
     EXPECT_GT(largest_entry(gamma), 0.5);
   }
 }
@@ -156,9 +156,9 @@ TEST(PerturbationHourglassControl, stiffness_of_a_box_in_closed_form) {
 }
 
 /// Energy of u_x = q xi eta (gamma^T u = 8 q, energy 32 k q^2) on a cube of edge a against beam theory. With
-/// xi = 2x/a the strain is 4 q y / a^2, and E/2 times its square over the cube is 2/3 E a q^2: what a cube
-/// costs that is bent by couples and may contract sideways. `auto` gives it for all six such modes at every
-/// nu.
+/// xi = 2x/a the strain is 4 q y / a^2, and E/2 times its square over the cube is 2/3 E a q^2: the energy of
+/// a cube under pure bending that is free to contract sideways. `auto` gives this energy for all six such
+/// modes at every nu.
 TEST(PerturbationHourglassControl, auto_bends_a_cube_with_its_exact_energy) {
   const double a = 0.04;
   const double q = 1e-3;
@@ -170,7 +170,7 @@ TEST(PerturbationHourglassControl, auto_bends_a_cube_with_its_exact_energy) {
       const auto element = PerturbationHourglassControl::precompute(X, law, {});
       for (int mode = 0; mode < 3; ++mode) {
         for (int i = 0; i < 3; ++i) {
-          if (i == mode) continue;  // u_x = eta zeta twists; bending has the displaced axis in the product
+          if (i == mode) continue;  // u_x = eta zeta is torsion; bending includes the displaced axis
           NodalVectors<double> u{};
           for (int I = 0; I < 8; ++I) u(I, i) = q * hourglass_base_vectors()(I, mode);
           const Matrix<double, 4, 3> amplitudes = transpose(gamma) * u;
@@ -183,7 +183,7 @@ TEST(PerturbationHourglassControl, auto_bends_a_cube_with_its_exact_energy) {
   });
 }
 
-/// The numbers of the theory note, to their digits.
+/// The tabulated values of the theory, to their digits.
 TEST(PerturbationHourglassControl, auto_kappa_has_the_tabulated_values) {
   constexpr std::array<double, 4> tabulated{0.0926, 0.0293, 0.0065, 0.00066};
   constexpr std::array<double, 4> digit{5e-5, 5e-5, 5e-5, 5e-6};
@@ -193,7 +193,7 @@ TEST(PerturbationHourglassControl, auto_kappa_has_the_tabulated_values) {
   }
 }
 
-/// On mu the best kappa is 2 (1 + nu) / 9, nearly one number, and the stiffness is the same.
+/// Relative to mu the best kappa is 2 (1 + nu) / 9, nearly constant, and the stiffness is the same.
 TEST(PerturbationHourglassControl, auto_gives_the_same_stiffness_on_either_modulus) {
   const NodalVectors<double> X = 0.02 * corner_signs;
   for (const double nu : poisson_ratios) {

@@ -1,4 +1,4 @@
-/// The energy of free, undamped motions.
+/// Energy in free, undamped motions.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 namespace sandglass::verification {
 namespace {
 
-/// A scene of its own for each number: a free box of 8 to 96 elements, half of them distorted; Poisson's
-/// ratio from 0 to .4999; thrown into a standing wave whose strains are about 1 to 30 %, without momentum, so
-/// that it stays where single precision resolves it.
+/// A different scene for each number: a free box of 8 to 96 elements, half of them distorted; Poisson's ratio
+/// from 0 to .4999; an initial velocity that makes a standing wave with strains of about 1 to 30 %, without
+/// momentum, so that the box stays where single precision resolves it.
 class FreeMotion {
  public:
   FreeMotion(long seed, long number) : random_(static_cast<std::uint64_t>(7000003 * seed + number)) {
@@ -34,7 +34,7 @@ class FreeMotion {
     velocity_ = {.value = v, .half_waves = {whole(0, 1), whole(0, 1), whole(1, 2)}};
   }
 
-  /// Some periods of the slowest shear wave across it.
+  /// A motion of some periods of the slowest shear wave across the box.
   Scene scene(double periods, const DynamicsSettings& settings) const {
     Case description = plain_case(law_, density);
     description.quasi_static = false;
@@ -72,7 +72,7 @@ class FreeMotion {
   InitialVelocity velocity_;
 };
 
-/// The methods whose forces depend on displacements alone, and resist all deformations.
+/// The methods whose forces depend only on displacements and resist all deformations.
 std::vector<std::string_view> conservative_methods(const Scene& scene) {
   std::vector<std::string_view> names;
   for (const MethodEntry& method : methods()) {
@@ -85,9 +85,9 @@ std::vector<std::string_view> conservative_methods(const Scene& scene) {
   return names;
 }
 
-/// The largest gain of kinetic and strain energy is a percent, which is what shorter steps after strong
-/// compression may bring; steps that follow a vibration bring as much in every ten periods. More scenes, and
-/// longer: SANDGLASS_SCENES=100 SANDGLASS_PERIODS=1000 energy_test prints a row for each.
+/// The largest gain of kinetic plus strain energy is a percent, which shorter steps after strong compression
+/// may cause; steps adjusted to a vibration would gain as much in every ten periods. For more and longer
+/// scenes, SANDGLASS_SCENES=100 SANDGLASS_PERIODS=1000 energy_test prints a row for each.
 TEST(Energy, of_free_motions_does_not_grow) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 24);
   const long seed = from_environment("SANDGLASS_SEED", 1),

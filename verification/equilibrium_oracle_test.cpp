@@ -20,7 +20,7 @@ double norm(const std::vector<double>& a) {
   return std::sqrt(square);
 }
 
-/// A short column, pulled and sheared as the paper's.
+/// A short column, pulled and sheared like the paper's.
 Scene short_column(const AnyLaw& law) {
   Case description = plain_case(law);
   const Mesh mesh = box({0.1, 0.1, 0.4}, {2, 2, 8});
@@ -47,17 +47,17 @@ Scene pressed_block(const AnyLaw& law) {
   return make_scene(description, mesh, sets);
 }
 
-/// The oracle's figures for displacements in equilibrium.
+/// Residuals of both solutions, and their distance.
 struct Agreement {
   double residual;         ///< of the relaxed displacements, by the plain assembly, over the forces carried
-  double oracle_residual;  ///< of KINSOL's
+  double oracle_residual;  ///< of KINSOL's displacements, likewise
   double distance;         ///< largest, over the imposed displacement
-  double bound;            ///< of it
+  double bound;            ///< of the distance
 };
 
-/// Displacements `exact` and `relaxed` (m) with residuals r are not balanced by much: to first order the true
-/// balance is K^-1 r away, so that they lie within |K^-1| (|r_exact| + |r_relaxed|) of each other, with K the
-/// tangent of the free components. Frobenius' norm is no smaller than the spectral one.
+/// Displacements `exact` and `relaxed` (m) with residuals r are slightly out of balance: to first order the
+/// true equilibrium is K^-1 r away, so the two lie within |K^-1| (|r_exact| + |r_relaxed|) of each other,
+/// where K is the tangent of the free components. The Frobenius norm is no smaller than the spectral norm.
 template <class Kernel, class Law>
 Agreement agreement(const Balance<Kernel, Law>& balance, const Scene& scene, const std::vector<double>& exact,
                     const std::vector<double>& relaxed) {
@@ -71,11 +71,11 @@ Agreement agreement(const Balance<Kernel, Law>& balance, const Scene& scene, con
           compliance * (r_exact + r_relaxed) / unit};
 }
 
-/// The limit is 1e-7 of the imposed displacement, and the bound says which residual it takes: on these scenes
-/// |K^-1| times the forces carried is 15 to 110 imposed displacements, so that a residual of 1e-9 would do.
-/// The scenes ask for 1e-11, and the bound, not the limit, is what is held against.
+/// The limit is 1e-7 of the imposed displacement, and the bound gives the residual this needs: on these
+/// scenes |K^-1| times the forces carried is 15 to 110 imposed displacements, so that a residual of 1e-9
+/// would suffice. The scenes request 1e-11, and the distance is compared with the bound, not with the limit.
 void expect_agreement(const Agreement& found) {
-  EXPECT_LT(found.residual, 1.01e-11);  // what relaxation said it reached
+  EXPECT_LT(found.residual, 1.01e-11);  // the tolerance that relaxation reached
   EXPECT_LT(found.oracle_residual, 1e-12);
   EXPECT_LT(found.bound, 1e-7);
   EXPECT_LT(found.distance, found.bound);
@@ -88,9 +88,9 @@ void expect_agreement(const Agreement& found) {
   record("bound over imposed", found.bound);
 }
 
-/// A method whose forces follow from the displacements: KINSOL goes its own way from rest in ten load levels,
-/// and knows nothing of what relaxation found. The first levels are short, for only the imposed nodes have
-/// moved where Newton's method begins; later ones begin on the line through the last two.
+/// A method whose forces depend only on displacements: KINSOL starts from the undeformed shape and takes ten
+/// load levels, independently of relaxation. The first levels are short because Newton's method starts there
+/// with only the imposed nodes moved; later ones start on the line through the last two solutions.
 template <class Method, class Law>
 void expect_the_oracles_balance(const Scene& scene, const Law& law) {
   Observer silent;
@@ -114,8 +114,8 @@ void expect_the_oracles_balance(const Scene& scene, const Law& law) {
   expect_agreement(agreement(balance, scene, balance.displacements(x, 1.0), u));
 }
 
-/// The state in which `relax` leaves a body, with what its elements remember: the same search on the same
-/// objects, without its answers to trouble.
+/// The state in which `relax` leaves a body, with its elements' memory: the same search on the same objects,
+/// without the handling of failures.
 State<double> relaxed_state(const Model& model, const InternalForce<double>& elements) {
   Equilibrium<double> search(model, elements);
   LoadLevels<double> levels(model, search.body(), elements.needs_increment());
@@ -131,17 +131,17 @@ State<double> relaxed_state(const Model& model, const InternalForce<double>& ele
   }
 }
 
-/// A method that remembers comes to rest where its path leads it, and the path is the search's own: every
-/// trial turns and loads the hourglass resistances. There is no balance to be found from outside, but there
-/// is one to be confirmed: with what elements remember at the end, the forces balance there, and nowhere
-/// near. So the search is run once more for its memory, which must end in the same bits, and KINSOL starts a
-/// hundredth of the imposed displacement away with that memory.
+/// A method with memory reaches an equilibrium that depends on its path, which is the search's own: every
+/// trial turns and loads the hourglass resistances. An outside solver cannot find this equilibrium, but it
+/// can confirm it: with the elements' memory at the end, forces balance there and nowhere nearby. So the
+/// search is repeated to obtain the memory, which must give the same bits, and KINSOL starts with that memory
+/// a hundredth of the imposed displacement away.
 template <class Method, class Law>
 void expect_the_balance_that_is_remembered(const Scene& scene, const Law& law) {
   using Kernel = FormulationOf<Method, Law>;
   using Assembly = PlainAssembly<Kernel, Law>;
   MethodChoice choice{std::string(Method::name)};
-  choice.kernel = KernelWidth::scalar;  // one element to a level: its history is a run of numbers
+  choice.kernel = KernelWidth::scalar;  // one element at a time: its history is a sequence of numbers
   const Model model(scene, choice);
   const auto& elements = *std::get<0>(model.internal_force());
   Observer silent;
@@ -170,9 +170,9 @@ void expect_the_balance_that_is_remembered(const Scene& scene, const Law& law) {
   expect_agreement(agreement(balance, scene, balance.displacements(x, 1.0), u));
 }
 
-/// A method that leaves hourglass modes without energy at rest has no single balance, and may find none
-/// before elements invert. What can be said is that the forces of the plain assembly balance where relaxation
-/// says so, and no better.
+/// A method without resistance to hourglass modes has no unique equilibrium, and may find none before
+/// elements invert. The test can only show that the forces of the plain assembly balance where relaxation
+/// reports it, to the same residual.
 template <class Method, class Law>
 void expect_a_balance(const Scene& scene, const Law& law) {
   Relaxation relaxed;
@@ -218,7 +218,7 @@ TYPED_TEST(EquilibriumOracleTest, relaxation_finds_the_balance_of_a_pressed_bloc
   expect_rest<TypeParam>(pressed_block(law), law);
 }
 
-/// Laws that relax, when all has relaxed: elements of one point and of eight.
+/// Laws that relax, when fully relaxed: elements with one point and with eight.
 TEST(EquilibriumOracle, relaxed_laws_find_their_balance) {
   const auto law = sample_law<Viscoelastic<NeoHookean>>(0.49);
   expect_rest<TlPerturbation>(pressed_block(law), law);

@@ -1,4 +1,4 @@
-/// Directions of fibres, and volumetric parts that replace a law's own.
+/// Directions of fibres, and volumetric parts that replace the law's.
 
 #include "problem/fibres.hpp"
 
@@ -36,7 +36,7 @@ TEST(Fibres, axes_are_a_right_handed_frame_along_fibre_and_sheet) {
     EXPECT_NEAR(seen(0, 1), 0.0, 8 * eps);
     EXPECT_NEAR(seen(0, 2), 0.0, 8 * eps);
     EXPECT_GT(seen(1, 1), 0.0);
-    EXPECT_NEAR(seen(1, 2), 0.0, 64 * eps);  // the sheet is in the plane of the first two
+    EXPECT_NEAR(seen(1, 2), 0.0, 64 * eps);  // the sheet is in the plane of the first two axes
     const auto alone = axes_along(row(given, 0));
     EXPECT_LT(largest_entry(alone * transpose(alone) - identity<double>()), 8 * eps);
     EXPECT_LT(distance(row(alone, 0), row(axes, 0)), 8 * eps);
@@ -49,8 +49,8 @@ std::string with_material(const std::string& keys) {
          "[sets]\nfoot = { z = [0.0, 0.0] }\n\n[[displacement]]\nset = \"foot\"\nvalue = [0.0, 0.0, 0.0]\n";
 }
 
-/// At the centres (.05, .05, z) and (.15, .05, z) around the axis through (.1, .1): radius .0707, on the
-/// first outward -(1, 1)/sqrt(2), so that the circle runs along (1, -1)/sqrt(2).
+/// Centres (.05, .05, z) and (.15, .05, z) around the axis through (.1, .1): radius .0707; at the first,
+/// outward is -(1, 1)/sqrt(2), so that the circle runs along (1, -1)/sqrt(2).
 TEST(Fibres, wind_around_an_axis) {
   const TemporaryFolder folder;
   const auto at = [&](const std::string& radii, std::size_t element) {
@@ -67,10 +67,10 @@ TEST(Fibres, wind_around_an_axis) {
     EXPECT_LT(distance(row(axes, 1), out), 1e-12);
   };
   expect(at("[0.02, 0.03]", 0), -30.0, {h, -h, 0.0}, {-h, -h, 0.0});  // beyond the outer radius
-  expect(at("[0.1, 0.2]", 0), 60.0, {h, -h, 0.0}, {-h, -h, 0.0});     // within the inner
+  expect(at("[0.1, 0.2]", 0), 60.0, {h, -h, 0.0}, {-h, -h, 0.0});     // within the inner radius
   const std::string around =
       fmt::format("[{}, {}]", 0.05 * std::numbers::sqrt2 - 0.01, 0.05 * std::numbers::sqrt2 + 0.02);
-  expect(at(around, 0), 30.0, {h, -h, 0.0}, {-h, -h, 0.0});  // a third of the way
+  expect(at(around, 0), 30.0, {h, -h, 0.0}, {-h, -h, 0.0});  // a third of the way out
   expect(at(around, 1), 30.0, {h, h, 0.0}, {h, -h, 0.0});
 }
 
@@ -90,12 +90,12 @@ TEST(Fibres, are_read_from_a_file_with_a_line_for_each_element) {
   folder.write("fibres.txt", lines + "1 0 0 0 1 0\n");
   EXPECT_THROW(read_scene(folder.write("hollow.toml", text)), InputError);  // nine lines for eight elements
   folder.write("fibres.txt", lines + "1 0 0\n");
-  EXPECT_THROW(read_scene(folder.write("hollow.toml", text)), InputError);  // sheets in some lines alone
+  EXPECT_THROW(read_scene(folder.write("hollow.toml", text)), InputError);  // sheets only in some lines
   folder.write("fibres.txt", "1 0 north\n");
   EXPECT_THROW(read_scene(folder.write("hollow.toml", text)), InputError);
 }
 
-/// The law turned is the law in turned axes, for elastic laws and the bounds of their tangents.
+/// A turned law equals the law in turned axes, for elastic laws and the bounds of their tangents.
 TEST(Fibres, called_laws_turn_with_their_axes) {
   RandomGeometry random(7);
   for (int n = 0; n < 50; ++n) {
@@ -142,7 +142,7 @@ TYPED_TEST(VolumetricPartTest, has_its_derivatives_and_the_bulk_modulus_at_rest)
   EXPECT_EQ(TypeParam::curvature(0.0), 1.0);
 }
 
-/// No digits are lost near rest, in single precision either.
+/// No digits are lost near the undeformed shape, in single precision either.
 TYPED_TEST(VolumetricPartTest, nothing_cancels_near_rest) {
   for (const float x : {1e-3F, -1e-4F, 1e-6F, -1e-8F}) {
     EXPECT_NEAR(TypeParam::energy(x) / (0.5F * x * x), 1.0F, 2e-6F + 2.0F * std::abs(x));
@@ -150,7 +150,7 @@ TYPED_TEST(VolumetricPartTest, nothing_cancels_near_rest) {
   }
 }
 
-/// The two that are not the law's own, where a number is known: J = 2.
+/// The two parts other than the law's own, at a known value: J = 2.
 TEST(VolumetricPart, is_what_its_name_says) {
   EXPECT_DOUBLE_EQ(LogarithmicPart::energy(1.0), 0.5 * std::log(2.0) * std::log(2.0));
   EXPECT_DOUBLE_EQ(QuadraticLogarithmicPart::energy(1.0), 0.25 * (3.0 - 2.0 * std::log(2.0)));

@@ -29,7 +29,7 @@ Scene pulled_block() {
   return make_scene(description, mesh, sets);
 }
 
-/// Passes everything on to a writer, as the command line does.
+/// Passes everything to a writer, as the command line does.
 class WritingObserver final : public Observer {
  public:
   explicit WritingObserver(ResultWriter& writer) : writer_(writer) {}
@@ -93,7 +93,7 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
   EXPECT_EQ(file.read_number_attribute("/frames/0000", "time"), 0.0);
   EXPECT_EQ(read_nodal_field(file, "/frames/0000/displacement", 18), NodalField(18));
   EXPECT_EQ(file.read<double>("/frames/0000/jacobian").entries, std::vector<double>(4, 1.0));
-  // The last is the answer, with the densities that sum to its hourglass energy.
+  // The last frame is the answer, with densities that sum to its hourglass energy.
   const auto last = "/frames/" + frames.back();
   EXPECT_EQ(read_nodal_field(file, last + "/displacement", 18), answer.u);
   double sum = 0.0;
@@ -120,7 +120,7 @@ TEST(ResultFile, holds_mesh_frames_and_history_as_documented) {
   EXPECT_EQ(file.read<double>("/history/hourglass_energy").entries.back(), energies.hourglass);
 }
 
-/// Numbers that all differ come back from the places with their names.
+/// Distinct numbers are read back from the places that bear their names.
 TEST(ResultFile, every_number_has_its_name) {
   const TemporaryFolder folder;
   const Scene scene = pulled_block();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// A box of cubes whose nodes are numbered x fastest; (-1)^(i+j+k) is the zigzag of all of them.
+/// A box of cubes whose nodes are numbered with x fastest; (-1)^(i+j+k) is the zigzag of all of them.
 class HourglassContentTest : public ::testing::Test {
  protected:
   NodalField zigzag(double amplitude) const {
@@ -34,7 +34,7 @@ TEST_F(HourglassContentTest, zigzag_is_all_hourglass) {
   EXPECT_NEAR(content.total, 0.02, 64 * eps * 0.02);
 }
 
-/// u_x = x y bends: in an element of edge h the mode xi eta has amplitude h^2 / 4, and no other is there.
+/// u_x = x y bends: in an element of edge h the mode xi eta has amplitude h^2 / 4, and all others vanish.
 TEST_F(HourglassContentTest, bending_has_the_amplitude_of_its_mode) {
   NodalField u;
   for (const auto& X : mesh.points) u.push_back({X[0] * X[1], 0.0, 0.0});
@@ -70,8 +70,8 @@ TEST(GoodLimit, is_never_more_than_ten_percent) {
   EXPECT_EQ(good_limit(0.35), 0.1);
 }
 
-/// A golden that is 35 % from the truth, as that of block-compression: up to 10 % from it a run is good, from
-/// there to 35 % it is neither good nor bad whatever the symptoms, and what is farther is diagnosed.
+/// A golden 35 % away from the truth, as block-compression has: a run is good up to a distance of 10 % from
+/// the golden, not judged from there to 35 % whatever its symptoms, and diagnosed beyond.
 TEST(Judge, a_golden_far_from_the_truth_does_not_judge_what_is_nearer_than_the_truth) {
   EXPECT_EQ(judge({0.1, 0.9, 3.0, 1.5}, 0.35), Finding::good);
   EXPECT_EQ(judge({0.101, 0.0, 1.0, 1.0}, 0.35), Finding::not_judged);
@@ -95,15 +95,15 @@ TEST(Diagnose, tells_the_ways_to_be_wrong_from_each_other) {
   EXPECT_EQ(diagnose({0.02, 0.9, 3.0, 1.5}, limit), Finding::good);
   EXPECT_EQ(diagnose({0.03, 0.1, 1.5, 1.5}, limit), Finding::hourglassing);
   EXPECT_EQ(diagnose({0.03, 0.09, 1.2, 1.03}, limit), Finding::locking);     // smooth
-  EXPECT_EQ(diagnose({0.03, 0.9, 1.1, 1.03}, limit), Finding::locking);      // rough, and not large
-  EXPECT_EQ(diagnose({0.03, 0.09, 1.3, 1.03}, limit), Finding::inaccurate);  // bends more, at that
+  EXPECT_EQ(diagnose({0.03, 0.9, 1.1, 1.03}, limit), Finding::locking);      // rough, but not large
+  EXPECT_EQ(diagnose({0.03, 0.09, 1.3, 1.03}, limit), Finding::inaccurate);  // bends more
   EXPECT_EQ(diagnose({0.03, 0.9, 1.4, 1.02}, limit), Finding::inaccurate);
-  EXPECT_EQ(diagnose({0.03, 0.1, 1.0, 0.5}, limit), Finding::inaccurate);  // soft in the whole
+  EXPECT_EQ(diagnose({0.03, 0.1, 1.0, 0.5}, limit), Finding::inaccurate);  // too soft as a whole
   EXPECT_EQ(diagnose({std::nan(""), 0.1, 1.0, 1.0}, limit), Finding::inaccurate);
 }
 
-/// A bent cantilever, nearly incompressible, one element thick, beside mean dilatation: the known failures
-/// are found, and the paper's method is good.
+/// A bent cantilever, nearly incompressible and one element thick, compared with mean dilatation: known
+/// failures are found, and the paper's method is good.
 TEST(Symptoms, show_the_known_failures) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
   const Mesh mesh = box({1.0, 0.2, 0.2}, {10, 2, 2});
@@ -127,8 +127,8 @@ TEST(Symptoms, show_the_known_failures) {
   EXPECT_EQ(found("tl-full"), Finding::locking);
 }
 
-/// The same cantilever under a force at its head, 3 E I / L^2 times a tenth, which moves it by a tenth of its
-/// length: under loads the stiffer body moves less and stores less, and is found to lock all the same.
+/// The same cantilever under a force at its head, a tenth of 3 E I / L^2, which moves it by a tenth of its
+/// length: under loads a stiffer body moves less and stores less energy, and locking is still found.
 TEST(Symptoms, show_locking_under_loads) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
   const Mesh mesh = box({1.0, 0.2, 0.2}, {10, 2, 2});

@@ -1,4 +1,4 @@
-/// The error of single precision: how far float answers may be from double ones, static and after many steps,
+/// The error of single precision: distances of float answers from double ones, static and after many steps,
 /// in other units and far from the origin.
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ CaseOnMesh in_millimetres(CaseOnMesh problem) {
   return problem;
 }
 
-/// The same scene a thousand of its lengths away, another way along each axis.
+/// The same scene a thousand of its lengths away, in another direction along each axis.
 CaseOnMesh far_away(CaseOnMesh problem) {
   const double far = 1000.0 * diagonal(problem.mesh.points);
   for (auto& X : problem.mesh.points) X = {X[0] + far, X[1] - far, X[2] + 0.5 * far};
@@ -76,12 +76,12 @@ class FloatBudgetTest : public ::testing::TestWithParam<std::string> {
   }
 };
 
-/// At rest. A node's displacement, of the size D that is imposed, is rounded by D eps. Across an element of
-/// size h that is a strain of D eps / h, a pressure of K D eps / h, and the neighbours give way in shear
-/// until they balance it, h K / (mu h) D eps: the size of elements cancels, bulk over shear modulus stays. So
-/// the budget is D eps K / mu, times three: the root of the eight nodes whose roundings meet in an element.
-/// Measured: 1.3 to 2.7e-6 of D, a third of the budget of 8.9e-6. A law that took differences to 1 near rest
-/// would lose another 1 / strain.
+/// Static. A node's displacement, of the size D that is imposed, is rounded by D eps. Across an element of
+/// size h that is a strain of D eps / h and a pressure of K D eps / h, and neighbours deform in shear until
+/// they balance it, h K / (mu h) D eps: the element's size cancels, bulk over shear modulus stays. So the
+/// budget is D eps K / mu, times three: the root of the eight nodes whose roundings meet in an element.
+/// Measured: 1.3 to 2.7e-6 of D, a third of the budget of 8.9e-6. A law that subtracts 1 from numbers near 1
+/// at small strains would lose another factor of 1 / strain.
 double budget_at_rest(const Scene& scene) {
   const auto& law = std::get<NeoHookean>(scene.materials.list.front().law);
   return 3.0 * roundoff * law.bulk_modulus() / law.shear_modulus() * largest_imposed(scene);
@@ -98,8 +98,8 @@ TEST_P(FloatBudgetTest, at_rest) {
   }
 }
 
-/// The budget shrinks with the displacements: laws are exact near rest. With strains of half a percent,
-/// taking J - 1 from J, as (1 + (J - 1)) - 1, breaks it; the strains of the cases hide that.
+/// The budget shrinks with the displacements, since laws are exact at small strains. At half a percent, J - 1
+/// taken from J as (1 + (J - 1)) - 1 breaks it; the cases' larger strains hide that.
 TEST_P(FloatBudgetTest, at_rest_near_rest) {
   Scene scene = canonical("column");
   scene = scaled(std::move(scene), 0.01);
@@ -107,7 +107,7 @@ TEST_P(FloatBudgetTest, at_rest_near_rest) {
   EXPECT_LT(largest_distance(at_rest_in(scene, Precision::single_precision), u), budget_at_rest(scene));
 }
 
-/// Neither units nor the place enter: positions far away, rounded to float, would be off by 1000 eps of the
+/// Neither units nor position matter: positions far away, rounded to float, would be off by 1000 eps of the
 /// length.
 TEST_P(FloatBudgetTest, at_rest_in_other_units_and_far_away) {
   const CaseOnMesh problem = canonical_case("column");
@@ -121,7 +121,7 @@ TEST_P(FloatBudgetTest, at_rest_in_other_units_and_far_away) {
   EXPECT_LT(distance(in_millimetres(far_away(problem)), 1e-3), budget_at_rest(scene));
 }
 
-/// A block of 96 elements on its foot, thrown sideways, for a number of steps of half the stable one.
+/// A block of 96 elements on its foot, moving sideways, for a number of steps of half the stable one.
 CaseOnMesh vibrating_block(long steps) {
   Case description = plain_case(tissue);
   description.quasi_static = false;
@@ -138,10 +138,10 @@ CaseOnMesh vibrating_block(long steps) {
   return {description, mesh, sets};
 }
 
-/// How the block swings in double: what the budgets of its motion are in units of.
+/// The swing of the block in double precision, to which the budgets of its motion refer.
 struct Swing {
   double amplitude = 0.0;  ///< m
-  double advance = 0.0;    ///< radians of the slow swing that carries the energy, per step
+  double advance = 0.0;    ///< radians per step of the slow swing that carries the energy
 };
 
 Swing swing_of(const Scene& scene, const Recorder& recorder) {
@@ -155,18 +155,18 @@ Swing swing_of(const Scene& scene, const Recorder& recorder) {
 
 /// Displacements after so many steps, over the amplitude. Rounded constants change the frequency by eps, and
 /// the phase by eps times the angle swung: linear in time. The rounding of every step's displacement pushes
-/// at random, as eps times the root of the number of steps. Times four for the roundings of a step:
-/// displacement, increment, force and constants. Measured: 4.3e-5 after 100,000 steps, and never
-/// more than 28 % of the budget. Instability, or a difference that feeds itself, would grow exponentially and
-/// break it.
+/// at random, which gives eps times the root of the number of steps. The factor of four is for the roundings
+/// of a step: displacement, increment, force and constants. Measured: 4.3e-5 after 100,000 steps, and never
+/// more than 28 % of the budget. Instability, or a difference that amplifies itself, would grow exponentially
+/// and break it.
 double budget_of_motion(const Swing& swing, double steps) {
   return 4.0 * roundoff * (swing.advance * steps + std::sqrt(steps));
 }
 
-/// Energy, over the initial one. Each rounding eps u feeds the stiffest modes, k_max (eps u)^2 / 2 a step,
-/// where the swing has k u^2 / 2; k_max / k is the square of the frequencies' ratio, and at half the stable
-/// step the highest is at most one radian per step. Measured at worst over
-/// the run: 4e-6 of the energy, a sixth of the budget.
+/// Energy, over the initial one. Each rounding eps u adds k_max (eps u)^2 / 2 to the stiffest modes in each
+/// step, while the swing has k u^2 / 2; k_max / k is the square of the ratio of frequencies, and at half the
+/// stable step the highest is at most one radian per step. Measured at worst over the run: 4e-6 of the
+/// energy, a sixth of the budget.
 double budget_of_energy(const Swing& swing, double steps) {
   return steps * std::pow(roundoff / swing.advance, 2);
 }
@@ -194,7 +194,7 @@ TEST_P(FloatBudgetTest, after_a_hundred_thousand_steps) {
     drift = std::max(drift, std::abs(total_energy(rounded.rows[n]) - total_energy(exact.rows[n])) / start);
   }
   EXPECT_LT(drift, budget);
-  EXPECT_LT(budget, 1e-4);  // the budget itself is small: no energy to speak of in 100,000 steps
+  EXPECT_LT(budget, 1e-4);  // the budget is small too: almost no energy in 100,000 steps
 }
 
 TEST_P(FloatBudgetTest, moving_in_other_units_and_far_away) {

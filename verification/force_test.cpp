@@ -1,5 +1,5 @@
-/// Every kind of force by itself, without a body: what it adds to frequencies, to the stiffness and to the
-/// size of the load, its forces in a motion, and the same force on a part of the mesh. Exact answers.
+/// Every kind of force by itself, without a body: its contributions to frequencies, to the stiffness and to
+/// the size of the load, its forces in a motion, and the same force on a part of the mesh. Exact answers.
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@ constexpr std::array<Vector, 3> axes{
     {{2.0 / 3, 2.0 / 3, -1.0 / 3}, {-1.0 / 3, 2.0 / 3, 2.0 / 3}, {2.0 / 3, -1.0 / 3, 2.0 / 3}}};
 constexpr double largest_factor = 2.0;
 
-/// Two elements side by side under a plane surface that consists of a rectangle of 1 x 3 and a trapezoid with
-/// parallel sides of 1 and 3 at a distance of 3; turned, so that no component of its normal is zero. The
-/// nodes have the masses 1, 2, 3, ... kg.
+/// Two elements side by side under a plane surface made of a rectangle of 1 x 3 and a trapezoid with parallel
+/// sides of 1 and 3 at a distance of 3; turned, so that no component of its normal is zero. The nodes have
+/// the masses 1, 2, 3, ... kg.
 struct Surface {
   Mesh mesh = BoxMesh{{2.0, 3.0, 1.0}, {2, 1, 1}}.build();
   std::vector<Quadrilateral> boundary = boundary_faces(mesh.cells);
@@ -45,7 +45,7 @@ struct Surface {
     for (Vector& X : mesh.points) X = combined(X);
   }
 
-  /// Components along the axes of the box in space.
+  /// The vector with these components along the axes of the box.
   static Vector combined(const Vector& along) {
     Vector x{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -61,14 +61,14 @@ struct Surface {
   }
 };
 
-/// All that a force adds, with the largest factor for all curves.
+/// All contributions of a force, with the largest factor for all curves.
 struct Added {
   std::vector<LoadRates> rates;
   Rows<float> stiffness;
   Rows<double> forces;
   double size = 0.0;
 
-  /// While all nodes move by u (m) and have moved by `increment` (m) in a step (s).
+  /// With all nodes displaced by u (m), after an increment of `increment` (m) in a step (s).
   explicit Added(const BodyForce& force, const std::vector<double>& masses, const Vector& u = {},
                  const Vector& increment = {}, double step = 0.0)
       : rates(masses.size()), stiffness(masses.size()), forces(masses.size()) {
@@ -89,8 +89,8 @@ void expect_force(const Row<double>& force, const Vector& expected, std::size_t 
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(force[i], expected[i], 1e-12) << node;
 }
 
-/// A pressure on plane faces pushes on nodes with their shares of the area, and its tangent is at most half
-/// the sum of the longer edges times the largest pressure.
+/// A pressure on plane faces pushes on nodes by their shares of the area, and its tangent is at most half the
+/// sum of the longer edges times the largest pressure.
 TEST(Force, pressure_acts_on_plane_faces_as_derived) {
   Surface surface;
   const auto force = surface.made(Pressure{"surface", -7.0});
@@ -109,8 +109,8 @@ TEST(Force, pressure_acts_on_plane_faces_as_derived) {
   EXPECT_FALSE(force->traits().no_potential.empty());
 }
 
-/// Where all nodes move alike, springs and dashpots resist with their shares of the area: all of the motion,
-/// or its part along the normal.
+/// When all nodes move alike, springs and dashpots resist by their shares of the area: the whole motion, or
+/// its part along the normal.
 TEST(Force, supports_act_on_plane_faces_as_derived) {
   const Vector u{0.1, -0.2, 0.4}, increment{0.03, 0.01, 0.02};
   const auto normal_part = [](const Vector& v) {
@@ -144,8 +144,8 @@ TEST(Force, supports_act_on_plane_faces_as_derived) {
   }
 }
 
-/// Forces are minus the derivative of the potential, a pressure's on a closed surface. Potentials are below
-/// 1000 J and of second order at most in one coordinate, so that rounding over h is left: 1e-9.
+/// Forces are minus the derivative of the potential; for a pressure, on a closed surface. Potentials are
+/// below 1000 J and at most quadratic in one coordinate, so that only rounding over h remains: 1e-9.
 TEST(Force, derives_from_its_potential) {
   const auto compare = [](const auto& kind) {
     Surface surface;
@@ -185,8 +185,8 @@ TEST(Force, derives_from_its_potential) {
   compare(Support{"surface", 11.0, 0.0, true});
 }
 
-/// Dead forces and weight come to one force, which is first whatever comes before it, sorted by curve and
-/// node.
+/// Dead forces and weight are combined into one force, the first of the list in any order of tables, sorted
+/// by curve and node.
 TEST(Force, dead_loads_are_added_up) {
   Surface surface;
   Pressure{"surface", 1.0}.resolve(surface.resolver);
@@ -218,7 +218,7 @@ TEST(Force, dead_loads_are_added_up) {
   EXPECT_TRUE(forces[0]->traits().drives);
 }
 
-/// Equal curves have one number; the first is that of the case.
+/// Equal curves share a number; number 0 is the curve of the case.
 TEST(Force, curves_are_numbered) {
   Surface surface;
   const LoadCurve table{{0.0, 1.0}, {0.0, 2.0}}, other{{0.0, 1.0}, {0.0, 3.0}};
@@ -229,8 +229,8 @@ TEST(Force, curves_are_numbered) {
   EXPECT_EQ(surface.resolver.curves, (std::vector<LoadCurve>{{}, table, other}));
 }
 
-/// A force on a part of the mesh is what its faces there come to, and its nodes there carry; none is left
-/// where it does not act.
+/// A force on a part of the mesh equals the force on the part's faces and nodes; where it does not act, there
+/// is none.
 TEST(Force, acts_on_a_part_as_on_its_faces_alone) {
   Surface surface;
   const MeshPart part = part_of_mesh(surface.mesh, {false, true}),

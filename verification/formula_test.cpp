@@ -1,4 +1,4 @@
-/// Loads that follow formulas of the time. Python reads the same list of formulas.
+/// Loads that follow formulas of time. Python's tests read the same list of formulas.
 
 #include "forces/formula.hpp"
 
@@ -18,7 +18,7 @@ toml::table formulas() {
   return toml::parse_file(SANDGLASS_SOURCE "/verification/formulas.toml");
 }
 
-/// A box under its weight, without and with the curve that the keys say.
+/// A box under its weight, constant or following the curve that `keys` define.
 Case hanging(const TemporaryFolder& folder, const std::string& keys) {
   const std::string base = box_case("hanging", "[1.0, 1.0, 2.0]", "[1, 1, 2]") + R"(
 [sets]
@@ -34,7 +34,7 @@ value = [0.0, 0.0, -9.81]
   return read_case_file(folder.write("hanging.toml", base + keys));
 }
 
-/// Some roundings, of numbers near one.
+/// A few roundings of numbers near one.
 TEST(Formula, values_are_those_of_40_digits) {
   const toml::table known = formulas();
   const toml::array& times = *known["times"].as_array();
@@ -90,8 +90,8 @@ TEST(Formula, is_a_curve_like_a_table) {
   EXPECT_NE(hash, case_hash(hanging(folder, "")));
 }
 
-/// A free body under the weight g cos(w t), which starts at rest, is at (g / w^2) (1 - cos w t); of central
-/// differences with the step h the w^2 is (2 / h sin(w h / 2))^2, exactly.
+/// A free body under the weight g cos(w t), which starts at rest, is at (g / w^2) (1 - cos w t); with central
+/// differences of step h, w^2 becomes (2 / h sin(w h / 2))^2, exactly.
 TEST(Formula, shakes_a_free_body) {
   const double g = 9.81, w = 40.0, h = 1e-3;
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});

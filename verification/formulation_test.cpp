@@ -20,7 +20,7 @@ class FormulationTest : public ::testing::Test {
   using Kernel = typename Pair::Formulation;
   using Law = typename Pair::Law;
 
-  /// A distorted element of a law, by the sample's number.
+  /// A distorted element with a law that depends on the sample's number.
   struct Sample {
     NodalVectors<double> X{};
     Law law;
@@ -28,8 +28,8 @@ class FormulationTest : public ::testing::Test {
 
     NodalVectors<double> force(const NodalVectors<double>& u) const { return Kernel::force(u, element, law); }
 
-    /// Roundoff of a force at u: displacements are known to eps times the largest coordinate met on the way,
-    /// and the stiffness turns that into force. The factor covers sums of 24 products, twice.
+    /// Roundoff of a force at u: displacements are rounded by eps times the largest coordinate in the
+    /// computation, and the stiffness turns that into force. The factor is for sums of 24 products, twice.
     double tolerance(const NodalVectors<double>& u) const {
       return 256 * eps * Kernel::stiffness_bound(u, element, law) * (largest_entry(u) + largest_entry(X));
     }
@@ -60,18 +60,18 @@ TYPED_TEST(FormulationTest, tangent_at_rest_has_the_right_rank) {
     const double largest = values[23];
     int zeros = 0;
     for (const double value : values) {
-      zeros += std::abs(value) < 1e-11 * largest ? 1 : 0;  // roundoff of the sums that make K
+      zeros += std::abs(value) < 1e-11 * largest ? 1 : 0;  // roundoff of the sums in K
       EXPECT_GT(value, -1e-11 * largest);
     }
     EXPECT_EQ(zeros, zero_energy_modes<typename TypeParam::Method>());
-    // The first elastic mode stands clear of roundoff: softest shear of the flattest sample at nu = .499.
+    // The first elastic mode is well above roundoff: softest shear of the flattest sample at nu = .499.
     if (zeros < 24) {
       EXPECT_GT(values[static_cast<std::size_t>(zeros)], 1e-7 * largest);
     }
   }
 }
 
-/// A linear method knows infinitesimal rotations alone, u = W X with W^T = -W.
+/// For a linear method only infinitesimal rotations are rigid: u = W X with W^T = -W.
 TYPED_TEST(FormulationTest, rigid_motion_gives_no_force) {
   for (int n = 0; n < this->samples; ++n) {
     const auto s = this->sample(n);
@@ -96,8 +96,8 @@ TYPED_TEST(FormulationTest, force_turns_with_the_element) {
     const auto turned = (s.X + u) * transpose(Q) - s.X;
     const auto difference = s.force(turned) - s.force(u) * transpose(Q);
     if constexpr (is_linear<typename TypeParam::Method>) {
-      // A linear force cannot turn: the rotation is one more displacement, and what strain it seems to be is
-      // superposed, V h sigma(sym(Q - I)). It is no small one: its angle is not.
+      // A linear force does not turn: the rotation is one more displacement, whose apparent strain adds V h
+      // sigma(sym(Q - I)). Rotations are large here, so the difference is large too.
       const auto mean = mean_gradient(s.X);
       const Tensor<double> stress = exact_stress<typename TypeParam::Method>(s.law, Q - identity<double>());
       const auto exact = s.force(u * transpose(Q)) + mean.h * (mean.volume * stress);
@@ -131,8 +131,8 @@ TYPED_TEST(FormulationTest, tangent_is_symmetric) {
   }
 }
 
-/// Moments are those about the current places; small-strain theory takes them about the reference ones, for
-/// to it they are the same.
+/// Moments are about the current positions; in small-strain theory, which does not distinguish the two, about
+/// the reference positions.
 TYPED_TEST(FormulationTest, forces_balance_momentum_and_angular_momentum) {
   for (int n = 0; n < this->samples; ++n) {
     const auto s = this->sample(n);
@@ -149,8 +149,8 @@ TYPED_TEST(FormulationTest, forces_balance_momentum_and_angular_momentum) {
   }
 }
 
-/// Under u = H X every consistent element answers with the stress of H: f = V h P^T, energy V W, ratio det F.
-/// Distorted shapes make this fail for centre gradients and for weights 8 det J(0).
+/// Under u = H X every consistent element has the stress of H: f = V h P^T, energy V W, ratio det F. On
+/// distorted shapes, centre gradients and weights 8 det J(0) fail.
 TYPED_TEST(FormulationTest, uniform_strain_gives_the_stress_of_the_law) {
   using Formulation = typename TypeParam::Formulation;
   using Method = typename TypeParam::Method;
@@ -190,8 +190,8 @@ TYPED_TEST(FormulationTest, node_ordering_does_not_matter) {
   }
 }
 
-/// Methods that take kappa obey it: hourglass energy is proportional to it, and `auto` is the number that the
-/// method declares.
+/// Hourglass energy of methods with a kappa is proportional to it, and `auto` is the value that the method
+/// declares.
 TYPED_TEST(FormulationTest, kappa_scales_the_hourglass_energy) {
   using Formulation = typename TypeParam::Formulation;
   using Method = typename TypeParam::Method;
@@ -214,9 +214,8 @@ class OnePointKernelTest : public ::testing::Test {};
 
 TYPED_TEST_SUITE(OnePointKernelTest, LawTypes, EntryName);
 
-/// The paper's eq. 14 put together again from its definitions, with B from the definition of a mean (4^3
-/// Gauss points) and P as the derivative of the law's energy: f = V h P^T + k gamma gamma^T u, k = kappa
-/// K_max / 8.
+/// Eq. 14 of the paper, assembled from its definitions, with B from the definition of a mean (4^3 Gauss
+/// points) and P as the derivative of the law's energy: f = V h P^T + k gamma gamma^T u, k = kappa K_max / 8.
 TYPED_TEST(OnePointKernelTest, perturbation_method_is_equation_14) {
   using Formulation = NodalForm<FormulationOf<TlPerturbation, TypeParam>>;
   constexpr std::array<double, 4> points{-0.86113631159405257522, -0.33998104358485626480,
@@ -245,7 +244,7 @@ TYPED_TEST(OnePointKernelTest, perturbation_method_is_equation_14) {
       const auto gamma = Gamma - (1.0 / V) * (B * (transpose(X) * Gamma));
       const auto exact = B * transpose(P) + k * (gamma * (transpose(gamma) * u));
       const auto element = Formulation::precompute(X, law, {kappa});
-      // As Sample::tolerance above: known displacements times stiffness.
+      // As in Sample::tolerance above: roundoff of displacements times stiffness.
       const double tolerance =
           256 * eps * Formulation::stiffness_bound(u, element, law) * (largest_entry(u) + largest_entry(X));
       EXPECT_LT(largest_entry(Formulation::force(u, element, law) - exact), tolerance);

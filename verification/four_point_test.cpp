@@ -21,8 +21,8 @@ double energy_of(const NodalVectors<double>& X, const NodalVectors<double>& u) {
   return energy.strain + energy.hourglass;
 }
 
-/// A cube of 2 m in which every corner stands at its signs, deformed by F and by amplitudes of the four
-/// hourglass modes.
+/// A cube of edge 2 m whose corners are at their signs, deformed by F and by amplitudes of the four hourglass
+/// modes.
 NodalVectors<double> cube() {
   return corner_signs;
 }
@@ -31,8 +31,8 @@ NodalVectors<double> displaced(const NodalVectors<double>& X, const Tensor<doubl
   return X * transpose(F - identity<double>()) + hourglass_base_vectors() * amplitudes;
 }
 
-/// The gradient at each point is the mean one and what the hourglass displacements add. Roundoff of either
-/// way is below 100 eps of the largest gradient, which is of order one.
+/// The gradient at each point is the mean one plus the contribution of the hourglass displacements. Either
+/// way roundoff is below 100 eps of the largest gradient, which is of order one.
 TEST(FourPoint, gradients_are_the_mean_and_what_hourglass_displacements_add) {
   RandomGeometry random(23);
   for (int n = 0; n < 20; ++n) {
@@ -51,8 +51,8 @@ TEST(FourPoint, gradients_are_the_mean_and_what_hourglass_displacements_add) {
   }
 }
 
-/// On a parallelepiped the energies of four and of eight points agree to second order in the first three
-/// hourglass modes, at any mean deformation: halving the modes divides the difference by eight, or by more.
+/// On a parallelepiped the energies of four and eight points agree to second order in the first three
+/// hourglass modes, at any mean deformation: half as large modes divide the difference by eight or more.
 TEST(FourPoint, knows_the_second_variation_of_eight_points) {
   RandomGeometry random(11);
   for (int n = 0; n < 20; ++n) {
@@ -69,12 +69,12 @@ TEST(FourPoint, knows_the_second_variation_of_eight_points) {
     };
     const double second_order = energy_of<EightPointKernel>(X, displaced(X, F, q)) - none;
     EXPECT_LT(std::abs(difference(1.0)), 0.1 * std::abs(second_order));
-    // A third-order difference, with a fourth-order one of a few percent beside it at this size.
+    // A third-order difference, plus a fourth-order one of a few percent at this size.
     EXPECT_LT(std::abs(difference(0.5)), std::abs(difference(1.0)) / 8.0 * 1.3 + 1e-12 * second_order);
   }
 }
 
-/// With the points near the other four corners, an element has an energy that differs to third order.
+/// With the points near the other four corners, the energy of an element differs to third order.
 TEST(FourPoint, other_corners_differ_to_third_order) {
   RandomGeometry random(13);
   for (int n = 0; n < 20; ++n) {
@@ -96,8 +96,8 @@ TEST(FourPoint, other_corners_differ_to_third_order) {
   }
 }
 
-/// The corners near which the points are, as places: the same for every numbering, also where edges are
-/// alike, and for elements with edges of different length in every orientation and size.
+/// The positions of the corners that have points do not depend on the numbering, also where edges are equal,
+/// for elements with edges of different lengths in every orientation and size.
 TEST(FourPoint, shape_decides_which_corners_have_points) {
   const auto chosen = [](const NodalVectors<double>& X) {
     const double side = FourPoint::side(to_modes(X));
@@ -127,7 +127,7 @@ TEST(FourPoint, shape_decides_which_corners_have_points) {
 }
 
 /// The last mode on a cube of edge a: |d(xi eta zeta)/dX|^2 has the mean 3 (2/a)^2 / 9, so that an amplitude
-/// A holds the energy 10/9 mu/2 a^3 (4/3)/a^2 A^2 = 20/27 mu a A^2.
+/// A has the energy 10/9 mu/2 a^3 (4/3)/a^2 A^2 = 20/27 mu a A^2.
 TEST(FourPoint, last_mode_of_a_cube_in_closed_form) {
   const double edge = 0.3, amplitude = 1e-3;
   HourglassModes<double> q{};
@@ -146,7 +146,7 @@ void expect_same_constants(const NodalVectors<double>& X) {
   double largest = 0.0;
   for (const double number : set_up) largest = std::max(largest, std::abs(number));
   for (std::size_t n = 0; n < set_up.size(); ++n) {
-    // Roundoff of the closed form, whose terms are as large as an element's edges squared over its volume.
+    // Roundoff of the closed form, whose terms are as large as the squares of edges over the volume.
     EXPECT_NEAR(anew[n], set_up[n], 1e-11 * std::max(std::abs(set_up[n]), 1e-3 * largest)) << n;
   }
 }

@@ -1,5 +1,5 @@
-/// What holds a body: the motions that are found free against the null space of a dense stiffness matrix, and
-/// what is said of them.
+/// Bodies that are not held: free motions against the null space of a dense stiffness matrix, and the
+/// messages about them.
 
 #include "problem/held.hpp"
 
@@ -16,9 +16,9 @@
 namespace sandglass::verification {
 namespace {
 
-/// Boxes side by side, on each other, or joined by an edge or a node, some with meshes that do not match and
-/// are tied in part, some turned and sheared, some split; held by random components of random nodes, faces
-/// and springs.
+/// Boxes side by side, on top of each other, or joined by an edge or a node; some have meshes that do not
+/// match and are partly tied, some are turned and sheared, some split; random components of random nodes are
+/// held, and random faces supported.
 class RandomBody {
  public:
   explicit RandomBody(std::uint64_t seed) : random_(seed) {
@@ -40,8 +40,8 @@ class RandomBody {
   int whole(int low, int high) { return low + static_cast<int>(random_.uniform(0.0, high - low + 1.0)); }
   int elements() const { return static_cast<int>(mesh_.cells.size()); }
 
-  /// A box of edge 1 that shares with the one before a face, an edge, a node, or nothing; or that stands on
-  /// it with another mesh, tied at all nodes of the face, or at some.
+  /// Adds a box of edge 1 that shares a face, an edge, a node or nothing with the box before it, or stands on
+  /// it with another mesh, tied at all nodes of the face or at some of them.
   void add_box(int number) {
     const std::array<std::array<double, 3>, 5> shifts{
         {{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {3, 0, 0}, {0, 0, 1}}};
@@ -70,7 +70,7 @@ class RandomBody {
     const std::string name = "box " + std::to_string(number);
     element_sets_[name] = own;
     if (kind != 4 || whole(0, 3) == 0) return;
-    const int kept = whole(1, static_cast<int>(below.size()));  // tied nodes
+    const int kept = whole(1, static_cast<int>(below.size()));  // number of tied nodes
     while (static_cast<int>(below.size()) > kept)
       below.erase(below.begin() + whole(0, static_cast<int>(below.size()) - 1));
     tied_.insert(tied_.end(), below.begin(), below.end());
@@ -110,7 +110,7 @@ class RandomBody {
   Vector corner_{};
 };
 
-/// The forces (N) that displacements u (m) of a scene cause at all nodes, elements and springs together.
+/// The forces (N) of elements and springs at all nodes when a scene is displaced by u (m).
 NodalField resistance(const Model& model, const NodalField& u) {
   NodalField sum = internal_forces(model, u);
   std::vector<int> places(u.size());
@@ -128,8 +128,8 @@ NodalField resistance(const Model& model, const NodalField& u) {
   return sum;
 }
 
-/// The stiffness between the free components, by central differences: those that are neither imposed nor of
-/// tied nodes, which follow and hand their forces on.
+/// The stiffness between free components, by central differences: components that are neither imposed nor of
+/// tied nodes, which follow others and pass their forces on.
 Eigen::MatrixXd stiffness(const Model& model, const std::vector<std::pair<std::size_t, std::size_t>>& free) {
   const Scene& scene = model.scene();
   const double h = 1e-3;  // m
@@ -170,7 +170,7 @@ std::vector<std::pair<std::size_t, std::size_t>> free_components(const Scene& sc
   return free;
 }
 
-/// What a motion displaces nodes by; those of two pieces equally.
+/// The displacements of a motion, in which pieces agree on shared nodes.
 NodalField field_of(const Scene& scene, const LooseBody& body, std::size_t motion) {
   NodalField u(scene.mesh.points.size());
   std::vector<bool> known(u.size(), false);
@@ -190,10 +190,10 @@ NodalField field_of(const Scene& scene, const LooseBody& body, std::size_t motio
   return u;
 }
 
-/// The motions that are found are in the null space of the stiffness, are independent, and are as many as its
-/// dimension: so they span it. The forces of small strain are linear, so that differences give the stiffness
-/// to round-off: eigenvalues below 1e-12 of the largest are zero. All others are above 1e-10, the square of
-/// the share of a motion that still counts as free.
+/// The motions found are in the null space of the stiffness, are independent, and are as many as its
+/// dimension: so they span it. At small strain forces are linear, so that differences give the stiffness to
+/// roundoff: eigenvalues below 1e-12 of the largest are zero. All others are above 1e-10, the square of the
+/// share below which a motion counts as free.
 TEST(Held, finds_the_null_space_of_the_stiffness) {
   const long bodies = from_environment("SANDGLASS_SCENES", 200), seed = from_environment("SANDGLASS_SEED", 1);
   std::map<long, int> of_dimension;
@@ -247,7 +247,7 @@ TEST(Held, finds_the_null_space_of_the_stiffness) {
   EXPECT_GT(of_several_pieces, 20);
 }
 
-/// Imposes components of nodes of a box of 1 m in one element, or of a given mesh.
+/// A box of 1 m made of one element, or a given mesh, with imposed components of nodes.
 Scene held_at(const std::vector<std::pair<int, std::array<bool, 3>>>& places,
               Mesh mesh = box({1, 1, 1}, {1, 1, 1})) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.3});
@@ -278,7 +278,7 @@ TEST(Held, says_what_is_free) {
   EXPECT_EQ(described_free_motions(held_at({{0, xyz}, {1, xyz}, {2, only_z}})), "");
 }
 
-/// Planes of nodes whose coordinates files rounded to six digits still hold what they were meant to hold, and
+/// Nodes on a plane or a line, whose coordinates a file rounded to six digits, hold what they should and
 /// nothing else: nodes on a line leave the rotation about it free.
 TEST(Held, takes_rounded_nodes_on_a_line_for_a_line) {
   Mesh mesh = box({1, 1, 1}, {4, 4, 4});
@@ -305,7 +305,7 @@ TEST(Held, finds_hinges) {
             "1 of 2 elements around (1.5, 1.5, 0.5) m against rotation about z through (1, 1, 0.5) m");
 }
 
-/// A static answer is refused with what is free; nothing is computed.
+/// A static case is refused with a list of free motions before anything is computed.
 TEST(Held, is_required_for_an_answer_at_rest) {
   const Scene scene = held_at({{0, xyz}});
   Recorder recorder;

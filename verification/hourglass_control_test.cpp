@@ -1,4 +1,4 @@
-/// Hourglass controls that replace the energy that one point misses, against eight points, which include it.
+/// Hourglass controls that restore the energy that one point misses, against eight points, which include it.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ TEST(SymmetricMatrix, is_the_matrix_that_it_packs) {
   EXPECT_EQ(row_sum_bound(Matrix<double, 2, 2>{{1.0, -2.0, -4.0, 0.5}}), 4.5);
 }
 
-/// Mean gradient and fluctuation together are the gradients at the Gauss points, whatever the displacements.
+/// For any displacements, mean gradient and fluctuation together are the gradients at the Gauss points.
 TEST(HourglassFluctuation, completes_the_mean_gradient) {
   RandomGeometry random(11);
   for (int n = 0; n < 200; ++n) {
@@ -44,7 +44,7 @@ TEST(HourglassFluctuation, completes_the_mean_gradient) {
       const PointGradient point = point_gradient(X, points[p]);
       const Tensor<double> exact = transpose(u) * point.gradient;
       const Tensor<double> sum = H + transpose(q) * fluctuation.gradient[p];
-      // Coordinates, known to eps, meet gradients of up to 50 over the size at these shapes' corners.
+      // Coordinates are rounded to eps; gradients are up to 50 over the size at these elements' corners.
       const double roundoff =
           256 * eps * largest_entry(point.gradient) * (largest_entry(u) + largest_entry(X));
       EXPECT_LT(largest_entry(sum - exact), roundoff);
@@ -62,8 +62,8 @@ class ControlWithLawTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(ControlWithLawTest, LawTypes, EntryName);
 
-/// One point with the stabilization matrix IS the mean-dilatation element at rest, on any shape: the same
-/// tangent, entry by entry. A matrix at the centre's Jacobian, or from q / 8, would show here.
+/// One point with the stabilization matrix IS the mean-dilatation element in the undeformed state: the same
+/// tangent for any shape. A matrix with the centre's Jacobian, or from q / 8, would fail.
 TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_at_rest) {
   using OnePointForm = NodalForm<FormulationOf<TlStabilizationMatrix, TypeParam>>;
   using EightPointForm = NodalForm<FormulationOf<TlMeanDilatation, TypeParam>>;
@@ -76,7 +76,7 @@ TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_at_rest) 
   }
 }
 
-/// On a mesh of distorted elements forces of displacements of relative size e differ by e of themselves.
+/// On a distorted mesh, forces of displacements of relative size e differ by a fraction of order e.
 TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_to_first_order_on_a_mesh) {
   if constexpr (slackens<TypeParam>) GTEST_SKIP() << "shortened fibres are slack: no first order";
   const auto law = sample_law<TypeParam>(0.49);
@@ -96,8 +96,8 @@ TYPED_TEST(ControlWithLawTest, stabilization_matrix_is_mean_dilatation_to_first_
     const NodalField zero(exact.size());
     return largest_distance(internal_forces(one_point, u), exact) / largest_distance(exact, zero);
   };
-  // The patch's elements are a quarter of its size: strains are some ten times e, and the second order of a
-  // law at nu = .49 carries factors of ten itself.
+  // The patch's elements are a quarter of its size, so strains are about ten times e, and the second-order
+  // term of a law at nu = .49 contains further factors of ten.
   for (const double size : {1e-4, 1e-6}) EXPECT_LT(relative_difference(size), 100 * size);
 }
 
@@ -120,13 +120,13 @@ TYPED_TEST(ControlWithLawTest, energy_sampling_restores_the_missing_energy) {
     const double exact = 10.0 / 9.0 * law.shear_modulus() / 2.0 * missing;
     const double energy = hourglass_energy<EnergySamplingControl>(
         hourglass_displacements(X, u), EnergySamplingControl::precompute(X, law, {}));
-    // A difference of two sums; coordinates far from the origin cost digits in gradients.
+    // A difference of two sums; gradients lose digits if coordinates are far from the origin.
     EXPECT_NEAR(energy, exact, 1e-11 * law.shear_modulus() * all);
   }
 }
 
-/// S of a cube of edge a: grad(xi eta) has the integral of its square (4/a^2)(a^3/3) twice, grad(xi eta zeta)
-/// (4/a^2)(a^3/9) three times, and q / 8 is the amplitude.
+/// S of a cube of edge a: the squared gradient of xi eta has the integral (4/a^2)(a^3/3) twice, that of xi
+/// eta zeta (4/a^2)(a^3/9) three times, and q / 8 is the amplitude.
 TYPED_TEST(ControlWithLawTest, energy_sampling_of_a_cube_in_closed_form) {
   const double a = 0.04;
   const auto law = sample_law<TypeParam>(0.45);
@@ -140,8 +140,8 @@ TYPED_TEST(ControlWithLawTest, energy_sampling_of_a_cube_in_closed_form) {
   }
 }
 
-/// phi is what following claims: the mean over all directions of the second variation of the isochoric
-/// neo-Hookean energy along F gamma, over its value at rest, 10 mu for the nine units of gamma.
+/// phi is defined as the mean over all directions of the second variation of the isochoric neo-Hookean energy
+/// along F gamma, over its undeformed value, 10 mu for the nine units of gamma.
 TEST(FollowingControl, grows_as_the_mean_second_variation_of_the_isochoric_energy) {
   using DD = Dual<Dual<double>>;
   const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.49};
@@ -163,8 +163,8 @@ TEST(FollowingControl, grows_as_the_mean_second_variation_of_the_isochoric_energ
   }
 }
 
-/// The twelve amplitudes cost a following control, turned with the body and strained with it, the same again:
-/// E(F q, F) = phi E0(q).
+/// If the twelve amplitudes turn and stretch with the body, their energy in a following control changes only
+/// by phi: E(F q, F) = phi E0(q).
 TEST(FollowingControl, sees_fluctuations_in_base_vectors_that_move_with_the_body) {
   RandomGeometry random(37);
   for (int n = 0; n < 50; ++n) {

@@ -14,7 +14,7 @@ namespace {
 template <class Form>
 class HourglassFormTest : public ::testing::Test {
  protected:
-  /// Hourglass energy of small nodal displacements u of an element X; its mean strain must vanish.
+  /// Hourglass energy of small nodal displacements u of an element X; their mean strain must vanish.
   static double energy(const NodalVectors<double>& X, const NodalVectors<double>& u, const NeoHookean& law) {
     const Modes<double> x = to_modes(X);
     const auto geometry = OnePoint::geometry(x);
@@ -42,7 +42,7 @@ class HourglassFormTest : public ::testing::Test {
 using Forms = ::testing::Types<AssumedStrain, EnhancedStrain>;
 TYPED_TEST_SUITE(HourglassFormTest, Forms);
 
-/// The nodal displacements that a field writes corner by corner.
+/// A field's nodal displacements, set corner by corner.
 template <class Field>
 NodalVectors<double> nodal(const Field& field) {
   NodalVectors<double> u{};
@@ -50,10 +50,10 @@ NodalVectors<double> nodal(const Field& field) {
   return u;
 }
 
-/// A bar along i that is bent in the plane i, j by couples,
+/// Pure bending of a bar along i in the plane i, j,
 ///   u_i = x_i x_j, u_j = -(x_i^2 + nu (x_j^2 - x_k^2)) / 2, u_k = -nu x_j x_k,
 /// with the strain x_j and the stress E x_j along i alone: E/2 times the integral of x_j^2, V l_j^2 / 3. The
-/// corners of one element know it exactly, at every Poisson's ratio and for all six bendings.
+/// corners of one element represent it exactly, at every Poisson's ratio and for all six bendings.
 TYPED_TEST(HourglassFormTest, bar_bends_exactly) {
   const std::array<double, 3> half{0.02, 0.05, 0.03};
   const auto X = this->box(half);
@@ -119,8 +119,8 @@ TYPED_TEST(HourglassFormTest, bar_twists_exactly) {
   }
 }
 
-/// The mode xi eta zeta along an axis has the normal strain xi_j xi_k / l_i: against E, uniaxial stress, when
-/// strains are assumed, and against 4/3 mu, no pressure, when they are enhanced.
+/// The mode xi eta zeta along an axis has the normal strain xi_j xi_k / l_i: with assumed strains its modulus
+/// is E, uniaxial stress, and with enhanced strains 4/3 mu, no pressure.
 TYPED_TEST(HourglassFormTest, fourth_mode_has_its_modulus) {
   const std::array<double, 3> half{0.02, 0.05, 0.03};
   const auto X = this->box(half);
@@ -140,8 +140,8 @@ TYPED_TEST(HourglassFormTest, fourth_mode_has_its_modulus) {
   }
 }
 
-/// No mode locks: the stiffest hourglass mode grows with mu by no more than from (1 + nu) / (1 - nu), the
-/// ratio of plane stress to uniaxial stress, not with the bulk modulus, on any shape. And none is lost.
+/// No mode locks: from nu = .25 to .5 the stiffest hourglass mode, relative to mu, grows at most as (1 + nu)
+/// / (1 - nu), plane over uniaxial stress, not with the bulk modulus, on any shape. None vanishes.
 TYPED_TEST(HourglassFormTest, no_mode_locks_on_any_shape) {
   for (int n = 0; n < 50; ++n) {
     const auto X = this->random.hexahedron();
@@ -162,7 +162,7 @@ TYPED_TEST(HourglassFormTest, no_mode_locks_on_any_shape) {
   }
 }
 
-/// What resistances store is what displacements put in: the two forms of the energy agree, for any shape.
+/// The energy stored by resistances equals that of the displacements: the two forms agree on any shape.
 TYPED_TEST(HourglassFormTest, complementary_energy_is_the_energy) {
   for (int n = 0; n < 50; ++n) {
     const auto X = this->random.hexahedron();
@@ -176,9 +176,9 @@ TYPED_TEST(HourglassFormTest, complementary_energy_is_the_energy) {
   }
 }
 
-/// A plate whose middle plane has any two edges and whose third edge leans any way is bent about a direction
-/// of its plane: the field of the bent bar again, now on corners that are no box. The enhanced form has the
-/// exact energy, E/2 times the integral of y^2; assumed strain takes the plate for a box and does not.
+/// A plate with any two edges in its middle plane and a third edge in any direction, bent about a direction
+/// of the plane: the field of the bent bar on corners that are no box. The enhanced form has the exact
+/// energy, E/2 times the integral of y^2; assumed strain, which treats the plate as a box, has not.
 TYPED_TEST(HourglassFormTest, skew_plate_bends_exactly_when_enhanced) {
   double largest_error = 0.0;
   for (int n = 0; n < 50; ++n) {

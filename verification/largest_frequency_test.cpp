@@ -1,4 +1,4 @@
-/// The largest frequency of a whole body: its changes with deformation, and steps as long as it allows.
+/// The largest frequency of a whole body: its change with deformation, and the longer steps that it allows.
 
 #include "solve/largest_frequency.hpp"
 
@@ -19,7 +19,7 @@ using Kernel = FormulationOf<TlMeanDilatation, NeoHookean>;
 
 const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.49};
 
-/// A distorted block on a held foot.
+/// A distorted block on a fixed foot.
 Scene block(std::vector<int> split = {}) {
   RandomGeometry random(4);
   Mesh mesh = box({0.03, 0.02, 0.04}, {3, 2, 4});
@@ -35,8 +35,8 @@ Scene block(std::vector<int> split = {}) {
                     {{"foot", nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; })}});
 }
 
-/// The longest stable step at displacements u, 2 over the largest frequency by a dense matrix: of the free
-/// components, with what tied nodes hand on.
+/// The longest stable step at displacements u, 2 over the largest frequency, from a dense matrix of the free
+/// components that includes the forces of tied nodes.
 double longest_step(const Scene& scene, const Model& model, const NodalField& u) {
   const MeshTangent<Kernel, NeoHookean> tangent(scene.mesh, law, {}, u);
   std::vector<std::pair<std::size_t, std::size_t>> free;
@@ -69,7 +69,7 @@ double longest_step(const Scene& scene, const Model& model, const NodalField& u)
   return 2.0 / std::sqrt(symmetric_eigenvalues(K.data(), static_cast<int>(free.size())).back());
 }
 
-/// A block that is pressed to half its height and sheared.
+/// A block pressed to half its height and sheared, times `share`.
 NodalField pressed(const Mesh& mesh, double share) {
   NodalField u;
   for (const Vector& X : mesh.points)
@@ -102,9 +102,9 @@ class LargestFrequencyTest : public ::testing::Test {
 using Reals = ::testing::Types<double, float>;
 TYPED_TEST_SUITE(LargestFrequencyTest, Reals);
 
-/// The search ends where its residual is a thousandth of the square, which is rounded up by at most 2^(1/32):
-/// half of that in the step, and a little for roundoff of single precision. It is no bound of an element,
-/// which is a quarter less here.
+/// The search stops at a residual of a thousandth of the square of the frequency, which is rounded up by at
+/// most 2^(1/32): half of each in the step, plus some roundoff of single precision. An element bound would
+/// fail: its step is a quarter shorter here.
 TYPED_TEST(LargestFrequencyTest, is_that_of_the_whole_body) {
   const NodalField rest(this->scene.mesh.points.size());
   const double exact = longest_step(this->scene, this->model, rest);
@@ -113,9 +113,9 @@ TYPED_TEST(LargestFrequencyTest, is_that_of_the_whole_body) {
   EXPECT_LT(stable_step(this->model, rest).step, 0.75 * exact);
 }
 
-/// On the way to a deformed state, and back, steps are not far below the longest stable one, and not above it
-/// by more than the growth of the frequency differs from that of the bounds within a tenth: runs take .9 of
-/// it. Both ways are so long that it is computed anew.
+/// On the way to a deformed state and back, steps stay close below the longest stable one, or exceed it at
+/// most by the difference in growth between the frequency and the bounds within a tenth: runs use .9 of it.
+/// Both ways are long enough for the frequency to be computed anew.
 TYPED_TEST(LargestFrequencyTest, is_followed_as_the_body_deforms) {
   this->step_at(NodalField(this->scene.mesh.points.size()));
   constexpr int parts = 60;
@@ -132,7 +132,7 @@ TYPED_TEST(LargestFrequencyTest, is_followed_as_the_body_deforms) {
   EXPECT_LT(least, 0.8 * most);
 }
 
-/// Nodes that hang move with others, and hand their masses on.
+/// Hanging nodes move with others and pass their masses on.
 TEST(LargestFrequency, of_a_refined_mesh) {
   const Scene scene = block({0, 1, 5});
   const Model model(scene, {"tl-mean-dilatation"});
@@ -151,7 +151,7 @@ TEST(LargestFrequency, is_not_for_subcycles) {
   EXPECT_FALSE(DynamicsSettings{.body_frequency = 1}.broken_rule());
 }
 
-/// Where forces depend on more than displacements, elements decide.
+/// Elements determine the step if forces depend on more than displacements.
 TEST(LargestFrequency, is_not_known_of_bodies_with_a_memory) {
   for (const auto* method : {"ul-perturbation", "ul-viscous"}) {
     const Scene scene = block();
@@ -163,9 +163,9 @@ TEST(LargestFrequency, is_not_known_of_bodies_with_a_memory) {
   }
 }
 
-/// Random bodies, driven or loaded in half of the time, undamped and then left alone. An unstable motion
-/// gains energy without limit within some hundred steps, a stable one loses or gains a little of what it was
-/// given. More scenes, and longer: SANDGLASS_SCENES=1000 SANDGLASS_STEPS=10000 largest_frequency_test, of
+/// Random bodies, driven or loaded for half of the time, undamped and then left alone. An unstable motion
+/// gains energy without limit within a few hundred steps; a stable one loses or gains little of the energy
+/// put in. SANDGLASS_SCENES=1000 SANDGLASS_STEPS=10000 largest_frequency_test runs more and longer scenes, of
 /// which some are unstable: solve/README.md.
 TEST(LargestFrequency, allows_stable_motions) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 12);
@@ -201,9 +201,9 @@ TEST(LargestFrequency, allows_stable_motions) {
   }
 }
 
-/// In this body of the same kind elements give way between two checks, which the step at the first did not
-/// foresee. Steps from there are taken again, shorter, and the motion is as one of short steps throughout: it
-/// neither gains nor loses more energy than steps that change may.
+/// In this body elements lose stability between two checks, unforeseen by the step of the first check. The
+/// steps since then are repeated with shorter ones, and the motion is like one with short steps throughout:
+/// it neither gains nor loses more energy than a change of steps may cause.
 TEST(LargestFrequency, steps_that_prove_too_long_are_taken_again) {
   RandomScene random(20, 37);
   Scene scene = random.scene();

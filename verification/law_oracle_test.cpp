@@ -1,4 +1,4 @@
-/// The laws in closed form: textbook stresses in long double, and answers that fit on a line.
+/// The laws against closed forms: textbook stresses in long double, and solutions of one line.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Tensor<Real> with_all_digits(const Tensor<double>& a) {
   return result;
 }
 
-/// a - tr(a)/3 I; the kernels' own multiplies by the double nearest to 1/3, which has 16 digits.
+/// a - tr(a)/3 I; the kernels multiply by the double nearest to 1/3, which has only 16 digits.
 Tensor<Real> exact_deviator(const Tensor<Real>& a) {
   return a - (trace(a) / 3) * identity<Real>();
 }
@@ -42,8 +42,8 @@ Tensor<Real> hydrostatic(const Law& law, const Tensor<Real>& F) {
   return (static_cast<Real>(law.bulk_modulus()) * (determinant(F) - 1)) * identity<Real>();
 }
 
-// First Piola-Kirchhoff stresses in F, in the forms of the textbooks: Cauchy stresses of the invariants of
-// bbar = J^(-2/3) F F^T, and Hooke's law of the Green strain.
+// First Piola-Kirchhoff stresses in F, in textbook form: Cauchy stresses from the invariants of bbar =
+// J^(-2/3) F F^T, and Hooke's law for the Green strain.
 
 Tensor<Real> textbook_piola(const StVenantKirchhoff& law, const Tensor<Real>& F) {
   const Tensor<Real> E = Real(0.5) * (transpose(F) * F - identity<Real>());
@@ -66,7 +66,7 @@ Tensor<Real> textbook_piola(const Yeoh& law, const Tensor<Real>& F) {
   return piola_of((2 * slope / determinant(F)) * exact_deviator(b) + hydrostatic(law, F), F);
 }
 
-/// The fibre or sheet i of the undeformed body, moved and scaled by J^(-1/3).
+/// The undeformed fibre or sheet direction i, deformed and scaled by J^(-1/3).
 Triple<Real> isochoric_fibre(const Tensor<Real>& F, int i) {
   const Real r = 1 / std::cbrt(determinant(F));
   return {{r * F(0, i), r * F(1, i), r * F(2, i)}};
@@ -82,7 +82,7 @@ Tensor<Real> textbook_piola(const FibreNeoHookean& law, const Tensor<Real>& F) {
   return piola_of((1 / J) * s + hydrostatic(law, F), F);
 }
 
-/// By components of Cbar: S = J^(-2/3) Dev(2 dW/dCbar), Dev(T) = T - (T : C) C^-1 / 3.
+/// From the components of Cbar: S = J^(-2/3) Dev(2 dW/dCbar), Dev(T) = T - (T : C) C^-1 / 3.
 Tensor<Real> textbook_piola(const Guccione& law, const Tensor<Real>& F) {
   const Real J = determinant(F), r2 = 1 / std::cbrt(J * J);
   const Tensor<Real> C = transpose(F) * F;
@@ -102,7 +102,7 @@ Tensor<Real> textbook_piola(const Guccione& law, const Tensor<Real>& F) {
   return F * S + piola_of(hydrostatic(law, F), F);
 }
 
-/// By invariants: Cauchy stresses of the first, of I4bar_f, I4bar_s and I8bar_fs.
+/// From invariants: Cauchy stresses of the first, of I4bar_f, I4bar_s and I8bar_fs.
 Tensor<Real> textbook_piola(const HolzapfelOgden& law, const Tensor<Real>& F) {
   const Tensor<Real> b = isochoric_left_cauchy_green(F);
   const Triple<Real> f = isochoric_fibre(F, 0), s = isochoric_fibre(F, 1);
@@ -131,8 +131,8 @@ using LawsWithTextbooks =
     ::testing::Types<StVenantKirchhoff, MooneyRivlin, Yeoh, FibreNeoHookean, Guccione, HolzapfelOgden>;
 TYPED_TEST_SUITE(LawOracleTest, LawsWithTextbooks, LawName);
 
-/// In long double the textbook's cancellation costs 1e-19/|H|. Without the bulk modulus' part too, as
-/// elements see it that put a pressure of their own there.
+/// In long double the textbook's cancellation costs 1e-19/|H|. Also without the volumetric part, which
+/// elements with a pressure of their own leave out.
 TYPED_TEST(LawOracleTest, agrees_with_the_textbook_form_in_long_double) {
   RandomGeometry random(13);
   for (const double size : {0.3, 1e-3, 1e-6}) {
@@ -147,7 +147,7 @@ TYPED_TEST(LawOracleTest, agrees_with_the_textbook_form_in_long_double) {
       };
       const double oracle_error = 1e-18 * (law.bulk_modulus() + law.shear_modulus());
       EXPECT_LT(difference(law.piola(H), whole), 64 * eps * size * law.bulk_modulus() + oracle_error);
-      // What is isochoric is as stiff as it is sheared; without the split K times |H|^2 stays.
+      // The isochoric part is as stiff as its bound; without a split, K times |H|^2 remains.
       const double stiffness = tangent_bound(law, H).gradient +
                                (TypeParam::traits.splits_volume ? 0.0 : size * law.bulk_modulus());
       EXPECT_LT(difference(law.isochoric_piola(H), isochoric),
@@ -160,8 +160,8 @@ Tensor<double> diagonal_gradient(double a, double b, double c) {
   return {{a - 1, 0, 0, 0, b - 1, 0, 0, 0, c - 1}};
 }
 
-/// tau_11 - tau_33 at constant volume: the axial Kirchhoff stress of a bar without lateral stress, whatever
-/// the pressure.
+/// tau_11 - tau_33 at constant volume: the axial Kirchhoff stress of a bar without lateral stress, at any
+/// pressure.
 template <class Law>
 double axial_stress(const Law& law, double a, double b, double c) {
   const auto P = law.piola(diagonal_gradient(a, b, c));
@@ -175,7 +175,7 @@ Tensor<double> kirchhoff_in_shear(const Law& law, double gamma) {
   return law.piola(H) * transpose(identity<double>() + H);
 }
 
-/// Roundoff of stresses that the bulk modulus is in: J is 1 to eps.
+/// Roundoff of stresses that include the bulk modulus: J is 1 up to eps.
 template <class Law>
 double tolerance(const Law& law, const Tensor<double>& H) {
   const auto bound = tangent_bound(law, H);
@@ -186,7 +186,7 @@ constexpr std::array<double, 5> stretches{0.4, 0.9, 1.01, 1.5, 3.0};
 constexpr std::array<double, 4> shears{-1.5, 1e-3, 0.4, 2.0};
 
 /// Uniaxial, equibiaxial and pure shear at constant volume: s P = (s^2 - t^2) 2 (W1 + W2 u^2), where t is the
-/// stretch without stress and u the third one.
+/// stretch in the stress-free direction and u the third one.
 TEST(MooneyRivlin, incompressible_stretches) {
   const MooneyRivlin law{.c10 = 400.0, .c01 = 130.0, .bulk = 1e5};
   EXPECT_EQ(law.shear_modulus(), 1060.0);
@@ -202,7 +202,7 @@ TEST(MooneyRivlin, incompressible_stretches) {
   }
 }
 
-/// tau_12 = 2 (c10 + c01) gamma; the second invariant shows in tau_22 - tau_33 = -2 c01 gamma^2.
+/// tau_12 = 2 (c10 + c01) gamma; the second invariant appears in tau_22 - tau_33 = -2 c01 gamma^2.
 TEST(MooneyRivlin, simple_shear) {
   const MooneyRivlin law{.c10 = 400.0, .c01 = 130.0, .bulk = 1e4};
   for (const double g : shears) {
@@ -214,7 +214,7 @@ TEST(MooneyRivlin, simple_shear) {
   }
 }
 
-/// Without the second invariant it is neo-Hookean.
+/// Without the second invariant the law is neo-Hookean.
 TEST(MooneyRivlin, contains_the_neo_hookean_law) {
   RandomGeometry random(5);
   const auto neo_hookean = sample_law<NeoHookean>(0.45);
@@ -255,7 +255,7 @@ TEST(Yeoh, simple_shear) {
   }
 }
 
-/// The rule of the parameters: at its border the shear modulus touches zero, within it stays positive.
+/// The limit of the parameters: there the shear modulus reaches zero, within it stays positive.
 TEST(Yeoh, refuses_parameters_that_lose_the_shear_modulus) {
   EXPECT_FALSE((Yeoh{.c1 = 500.0, .c2 = 10.0, .c3 = 0.0, .bulk = 1e4}.broken_rule()));
   EXPECT_FALSE((Yeoh{.c1 = 500.0, .c2 = -119.0, .c3 = 9.5, .bulk = 1e4}.broken_rule()));
@@ -273,7 +273,7 @@ TEST(StVenantKirchhoff, uniaxial_strain) {
       EXPECT_NEAR(P(0, 0), (lambda + 2 * law.shear_modulus()) * s * (s * s - 1) / 2, tolerance(law, H));
       EXPECT_NEAR(P(1, 1), lambda * (s * s - 1) / 2, tolerance(law, H));
     }
-    // It gives way at the stretch that it declares: the tangent of that stress is zero there.
+    // The law loses stiffness at its declared stretch: the tangent of this stress is zero there.
     const auto H = diagonal_gradient(StVenantKirchhoff::traits.softening_stretch, 1.0, 1.0);
     EXPECT_NEAR(slope(law.piola(along(H, unit<3, 3>(0))))(0, 0), 0.0, 1e-14 * p_wave_modulus(law));
   }
@@ -313,8 +313,8 @@ constexpr FibreNeoHookean fibres(double nu = 0.49) {
   return {.young_modulus = 3000.0, .poisson_ratio = nu, .fibre_modulus = 7000.0};
 }
 
-/// Along the fibres k/2 s^2 (s^2 - 1) is added to the neo-Hookean stress; across them, where they follow the
-/// lateral stretch t, k/2 t^2 (t^2 - 1) is taken away.
+/// Along the fibres, k/2 s^2 (s^2 - 1) is added to the neo-Hookean stress; across them, fibres follow the
+/// lateral stretch t, and k/2 t^2 (t^2 - 1) is subtracted.
 TEST(FibreNeoHookean, incompressible_stretches) {
   const FibreNeoHookean law = fibres();
   for (const double s : stretches) {
@@ -329,7 +329,7 @@ TEST(FibreNeoHookean, incompressible_stretches) {
   }
 }
 
-/// Shear along fibres stretches none of them; across, they turn and are stretched by 1 + gamma^2.
+/// Shear along fibres does not stretch them; across, they turn and their squared length grows by gamma^2.
 TEST(FibreNeoHookean, simple_shear) {
   const FibreNeoHookean law = fibres();
   for (const double g : shears) {
@@ -349,8 +349,8 @@ TEST(FibreNeoHookean, fibre_modulus_adds_to_youngs_modulus) {
   EXPECT_NEAR(stress(0, 0) - stress(1, 1), 10000.0, 1e-7);
 }
 
-/// Heart muscle (Land et al. 2015), with all of its exponents: the bound holds, and costs at most a factor of
-/// sqrt(3) in the step, over stretches of .7 to 1.4.
+/// Heart muscle (Land et al. 2015), all exponents nonzero: the bound holds, and shortens the step by at most
+/// a factor of sqrt(3), over stretches of .7 to 1.4.
 TEST(Guccione, tangent_bound_holds_for_heart_muscle) {
   const Guccione law{.stiffness = 2000.0, .along = 8.0, .across = 2.0, .shear = 4.0, .bulk = 1e5};
   RandomGeometry random(17);
@@ -364,7 +364,7 @@ TEST(Guccione, tangent_bound_holds_for_heart_muscle) {
   }
 }
 
-/// Fibres and sheets that are shortened do nothing: what is left is the matrix and the shear between them.
+/// Shortened fibres and sheets have no stress: only the matrix and the shear between them remain.
 TEST(HolzapfelOgden, shortened_fibres_are_slack) {
   HolzapfelOgden law = sample_law<HolzapfelOgden>(0.45);
   const auto P = law.piola(diagonal_gradient(0.8, 0.9, 1.4));

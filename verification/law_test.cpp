@@ -33,7 +33,7 @@ class LawTest : public ::testing::Test {
   }
   Tensor<double> large_gradient() { return random.deformation(0.4, 2.0) - identity<double>(); }
 
-  /// Roundoff of a stress: the law's stiffness times what is lost in F, with room for stretches to the fifth.
+  /// Roundoff of a stress: the law's stiffness times that of F, with a factor for stretches to the fifth.
   double tolerance(const Law& of, const Tensor<double>& H) const {
     const auto bound = tangent_bound(of, H);
     return 1024 * eps * (std::abs(bound.volumetric) + bound.gradient);
@@ -79,13 +79,13 @@ TYPED_TEST(LawTest, energy_splits_into_isochoric_and_volumetric) {
     const double J_minus_one = jacobian_minus_one(H);
     const double sum = law.isochoric_energy(H) + law.volumetric_energy(J_minus_one);
     // The same sum twice, which the compiler may contract differently. Each is within 32 roundings: the terms
-    // of the neo-Hookean r have some twenty between them and are up to five times their difference, of which
-    // the root leaves a third.
+    // of the neo-Hookean r have about twenty together, and are up to five times as large as their difference,
+    // of which the root leaves a third.
     EXPECT_NEAR(law.energy(H), sum, 64 * eps * sum);
     const auto stress = law.isochoric_piola(H) + law.pressure(J_minus_one) * cofactor(identity<double>() + H);
     EXPECT_LT(largest_entry(law.piola(H) - stress), this->tolerance(law, H));
-    // An isochoric energy does not see a change of size: F and 1.3 F have the same. A law that does not split
-    // calls isochoric what is so at rest only.
+    // Isochoric energy does not depend on size: F and 1.3 F have the same. Laws that do not split their
+    // energy call isochoric the part that is so for infinitesimal strains only.
     if (!TypeParam::traits.splits_volume) continue;
     const auto larger = 1.3 * (identity<double>() + H) - identity<double>();
     EXPECT_NEAR(law.isochoric_energy(larger), law.isochoric_energy(H), this->tolerance(law, H));
@@ -124,8 +124,8 @@ TYPED_TEST(LawTest, tangent_at_rest_is_linear_elasticity) {
   }
 }
 
-/// Near rest the law is linear elasticity up to O(|H|). Written in F the energy of |H| = 1e-6 would carry an
-/// error of eps/|H|^2 = 2e-4, the stress of |H| = 1e-9 one of 2e-7; both would fail here.
+/// At small strain the law is linear elasticity up to O(|H|). Written in F, the energy at |H| = 1e-6 would
+/// have an error of eps/|H|^2 = 2e-4, the stress at |H| = 1e-9 one of 2e-7; both would fail here.
 TYPED_TEST(LawTest, nothing_cancels_near_rest) {
   for (const double size : {1e-4, 1e-6, 1e-9}) {
     for (int n = 0; n < this->samples; ++n) {
@@ -133,12 +133,12 @@ TYPED_TEST(LawTest, nothing_cancels_near_rest) {
       const auto H = taut<TypeParam>([&] { return this->random.tensor(size); });
       const auto exact = linear_stress(law, H);
       // Second-order terms: a few |H|^2, each with at most the bulk modulus; the smallest samples lose digits
-      // in the strain's own sum, hence eps.
+      // in the sum of the strain itself, hence eps.
       const double tolerance = (20.0 * size + 16 * eps) * size * (law.bulk_modulus() + law.shear_modulus());
       EXPECT_LT(largest_entry(law.piola(H) - exact), tolerance);
       EXPECT_NEAR(law.energy(H), 0.5 * double_dot(exact, H), tolerance * size * 9.0);
     }
-    // The same without volume change, so that the bulk modulus hides nothing.
+    // The same without volume change, so that the bulk modulus hides no error.
     for (int n = 0; n < this->samples; ++n) {
       const auto law = this->law(n);
       const auto H = taut<TypeParam>([&] { return deviator(this->random.tensor(size)); });
@@ -149,7 +149,7 @@ TYPED_TEST(LawTest, nothing_cancels_near_rest) {
   }
 }
 
-/// A tiny rotation has strain of the order of its square's roundoff only: |H| eps, not eps.
+/// A tiny rotation causes only a strain of the size of its square's roundoff: |H| eps, not eps.
 TYPED_TEST(LawTest, tiny_rotation_gives_tiny_stress) {
   const auto law = this->law(0);
   for (const double angle : {1e-3, 1e-6, 1e-9}) {
@@ -162,7 +162,7 @@ TYPED_TEST(LawTest, tiny_rotation_gives_tiny_stress) {
   }
 }
 
-/// Single precision keeps its digits near rest: the measured 2e-7 of the architecture note, against 6e-2 in
+/// Single precision keeps its digits at small strains: errors of about 2e-7, as against 6e-2 for formulas in
 /// F.
 TYPED_TEST(LawTest, single_precision_is_accurate_near_rest) {
   for (const double size : {0.3, 1e-2, 1e-4, 1e-6}) {
@@ -177,7 +177,7 @@ TYPED_TEST(LawTest, single_precision_is_accurate_near_rest) {
       for (std::size_t k = 0; k < 9; ++k) {
         difference.entries[k] = static_cast<double>(P.entries[k]) - exact.entries[k];
       }
-      // Eight roundings of 6e-8; where tr H nearly cancels the roundings of the bulk part stay.
+      // Eight roundings of 6e-8; if tr H nearly cancels, the roundings of the bulk part remain.
       const double unit = std::max(largest_entry(exact), size * law.bulk_modulus());
       EXPECT_LT(largest_entry(difference), 1e-6 * unit) << "size " << size;
       const auto deviatoric = law.isochoric_piola(H);
@@ -199,8 +199,8 @@ TYPED_TEST(LawTest, tangent_bound_is_sharp_at_rest) {
       EXPECT_NEAR(bound.volumetric, lame_lambda(law), tolerance);
       EXPECT_NEAR(bound.gradient, 2.0 * law.shear_modulus(), tolerance);
     }
-    // Whatever the law: no slack under a change of size, none under the stiffest change of shape, and the two
-    // fix both numbers. A stiff penalty takes the change of size out of sight.
+    // For any law, the bound has no slack under a change of size and none under the stiffest change of shape,
+    // which determines both of its numbers. A large penalty removes the change of size from the second.
     auto left = slack(bound, current_tangent(law, Tensor<double>{}));
     double under_change_of_size = 0.0;
     for (int i = 0; i < 9; i += 4) {
@@ -214,8 +214,8 @@ TYPED_TEST(LawTest, tangent_bound_is_sharp_at_rest) {
   }
 }
 
-/// For all L together: the smallest eigenvalue of bound - tangent is not negative. From strong compression
-/// (0.3) to strong stretch (3).
+/// For all L together: no eigenvalue of bound - tangent is negative, from strong compression (0.3) to strong
+/// stretch (3).
 TYPED_TEST(LawTest, tangent_bound_holds) {
   constexpr double stiff = smallest_stiff_stretch<TypeParam>(0.3);
   double loosest = 1.0;
@@ -229,17 +229,17 @@ TYPED_TEST(LawTest, tangent_bound_holds) {
     EXPECT_LT(largest_entry(A - transpose(A)), 1e-11 * largest_entry(A));  // a tangent has a potential
     const double scale = largest_entry(symmetric);
     ASSERT_GT(eigenvalues(slack(bound, symmetric)).front(), -1e-12 * scale);
-    // How much the step loses to the bound: the true largest quadratic form over 3 volumetric + gradient.
+    // The share of the step that remains: the true largest quadratic form over 3 volumetric + gradient.
     const double top = std::max(bound.volumetric, 0.0) * 3.0 + bound.gradient;
-    ASSERT_GT(top, 0.0);  // no step is infinite
+    ASSERT_GT(top, 0.0);  // the step is finite
     if (smallest == stiff) loosest = std::min(loosest, eigenvalues(symmetric).back() / top);
   }
   this->RecordProperty("smallest_true_over_bound", std::to_string(loosest));
-  EXPECT_GT(loosest, 0.3);  // the law's bound may cost at most sqrt(3) in the step, anywhere in this range
+  EXPECT_GT(loosest, 0.3);  // the law's bound may shorten the step by at most sqrt(3) anywhere in this range
 }
 
-/// Elements replace the volumetric part by one of their own; bounds of the isochoric part must hold without
-/// it, and with any other.
+/// Elements may replace the volumetric part by their own; bounds of the isochoric part must hold without it,
+/// and with any other.
 TYPED_TEST(LawTest, isochoric_tangent_bound_holds) {
   for (int n = 0; n < 1000; ++n) {
     const auto law = this->law(n);
@@ -270,7 +270,7 @@ TYPED_TEST(LawTest, isochoric_tangent_bound_holds) {
   }
 }
 
-/// J sigma = P F^T for any pressure, near rest and far from it.
+/// J sigma = P F^T for any pressure, at small and at large strain.
 TYPED_TEST(LawTest, kirchhoff_stress_is_that_of_piola) {
   const double V = 0.7;
   for (const double size : {0.3, 1e-3, 1e-6}) {
@@ -281,7 +281,7 @@ TYPED_TEST(LawTest, kirchhoff_stress_is_that_of_piola) {
       const double p = this->random.uniform(-1.0, 1.0) * size * law.shear_modulus();
       const auto expected = law.weighted_piola(V, H, change, p) * transpose(identity<double>() + H);
       const auto difference = law.weighted_kirchhoff(V, H, change, p) - expected;
-      // Without the bulk modulus, which may hide nothing; a law that does not split has it times |H|^2.
+      // Without the bulk modulus, which could hide errors; laws without a split have it times |H|^2.
       const double unsplit = TypeParam::traits.splits_volume ? 0.0 : size * size * law.bulk_modulus();
       EXPECT_LT(largest_entry(difference), 256 * eps * (size * tangent_bound(law, H).gradient + unsplit));
     }

@@ -17,8 +17,8 @@ template <class Law>
 class SmallStrainLawTest : public ::testing::Test {};
 TYPED_TEST_SUITE(SmallStrainLawTest, LawTypes, EntryName);
 
-/// The stress of a small strain is the derivative of the law's stress at rest, and rotation adds none: for
-/// any H the slope of P along H is the stress of sym(H).
+/// The stress of a small strain is the derivative of the law's stress in the undeformed state, to which
+/// rotation does not contribute: for any H the slope of P along H is the stress of sym(H).
 TYPED_TEST(SmallStrainLawTest, stress_is_the_tangent_at_rest) {
   RandomGeometry random(31);
   for (const double nu : poisson_ratios) {
@@ -27,7 +27,7 @@ TYPED_TEST(SmallStrainLawTest, stress_is_the_tangent_at_rest) {
       const Tensor<double> H = random.tensor(1.0);
       const Tensor<double> tangent = slope(any.piola(along(Tensor<double>{}, H)));
       const Tensor<double> stress = small_strain_stress(any, symmetric_part(H));
-      // K - 2/3 mu and the like cancel a few digits of a sum of moduli times entries of H.
+      // Terms like K - 2/3 mu lose a few digits of a sum of moduli times entries of H.
       EXPECT_LT(largest_entry(stress - tangent), 64 * eps * (any.bulk_modulus() + any.shear_modulus()));
     }
   }
@@ -36,8 +36,8 @@ TYPED_TEST(SmallStrainLawTest, stress_is_the_tangent_at_rest) {
 const MethodChoice linear_method{"linear"};
 const MethodChoice condensed_method{"linear-condensed"};
 
-/// Where strains and rotations are small, small-strain theory is the first term of the others: its relative
-/// error is of first order in the displacements, a tenth for a tenth of the load.
+/// For small strains and rotations, small-strain theory is the first term of the others: its relative error
+/// is of first order in the displacements, a tenth for a tenth of the load.
 TEST(LinearTest, agrees_with_total_lagrangian_to_first_order_in_strain) {
   const auto relative_difference = [](double share) {
     const Vector d{share * 0.1, share * -0.05, share * 0.08};  // the bar is 0.3 m long
@@ -48,14 +48,14 @@ TEST(LinearTest, agrees_with_total_lagrangian_to_first_order_in_strain) {
   const double large = relative_difference(1e-2), small = relative_difference(1e-3);
   EXPECT_LT(large, 0.01);
   EXPECT_NEAR(large / small, 10.0, 0.5);
-  // At full load, strains of tens of percent, it is wrong for everybody to see.
+  // At full load, with strains of tens of percent, the error is obvious.
   EXPECT_GT(relative_difference(1.0), 0.05);
 }
 
-/// A block is tilted by 60 degrees about an edge of its foot: heights of the foot are imposed as the rotation
-/// wants them, z = y sin 60, and all else may follow. A body follows by turning, and strains nothing. To
-/// small-strain theory u = s (-z, y) with s = sin 60 is the rotation: the block grows by sqrt(1 + s^2), a
-/// third in length and three quarters in volume, and no force reveals it.
+/// A block is tilted by 60 degrees about an edge of its foot: the heights of the foot's nodes are imposed, z
+/// = y sin 60 as in a rotation; all else is free. A real body rotates without strain. In small-strain theory
+/// the rotation is u = s (-z, y) with s = sin 60: the block grows by sqrt(1 + s^2), by a third in length and
+/// three quarters in volume, and no force reveals it.
 TEST(LinearTest, a_block_that_turns_by_60_degrees_grows) {
   const double s = std::sin(std::acos(0.5));
   Case description = plain_case(sample_law<NeoHookean>(0.49));
@@ -83,7 +83,7 @@ TEST(LinearTest, a_block_that_turns_by_60_degrees_grows) {
   EXPECT_LT(largest_distance(f, std::vector<Vector>(f.size())), 1e-12 * stiffness);
   const Model linear(scene, linear_method), total(scene, {"tl-perturbation"});
   for (const double J : static_frame(linear, 1.0, u).jacobians) EXPECT_NEAR(J, 1.0 + s * s, 1e-10);
-  // The same scene has the true rotation for an answer: it strains a body by nothing.
+  // With finite strain the same scene's answer is the true rotation, without strain.
   for (const double J : static_frame(total, 1.0, turned).jacobians) EXPECT_NEAR(J, 1.0, 1e-12);
   const NodalField none(mesh.points.size());
   EXPECT_LT(largest_distance(internal_forces(total, turned), none), 1e-12 * stiffness);

@@ -46,9 +46,9 @@ void expect_near(const Vector& a, const Vector& b, double tolerance) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance);
 }
 
-/// Uniform traction on a trapezoid with parallel edges a and b at distance h: a node of edge a carries
-/// h (2 a + b) / 12 of it, the integral of its bilinear function. One Gauss point or equal shares would give
-/// h (a + b) / 8 to each.
+/// Uniform traction on a trapezoid with parallel edges a and b at distance h: a node of edge a carries h (2 a
+/// + b) / 12 of it, the integral of its bilinear function. One Gauss point or equal shares would give h (a +
+/// b) / 8 for every node.
 TEST(FaceLoad, trapezoid_is_shared_out_exactly) {
   const double a = 3.0, b = 1.0, h = 2.0;
   const NodalField points{{0, 0, 0}, {a, 0, 0}, {0.5 + b, h, 0}, {0.5, h, 0}};
@@ -61,7 +61,7 @@ TEST(FaceLoad, trapezoid_is_shared_out_exactly) {
   }
 }
 
-/// A moment about the normal of a square turns it; one about its middle line bends it: with edges of 2 c the
+/// A moment about the normal of a square twists it; one about its middle line bends it: with edges of 2 c the
 /// traction is b z, and a corner carries the integral of (1 + z/c)/4 b z, which is b c^3 / 3 = M / (4 c).
 TEST(FaceLoad, moments_act_like_twisting_and_bending_stresses) {
   const double c = 0.5, M = 1.7;
@@ -77,7 +77,7 @@ TEST(FaceLoad, moments_act_like_twisting_and_bending_stresses) {
   }
 }
 
-/// Sum and moment of the nodal loads are exact on warped faces, too, and about any point.
+/// Sum and moment of the nodal loads are exact on warped faces too, and about any point.
 TEST(FaceLoad, sum_and_moment_are_exact_on_warped_faces) {
   RandomGeometry random(41);
   Mesh mesh = box({1.0, 2.0, 3.0}, {2, 3, 4});
@@ -94,7 +94,7 @@ TEST(FaceLoad, sum_and_moment_are_exact_on_warped_faces) {
   expect_near(sum_of(turned), {}, 1e-14);
   expect_near(moment_of(turned, mesh.points, {}), M, 1e-13);
   expect_near(moment_of(turned, mesh.points, {5.0, -3.0, 1.0}), M, 1e-13);
-  // The sum acts in the centroid: it has no moment about the point that a force of its own leaves alone.
+  // The sum acts at the centroid: it has no moment about the point that a force alone does not turn.
   const auto both = consistent_loads(mesh.points, faces, F, M);
   const Vector alone = moment_of(pulled, mesh.points, {});
   expect_near(moment_of(both, mesh.points, {}), {alone[0] + M[0], alone[1] + M[1], alone[2] + M[2]}, 1e-13);
@@ -104,7 +104,7 @@ TEST(FaceLoad, only_boundary_faces_with_all_nodes_in_the_set_are_loaded) {
   const Mesh mesh = box({1.0, 1.0, 1.0}, {3, 3, 3});
   const auto all = nodes_where(mesh.points, [](const Vector&) { return true; });
   EXPECT_EQ(faces_within(boundary_faces(mesh.cells), all).size(),
-            6U * 9);  // those inside have all their nodes in the set, too
+            6U * 9);  // inner faces too have all their nodes in the set
   const auto strip = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 1.0 && X[0] < 0.4; });
   EXPECT_EQ(faces_within(boundary_faces(mesh.cells), strip).size(), 3U);
   const auto edge = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 1.0 && X[0] == 0.0; });
@@ -140,14 +140,14 @@ class LoadTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(LoadTest, PathIndependentPairTypes, EntryName);
 
-/// A bar under a dead load on its end stretches uniformly, and its first Piola stress along z is load over
-/// undeformed area, the others vanish: small, and with a stress of a third of Young's modulus. The residual
-/// of 1e-8 leaves stresses of that share of the largest.
+/// A bar under a dead load on its end stretches uniformly; its first Piola-Kirchhoff stress along z is the
+/// load over the undeformed area, all other stresses vanish. Tested at small strain, and at a stress of a
+/// third of Young's modulus. A residual of 1e-8 leaves stresses of that fraction of the largest.
 TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
   using Method = typename TypeParam::Method;
   using Law = typename TypeParam::Law;
-  if (zero_energy_modes<Method>() > 6) return;  // such modes depend on the path
-  if (!is_isotropic<Law>) return;               // fibres that run askew make the bar shear
+  if (zero_energy_modes<Method>() > 6) return;  // displacements in such modes depend on the path
+  if (!is_isotropic<Law>) return;               // fibres in other directions shear the bar
   const auto law = this->law();
   for (const double stress : {1e-6, bearable_load<Law>() / 3.0}) {
     const double force = stress * young_modulus_of(law) * 0.1 * 0.2;
@@ -168,8 +168,8 @@ TYPED_TEST(LoadTest, bar_under_end_load_has_uniaxial_stress) {
   }
 }
 
-/// A body at rest that holds nothing yet is out of balance by all of its loads: its residual is one, at any
-/// factor of the loads.
+/// With loads but no internal forces yet, a body is out of balance by all of its loads: the residual is one,
+/// at any factor of the loads.
 TEST(Residual, is_told_over_the_loads) {
   const Scene scene = pulled_bar(sample_law<NeoHookean>(0.3), 2.0);
   const Model model(scene, {"tl-perturbation"});
@@ -191,7 +191,7 @@ TYPED_TEST(LoadTest, work_is_stored_in_the_small) {
   double path = 0.0;
   for (const auto& load : dead_loads(scene.forces)) path += load.force[2] * answer.u[index(load.node)][2];
   EXPECT_NEAR(recorder.rows.back().external_work / (0.5 * path), 1.0, 1e-12);
-  // Half a force of 1e-7 E is off by that share; the residual of 1e-8 by its own.
+  // At a force of 1e-7 E energy is off by about half of that; the residual adds 1e-8.
   EXPECT_NEAR(total_energy(recorder.rows.back()) / (0.5 * path), 1.0, 1e-6);
 }
 
@@ -212,7 +212,7 @@ TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
     integrate(Model(scene, this->method()), recorder);
     return energy_imbalance(recorder.rows);
   };
-  // (omega dt)^2 is .01 to .1; terms of second order cancel in part, so that the ratio may be below 4.
+  // (omega dt)^2 is .01 to .1; second-order terms partly cancel, so the ratio may be below 4.
   const double coarse = imbalance(0.4), fine = imbalance(0.2);
   EXPECT_LT(coarse, 4e-3);
   EXPECT_LT(fine, 1e-3);
@@ -220,8 +220,8 @@ TYPED_TEST(LoadTest, work_of_loads_balances_energies_of_a_motion) {
 }
 
 /// A free body under a force that follows the loading curve has the momentum F T / 2 at the end of the ramp,
-/// for the curve's mean is 1/2. Its first and third derivatives are the same at both ends, so that a sum over
-/// n equal steps gives that to n^-6 (Euler and Maclaurin), here 1e-9. A wrong time or factor shows clearly.
+/// since the curve's mean is 1/2. Its first and third derivatives are equal at both ends, so the sum over n
+/// equal steps has an error of n^-6 (Euler and Maclaurin), here 1e-9. Wrong times or factors exceed that.
 TEST(Load, force_gives_a_free_body_its_momentum) {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   description.quasi_static = false;
@@ -242,7 +242,7 @@ TEST(Load, force_gives_a_free_body_its_momentum) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(momentum[i] / (0.5 * 0.2 * F[i]), 1.0, 1e-9);
 }
 
-/// A load on held nodes goes straight into their reactions: these balance all loads, and nothing moves.
+/// Loads on held nodes go directly into the reactions, which balance all loads; nothing moves.
 TEST(Load, reactions_carry_all_loads) {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   const Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 2});
@@ -284,8 +284,8 @@ TEST(Load, forces_on_one_node_add_up) {
   }
 }
 
-/// Relative errors are in units of the largest imposed displacement; under forces alone, of the reference's
-/// own largest one.
+/// Relative errors are in units of the largest imposed displacement; if there are only forces, of the
+/// reference's largest displacement.
 TEST(Load, unit_of_errors_without_imposed_displacement_is_the_references_own) {
   CaseOnMesh problem = pulled_bar_case(sample_law<NeoHookean>(0.3), 1.0);
   const Scene scene = make_scene(problem);
@@ -296,8 +296,8 @@ TEST(Load, unit_of_errors_without_imposed_displacement_is_the_references_own) {
   EXPECT_EQ(displacement_unit(make_scene(problem), reference), 0.02);
 }
 
-/// A scene with more load is that of a case whose tables say more: displacements, angles, forces with and
-/// without curves, and velocities, to a few roundings.
+/// Scaling a scene equals scaling every table of its case: displacements, angles, forces with and without
+/// curves, and velocities, to a few roundings.
 TEST(Scaled, is_the_case_with_more_in_every_table) {
   constexpr double factor = 1.5;
   const auto loaded = [](double by) {
@@ -338,8 +338,8 @@ TEST(Scaled, is_the_case_with_more_in_every_table) {
   EXPECT_EQ(scene.case_hash, "");
 }
 
-/// On nodes, a set needs no face, and its three nodes carry a third each; the edge of a face would carry a
-/// quarter, a half and a quarter.
+/// A force on nodes needs no face, and three nodes carry a third each; as the edge of a face, they would
+/// carry a quarter, a half and a quarter.
 TEST(Load, force_on_nodes_is_shared_equally) {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   const Mesh mesh = box({0.1, 0.1, 0.1}, {2, 2, 2});

@@ -1,4 +1,4 @@
-/// Manufactured solutions: how fast each method converges to an exact answer at finite strain.
+/// Manufactured solutions: convergence of each method to an exact answer at finite strain.
 
 #include "support/manufactured.hpp"
 
@@ -15,11 +15,11 @@ namespace {
 /// Compressible, and soft tissue: K/mu = 2.2 and 9.7.
 constexpr std::array<double, 2> ratios{0.3, 0.45};
 
-/// How far the nodes of distorted meshes are moved, in edges; see `distorted_cube`.
+/// How far nodes of distorted meshes are moved, in edges; see `distorted_cube`.
 constexpr double distortion = 0.15;
 
-/// A condensed answer is that of its linear method (condensed_test.cpp), and would need a response to every
-/// held node. Who leaves modes without energy by nature finds no unique answer; see the last test.
+/// A condensed answer equals that of its linear method (condensed_test.cpp), and would need a response to
+/// every held node. Methods that leave modes without energy have no unique answer; see the last test.
 template <class Method>
 constexpr bool has_one_answer() {
   return !is_condensed<Method> && zero_energy_modes<Method>() == 6;
@@ -39,8 +39,8 @@ class ManufacturedTest : public ::testing::Test {
   using Law = typename PairInFieldType::Law;
   using Field = typename PairInFieldType::Field;
 
-  /// Errors of the method's answer on a mesh of the unit cube. The exact displacements are imposed on five of
-  /// its faces; on the sixth, x = 1, tractions act.
+  /// Errors of the method's answer on a mesh of the unit cube. Exact displacements are imposed on five of its
+  /// faces; tractions act on the sixth, x = 1.
   static FieldErrors errors(const Mesh& mesh, double nu, double accuracy) {
     const Field field{bearable_load<Law>()};
     const ManufacturedSolution<Method, Law, Field> solution{field, sample_law<Law>(nu)};
@@ -64,8 +64,8 @@ class ManufacturedTest : public ::testing::Test {
     return field_errors(mesh, answer.u, field);
   }
 
-  /// Observed orders of the three norms from n^3 to (2 n)^3 elements. An adaptive method comes no nearer than
-  /// it is asked to: its accuracy goes with the square of the edge.
+  /// Observed orders of the three norms from n^3 to (2 n)^3 elements. The error of an adaptive method stays
+  /// near its requested accuracy, which is therefore proportional to the square of the edge.
   FieldErrors orders(int n, double share, double nu) {
     const auto seed = static_cast<std::uint64_t>(n);
     const FieldErrors coarse = errors(distorted_cube(n, share, seed), nu, default_accuracy);
@@ -81,17 +81,16 @@ class ManufacturedTest : public ::testing::Test {
 
   /// Order 2 in L2 and 1 in the H1 seminorm, on meshes of 6 and 12 elements per edge. On regular ones an
   /// error C h^p (1 + c h^2) shows the order p + c h^2 3/ln 2 with h = 1/12; waves of |k| = 2.7 have c of
-  /// about k^2/8, whence 0.03. On distorted ones C is a root mean square over n^3 elements, no two of which
-  /// are alike: with a spread of their own size it is known to 1/(2 sqrt(n^3)) = 3.4 %, .05 in the order; and
-  /// elements at the surface, whose outer faces stay plane, are 70 % of the coarse and 42 % of the fine mesh,
-  /// which for errors that distortion raises by 6 % is another .02. So a tenth is granted.
+  /// about k^2/8, hence 0.03. On distorted ones C is a root mean square over n^3 different elements: with a
+  /// spread as large as the mean it is known to 1/(2 sqrt(n^3)) = 3.4 %, .05 in the order; and elements at
+  /// the surface, whose outer faces stay plane, are 70 % of the coarse and 42 % of the fine mesh, which for
+  /// errors that distortion raises by 6 % is another .02. So a tenth is allowed.
   ///
-  /// Both norms hold what interpolation alone leaves, which is most of them. The nodes' own errors are a
-  /// tenth of it; here locking (tl-full and t4 at nu = .45) and few elements show, so that order 2 is asked
-  /// for as more than half-way from order 1: what is 1.66 here, t4's, is 1.87 on meshes twice as fine. Where
-  /// fibres slacken, the body force of the exact solution jumps across a surface. Elements that it cuts, a
-  /// layer of width h, integrate the jump with an error of order 1: of the nodes no more than order 1 is
-  /// asked.
+  /// Most of either norm is the error of interpolation. The nodes' own errors are a tenth of it; they show
+  /// locking (tl-full and t4 at nu = .45) and the small number of elements, so order 2 is required only as
+  /// more than half-way from order 1: t4's, 1.66 here, is 1.87 on meshes twice as fine. Where fibres slacken,
+  /// the body force of the exact solution jumps across a surface. Elements that it cuts, a layer of width h,
+  /// integrate the jump with an error of order 1, so nodes need only order 1.
   void expect_orders(double share) {
     if (!has_one_answer<Method>()) GTEST_SKIP() << "no answer of its own";
     for (const double nu : ratios) {
@@ -134,8 +133,7 @@ std::vector<Tensor<double>> gradients_of(const Field& field) {
   return gradients;
 }
 
-/// The fields are what they are said to be. Waves: displacement gradients of 0.2 to 0.33 somewhere, no
-/// inversion.
+/// The fields are as described. Waves: displacement gradients of 0.2 to 0.33 somewhere, no inversion.
 TEST(Manufactured, waves_are_of_finite_strain) {
   double largest = 0.0, smallest_J = 2.0, largest_J = 0.0;
   for (const auto& H : gradients_of(WaveField{})) {
@@ -148,8 +146,8 @@ TEST(Manufactured, waves_are_of_finite_strain) {
   EXPECT_NEAR(largest_J, 1.040, 0.002);
 }
 
-/// Flexure: the ring's inner face, r^2 = a^2 - a, is shortened to sqrt(1 - 1/a), and no volume changes but by
-/// the rounding of some ten terms of order one.
+/// Flexure: the ring's inner face, r^2 = a^2 - a, is shortened to sqrt(1 - 1/a), and volume is constant up to
+/// the rounding of about ten terms of order one.
 TEST(Manufactured, flexure_shortens_the_inner_face_and_keeps_the_volume) {
   double shortest = 2.0;
   for (const auto& H : gradients_of(FlexureField{})) {
@@ -160,8 +158,8 @@ TEST(Manufactured, flexure_shortens_the_inner_face_and_keeps_the_volume) {
   EXPECT_NEAR(shortest, std::sqrt(0.5), 0x1p-48);
 }
 
-/// Body force and tractions of the exact stress balance: their sum is zero to what three Gauss points leave,
-/// h^6 of the tractions. A sign or factor wrong in either would leave a large part of them.
+/// Body force and tractions of the exact stress balance: their sum is zero up to the error of three Gauss
+/// points, h^6 of the tractions. A wrong sign or factor in either would leave a large part of them.
 TEST(Manufactured, loads_balance) {
   const ManufacturedSolution<TlFull, NeoHookean, WaveField> solution{{}, sample_law<NeoHookean>(0.45)};
   const auto sums = [&](int n) {
@@ -179,8 +177,8 @@ TEST(Manufactured, loads_balance) {
   EXPECT_LT(sums(8), 1e-6 / 32);
 }
 
-/// That these tests see hourglassing: without a control the gradients of distorted meshes, whose elements
-/// press each other out of shape, do not converge with order 1, although displacements nearly do with 2.
+/// These tests detect hourglassing: without control, gradients on distorted meshes, whose elements push each
+/// other out of shape, do not converge with order 1, although displacements nearly do with order 2.
 TEST(Manufactured, uncontrolled_gradients_lose_their_order_on_distorted_meshes) {
   struct Uncontrolled : ManufacturedTest<PairInField<WaveField, MethodWithLaw<TlNone, NeoHookean>>> {
     void TestBody() override {}

@@ -31,8 +31,8 @@ struct MaterialsTest : ::testing::Test {
     return {.method = std::string(Method::name), .threads = threads};
   }
 
-  /// Materials in no order: laws that the compiler inlines, others, one with another volumetric part, those
-  /// with fibres that are different in every element, and two with a memory where the method knows it.
+  /// Materials in random order: inlined laws and others, one with another volumetric part, some with
+  /// different fibres in every element, and two viscoelastic ones if the method supports them.
   static Materials mixed(std::size_t elements) {
     Materials materials{{{sample_law<NeoHookean>(0.45, 30000.0), 2000.0},
                          {sample_law<Yeoh>(0.3), 1000.0},
@@ -52,7 +52,7 @@ struct MaterialsTest : ::testing::Test {
     return materials;
   }
 
-  /// What the elements of a mesh say at displacements u, reached in a tenth of a second.
+  /// Results of a mesh's elements at displacements u, reached in a tenth of a second.
   struct Answer {
     Answer(const Mesh& mesh, const Materials& materials, const NodalField& u, int threads = 1)
         : bounds(mesh.cells.size()), densities(mesh.cells.size()) {
@@ -76,8 +76,8 @@ struct MaterialsTest : ::testing::Test {
 };
 TYPED_TEST_SUITE(MaterialsTest, MethodTypes, EntryName);
 
-/// The body is the sum of its parts, each of one material: forces and energies add up, and what belongs to an
-/// element is that of its part. Meshes of many chunks, with materials that leave lanes empty.
+/// A body is the sum of parts of one material each: forces and energies add up, and each element's results
+/// are those of its part. The meshes have many chunks and materials that leave lanes empty.
 TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
   const Mesh mesh = box({0.1, 0.12, 0.2}, {6, 7, 12});
   RandomGeometry random(5);
@@ -112,15 +112,15 @@ TYPED_TEST(MaterialsTest, a_body_is_the_sum_of_its_parts) {
       EXPECT_NEAR(whole.densities[there], alone.densities[e], 1e-9 * (alone.densities[e] + 1.0));
     }
   }
-  // Elements may lie in another order in their lanes: the same sums, in another order.
+  // Elements may be in other lanes: the same sums in another order.
   EXPECT_LT(largest_distance(force, whole.force), 1e-11 * unit);
   EXPECT_LT(largest_distance(pressure_force, whole.pressure_force), 1e-11 * unit);
   EXPECT_NEAR(energies.strain, whole.energies.strain, 1e-11 * energies.strain);
   EXPECT_NEAR(energies.hourglass, whole.energies.hourglass, 1e-11 * energies.strain);
 }
 
-/// A body that is turned with its fibres is the same body: its forces turn along, and its elements have the
-/// same energies and bounds, and the same levels. Fibres that stay behind make it another one.
+/// A body and its fibres turn together: forces turn too, and elements have the same energies, bounds and
+/// levels. If fibres do not turn, forces differ.
 TYPED_TEST(MaterialsTest, fibres_turn_with_the_body) {
   if (TestFixture::Method::Kinematics::traits.needs_coordinates || is_linear<typename TestFixture::Method>) {
     GTEST_SKIP() << "the method is not objective";
@@ -167,8 +167,8 @@ TYPED_TEST(MaterialsTest, bits_do_not_depend_on_threads) {
   EXPECT_EQ(one.pressure_force, three.pressure_force);
 }
 
-/// Two layers pressed together, their sides held: each is strained uniformly, the stress across is the same.
-/// Every element represents that exactly; the strains follow from two numbers.
+/// Two layers pressed together between held sides: each has a uniform strain, and the stress across is equal.
+/// All elements represent that exactly; the strains follow from two numbers.
 TYPED_TEST(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
   if (is_linear<TypeParam>) GTEST_SKIP() << "another stress";
   Case description = plain_case(NeoHookean{});
@@ -212,7 +212,7 @@ TYPED_TEST(MaterialsTest, layers_under_pressure_carry_the_same_stress) {
   EXPECT_LT(largest_distance(recorder.frames.back().u, exact), 1e-8 * pressed);
 }
 
-/// The step of a body is that of its part with the shortest one: elements do not know of each other there.
+/// The step of a body is that of its part with the shortest one: element bounds are independent.
 TYPED_TEST(MaterialsTest, the_stable_step_is_the_shortest_of_the_parts) {
   if (is_condensed<TypeParam>) GTEST_SKIP() << "takes no steps";
   const Mesh mesh = box({1.0, 1.0, 4.0}, {2, 2, 8});
@@ -271,7 +271,7 @@ TEST(Materials, a_case_file_gives_each_element_its_own) {
   EXPECT_DOUBLE_EQ(model.element_masses()[1], 2000.0);
   EXPECT_DOUBLE_EQ(model.element_masses()[2], 1000.0);
   const auto file = folder / "two.h5";
-  // A file of the mesh holds the set: a case that reads it needs no rule.
+  // A mesh file holds the set, so that a case that reads it needs no rule.
   write_mesh_file(scene, file);
   const MeshWithSets read = read_mesh_file(file);
   EXPECT_EQ(read.element_sets.at("foot"), (std::vector<int>{0, 1}));

@@ -45,7 +45,7 @@ Vector cross(const Vector& a, const Vector& b) {
 }
 
 /// The volume inside the boundary faces by the divergence theorem, each bilinear face as the mean of its two
-/// triangulations. Positive only when the faces look outward.
+/// triangulations. It is positive only if faces point outward.
 double enclosed_volume(const Mesh& mesh) {
   const auto triple = [&](int a, int b, int c) {
     const auto n = cross(mesh.points[index(b)], mesh.points[index(c)]);
@@ -117,7 +117,7 @@ TEST(CanonicalMesh, ellipsoid_has_the_documented_sets_shape_and_volume) {
   EXPECT_EQ(scene.sets.at("support").size(), 141U);
   EXPECT_EQ(scene.sets.at("indenter").size(), 65U);
   EXPECT_GE(smallest_scaled_jacobian(scene.mesh), 0.6);
-  EXPECT_NEAR(volume(scene.mesh), 2.81777e-3, 5e-9);                                  // the digits given
+  EXPECT_NEAR(volume(scene.mesh), 2.81777e-3, 5e-9);                                  // to the digits given
   EXPECT_LT(volume(scene.mesh), 4.0 / 3.0 * std::numbers::pi * 0.10 * 0.085 * 0.08);  // inscribed
   for (const int node : scene.sets.at("midline")) EXPECT_NEAR(scene.mesh.points[index(node)][1], 0.0, 1e-12);
   const auto on_boundary = boundary_nodes(scene.mesh);
@@ -134,7 +134,7 @@ TEST(CanonicalMesh, ellipsoid_has_the_documented_sets_shape_and_volume) {
 
 TEST(CanonicalMesh, cylinder_has_the_volume_of_its_polygon) {
   const Scene scene = canonical("cylinder-stretch");
-  // 40 equal sides: 4 core edges of 10, their ends at equal angles by the map's tangent.
+  // 40 equal sides: 4 core edges of 10, whose ends are at equal angles due to the map's tangent.
   const double polygon = 0.5 * 40 * 0.05 * 0.05 * std::sin(2 * std::numbers::pi / 40);
   EXPECT_NEAR(volume(scene.mesh) / (0.1 * polygon), 1.0, 1e-12);
   EXPECT_EQ(scene.sets.at("bottom").size(), 321U);  // 6741 nodes in 21 planes
@@ -169,8 +169,8 @@ TEST(Beams, leaning_elements_keep_ends_and_volume) {
   }
 }
 
-/// The width of a section lies along y at the root and along z at the tip, a quarter of a turn later; in
-/// between it turns evenly.
+/// The width of a section points along y at the root and along z at the tip, a quarter of a turn away; it
+/// turns evenly in between.
 TEST(Beams, twisted_one_turns_its_section_about_x) {
   const Mesh mesh = BeamMesh{{12.0, 1.1, 0.32}, {12, 2, 1}, 0.0, 0.0, 90.0}.build();
   expect_sound(mesh);
@@ -194,8 +194,8 @@ TEST(Beams, curved_one_follows_its_arc) {
     const double r = std::hypot(x, y);
     EXPECT_LT(std::min(std::abs(r - 4.12), std::abs(r - 4.32)), 1e-14);
   }
-  EXPECT_EQ(mesh.points.front(), (Vector{0.0, 4.12, 0.0}));  // it begins on x = 0
-  EXPECT_NEAR(mesh.points.back()[0], 4.32, 1e-15);           // and ends on y = 0
+  EXPECT_EQ(mesh.points.front(), (Vector{0.0, 4.12, 0.0}));  // starts on x = 0
+  EXPECT_NEAR(mesh.points.back()[0], 4.32, 1e-15);           // ends on y = 0
   EXPECT_NEAR(mesh.points.back()[1], 0.0, 1e-15);
 }
 
@@ -207,9 +207,9 @@ TEST(TaperedPanel, has_the_area_of_cooks_membrane) {
   EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), middle).size(), 2U);
 }
 
-/// MacNeal and Harder's hemisphere. The nodes lie on two spheres. Its volume falls short of that between
-/// them, (angle / 3) (R^3 - r^3) cos(hole), by at most a^2 / 3, where a is the angle of an element: chords of
-/// arcs of a cut a^2 / 6 off a circle, in two directions.
+/// MacNeal and Harder's hemisphere. The nodes lie on two spheres. Its volume is below that between them,
+/// (angle / 3) (R^3 - r^3) cos(hole), by at most a fraction of a^2 / 3, where a is the angle of an element:
+/// chords of arcs of a cut a fraction of a^2 / 6 off a circle, in two directions.
 TEST(SphericalShell, lies_between_two_spheres) {
   const double a = std::numbers::pi / 2 / 16;
   const Mesh mesh = SphericalShellMesh{10.0, 0.04, 18.0, 90.0, {16, 16, 1}}.build();
@@ -245,8 +245,8 @@ TYPED_TEST(GeneratorTest, makes_the_same_mesh_again) {
   EXPECT_EQ(once.cells, again.cells);
 }
 
-/// Rules have no length of their own: a body of a millionth of the size with rules to match has the same
-/// sets, in the corner cases too, where nodes lie on the rule's edge up to roundoff.
+/// Rules do not depend on a unit of length: in a body of a millionth of the size, scaled rules select the
+/// same sets, also in corner cases, where nodes lie on the edge of a rule up to roundoff.
 TEST(NodeSets, do_not_depend_on_the_unit_of_length) {
   std::vector<std::vector<int>> found;
   for (const double size : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
@@ -263,7 +263,7 @@ TEST(NodeSets, do_not_depend_on_the_unit_of_length) {
   }
 }
 
-/// Rules forgive what six digits round, 5e-6 of the largest coordinate: nodes that are off a plane by a
+/// Rules tolerate coordinates rounded to six digits, 5e-6 of the largest coordinate: nodes off a plane by a
 /// little less are on it, by a little more are not, in a body of a micrometre as in one of a thousand
 /// kilometres.
 TEST(NodeSets, forgive_a_share_of_the_body_and_no_length) {
@@ -276,8 +276,8 @@ TEST(NodeSets, forgive_a_share_of_the_body_and_no_length) {
   }
 }
 
-/// But at most a thousandth of the shortest edge, where there are planes as near as that, or the body is far
-/// from the origin.
+/// The tolerance is at most a thousandth of the shortest edge, for planes that are close together or bodies
+/// far from the origin.
 TEST(NodeSets, keep_planes_of_nodes_apart) {
   Mesh mesh = box({1.0, 1.0, 1.0}, {1, 1, 2});
   for (Vector& X : mesh.points) X[2] = X[2] == 0.5 ? 1.0 - 1e-6 : X[2];
@@ -289,7 +289,7 @@ TEST(NodeSets, keep_planes_of_nodes_apart) {
   EXPECT_EQ(select_nodes(far, boundary_nodes(far), middle).size(), 0U);
 }
 
-/// The elliptic cylinder by its definition, along each axis, with the other coordinates in the order of the
+/// The definition of the elliptic cylinder, along each axis, with the other coordinates in the order of the
 /// axes.
 TEST(NodeSets, cylinder_selects_what_lies_inside) {
   const Mesh mesh = box({1.0, 1.0, 1.0}, {6, 6, 6});
@@ -318,7 +318,7 @@ TEST(NodeSets, ellipsoid_selects_what_lies_inside) {
   EXPECT_EQ(select_nodes(mesh, boundary_nodes(mesh), rule), nodes_where(mesh.points, inside));
 }
 
-/// The elements of Land's mesh of so many layers, its surfaces on their ellipsoids, its rim in one plane.
+/// Land's mesh: elements in the given number of layers, surfaces on their ellipsoids, the rim in one plane.
 TEST(CanonicalMesh, ventricle_lies_between_its_ellipsoids) {
   const Scene scene =
       read_scene(read_cases(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "ventricle.toml").front());
@@ -345,8 +345,8 @@ TEST(CanonicalMesh, ventricle_lies_between_its_ellipsoids) {
   EXPECT_EQ(faces_within(scene.boundary, scene.sets.at("inside")).size(), 252U);
 }
 
-/// Two bars beside each other, with a node of no element between them: nodes in order, the second bar first
-/// as its nodes are. A tie of one node makes one part of them, and two cells that share a node are one part.
+/// Two bars side by side, with an isolated node between them: nodes are in order, and the second bar comes
+/// first because its nodes do. A tie of one node joins them, as does a node shared by two cells.
 TEST(Parts, are_joined_by_nodes_and_ties) {
   Mesh mesh = box({1.0, 1.0, 2.0}, {1, 1, 2});
   const Mesh other = mesh;
@@ -397,7 +397,7 @@ TEST(MeshQuality, names_the_first_ten_inverted_elements) {
   }
 }
 
-/// Cubes that lean: their scaled Jacobians are the cosines, at all corners. The last is inside out.
+/// Skewed cubes: their scaled Jacobians are the cosines, at all corners. The last is inside out.
 TEST(MeshQuality, table_counts_all_and_shows_the_ten_worst) {
   const std::vector<double> cosines{1.0,  0.95, 0.91, 0.85, 0.75, 0.75, 0.65,
                                     0.55, 0.35, 0.25, 0.15, 0.05, -0.5};
@@ -415,7 +415,7 @@ TEST(MeshQuality, table_counts_all_and_shows_the_ten_worst) {
   EXPECT_NEAR(table.largest, 1.0, 1e-15);
   EXPECT_EQ(table.counts, (std::array<int, 11>{1, 1, 1, 1, 1, 0, 1, 1, 2, 1, 3}));
   ASSERT_EQ(table.worst.size(), 10U);
-  const std::array<std::size_t, 10> order{12, 11, 10, 9, 8, 7, 6, 4, 5, 3};  // equals by number
+  const std::array<std::size_t, 10> order{12, 11, 10, 9, 8, 7, 6, 4, 5, 3};  // equal ones by number
   for (std::size_t i = 0; i < 10; ++i) {
     EXPECT_NEAR(table.worst[i].scaled_jacobian, cosines[order[i]], 1e-15);
     EXPECT_EQ(table.worst[i].number, order[i]);
@@ -431,10 +431,10 @@ NodalVectors<double> dented_cube(int corner, double t) {
   return X;
 }
 
-/// With n the products of 1 - s over pairs of the distances s from the dented corner along the cube's edges,
-/// det F = 1 - t (n1 + n2 + n3). At the corner all n are 1, and its edges have the length
-/// sqrt((1 - t)^2 + 2 t^2); at the Gauss point beside it n = (1 + 1/sqrt(3))^2 / 4. Every corner and every
-/// point is the worst of one cube.
+/// Let n be the products of 1 - s over pairs of the distances s from the dented corner along the cube's
+/// edges; then det F = 1 - t (n1 + n2 + n3). At the corner all n are 1, and its edges have the length sqrt((1
+/// - t)^2 + 2 t^2); at the Gauss point next to it n = (1 + 1/sqrt(3))^2 / 4. Every corner and every point is
+/// the worst of one cube.
 TEST(MeshQuality, every_corner_and_gauss_point_counts) {
   for (int corner = 0; corner < 8; ++corner) {
     const double edge = std::sqrt(0.75 * 0.75 + 2 * 0.25 * 0.25);
@@ -446,7 +446,7 @@ TEST(MeshQuality, every_corner_and_gauss_point_counts) {
   }
 }
 
-/// A node has an eighth of the mass of each of its own elements, here of lengths 1 and 3.
+/// A node has an eighth of the mass of each of its elements, here of lengths 1 and 3.
 TEST(Masses, belong_to_the_elements_around) {
   Mesh mesh = box({2.0, 1.0, 1.0}, {2, 1, 1});
   for (auto& X : mesh.points) X[0] = X[0] < 1.5 ? X[0] : 4.0;
@@ -457,7 +457,7 @@ TEST(Masses, belong_to_the_elements_around) {
   }
 }
 
-/// Lumped masses: an eighth of rho V at each node, nothing lost.
+/// Lumped masses: an eighth of rho V at each node, without loss.
 TEST(Masses, sum_to_density_times_volume) {
   for (const char* name : {"column", "ellipsoid-touch", "cylinder-stretch"}) {
     const Scene scene = canonical(name);

@@ -46,8 +46,8 @@ TEST(Modes, from_modes_is_the_transpose_of_to_modes) {
   }
 }
 
-/// The one-point element leaves out the mean gradient of the mode xi eta zeta. On each face it is bilinear
-/// and the face's normal has no such part, so that its integral over the surface vanishes on every trilinear
+/// The one-point element omits the mean gradient of the mode xi eta zeta. On each face this mode is bilinear
+/// and the face's normal has no such part, so that the integral over the surface vanishes on every trilinear
 /// hexahedron.
 TEST(Modes, the_last_mode_has_no_mean_gradient) {
   RandomGeometry random(5);

@@ -1,5 +1,5 @@
-/// The multigrid method of nearly incompressible bodies: symmetric, and as good on fine meshes as on coarse
-/// ones.
+/// The multigrid method for nearly incompressible bodies: symmetric, and as effective on fine meshes as on
+/// coarse ones.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// A bar of distorted elements that is held at one end, without a method.
+/// A bar of distorted elements, held at one end; no method involved.
 struct HeldBar {
   /// Elements at an edge of the held end are split `depth` times.
   HeldBar(int n, double poisson_ratio, double noise = 0.1, int depth = 0)
@@ -59,7 +59,7 @@ struct HeldBar {
     return b;
   }
 
-  /// Accelerated cycles after which the residual has fallen to 1e-4.
+  /// The number of accelerated cycles that reduce the residual to 1e-4.
   int cycles() const {
     const MixedBlocks& blocks = multigrid->elements().blocks();
     const MixedVector b = random_vector(3);
@@ -87,8 +87,8 @@ struct HeldBar {
   std::unique_ptr<SaddleMultigrid> multigrid;
 };
 
-/// The same smoother before and after, and transposed transfers: (b, M c) = (M b, c), to the rounding of sums
-/// of products in single precision.
+/// With the same smoother before and after and transposed transfers, (b, M c) = (M b, c) up to the rounding
+/// of sums of products in single precision.
 TEST(Multigrid, a_cycle_is_symmetric) {
   for (const int depth : {0, 1, 3}) {
     const HeldBar bar(4, 0.49, 0.1, depth);
@@ -103,7 +103,7 @@ TEST(Multigrid, a_cycle_is_symmetric) {
   }
 }
 
-/// Refinement costs no more than a few cycles: the meshes before it are levels. Measured: 27 at most.
+/// Refinement costs at most a few cycles: the meshes before it are levels. Measured: at most 27.
 TEST(Multigrid, cycles_do_not_grow_with_refinement) {
   for (const double poisson_ratio : {0.3, 0.49, 0.4999}) {
     for (const int depth : {1, 2, 4}) {
@@ -112,8 +112,8 @@ TEST(Multigrid, cycles_do_not_grow_with_refinement) {
   }
 }
 
-/// Eight times the elements cost no more than a few cycles, and neither does a Poisson's ratio that is nearer
-/// to one half. Measured: 12 to 17.
+/// Eight times as many elements cost at most a few cycles more, and so does a Poisson's ratio closer to one
+/// half. Measured: 12 to 17.
 TEST(Multigrid, cycles_do_not_grow_with_the_mesh_nor_with_lambda) {
   for (const double poisson_ratio : {0.3, 0.49, 0.4999}) {
     for (const int n : {4, 8, 16}) {
@@ -122,7 +122,7 @@ TEST(Multigrid, cycles_do_not_grow_with_the_mesh_nor_with_lambda) {
   }
 }
 
-/// Grids hold the body's own volume, and their functions of constant displacement change none.
+/// Grids have the body's volume, and their functions of constant displacement do not change it.
 TEST(Multigrid, levels_conserve_volume) {
   const HeldBar bar(4, 0.3, 0.0);
   GridLevel first(Grid::around(bar.mesh), {});
@@ -148,8 +148,8 @@ TEST(Multigrid, levels_conserve_volume) {
   }
 }
 
-/// A beam one element thick, which boxes of the first grid would let bend freely if they sampled elements at
-/// their centres only: with that it takes thousands of evaluations, and without about a hundred.
+/// A beam one element thick. If cells of the first grid sampled elements at their centres only, they would
+/// let it bend freely, and a solution would take thousands of evaluations instead of about a hundred.
 TEST(Multigrid, slender_beams_take_no_more_than_others) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});
   const Mesh mesh = box({0.01, 0.01, 0.4}, {1, 1, 40});
@@ -163,8 +163,8 @@ TEST(Multigrid, slender_beams_take_no_more_than_others) {
   EXPECT_LE(found.steps, 200);
 }
 
-/// Where lambda is zero or less, pressures of elements carry a share of mu instead, which must not become a
-/// division by zero.
+/// Where lambda is zero or less, the pressures of elements carry a share of mu instead, to avoid a division
+/// by zero.
 TEST(Multigrid, poisson_ratios_of_zero_and_less_take_no_more_than_others) {
   for (const double poisson_ratio : {0.1, 0.0, -0.01, -0.3}) {
     Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = poisson_ratio});

@@ -12,7 +12,7 @@ namespace {
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 double neo_hookean_lateral(const NeoHookean& law, double stretch) {
-  // The lateral stretch without lateral stress: bisection, the stress grows with it.
+  // The stretch without lateral stress, by bisection: the stress grows with the stretch.
   double low = 0.1;
   double high = 3.0;
   for (int n = 0; n < 200; ++n) {
@@ -64,14 +64,14 @@ TEST(NeoHookean, uniaxial_stretch) {
 }
 
 TEST(NeoHookean, incompressible_limit_of_uniaxial_stretch) {
-  // 1 - 2 nu = 2e-9: K = 1e9 E / 6; J - 1 of order mu/K, so the limit is reached to a few 1e-9.
+  // 1 - 2 nu = 2e-9: K = 1e9 E / 6; J - 1 is of order mu/K, so the limit is reached to a few 1e-9.
   const auto law = sample_law<NeoHookean>(0.5 - 1e-9);
   const double lateral = neo_hookean_lateral(law, 2.0);
   EXPECT_NEAR(lateral - 1.0, -0.29289321881345254, 1e-8);  // 1/sqrt(2) - 1
   const double mu = law.shear_modulus();
   const double axial = mu * (2.0 - 1.0 / 4.0);
   const auto P = law.piola(diagonal_gradient(2.0, lateral, lateral));
-  // The lateral stretch is known to eps, which K turns into stress: eps K = 1e-16 * 1e9 E / 6.
+  // The lateral stretch is rounded to eps, which K turns into stress: eps K = 1e-16 * 1e9 E / 6.
   EXPECT_NEAR(P(0, 0), axial, 1e-6 * axial);
 }
 

@@ -1,5 +1,5 @@
-// The kernels on other number types than double: packs compute the same as doubles, and counting numbers
-// count it.
+// The kernels with number types other than double: packs compute the same as doubles, and counting numbers
+// count correctly.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -26,8 +26,8 @@ double exact_root(T x) {
   return static_cast<double>(1.0L / std::cbrt(static_cast<long double>(x)));
 }
 
-/// The root of packs has no library behind it. Its last step has fourth order and an error far below
-/// rounding; the remaining error is the rounding of r, of y r and of the sum: two units in the last place.
+/// The root of packs uses no library function. Its last step is of fourth order with an error far below
+/// rounding; what remains is the rounding of r, of y r and of the sum: two units in the last place.
 template <class T>
 void check_root_of_packs() {
   std::mt19937 random(7);
@@ -73,7 +73,7 @@ class PackedKernel : public testing::Test {
   template <class T>
   using History = typename Kernel::template History<T>;
 
-  /// An element that has moved, and remembers something if it can.
+  /// A displaced element, with memory if the method has one.
   struct Sample {
     ElementMotion<double> motion;
     Constants<double> constants;
@@ -103,7 +103,7 @@ class PackedKernel : public testing::Test {
     return s;
   }
 
-  /// Random numbers of a size for all that a part of the history consists of.
+  /// Random numbers of a given size for every part of the history.
   template <class Part>
   void fill(Part& part, double size) {
     if constexpr (!std::is_empty_v<Part>) {
@@ -148,7 +148,7 @@ class PackedKernel : public testing::Test {
 TYPED_TEST_SUITE(PackedKernel, MethodWithLawTypes, EntryName);
 
 /// Every method's force on a pack of different elements against the same kernel on doubles. With strict
-/// floating point they are the same operations, hence the same bits. Otherwise the compiler contracts them
+/// floating point these are the same operations, hence the same bits. Otherwise the compiler contracts them
 /// differently: each is some hundred operations deep on terms as large as stiffness times displacement.
 TYPED_TEST(PackedKernel, computes_what_doubles_compute) {
   this->compare_packs_with_doubles();
@@ -162,8 +162,8 @@ TEST(Counted, eq_14_as_the_paper_writes_it_takes_360_operations) {
   EXPECT_EQ(tally.total(), 360);
 }
 
-/// In modes the control shares the butterflies with the element. By itself it takes 12 x 6 operations for q,
-/// 12 for k q, 9 x 7 for c^T Q, 9 to subtract it from the stress and 12 to add Q to the modes.
+/// In modal form the control shares the butterflies with the element. By itself it takes 12 x 6 operations
+/// for q, 12 for k q, 9 x 7 for c^T Q, 9 to subtract it from the stress and 12 to add Q to the modes.
 TEST(Counted, the_hourglass_control_in_modes_stays_below_246_operations) {
   const auto count = count_operations<OnePoint, PerturbationHourglassControl>(sample_law<NeoHookean>(0.49));
   EXPECT_EQ(count.hourglass.total(), 12 * 6 + 12 + 9 * 7 + 9 + 12);

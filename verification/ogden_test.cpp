@@ -21,7 +21,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 /// Swine brain of Miller and Chinzei (J. Biomech. 35 (2002) 483) before it relaxes.
 constexpr Ogden brain{.mu1 = 842.0, .alpha1 = -4.7, .K = 1e5};
 
-/// Two terms as different as soft materials have them.
+/// Two terms that differ as much as those of soft materials.
 constexpr Ogden two_terms{.mu1 = 600.0, .alpha1 = -4.7, .mu2 = 250.0, .alpha2 = 7.5, .K = 5e4};
 
 Tensor<double> diagonal_gradient(double a, double b, double c) {
@@ -43,8 +43,8 @@ double closed_energy(const Ogden& law, double a, double b, double c) {
   return term(law.mu1, law.alpha1) + term(law.mu2, law.alpha2);
 }
 
-/// The first Piola-Kirchhoff stress under principal stretches without change of volume, with the pressure
-/// that leaves none along the third axis.
+/// The first Piola-Kirchhoff stress at principal stretches without change of volume, with the pressure at
+/// which the stress along the third axis vanishes.
 Tensor<double> stress_without_third(const Ogden& law, const Tensor<double>& H) {
   const VolumeChange<double> change = volume_change(H);
   const double lateral = law.weighted_kirchhoff(1.0, H, change, 0.0)(2, 2);
@@ -69,8 +69,8 @@ TEST(Ogden, has_the_moduli_of_its_parameters) {
   }
 }
 
-/// Nominal stress 2 mu / alpha (l^(alpha - 1) - l^(-alpha/2 - 1)): Miller and Chinzei's for a load so quick
-/// that nothing relaxes. From compression by a third, where it stiffens, to stretches beyond theirs.
+/// Nominal stress 2 mu / alpha (l^(alpha - 1) - l^(-alpha/2 - 1)), Miller and Chinzei's for a load too fast
+/// for relaxation. From compression by a third, where it stiffens, to stretches beyond theirs.
 TEST(Ogden, uniaxial_stress_of_the_brain) {
   for (const double l : {0.65, 0.7, 0.9, 1.0001, 1.2, 1.6, 2.5}) {
     const double side = 1 / std::sqrt(l);
@@ -120,15 +120,15 @@ TEST(Ogden, a_change_of_volume_leaves_only_pressure) {
     const double p = two_terms.K * (l * l * l - 1);
     EXPECT_LT(largest_entry(two_terms.piola(H) - (p * l * l) * identity<double>()),
               16 * eps * std::abs(p) * l * l);
-    // The deviator of F F^T is its roundoff, and the energy the square of that.
+    // The deviator of F F^T is only roundoff, and the energy its square.
     const double mu = two_terms.shear_modulus();
     EXPECT_LT(largest_entry(two_terms.isochoric_piola(H)), 4 * eps * mu / l);
     EXPECT_LT(two_terms.isochoric_energy(H), 4 * eps * eps * mu);
   }
 }
 
-/// With all exponents 2 it is the neo-Hookean law, which knows nothing of principal frames: energy, stress
-/// and tangent, at random and at equal stretches.
+/// With all exponents 2 this is the neo-Hookean law, which does not use principal frames: energy, stress and
+/// tangent, at random and at equal stretches.
 std::vector<Tensor<double>> gradients() {
   RandomGeometry random(21);
   std::vector<Tensor<double>> all{Tensor<double>{}, diagonal_gradient(1.3, 1.3, 1.3),
@@ -187,7 +187,7 @@ TEST(Ogden, with_exponents_2_and_minus_2_is_the_law_of_mooney_and_rivlin) {
   }
 }
 
-/// W = mu sum (ln lbar_a)^2: the limit of exponents that vanish, and near it.
+/// W = mu sum (ln lbar_a)^2: the limit of vanishing exponents, and exponents close to it.
 TEST(Ogden, with_exponent_0_is_the_law_of_hencky) {
   for (const double alpha : {0.0, 1e-30, 1e-12}) {
     const Ogden law{.mu1 = 500.0, .alpha1 = alpha, .mu2 = 300.0, .alpha2 = 0.0, .K = 1e4};
@@ -204,8 +204,7 @@ TEST(Ogden, with_exponent_0_is_the_law_of_hencky) {
   }
 }
 
-/// The textbook form in F and its principal stretches, in long double, where its cancellation costs
-/// 1e-19/|H|.
+/// The textbook form in F and its principal stretches, in long double, where cancellation costs 1e-19/|H|.
 TEST(Ogden, agrees_with_the_textbook_form_in_long_double) {
   using Real = long double;
   using Matrix3 = Eigen::Matrix<Real, 3, 3>;
@@ -234,8 +233,8 @@ TEST(Ogden, agrees_with_the_textbook_form_in_long_double) {
                      Real(2 * two_terms.mu2 / (two_terms.alpha2 * two_terms.alpha2)) *
                          (power(two_terms.alpha2).sum() - 3);
       const auto found = two_terms.weighted_kirchhoff(1.0, H, volume_change(H), 0.0);
-      // Roundoff is that of the strain: of tau its first order, of W its second. The oracle's own is that
-      // of 1.
+      // Roundoff of the strain enters tau to first order, W to second order. The oracle's own roundoff is
+      // relative to 1.
       const double stiffness = tangent_bound(two_terms, H).gradient;
       const double oracle = 1e-17 * stiffness;
       for (int i = 0; i < 3; ++i) {
@@ -250,8 +249,8 @@ TEST(Ogden, agrees_with_the_textbook_form_in_long_double) {
 }
 
 /// Not only for the exponents of the sample: from strong compression to strong stretch, at random, equal and
-/// nearly equal stretches. Without change of volume, so that no pressure adds to the bound: shear decides it
-/// for exponents between -1 and 2, stretch along the axes for the others.
+/// nearly equal stretches. Volume is constant, so that pressure adds nothing to the bound: for exponents
+/// between -1 and 2 shear determines it, for others stretch along the axes.
 TEST(Ogden, tangent_bound_holds_for_every_exponent) {
   RandomGeometry random(31);
   const auto holds = [](const Ogden& law, const Tensor<double>& H) {

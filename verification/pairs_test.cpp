@@ -1,4 +1,4 @@
-/// All pairs of methods and laws, through the solver: mistakes of pairs that no single kernel shows.
+/// All pairs of methods and laws in the solver: finds errors of combinations that no single kernel shows.
 
 #include <gtest/gtest.h>
 
@@ -34,8 +34,8 @@ void for_each_pair(const Visit& visit) {
   });
 }
 
-/// The law that a body at rest shows: of one that relaxes, what has not relaxed is the question of
-/// viscoelastic_test.cpp, and is left out by letting nothing relax.
+/// The law of a body without relaxation: viscoelastic parts are the subject of viscoelastic_test.cpp and are
+/// kept from relaxing here.
 template <class Law>
 Law law_at_rest(double nu) {
   Law law = sample_law<Law>(nu);
@@ -43,8 +43,8 @@ Law law_at_rest(double nu) {
   return law;
 }
 
-/// Expects the forces V h P^T of an element with corners at X under the stress P, up to the roundoff of
-/// displacements and coordinates, known to eps times the size, times the stiffness (Pa).
+/// Expects the forces V h P^T of an element with corners at X under the stress P, up to roundoff:
+/// displacements and coordinates are rounded to eps times the size, times the stiffness (Pa).
 void expect_forces(const NodalField& force, const NodalVectors<double>& X, const Tensor<double>& P,
                    double stiffness) {
   const MeanGradient mean = mean_gradient(X);
@@ -56,8 +56,8 @@ void expect_forces(const NodalField& force, const NodalVectors<double>& X, const
   }
 }
 
-/// One distorted element under a uniform strain, reached in one step: forces V h P^T with the law's own
-/// stress. A law that is handed the wrong strain, pressure or weight by one of the kinematics fails here.
+/// One distorted element under a uniform strain, reached in one step: forces are V h P^T with the law's own
+/// stress. Kinematics that pass a wrong strain, pressure or weight to a law fail here.
 TEST(Pairs, uniform_strain_gives_the_stress_of_the_law) {
   for_each_pair([]<class Method, class Law>() {
     RandomGeometry random(71);
@@ -74,15 +74,15 @@ TEST(Pairs, uniform_strain_gives_the_stress_of_the_law) {
   });
 }
 
-/// Whether a method is known to fail on the column: it has no control, or none at rest; it locks, if only in
-/// shear; or it knows no rotation. All others must be good.
+/// Whether a method is known to fail on the column: it has no control, or none for static equilibrium; it
+/// locks, if only in shear; or it is wrong for rotations. All others must be good.
 template <class Method>
 constexpr bool known_failure() {
   return zero_energy_modes<Method>() > 6 || is_linear<Method> || std::is_same_v<Method, TlFull> ||
          std::is_same_v<Method, T4> || std::is_same_v<Method, T4Anp>;
 }
 
-/// A short column, pulled and sheared as the paper's, against mean dilatation with the same law.
+/// A short column, pulled and sheared like the paper's, against mean dilatation with the same law.
 Scene short_column(const AnyLaw& law) {
   Case description = plain_case(law);
   const Mesh mesh = box({0.1, 0.1, 0.4}, {2, 2, 8});
@@ -93,7 +93,7 @@ Scene short_column(const AnyLaw& law) {
   return make_scene(description, mesh, sets);
 }
 
-/// The outcome of a method on a scene, with errors up to `limit` from the golden.
+/// The finding for a method on a scene, with errors up to `limit` from the golden.
 Finding found_on(const Scene& scene, std::string_view method, const NodalField& golden, double limit) {
   Observer silent;
   try {
@@ -106,18 +106,18 @@ Finding found_on(const Scene& scene, std::string_view method, const NodalField& 
   }
 }
 
-/// Every pair finds its static equilibrium, and is good or fails as expected of its method.
+/// Every pair finds its static equilibrium, and is good or fails as expected for its method.
 TEST(Pairs, every_control_runs_the_column_with_every_law) {
   for_each_type(Laws{}, []<class Law>() {
     const Scene scene = short_column(sample_law<Law>(0.45));
     Observer silent;
-    // A law that does not split its volume part gives way where the pressure is averaged.
+    // A law that does not split its volumetric part may lose stiffness where pressure is averaged.
     constexpr bool averages = !may_give_way<TlMeanDilatation, Law>();
     const std::string reference(averages ? TlMeanDilatation::name : TlPerturbation::name);
     const Relaxation golden = relax(Model(scene, {reference}), silent);
     ASSERT_TRUE(golden.converged) << Law::name;
-    // Controls keep the stiffness of a body that has not relaxed: too stiff for one that has, more so
-    // where fibres are slack as well (errors are larger by a quarter, whichever the control).
+    // Controls keep the stiffness of the unrelaxed body: too stiff for the relaxed one, more so where fibres
+    // are slack as well (errors are larger by a quarter with any control).
     constexpr double limit = !law_remembers<Law> ? 0.02 : slackens<Law> ? 0.06 : 0.05;
     for_each_type(Methods{}, [&]<class Method>() {
       if constexpr (knows_law<Method, Law>) {

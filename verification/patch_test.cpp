@@ -39,7 +39,7 @@ class PatchTest : public ::testing::Test {
 
   static MethodChoice method() { return {std::string(Pair::Method::name), {}}; }
 
-  /// How far the displacements are from H X, over the largest of them.
+  /// The distance of displacements from H X, over the largest displacement.
   static double affine_error(const Scene& scene, const NodalField& u, const Tensor<double>& H) {
     NodalField exact;
     double largest = 0.0;
@@ -60,8 +60,8 @@ class PatchTest : public ::testing::Test {
     return result;
   }
 
-  /// What pulls on the face x = 1: the sum of its nodes' forces is P e_x times its unit area, for the shares
-  /// of the faces beside it cancel. It contains the element's weights, which the displacements do not.
+  /// The force on the face x = 1: its nodes' forces sum to P e_x times its unit area, since the shares of
+  /// adjacent faces cancel. It includes the element's weights, on which displacements do not depend.
   static Vector traction(const Model& model, const NodalField& u) {
     const NodalField force = internal_forces(model, u);
     Vector sum{};
@@ -72,8 +72,8 @@ class PatchTest : public ::testing::Test {
   }
 
   /// Whether the affine state is stable: the smallest eigenvalue of the inner nodes' tangent stiffness, by
-  /// central differences, is positive. A state that is not cannot be found by coming to rest; only pairs that
-  /// are known for it may lose it.
+  /// central differences, is positive. Relaxation cannot find an unstable state, which only pairs known for
+  /// it may have.
   static bool is_stable(const Tensor<double>& H) {
     const Scene scene = patch(H);
     const Model model(scene, method());
@@ -114,7 +114,7 @@ class PatchTest : public ::testing::Test {
     const auto P = stress(H);
     const double tolerance = 1e-8 * largest_entry(P);
     for (const auto& found : stresses(scene, answer.u)) EXPECT_LT(largest_entry(found - P), tolerance);
-    // Results have the Cauchy stress; at small strains, the stress itself.
+    // Results have the Cauchy stress; at small strains it equals the first Piola-Kirchhoff stress.
     const Tensor<double> F = identity<double>() + H;
     const Tensor<double> sigma =
         is_linear<typename Pair::Method> ? P : (1.0 / determinant(F)) * (P * transpose(F));
@@ -136,8 +136,8 @@ TYPED_TEST(PatchTest, finite_strain_is_exact) {
   this->expect_exact(finite_gradient);
 }
 
-/// The published stresses 2000 and 400, of linear elasticity, at a strain so small that the law is linear to
-/// 1e-6. Centre gradients would give 1766 to 2150, weights 8 det J(0) 1967 to 2040.
+/// The published stresses 2000 and 400 of linear elasticity, at a strain small enough for laws to be linear
+/// to 1e-6. Centre gradients would give 1766 to 2150, weights 8 det J(0) 1967 to 2040.
 TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
   const double factor = 1e-4;  // strain 1e-7
   Scene scene = this->patch(macneal_harder_gradient(factor));
@@ -150,7 +150,7 @@ TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
   const Tensor<double> H = macneal_harder_gradient();
   const Tensor<double> exact = small_strain_stress(law, 0.5 * (H + transpose(H)));
   const double normal = largest_entry(exact);
-  if (std::is_same_v<typename TypeParam::Law, NeoHookean>) {  // whose parameters are E and nu
+  if (std::is_same_v<typename TypeParam::Law, NeoHookean>) {  // with the parameters E and nu
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) EXPECT_NEAR(exact(i, j), i == j ? 2000.0 : 400.0, 1e-9);
     }
@@ -165,10 +165,10 @@ TYPED_TEST(PatchTest, published_stresses_at_vanishing_strain) {
   EXPECT_NEAR(pull[1] / factor, exact(1, 0), 5e-6 * normal);
 }
 
-/// The explicit way: a slow ramp, then damped to rest. Without control the patch keeps one very soft mode
-/// (1.1 to 1.6 rad/s with the neo-Hookean law, somewhat less with others; the rest hundreds): damping near
-/// its critical one, 2 omega, leaves exp(-25) = 1e-11 after twenty-five seconds more than the ramp, and ten
-/// more are for softer modes, which that damping slows.
+/// Explicit dynamics: a slow ramp, then damping to equilibrium. Without control the patch has one very soft
+/// mode (1.1 to 1.6 rad/s with the neo-Hookean law, somewhat less with others; the rest hundreds). Nearly
+/// critical damping of it, 2 omega, leaves exp(-25) = 1e-11 after twenty-five seconds more than the ramp;
+/// another ten are for softer modes, which that damping slows.
 TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
   for (const auto& H : {macneal_harder_gradient(), finite_gradient}) {
     if (!this->is_stable(H)) continue;
@@ -192,7 +192,7 @@ TYPED_TEST(PatchTest, ramped_explicit_dynamics_is_exact) {
   }
 }
 
-/// The affine state is not only found but is an equilibrium: no force at the inner nodes, to roundoff.
+/// The affine state is also an equilibrium: inner nodes have no force, to roundoff.
 TYPED_TEST(PatchTest, affine_displacements_are_an_equilibrium) {
   const Scene scene = this->patch(finite_gradient);
   const Model model(scene, this->method());

@@ -25,7 +25,7 @@ PublishedValue value_of(const std::string& component, double value = 1.0) {
   return {"top", component, value, "a book"};
 }
 
-/// u = a + b x X has the rotation b about any axis, whatever a is, and the mean a + b x (middle of the face).
+/// For any a, u = a + b x X has the rotation b about any axis, and the mean a + b x (middle of the face).
 TEST(Published, mean_and_rotation_of_a_rigid_motion) {
   const Scene scene = block();
   const Vector a{0.3, -0.1, 0.2}, b{1e-3, -2e-3, 3e-3};
@@ -43,7 +43,7 @@ TEST(Published, mean_and_rotation_of_a_rigid_motion) {
   }
 }
 
-/// Stretch and shear without rotation turn nothing: on a face of equal sides the shear's two halves cancel.
+/// Stretch and shear without rotation give no rotation: on a square face the shear's two halves cancel.
 TEST(Published, pure_strain_is_no_rotation) {
   Case description = plain_case(sample_law<NeoHookean>(0.3));
   const Mesh mesh = box({1.0, 1.0, 1.0}, {2, 2, 2});
@@ -99,8 +99,8 @@ TEST(Published, limits_hold_or_break) {
   EXPECT_FALSE(check(0.11, {}, failed));
 }
 
-/// Rows are methods, columns the variants with each of their values; a failed run shows no number, a verdict
-/// without published values no row.
+/// Rows are methods, columns the variants with each of their values; a failed run has no number, and a
+/// verdict without published values no row.
 TEST(Published, tables_have_a_row_for_each_method_and_a_column_for_each_value) {
   const std::string text = published_tables({verdict("tl-none", "1", {0.45, 0, -0.25}),
                                              verdict("tl-full", "1", {0.5, 0, 25.0}),
@@ -123,7 +123,7 @@ TEST(Published, tables_have_a_row_for_each_method_and_a_column_for_each_value) {
   EXPECT_EQ(text.find("ul-full"), std::string::npos);
 }
 
-/// A verdict of a beam with 4 elements, of which two other programs are known.
+/// A verdict of a beam with 4 elements and known results of two other programs.
 Verdict beside_programs(const std::string& method, const std::string& elements, const Vector& move) {
   Verdict v = verdict(method, "thin", move);
   v.variants.push_back(elements);
@@ -132,8 +132,8 @@ Verdict beside_programs(const std::string& method, const std::string& elements, 
   return v;
 }
 
-/// A column for each mesh, in order of the elements, whoever has it; the value without programs has no such
-/// table.
+/// A column for each mesh that anyone has, in the order of the numbers of elements; there is no such table
+/// for values without programs.
 TEST(Published, values_of_other_programs_stand_in_rows_below_ours) {
   const std::string text = published_tables(
       {beside_programs("tl-full", "16", {0.5, 0, -0.18}), beside_programs("tl-full", "4", {0.5, 0, -0.17})});

@@ -11,7 +11,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// Lets a scene come to rest, holds it against a plain assembly of the elements, and returns the evaluations.
+/// Solves a static scene, checks the answer with a plain assembly, and returns the number of evaluations.
 long evaluations_to_rest(long seed, long number) {
   const std::string which = fmt::format("scene {} of seed {}", number, seed);
   RandomScene random(seed, number);
@@ -37,7 +37,7 @@ long evaluations_to_rest(long seed, long number) {
   return found.steps;
 }
 
-/// More scenes, or others: SANDGLASS_SCENES=500 SANDGLASS_SEED=7 random_scenes_test.
+/// For more or other scenes: SANDGLASS_SCENES=500 SANDGLASS_SEED=7 random_scenes_test.
 TEST(RandomScenes, come_to_rest) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 25);
   const long seed = from_environment("SANDGLASS_SEED", 20);
@@ -55,9 +55,9 @@ TEST(RandomScenes, come_to_rest) {
              evaluations[evaluations.size() / 2], evaluations.back());
 }
 
-/// A cup of muscle under a pressure inside it, of up to 2,000 elements: the thickness from a tenth of the
-/// radius to all of it, K/mu up to 4000, the pressure from a tenth of C to twice C. The law stiffens without
-/// end, so that there is an answer at every pressure.
+/// A muscle cup under a pressure inside it, of up to 2,000 elements: thickness from a tenth of the radius to
+/// all of it, K/mu up to 4000, pressure from a tenth of C to twice C. The law stiffens without limit, so that
+/// every pressure has an answer.
 Scene random_inflation(long seed, long number) {
   RandomGeometry random(static_cast<std::uint64_t>(1000003 * seed + number));
   const auto whole = [&](int low, int high) {
@@ -89,7 +89,7 @@ Scene random_inflation(long seed, long number) {
   return make_scene(description, mesh, sets);
 }
 
-/// More scenes by the same variables as above.
+/// The same variables as above run more scenes.
 TEST(RandomScenes, inflated_bodies_come_to_rest) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 10);
   const long seed = from_environment("SANDGLASS_SEED", 20);
@@ -111,8 +111,8 @@ TEST(RandomScenes, inflated_bodies_come_to_rest) {
              evaluations[evaluations.size() / 2], evaluations.back());
 }
 
-/// Without the present stiffness of the law in the multigrid method, without levels that are limited by the
-/// strain, or without patience near the answer one of these takes 700 or more; with them 158 and 294.
+/// The multigrid method needs the law's current stiffness, load levels a limit on strains, and the search
+/// patience near the answer: without any of them, one of these takes 700 or more; with all, 158 and 294.
 TEST(RandomScenes, a_ventricle_takes_few_evaluations) {
   const std::filesystem::path cases = std::filesystem::path(SANDGLASS_SOURCE) / "cases";
   const Scene scene = read_scene(read_cases(cases / "ventricle.toml").front());
@@ -124,8 +124,8 @@ TEST(RandomScenes, a_ventricle_takes_few_evaluations) {
   }
 }
 
-/// A thin one: its norm falls slowly, but all the time. Steps that had to halve it in 12 ended at a load
-/// increment of 1e-9, after 60,000 evaluations; now it takes some 500.
+/// A thin cup, where the norm falls slowly but steadily. When steps had to halve it in 12, the search failed
+/// at a load increment of 1e-9, after 60,000 evaluations; now it takes about 500.
 TEST(RandomScenes, a_thin_cup_takes_few_evaluations) {
   Observer silent;
   const Relaxation found = relax(Model(random_inflation(20, 98), {"tl-mean-dilatation"}), silent);
@@ -133,8 +133,8 @@ TEST(RandomScenes, a_thin_cup_takes_few_evaluations) {
   EXPECT_LE(found.steps, 1000);
 }
 
-/// In the first two an element is inverted at a load level where the residual is small enough to go on; the
-/// last buckles, and its forces do not fall for 100 steps of descent.
+/// In the first two, an element is inverted at a load level whose residual is small enough for the next
+/// level; the last buckles, and its forces do not fall for 100 steps of descent.
 TEST(RandomScenes, that_failed_once_come_to_rest) {
   for (const auto& [seed, number] : {std::pair{1L, 290L}, {2L, 34L}, {2L, 433L}}) {
     EXPECT_NO_THROW(evaluations_to_rest(seed, number)) << "scene " << number << " of seed " << seed;

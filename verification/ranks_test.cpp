@@ -1,6 +1,6 @@
-/// Ranks that share the work on one body: the same bits for any number of ranks and threads, and no more
-/// traffic than the method needs. They are threads here (support/thread_ranks.hpp); test_ranks.py starts the
-/// program with mpirun.
+/// Ranks share the work on one body: the same bits for any number of ranks and threads, and no more traffic
+/// than the method needs. Ranks are threads here (support/thread_ranks.hpp); test_ranks.py starts the program
+/// with mpirun.
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ TEST(Ranks, between_others) {
   expect_same_bits(rest, "tl-perturbation", 3, 2);
 }
 
-/// The mesh before refinement takes the displacements of all ranks.
+/// The mesh before refinement uses the displacements of all ranks.
 TEST(Ranks, relaxation_of_a_refined_body) {
   CaseOnMesh refined = block_case(sample_law<NeoHookean>(0.45), true, {2, 2, 12});
   Case& description = refined.description;
@@ -94,8 +94,8 @@ TEST(Ranks, relaxation_of_a_refined_body) {
   expect_same_bits(make_scene(refined), "tl-perturbation", 2);
 }
 
-/// Sums of numbers of single precision, which depend on their order, for every division of nine pairs of
-/// chunks: ranks without an interior, with one odd chunk, and with more.
+/// Sums in single precision, which depend on the order, for every division of nine pairs of chunks: ranks
+/// without an interior, with one odd chunk, and with more.
 TEST(Ranks, sum_over_chunks_in_one_order) {
   const Mesh mesh = box({1.0, 1.0, 16.0}, {12, 12, 256});
   const auto sum = [&](const Layout& layout) {
@@ -130,7 +130,7 @@ TEST(Ranks, sum_over_chunks_in_one_order) {
   }
 }
 
-/// A step sends the rows of one chunk to each neighbour and nothing else; only checks and reports ask all
+/// In a step each neighbour gets the rows of one chunk and nothing else; only checks and reports involve all
 /// ranks.
 TEST(Ranks, a_step_takes_one_exchange) {
   Scene scene = block(sample_law<NeoHookean>(0.45), false, {8, 8, 192});
@@ -153,8 +153,8 @@ TEST(Ranks, a_step_takes_one_exchange) {
   EXPECT_EQ(more.exchanges - less.exchanges, many - few);
   EXPECT_EQ(more.messages - less.messages, 2 * (many - few));
   EXPECT_EQ(many_collectives, few_collectives);
-  // The middle one of three ranks sends its chunks 2 and 3, whose nodes others share only in layers: at most
-  // those of the chunk's elements and one layer more.
+  // The middle one of three ranks sends its chunks 2 and 3. Others share their nodes only in layers: at most
+  // those of the chunk's elements plus one.
   const Layout layout = std::get<0>(Model(scene, {.method = "tl-perturbation"}).internal_force())->layout();
   const auto rows = [&](std::size_t c) { return layout.chunks[c].last_row - layout.chunks[c].first_row; };
   const auto row_bytes = static_cast<long>(sizeof(Row<double>));

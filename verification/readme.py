@@ -1,15 +1,15 @@
-"""READMEs as programs: their steps are taken and their commands run as they stand, in a copy.
+"""Executes READMEs: takes their steps and runs their commands as they stand, in a copy.
 
-What counts of a document, from its top down:
-  a file     "New file `PATH`:" or "Save this as `PATH`:", then a code block, its whole text
-  a change   "..., in `PATH`:", then code blocks (diff): lines with "-" or " " before them are found
-             as they stand, once, and those with "+" or " " take their place
+The parts of a document, in order:
+  a file     "New file `PATH`:" or "Save this as `PATH`:", then a code block with its whole text
+  a change   "..., in `PATH`:", then code blocks (diff): lines with "-" or " " before them must
+             occur exactly once; those with "+" or " " replace them
   a command  a line indented by four outside of code blocks, without its comment
 
     /usr/bin/python3 verification/readme.py TREE DOCUMENT...
 
-copies the project to TREE and takes the steps of the documents there. What they add can then be
-built and run as they say.
+copies the project to TREE and takes the steps of the documents there. The additions can then be
+built and run as the documents say.
 """
 
 import pathlib
@@ -33,7 +33,7 @@ PART = re.compile(
 
 @dataclass(frozen=True)
 class Part:
-    """A file, a change or a command of a document, under its heading of second order."""
+    """A file, a change or a command of a document, under its second-level heading."""
 
     kind: str  # file, change or command
     heading: str
@@ -42,7 +42,7 @@ class Part:
 
 
 def parts(document):
-    """The Parts of a Markdown text in their order."""
+    """The Parts of a Markdown text in order."""
     found, heading, named = [], "", None
     for part in PART.finditer(document):
         if part["heading"]:
@@ -60,18 +60,18 @@ def parts(document):
 
 
 def commands(document):
-    """The commands of a Markdown text in their order."""
+    """The commands of a Markdown text in order."""
     return [part.text for part in parts(document) if part.kind == "command"]
 
 
 def inline(document):
-    """What stands between single backquotes, code blocks left out."""
+    """The texts between single backquotes outside of code blocks."""
     text = re.sub(r"^```.*?^```$", "", document, flags=re.MULTILINE | re.DOTALL)
     return [re.sub(r"\s+", " ", code) for code in re.findall(r"`([^`]+)`", text)]
 
 
 def changed(text, change):
-    """A text with the lines of a change in place of those that it names, which are there once."""
+    """A text with the lines of a change replaced, which must occur exactly once."""
     lines = change.splitlines(keepends=True)
     old, new = ("".join(line[1:] for line in lines if line[0] in " " + sign) for sign in "-+")
     if text.count(old) != 1:
@@ -80,7 +80,7 @@ def changed(text, change):
 
 
 def take(part, tree):
-    """Makes the file or the change of a Part in a tree. Raises ValueError where it does not fit."""
+    """Makes the file or the change of a Part in a tree. Raises ValueError if it does not fit."""
     file = tree / part.path
     if file.exists() == (part.kind == "file"):
         raise ValueError(f"{part.path} is {'there already' if file.exists() else 'not there'}")
@@ -88,7 +88,7 @@ def take(part, tree):
 
 
 def take_steps(document, tree):
-    """Takes all steps of a Markdown text in a tree. Returns the files that are new or changed."""
+    """Takes all steps of a Markdown text in a tree. Returns the new and changed files."""
     steps = [part for part in parts(document) if part.kind != "command"]
     for step in steps:
         take(step, tree)
@@ -96,16 +96,16 @@ def take_steps(document, tree):
 
 
 def copy(tree):
-    """Copies the project, without what is built and what git keeps, to a folder that it makes."""
+    """Copies the project, without build folders and git's data, to a folder that it makes."""
     left_out = shutil.ignore_patterns("build", ".git", "__pycache__", ".pytest_cache")
     return shutil.copytree(ROOT, tree, ignore=left_out)
 
 
 def not_taken(command, binary):
-    """Why a tool of the project would not take a command; an empty text where it would.
+    """Why a tool of the project would reject a command; an empty text if it would not.
 
-    Its options, and the plain words of a shell script, must be in the script or in what it hands
-    all over to, and those of the program in its help; canonical cases are known to all.
+    Options and plain words of a shell script must occur in the script or in the one that it
+    delegates to, those of the program in its help; canonical cases are always accepted.
     """
     words = [word for word in shlex.split(command) if not re.match(r"[A-Z_]+=", word)]
     is_called, plain = words[0] not in ("bash", "/usr/bin/python3"), False

@@ -1,4 +1,4 @@
-/// Meshes with hanging nodes: no cracks, no double boundary, and every property of a conforming mesh.
+/// Meshes with hanging nodes: no cracks, no duplicate boundary, and every property of a conforming mesh.
 
 #include "mesh/refinement.hpp"
 
@@ -57,8 +57,8 @@ Vector area(const NodalField& points, const std::vector<Quadrilateral>& faces) {
   return sum;
 }
 
-/// For every choice of elements of a cube of eight to be split, and for each once more with random parts
-/// split.
+/// Calls use(refined) for every choice of elements to split in a cube of eight; for every eighth of them once
+/// more with random further splits.
 template <class Use>
 void for_each_choice(const Use& use) {
   for (int choice = 1; choice < 256; ++choice) {
@@ -77,8 +77,7 @@ void for_each_choice(const Use& use) {
   }
 }
 
-/// Parts fill their elements, and only faces of the body are boundary: volume and surface are those of
-/// before.
+/// Parts fill their elements, and only faces of the body are boundary: volume and surface stay the same.
 TEST(RefinedMesh, keeps_volume_and_surface) {
   const Mesh mesh = distorted_cube(2, 0.15, 7);
   const double V = volume(mesh), A = area(mesh.points, boundary_faces(mesh.cells))[0];
@@ -89,7 +88,7 @@ TEST(RefinedMesh, keeps_volume_and_surface) {
   });
 }
 
-/// Elements that share a node, or an edge or a face in part, differ by one split at most.
+/// Elements that share a node, or part of an edge or a face, differ by at most one split.
 TEST(RefinedMesh, neighbours_differ_by_one_split) {
   for (std::uint64_t seed = 1; seed < 6; ++seed) {
     const RefinedMesh refined = randomly_refined(box({1, 1, 1}, {2, 2, 2}), 3, seed, 0.2);
@@ -114,8 +113,8 @@ TEST(RefinedMesh, neighbours_differ_by_one_split) {
   }
 }
 
-/// A linear field is continuous: each tied node has its value, and each node that lies on an edge or a face
-/// of a larger element is tied.
+/// A linear field is continuous: each tied node has its value, and each node on an edge or a face of a larger
+/// element is tied.
 TEST(RefinedMesh, ties_reproduce_linear_fields_and_leave_no_crack) {
   const Tensor<double> H{{.1, .2, -.3, .4, .5, .6, -.7, .8, .9}};
   for_each_choice([&](const RefinedMesh& refined) {
@@ -135,8 +134,8 @@ TEST(RefinedMesh, ties_reproduce_linear_fields_and_leave_no_crack) {
     }
     follow(ties, u);
     EXPECT_LT(largest_distance(u, exact), 32 * eps);
-    // A node without a tie that hangs would belong to fewer faces inside the body than those around it: count
-    // that every face is on the boundary, or on two elements, or part of a face of which the middle is tied.
+    // A hanging node without a tie would show in the number of inner faces around it: every face must be on
+    // the boundary, shared by two elements, or part of a face whose middle is tied.
     std::set<int> middles;
     for (const Tie& tie : refined.ties())
       if (tie.mean_of.size() == 4) middles.insert(tie.node);
@@ -165,7 +164,7 @@ TEST(Ties, in_a_circle_are_refused) {
   EXPECT_THROW(to_free_nodes({{1, {{2, 1.0}}}, {2, {{1, 1.0}}}}), InputError);
 }
 
-/// Free forces (N) of a model at displacements u, reached from rest in one step.
+/// Free forces (N) of a model at displacements u, reached from the undeformed shape in one step.
 NodalField free_forces(const Model& model, const NodalField& u) {
   const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
   Body<double> body(model, elements);
@@ -187,8 +186,8 @@ class RefinedBodyTest : public ::testing::Test {
 };
 TYPED_TEST_SUITE(RefinedBodyTest, MovingMethodTypes, EntryName);
 
-/// Under a linear field stresses are constant, and the forces on the nodes inside vanish, tied ones' handed
-/// on: the patch test, with nodes that hang in every place. Forces are sums of stresses times areas; their
+/// Under a linear field stresses are constant, and forces on inner nodes vanish once tied nodes pass theirs
+/// on: the patch test with hanging nodes in all positions. Forces are sums of stresses times areas; their
 /// rounding is that of stresses of the size of K.
 TYPED_TEST(RefinedBodyTest, passes_the_patch_test) {
   const Tensor<double> H{{.02, .05, -.03, .04, -.03, .02, -.05, .01, .02}};
@@ -206,7 +205,7 @@ TYPED_TEST(RefinedBodyTest, passes_the_patch_test) {
   });
 }
 
-/// Translations and, where the method knows them, rotations cause no forces.
+/// Translations and, unless the method is linear, rotations cause no forces.
 TYPED_TEST(RefinedBodyTest, knows_rigid_motions) {
   const RefinedMesh refined = randomly_refined(distorted_cube(2, 0.15, 3), 2, 4);
   const Scene scene = scene_on(refined, plain_case(soft), {});
@@ -223,7 +222,7 @@ TYPED_TEST(RefinedBodyTest, knows_rigid_motions) {
   EXPECT_LT(largest(free_forces(model, u)), 1e4 * eps * soft.bulk_modulus());
 }
 
-/// The free forces are the derivative of the energy by the displacements of the free nodes, which tied ones
+/// The free forces are the derivative of the energy by the displacements of the free nodes, which tied nodes
 /// follow.
 TYPED_TEST(RefinedBodyTest, forces_are_the_derivative_of_the_energy) {
   if constexpr (!detail::path_independent<TypeParam>) {
@@ -260,16 +259,16 @@ TYPED_TEST(RefinedBodyTest, forces_are_the_derivative_of_the_energy) {
         size += std::abs(f[n][i] * d[n][i]);
       }
     }
-    // The difference's own error, (step / element size)^2 / 6 of a third derivative of the size of the
+    // The error of the difference, (step / element size)^2 / 6 of a third derivative that is as large as the
     // forces.
     const double step = 1e-5;
     EXPECT_NEAR((energy(step) - energy(-step)) / (2 * step), slope, 1e-6 * size);
   }
 }
 
-/// A free body, thrown, spinning and vibrating: momentum to rounding, angular momentum and energy up to an
-/// oscillation of (omega dt)^2, without drift. Tied nodes have no mass of their own, and those that they
-/// follow have all of it.
+/// A free body that flies, spins and vibrates: momentum up to rounding, angular momentum and energy up to an
+/// oscillation of (omega dt)^2, without drift. Tied nodes have no mass of their own; the nodes that they
+/// follow carry all of it.
 TYPED_TEST(RefinedBodyTest, keeps_momentum_and_energy_in_motion) {
   if constexpr (!detail::path_independent<TypeParam>) {
     GTEST_SKIP() << "it dissipates, or its energy depends on the path";
@@ -319,7 +318,7 @@ TYPED_TEST(RefinedBodyTest, keeps_momentum_and_energy_in_motion) {
   }
 }
 
-/// On meshes refined at random, errors of displacements fall with the square of the edge: manufactured waves,
+/// On randomly refined meshes, errors of displacements fall with the square of the edge: manufactured waves,
 /// five faces imposed, tractions on the sixth.
 TYPED_TEST(RefinedBodyTest, converges_with_second_order) {
   if constexpr (zero_energy_modes<TypeParam>() != 6 || is_adaptive<TypeParam>) {

@@ -1,5 +1,5 @@
 /// Pairs of runs that must agree, on random problems: changes that must not affect the answer, and answers
-/// that must follow from others. A new one needs only an entry of `relations`.
+/// that must follow from others. A new pair needs only an entry of `relations`.
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 namespace sandglass::verification {
 namespace {
 
-// Relations: a problem, its own answer, and numbers for what is arbitrary.
+// Relations: a problem, its own answer, and random numbers for arbitrary choices.
 
-/// Of axes to axes where components are imposed alone.
+/// A rotation that maps axes to axes if single components are imposed.
 Tensor<double> fitting_rotation(const Problem& problem, RandomGeometry& random) {
   constexpr std::array all{true, true, true};
   const auto partial = [&](const ImposedDisplacement& imposed) { return imposed.components != all; };
@@ -87,16 +87,16 @@ Verdict ranks(const Problem& problem, const Answer& /*own*/, RandomGeometry& /*r
     shared.choice.ranks = std::move(own);
     return told_by(shared);
   });
-  if (together[0].words.starts_with("refused")) return {};  // not everything is divided
+  if (together[0].words.starts_with("refused")) return {};  // some features are not divided
   return same(together[0], together[0] == together[1] ? told_by(*larger) : together[1]);
 }
 
-/// A rounding of displacements is a pressure of K eps u / h in elements, against which a body gives way in
-/// shear, by K / mu eps u. At rest it bends a beam of length l by 6 (l / h)^2 as much; in motion every step
+/// A rounding of displacements is a pressure of K eps u / h in elements, to which a body yields in shear by K
+/// / mu eps u. In static equilibrium it bends a beam of length l by 6 (l / h)^2 as much; in motion every step
 /// adds as much. Three is the root of the eight nodes whose roundings meet in an element
 /// (float_budget_test.cpp).
 Verdict precision(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
-  if (!problem.method().controls_hourglass) return {};  // nothing resists what roundings add up to
+  if (!problem.method().controls_hourglass) return {};  // nothing resists accumulated roundings
   double amplification = 1.0;
   for (const auto& material : problem.description.materials) {
     std::visit(
@@ -109,15 +109,15 @@ Verdict precision(const Problem& problem, const Answer& own, RandomGeometry& /*r
   const double slenderness = diagonal(problem.mesh.points) / shortest_edge(problem.mesh);
   const double times =
       problem.at_rest() ? 6.0 * slenderness * slenderness : static_cast<double>(problem.steps);
-  // Frequencies of a body are found to within a thousandth, and elements take small steps alone in groups:
-  // rounding decides the steps, on which the error of central differences depends.
+  // Frequencies of bodies are accurate to a thousandth, and elements take small steps in groups: rounding
+  // decides the steps, on which the error of central differences depends.
   const auto& dynamics = problem.description.dynamics;
   const bool rounded = !problem.at_rest() && dynamics.time_step == 0.0 &&
                        (dynamics.body_frequency == 1 || dynamics.subcycles > 1);
   const double steps_differ = rounded ? 1e-3 : 0.0;
   const double budget =
       std::max({3.0 * roundoff * amplification * times, allowed_for_rounding(problem), steps_differ});
-  // Where rounding decides, a search ends sooner or later.
+  // Rounding may make a search longer or shorter.
   Problem longer = problem;
   longer.description.relaxation.max_steps *= 10;
   Problem single = longer;
@@ -159,8 +159,8 @@ void for_each_step(const Problem& problem, const Move& move) {
   }
 }
 
-/// The text of a case for a program that has its mesh; none where steps are not given, or where sets of
-/// elements are, or curves of loads at rest, which `settle` takes as they are at the time.
+/// The text of a case for a program that passes the mesh; none if steps are not given, if there are element
+/// sets, or if static loads have curves, which `settle` evaluates at the current time.
 std::optional<std::string> text_for_program(Problem problem) {
   bool fits = problem.element_sets.empty() && !problem.method().is_condensed &&
               (problem.at_rest() || problem.description.dynamics.time_step > 0.0);
@@ -173,10 +173,10 @@ MeshArrays arrays_of(const Problem& problem) {
   return {problem.mesh.points, problem.mesh.cells, problem.sets};
 }
 
-/// The library against a run: the same steps, or the same rest.
+/// The library against a run: the same steps, or the same equilibrium.
 Verdict simulation(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
   const auto text = text_for_program(problem);
-  if (!text || (own.failure == "failed" && !problem.at_rest())) return {};  // where it takes shorter steps
+  if (!text || (own.failure == "failed" && !problem.at_rest())) return {};  // takes shorter steps
   double shortest = INFINITY;
   const Answer other = attempt([&] {
     Simulation<double> body(arrays_of(problem), *text);
@@ -199,8 +199,8 @@ Verdict simulation(const Problem& problem, const Answer& own, RandomGeometry& /*
   return compare(problem, own, other, allowed_for_rounding(problem));
 }
 
-/// The same beside another body that moves half as far, by a method and with loads of which there are
-/// batches.
+/// The same as a body of a batch, beside one that moves half as far; with a method and loads that batches
+/// support.
 Verdict batch(const Problem& given, const Answer& /*own*/, RandomGeometry& random) {
   Problem problem = given;
   while (problem.method().packed_double.assemble_batch == nullptr) {
@@ -297,7 +297,7 @@ constexpr auto relations = std::to_array<Relation>({
     {"strong damping", damping},
 });
 
-/// How often a relation held and did not, and by how much at most where it did.
+/// How often a relation held and failed, and the largest difference where it held.
 struct Count {
   std::array<long, 5> of{};  ///< by kind
   double largest = 0.0;
@@ -308,8 +308,8 @@ struct Count {
   }
 };
 
-/// More problems, or others: SANDGLASS_SCENES=1000 SANDGLASS_SEED=7 relations_test. One of them, with one
-/// relation: SANDGLASS_FIRST=17 SANDGLASS_SCENES=1 SANDGLASS_RELATION=units.
+/// For more or other problems: SANDGLASS_SCENES=1000 SANDGLASS_SEED=7 relations_test. For a single one with
+/// one relation: SANDGLASS_FIRST=17 SANDGLASS_SCENES=1 SANDGLASS_RELATION=units.
 TEST(Relations, hold) {
   const long first = from_environment("SANDGLASS_FIRST", 0), count = from_environment("SANDGLASS_SCENES", 80);
   const long seed = from_environment("SANDGLASS_SEED", 1);

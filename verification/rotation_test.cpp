@@ -50,9 +50,9 @@ Scene turned_block(const ImposedRotation& rotation, bool held = true) {
   return make_scene(description, mesh, sets);
 }
 
-/// Every node is on its circle, and on its way along the displacement beside it, at every factor; more than
-/// once round, and backwards. A path straight to the final place, or one that takes the center for the
-/// origin, is elsewhere.
+/// At every factor, nodes are on their circles, shifted along the displacement; for more than a full turn and
+/// backwards too. A straight path to the end, or a rotation about the origin instead of the center, is
+/// elsewhere.
 TEST(Rotation, nodes_stay_on_their_circles) {
   const Vector center{0.03, -0.02, 0.01}, beside{0.05, 0.02, -0.01};
   for (const double angle : {0.3, -2.0, 2 * pi, 9.0}) {
@@ -70,7 +70,7 @@ TEST(Rotation, nodes_stay_on_their_circles) {
         Vector arm{};
         for (std::size_t i = 0; i < 3; ++i) arm[i] = X[i] - center[i];
         const Vector there = turned(arm, oblique, factor * angle);
-        // Coordinates up to 0.2 m, angles up to 9 rad, known to 1e-16 of themselves.
+        // Coordinates up to 0.2 m and angles up to 9 rad, with relative roundoff of 1e-16.
         for (std::size_t i = 0; i < 3; ++i) {
           EXPECT_NEAR(X[i] + u[n][i], center[i] + there[i] + factor * beside[i], 2e-15);
         }
@@ -91,7 +91,7 @@ TEST(Rotation, center_is_the_mean_of_the_nodes) {
   for (const double component : sum) EXPECT_NEAR(component, 0.0, 1e-15);
 }
 
-/// The unit of errors is the largest distance on the way: the diameter after half a turn, also where the way
+/// The unit of errors is the largest distance on the path: the diameter after half a turn, also if the path
 /// ends at its start; the largest speed is radius times angle.
 TEST(Rotation, largest_imposed_is_that_of_the_way) {
   for (const double angle : {0.5, pi / 2, pi, 2 * pi, -2 * pi}) {
@@ -107,7 +107,7 @@ TEST(Rotation, largest_imposed_is_that_of_the_way) {
   }
 }
 
-/// Whether rotations are rigid for a method.
+/// Whether a method treats rotations as rigid.
 template <class Method>
 constexpr bool is_objective = !is_linear<Method>;
 
@@ -118,19 +118,19 @@ class RotationTest : public ::testing::Test {
 };
 TYPED_TEST_SUITE(RotationTest, SteppedMethodTypes, EntryName);
 
-/// A body that turns as a whole, more than once round, stores nothing and costs nothing. Small-strain theory
-/// takes it for a strain of (1 - cos) in the plane of the turn.
+/// A body that turns as a whole, more than a full turn, stores no energy and needs no work. In small-strain
+/// theory it has a strain of (1 - cos) in the plane of rotation.
 TYPED_TEST(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
   const Scene scene = turned_block({.set = "all", .axis = oblique, .angle = 7.0}, false);
   const Model model(scene, this->method());
   Recorder recorder;
   const Relaxation answer = relax(model, recorder);
   const auto& law = std::get<NeoHookean>(scene.materials.list.front().law);
-  const double stiffness = law.bulk_modulus() * 0.1 * 0.1 * 0.2;  // J for a strain of one
+  const double stiffness = law.bulk_modulus() * 0.1 * 0.1 * 0.2;  // J at a strain of one
   const double energy = answer.energies.strain + answer.energies.hourglass;
   const double work = recorder.rows.back().external_work;
   if (is_objective<TypeParam>) {
-    // Strains are known to 1e-15: energies to its square, up to what 1 + strain rounds to.
+    // Strains are rounded to 1e-15, energies to the square of that, up to the rounding of 1 + strain.
     EXPECT_LT(std::abs(energy), 1e-14 * stiffness);
     EXPECT_LT(std::abs(work), 1e-12 * stiffness);
     const NodalField f = internal_forces(model, answer.u);
@@ -140,9 +140,9 @@ TYPED_TEST(RotationTest, rigid_rotation_needs_neither_force_nor_work) {
   }
 }
 
-/// The work of a turning head is found in the body at rest. Without free nodes every level is an equilibrium:
-/// work from the mean of the forces at its ends then errs with the square of the level, and not at all where
-/// forces are linear. A path straight to its end would find a fraction of the work.
+/// The work of a turning head equals the static body's energy. Without free nodes every level is an
+/// equilibrium: work from the mean of the forces at both ends of a level then has an error of second order in
+/// the level, and none where forces are linear. A straight path would give a fraction of the work.
 TYPED_TEST(RotationTest, work_at_rest_is_the_stored_energy) {
   const auto imbalance = [&](int levels) {
     Case description = plain_case(sample_law<NeoHookean>(0.45));
@@ -167,7 +167,7 @@ TYPED_TEST(RotationTest, work_at_rest_is_the_stored_energy) {
   }
 }
 
-/// In motion too, the inertia of the driven nodes included: to second order in the step.
+/// In motion too, including the inertia of the driven nodes: to second order in the step.
 TYPED_TEST(RotationTest, work_in_motion_balances_energies) {
   const auto imbalance = [&](double fraction) {
     Scene scene =
@@ -216,8 +216,8 @@ TEST(Rotation, velocities_are_those_of_a_rigid_body_at_the_frames_time) {
   }
 }
 
-/// The condensed answer is the linear one, wherever the rotation ends; and half the final forces times the
-/// final displacements is the work.
+/// The condensed answer is the linear one, at any end of the rotation; the work is half of the final forces
+/// times the final displacements.
 TEST(Rotation, condensed_answer_is_the_linear_one) {
   const Scene scene =
       turned_block({.set = "head", .axis = oblique, .angle = 0.7, .displacement = {0, 0, 0.01}});
@@ -225,7 +225,7 @@ TEST(Rotation, condensed_answer_is_the_linear_one) {
   const Relaxation at_once = relax(Model(scene, {"linear-condensed", {}}), condensed);
   const Relaxation in_levels = relax(Model(scene, {"linear", {}}), stepped);
   ASSERT_TRUE(at_once.converged && in_levels.converged);
-  // The tolerance of relaxation times the condition of the block, as in condensed_test.cpp.
+  // The tolerance of relaxation times the condition number of the block, as in condensed_test.cpp.
   EXPECT_LT(largest_distance(at_once.u, in_levels.u), 1e-6 * largest_imposed(scene));
   const double energy = at_once.energies.strain + at_once.energies.hourglass;
   EXPECT_NEAR(condensed.rows.back().external_work / energy, 1.0, 1e-12);
@@ -240,8 +240,8 @@ std::string refusal(const Case& description, const NodeSets& sets) {
   return "accepted";
 }
 
-/// A whole turn ends where it began; the body is twisted all the same, for the way there counts. Its energy
-/// is that of the turn in many equal levels.
+/// A whole turn ends where it began, but the body is twisted, since the path matters. Its energy equals that
+/// of the turn in many equal levels.
 TEST(Rotation, a_whole_turn_is_not_taken_for_none) {
   const auto energy = [](int levels) {
     Case description = plain_case(sample_law<NeoHookean>(0.45));
@@ -262,7 +262,7 @@ TEST(Rotation, a_whole_turn_is_not_taken_for_none) {
   EXPECT_NEAR(energy(0), many, 1e-6 * many);
 }
 
-/// A node may turn and be held, or turn twice, where all paths are the same.
+/// A node may turn and be held, or turn twice, if all its paths are equal.
 TEST(Rotation, two_paths_of_a_node_must_be_the_same) {
   const Mesh mesh = box({0.1, 0.1, 0.1}, {1, 1, 1});
   const auto head = nodes_where(mesh.points, [](const Vector& X) { return X[2] > 0.09; });
@@ -280,7 +280,7 @@ TEST(Rotation, two_paths_of_a_node_must_be_the_same) {
   description.displacements = {{"corner", {}}};
   ASSERT_EQ(mesh.points[index(head[0])], (Vector{0.0, 0.0, 0.1}));  // on the axis
   EXPECT_EQ(refusal(description, sets), "accepted");
-  description.displacements = {{"head", {}, {false, false, true}}};  // along the axis nothing moves
+  description.displacements = {{"head", {}, {false, false, true}}};  // nothing moves along the axis
   EXPECT_EQ(refusal(description, sets), "accepted");
   description.displacements = {{"head", {}, {true, false, false}}};
   EXPECT_NE(refusal(description, sets).find("turning by 1 rad by set 'head'"), std::string::npos);

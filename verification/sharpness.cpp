@@ -15,7 +15,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// One row of the table; returns how many samples were unsafe.
+/// Prints one row of the table; returns the number of unsafe samples.
 int print_row(std::string_view label, std::string_view what, Distribution found) {
   fmt::print("{:38} {:18} {:7} {:6}  {:.3f}  {:.3f}  {:.3f}  {:.3f}  {:.3f}\n", label, what, found.samples,
              found.unsafe, found.quantile(0.0), found.quantile(0.05), found.quantile(0.5),

@@ -1,4 +1,4 @@
-/// The library as used by a program: the same motion as `integrate`, views, snapshots, errors.
+/// The library inside a program: the same motion as `integrate`, views, snapshots, errors.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 constexpr double step = 1e-3;  // s; stable for the blocks below
 constexpr int steps = 200;
 
-/// A case without mesh; `driven` is the table of the imposed motion.
+/// A case without a mesh; `driven` is the table of the imposed motion.
 std::string text_of(const std::string& driven, const std::string& answer = "dynamic") {
   const std::string dynamics = "[dynamics]\nduration = 0.2\ntime_step = 1e-3\ndamping = 3.0\nframes = 1\n";
   return "[case]\nname = \"block\"\nrequirement = \"A block is moved.\"\nanswer = \"" + answer +
@@ -60,9 +60,9 @@ double smooth(double t) {
   return t * t * t * (10.0 + t * (6.0 * t - 15.0));
 }
 
-/// Beside `integrate` the curve is rounded in another place: each of 200 steps moves driven nodes elsewhere,
-/// by 3.5e-18 m at most, half a unit in the last place of 0.03 m, and two sums over as many stable steps
-/// carry that on. Another mistake shows in the first digits.
+/// The curve is rounded elsewhere than in `integrate`: each of 200 steps displaces driven nodes by at most
+/// 3.5e-18 m, half a unit in the last place of 0.03 m, and two sums over as many stable steps accumulate
+/// that. Other mistakes change the first digits.
 constexpr double roundoff = 200.0 * 200.0 * 3.5e-18;  // m
 
 class MotionTest : public ::testing::TestWithParam<SimulationSettings> {};
@@ -152,7 +152,7 @@ TEST(Simulation, steps_shorten_as_the_body_stiffens) {
   const double at_rest = simulation.step_size() / SteadyStep::first_share;
   simulation.move("head", {0.0, 0.0, -0.1});
   simulation.advance(1.0);
-  // Pressed to half its height, the block is half as far from face to face, and wider.
+  // At half its height, the block is half as far from face to face, and wider.
   EXPECT_LT(simulation.step_size(), 0.7 * at_rest);
   EXPECT_GT(simulation.step_size(), 0.2 * at_rest);
 }
@@ -165,8 +165,8 @@ TEST(Simulation, no_frame_is_too_long_for_a_stable_motion) {
   simulation.move("head", {0.02, 0.01, 0.03});
   simulation.advance(0.5);
   simulation.advance(4.0);
-  // Every mode is faster than 7.5 rad/s, so that it fades by exp(-15 / 2 * 4) = 1e-13; the answer at rest is
-  // near by its tolerance, 1e-8 of 0.03 m.
+  // Every mode is faster than 7.5 rad/s and so decays by exp(-15 / 2 * 4) = 1e-13; the static answer is
+  // accurate to its tolerance, 1e-8 of 0.03 m.
   EXPECT_LT(largest_distance(field_of(simulation), rest.u), 1e-9);
 }
 
@@ -178,7 +178,7 @@ TEST(Simulation, each_node_of_a_set_goes_its_own_way) {
   simulation.move("head", own);
   simulation.advance(0.01);
   for (std::size_t n = 0; n < head.size(); ++n) EXPECT_EQ(field_of(simulation)[index(head[n])], own[n]);
-  simulation.advance(0.01);  // no new position: they stay
+  simulation.advance(0.01);  // no new target: they stay
   for (std::size_t n = 0; n < head.size(); ++n) EXPECT_EQ(field_of(simulation)[index(head[n])], own[n]);
 }
 
@@ -191,7 +191,7 @@ TEST(Simulation, components_that_the_case_leaves_free_stay_free) {
   for (const int n : simulation.nodes("head")) {
     const Vector u = field_of(simulation)[index(n)];
     EXPECT_EQ(u[2], 0.02);
-    EXPECT_LT(std::abs(u[0]), 0.02);  // it thins a little
+    EXPECT_LT(std::abs(u[0]), 0.02);  // it becomes slightly thinner
   }
 }
 
@@ -210,7 +210,7 @@ TEST(Simulation, views_show_the_present_in_one_place_and_steps_allocate_nothing)
   EXPECT_EQ(moved.displacements().data, u.data);
 }
 
-/// The static answer of the same loads, to the bit, since both are the same search: a factor that is a power
+/// The static answer of the same loads, bit by bit, since both use the same search: a factor that is a power
 /// of two is exact.
 template <class Real>
 void expect_settled(const char* method, const std::string& driven, double factor) {
@@ -242,8 +242,8 @@ TEST(Simulation, settles_where_a_static_run_ends) {
   expect_settled<double>("tl-perturbation", loaded, 0.5);
 }
 
-/// In equilibrium nothing moves: forces are as far from balance as the search left them, 1e-8 of the
-/// reactions. Without the levels of an adaptive answer, or with velocities of before, it would.
+/// Nothing moves in equilibrium: forces balance to the search's tolerance, 1e-8 of the reactions. Without the
+/// levels of an adaptive answer, or with the previous velocities, the body would move.
 TEST(Simulation, rests_after_settling) {
   for (const char* method : {"tl-perturbation", "tl-adaptive"}) {
     Simulation<double> simulation(block(), text_of(pulled), {.method = method});
@@ -295,7 +295,7 @@ TEST(Simulation, reactions_are_the_internal_forces_on_driven_nodes) {
   for (const int n : simulation.nodes("head")) {
     for (std::size_t i = 0; i < 3; ++i) expected[i] += force[index(n)][i];
   }
-  EXPECT_GT(expected[2], 0.1);  // it is pulled
+  EXPECT_GT(expected[2], 0.1);  // it was pulled
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(simulation.reaction("head")[i], expected[i], 1e-12);
 }
 
@@ -314,13 +314,13 @@ TEST(Simulation, single_precision_follows_double) {
   EXPECT_LT(largest_distance(field_of(rounded), field_of(exact)), 200 * 2e-9);
 }
 
-/// The nodes between foot and head move along z only, so that no element can get out of the way.
+/// Nodes between foot and head move only along z, so that no element can escape sideways.
 const std::string guided = pulled +
                            "[sets.inside]\nz = [0.01, 0.19]\n[[displacement]]\nset = \"inside\"\n"
                            "value = [0.0, 0.0, 0.0]\ncomponents = \"xy\"\n";
 
-/// A push that turns elements inside out, however short the steps, or makes steps collapse, ends at a check;
-/// the body is then what it was at the check before.
+/// A push that turns elements inside out with steps of any length, or makes steps collapse, ends at a check;
+/// the body then returns to its state at the check before.
 template <class Real>
 void expect_return(const char* method) {
   SCOPED_TRACE(method);
@@ -341,10 +341,10 @@ void expect_return(const char* method) {
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, "element ", told);
   EXPECT_PRED_FORMAT2(::testing::IsSubstring, fmt::format("is back at {:.6g} s", whole), told);
   EXPECT_EQ(simulation.displacements().data, before);
-  // Driven nodes stay where they are until they are sent elsewhere, and nothing of the failure is left.
+  // Driven nodes stay until they get a new target, and the failure leaves no trace.
   const auto node = index(simulation.nodes("head")[0]);
   const Vector head = field_of(simulation)[node];
-  EXPECT_NEAR(head[2], gone[2] * whole / frame, 1e-6);  // on a straight way, in single precision
+  EXPECT_NEAR(head[2], gone[2] * whole / frame, 1e-6);  // on a straight path, in single precision
   simulation.advance(0.1 * simulation.step_size());
   EXPECT_EQ(field_of(simulation)[node], head);
   simulation.move("head", {0.0, 0.0, -0.02});
@@ -362,7 +362,7 @@ TEST(Simulation, returns_to_its_last_whole_state_when_an_element_turns_inside_ou
 
 TEST(Simulation, before_the_first_check_it_returns_to_the_start_or_to_where_it_settled) {
   Simulation<double> simulation(block(), text_of(guided));
-  simulation.move("head", {0.0, 0.0, -5.0});  // upside down within the twenty shortest steps, too
+  simulation.move("head", {0.0, 0.0, -5.0});  // upside down within the twenty shortest steps too
   EXPECT_THROW(simulation.advance(0.12), ComputationError);
   EXPECT_EQ(simulation.time(), 0.0);
   EXPECT_EQ(field_of(simulation), NodalField(45));
@@ -374,8 +374,8 @@ TEST(Simulation, before_the_first_check_it_returns_to_the_start_or_to_where_it_s
   EXPECT_EQ(field_of(simulation), settled);
 }
 
-/// The head is pressed so fast that elements turn inside out before a check, and not with shorter steps:
-/// those are taken instead, to the same time and place.
+/// The head is pressed so fast that elements turn inside out before a check, but not with shorter steps:
+/// these replace them, up to the same time and position.
 TEST(Simulation, takes_steps_that_prove_too_long_again) {
   for (const auto& [pressed, seconds] : {std::pair{0.09, 0.05}, {0.13, 0.15}}) {
     Simulation<double> simulation(block(), text_of(pulled),

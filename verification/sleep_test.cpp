@@ -1,4 +1,4 @@
-/// Sleeping parts of bodies: exact distances and parts of meshes, and neglected motions within the bound.
+/// Sleeping parts of bodies: exact distances, parts of meshes, and neglected motions within the bound.
 
 #include "solve/sleep.hpp"
 
@@ -17,7 +17,7 @@ std::size_t count(const std::vector<bool>& marked) {
   return static_cast<std::size_t>(std::count(marked.begin(), marked.end(), true));
 }
 
-/// Of a lattice corner to corner the largest of the three differences.
+/// In a lattice the distance, corner to corner, is the largest of the three differences.
 TEST(Distances, count_elements_corner_to_corner) {
   const Mesh mesh = box({5, 4, 3}, {5, 4, 3});
   const Vector from{1, 4, 2};
@@ -39,8 +39,8 @@ TEST(Distances, no_way_is_told) {
   EXPECT_EQ(std::count(distance.begin(), distance.end(), -1), 4);
 }
 
-/// A margin of m around an inner node of a lattice marks a cube of 2 m elements an edge, m around two nodes
-/// the union, and where two margins meet the larger one extends further.
+/// A margin of m around an inner node of a lattice marks a cube of 2 m elements per edge, around two nodes
+/// the union; where two margins meet, the larger one extends further.
 TEST(Distances, margins_mark_cubes) {
   const Mesh mesh = box({8, 8, 8}, {8, 8, 8});
   const Distances distances(mesh);
@@ -60,9 +60,9 @@ TEST(Distances, margins_mark_cubes) {
   EXPECT_EQ(marked(), 216U);
   margin[node(0, 0, 0)] = 1;
   EXPECT_EQ(marked(), 217U);
-  margin[node(4, 4, 5)] = 2;  // inside of the larger one
+  margin[node(4, 4, 5)] = 2;  // inside the larger one
   EXPECT_EQ(marked(), 217U);
-  margin[node(4, 4, 7)] = 2;  // 4 x 4 elements, of which a layer was not in it
+  margin[node(4, 4, 7)] = 2;  // one new layer of 4 x 4 elements
   EXPECT_EQ(marked(), 217U + 16U);
 }
 
@@ -87,7 +87,7 @@ TEST(MeshPart, half_of_a_box) {
   }
 }
 
-/// A block on a fixed base, elements of a millimetre; four of its upper faces in the middle go down by
+/// A block with elements of a millimetre on a fixed base; four of its upper faces in the middle go down by
 /// `depth`.
 struct Touched {
   CaseOnMesh problem;
@@ -122,9 +122,9 @@ struct Touched {
   }
 };
 
-/// Motion in a thin block falls off within a few times its height, in a thick one as 1 / r, and where volume
-/// keeps, what is held drives it elsewhere: all stay within what may be neglected. A tolerance of 1e-6 stays
-/// far below the shares.
+/// Motion decays within a few times the height in a thin block and as 1 / r in a thick one; nearly
+/// incompressible blocks push it elsewhere: neglected motion stays within its limit everywhere. A tolerance
+/// of 1e-6 is far below the shares.
 TEST(Sleep, neglects_no_more_than_it_may) {
   const double depth = 1e-3;
   const Touched thin({64, 64, 3}, depth);
@@ -149,8 +149,8 @@ TEST(Sleep, neglects_no_more_than_it_may) {
   }
 }
 
-/// Methods of all kinds sleep: what elements remember, and levels, stay with the part. A push this deep
-/// drives the surroundings farther than its beginning shows.
+/// All kinds of methods support sleep: elements' memory and levels stay with the part. A push this deep moves
+/// the surroundings farther than its beginning suggests.
 TEST(Sleep, holds_for_methods_of_every_kind) {
   const double depth = 1.2e-3, share = 0.02;
   const Touched scene({48, 48, 3}, depth);
@@ -161,7 +161,7 @@ TEST(Sleep, holds_for_methods_of_every_kind) {
   }
 }
 
-/// Where everything has to be awake the answer is the whole one.
+/// If everything has to be awake, the answer is that of the whole body.
 TEST(Sleep, everything_awake_is_the_whole) {
   const Touched scene({8, 8, 4}, 0.5e-3);
   const LocalRelaxation local = scene.awake("tl-perturbation", 1e-4);
@@ -200,7 +200,7 @@ TEST(Sleep, listeners_hear_of_the_whole_mesh) {
       relax_awake(scene.scene, {.method = "tl-perturbation"}, 0.02, impatient).relaxation.interrupted);
 }
 
-/// A force pushes as well as a displacement; what may be neglected is a share of the largest displacement.
+/// Forces wake elements as displacements do; the share that may be neglected is of the largest displacement.
 TEST(Sleep, wakes_where_a_force_pushes) {
   Touched touched({48, 48, 3}, 0.5e-3);
   touched.problem.description.displacements.pop_back();
@@ -236,8 +236,8 @@ TEST(Sleep, is_refused_where_it_has_no_sense) {
   EXPECT_NE(refusal(tied).find("a mesh without [[refine]]"), std::string::npos);
 }
 
-/// A part has all that the scene has there: what is imposed, sets by its own numbers, forces, velocities and
-/// materials; its rim is fixed.
+/// A part keeps the scene's imposed displacements, sets (in its own numbers), forces, velocities and
+/// materials there; its rim is fixed.
 TEST(OnPart, keeps_what_the_scene_has_there) {
   Touched touched({4, 4, 3}, 0.5e-3);
   Case& description = touched.problem.description;

@@ -1,5 +1,5 @@
-/// Exponentials and logarithms that packs compute, principal frames, and isotropic functions of tensors with
-/// their derivatives.
+/// Exponentials and logarithms of packs, principal frames, and isotropic functions of tensors with their
+/// derivatives.
 
 #include "math/spectral.hpp"
 
@@ -33,7 +33,7 @@ class ExponentialTest : public ::testing::Test {
  protected:
   static constexpr double unit = static_cast<double>(std::numeric_limits<T>::epsilon());
 
-  /// Arguments of every magnitude and both signs, of the size of strains, up to where exponentials overflow,
+  /// Arguments of every magnitude and both signs, of the size of strains, up to where exponentials overflow
   /// and just above -1, where logarithms do.
   std::vector<T> arguments() const {
     std::mt19937_64 random(7);
@@ -53,7 +53,7 @@ class ExponentialTest : public ::testing::Test {
     return x;
   }
 
-  /// Two units in the last place: of the rounding of the argument's rest, of the series and of the last sum.
+  /// Two units in the last place: rounding of the argument's remainder, of the series and of the last sum.
   /// Packs perform the same operations; contraction by the compiler may differ.
   template <class Function, class Exact>
   void expect_two_units(const Function& function, const Exact& exact) {
@@ -105,7 +105,7 @@ TYPED_TEST(ExponentialTest, limits_are_the_library_s) {
   EXPECT_TRUE(std::isnan(sandglass::log1p(T(-1.5))));
   EXPECT_TRUE(std::isnan(sandglass::log1p(-infinity)));
   EXPECT_TRUE(std::isnan(sandglass::log1p(nan)));
-  // The last argument before infinity, and the first after it.
+  // The last argument before infinity, and the first one beyond.
   const T last = std::log(std::numeric_limits<T>::max());
   EXPECT_TRUE(std::isfinite(sandglass::expm1(std::nextafter(last, T(0)))));
   EXPECT_EQ(sandglass::expm1(std::nextafter(last, infinity) * (T(1) + 2 * std::numeric_limits<T>::epsilon())),
@@ -134,8 +134,8 @@ TYPED_TEST(ExponentialTest, lanes_are_computed_by_themselves) {
   }
 }
 
-/// The quotients have the error of expm1 and log1p; the remainder loses a factor of (e - 1)/(e - 2) = 2.4 of
-/// it at worst, where its series takes over.
+/// The quotients have the error of expm1 and log1p; the remainder loses at most a factor of (e - 1)/(e - 2) =
+/// 2.4, where its series takes over.
 TYPED_TEST(ExponentialTest, quotients_are_smooth_at_zero) {
   using T = TypeParam;
   const double tolerance = 8 * TestFixture::unit;
@@ -150,7 +150,7 @@ TYPED_TEST(ExponentialTest, quotients_are_smooth_at_zero) {
       const Real X = static_cast<Real>(x);
       expect(relative_expm1(x), std::expm1(X) / X);
       if (x > T(-1)) expect(relative_log1p(x), std::log1p(X) / X);
-      Real series = 0;  // until nothing changes
+      Real series = 0;  // until convergence
       Real term = 1;
       for (int n = 3; n < 30; ++n) {
         series += term;
@@ -202,13 +202,13 @@ std::vector<Tensor<double>> samples() {
   return all;
 }
 
-/// Some ten operations one after the other, each with a few roundings of the largest entry.
+/// About ten operations in sequence, each with a few roundings of the largest entry.
 double roundoff(const Tensor<double>& S) {
   return 32 * eps * largest_entry(S);
 }
 
-/// n_0 (x) n_0 is a projection onto one axis; the square of the difference of the two others' is one onto
-/// their plane, unless their values coincide, where no axes are to be found.
+/// n_0 (x) n_0 is a projection onto one axis; the square of the difference of the two others is one onto
+/// their plane, unless their values coincide, where there are no unique axes.
 TEST(Spectrum, has_the_principal_values_and_their_projections) {
   for (const auto& S : samples()) {
     const auto found = spectrum(S);
@@ -258,7 +258,7 @@ TEST(Spectrum, of_single_precision_and_of_packs) {
   }
 }
 
-/// Where squares underflow nothing is found, but nothing grows and nothing becomes NaN.
+/// Where squares underflow no frame is found, but nothing grows or becomes NaN.
 template <class T>
 void expect_harmless(const std::vector<double>& sizes) {
   RandomGeometry random(6);
@@ -304,9 +304,9 @@ TEST(IsotropicTensor, is_the_matrix_function) {
   }
 }
 
-/// The derivative along E stands beside the diagonal of exp([S E; 0 S]) (Higham, Functions of Matrices, eq.
-/// 3.16), which Eigen takes by Pade's approximation and squaring: without principal values, so that their
-/// coincidence is nothing special to it.
+/// The derivative along E is the off-diagonal block of exp([S E; 0 S]) (Higham, Functions of Matrices, eq.
+/// 3.16), which Eigen computes by Pade approximation and squaring: without principal values, so that equal
+/// ones are not special.
 TEST(IsotropicTensor, has_the_derivative_of_the_matrix_function) {
   RandomGeometry random(9);
   for (const auto& S : samples()) {

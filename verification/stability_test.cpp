@@ -1,4 +1,4 @@
-/// The stability lab: cells whose outcome is known, and what maps, axes and files promise.
+/// The stability lab: cells with known outcomes, and the properties of maps, axes and files.
 
 #include <gtest/gtest.h>
 
@@ -67,8 +67,8 @@ TEST_F(CellTest, goldens_own_element_is_the_golden) {
   }
 }
 
-/// Without kappa nothing holds the hourglass modes; with kappa near 1 they resist like volume, which locks;
-/// displacement elements lock as Poisson's ratio nears one half, and only then.
+/// Without kappa nothing resists hourglass modes; a kappa near 1 resists them like volume, which locks; full
+/// integration locks as Poisson's ratio nears one half.
 TEST_F(CellTest, kappa_and_poissons_ratio_fail_as_known) {
   EXPECT_EQ(found("kappa", cantilever(), "tl-perturbation", 0.0), Finding::hourglassing);
   EXPECT_EQ(found("kappa", cantilever(), "tl-perturbation", 0.3), Finding::locking);
@@ -77,23 +77,23 @@ TEST_F(CellTest, kappa_and_poissons_ratio_fail_as_known) {
   EXPECT_EQ(found("load,nu", cantilever(), "tl-full", 1.0, 0.4999), Finding::locking);
 }
 
-/// The bound of the stable step is sharp on a free cube: a twentieth below it every mode swings, a twentieth
-/// above the highest grows by a factor of 1.9 a step.
+/// The bound of the stable step is sharp on a free cube: a twentieth below it every mode oscillates, a
+/// twentieth above the highest grows by a factor of 1.9 per step.
 TEST_F(CellTest, steps_above_the_stable_one_are_unstable) {
   EXPECT_EQ(found("step", free_cube(), "tl-perturbation", 0.95), Finding::good);
   EXPECT_EQ(found("step", free_cube(), "tl-perturbation", 1.05), Finding::unstable);
   EXPECT_EQ(found("step", cantilever(), "tl-mean-dilatation", 3.0), Finding::unstable);
 }
 
-/// A zigzag of velocities runs away where nothing holds it, and only there.
+/// A zigzag of velocities grows without control, and only then.
 TEST_F(CellTest, noise_grows_without_control) {
   EXPECT_EQ(found("noise", cantilever(), "tl-none", 0.001), Finding::hourglassing);
   EXPECT_EQ(found("noise", cantilever(), "tl-perturbation", 0.001), Finding::good);
   EXPECT_EQ(found("noise", cantilever(), "ul-viscous", 0.001), Finding::good);
 }
 
-/// The head is pushed through the foot, and the body is too short to pass beside it: no method can follow,
-/// and the golden cannot either.
+/// The head is pushed through the foot of a body too short to bend aside: no method has an answer, the golden
+/// included.
 TEST_F(CellTest, where_the_golden_fails_others_are_told_by_how_they_break_down) {
   Case description = cantilever();
   description.mesh = BoxMesh{{1.0, 0.2, 0.2}, {2, 2, 2}};
@@ -104,7 +104,7 @@ TEST_F(CellTest, where_the_golden_fails_others_are_told_by_how_they_break_down) 
   EXPECT_NE(c.status, "ok");
 }
 
-/// Elastic answers do not depend on the path: cycles lead to the same one, to the tolerance of both.
+/// Elastic answers do not depend on the path: after cycles they are the same, to the tolerance of both.
 TEST_F(CellTest, elastic_bodies_forget_their_cycles) {
   const auto answer = [&](int cycles) {
     Case description = cantilever();
@@ -127,8 +127,8 @@ TEST_F(CellTest, methods_refuse_what_they_do_not_know) {
   EXPECT_FALSE(c.status.empty());
 }
 
-/// Stretching and skewing is an affine map of body and imposed motion: a method's answer to a homogeneous
-/// state is the same gradient in other axes, A H A^-1, exactly.
+/// Stretching and skewing is an affine map of body and imposed motion: a method's homogeneous answer has the
+/// same gradient in other axes, A H A^-1, exactly.
 TEST(Trial, shapes_body_and_motion_alike) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.3});
   description.mesh = BoxMesh{{1.0, 1.0, 1.0}, {2, 2, 2}};
@@ -162,7 +162,7 @@ TEST(Trial, keys_differ_where_answers_may) {
   for (const Axis& axis : axes()) {
     keys.insert(changed([&](Trial& t) { axis.apply(t, axis.values[1] * (1.0 + 1e-9)); }));
   }
-  // Bytes of 8 are what is already; kappa, bytes and cycles are above by hand.
+  // 8 bytes is the default; kappa, bytes and cycles are set above by hand.
   EXPECT_GE(keys.size(), 6 + axes().size() - 3);
 }
 
@@ -170,7 +170,7 @@ TEST(Map, asks_only_what_matters) {
   const Case description = cantilever();
   EXPECT_TRUE(concerns(parse_map("kappa,nu"), description, "tl-perturbation"));
   EXPECT_FALSE(concerns(parse_map("kappa,nu"), description, "tl-full"));
-  EXPECT_FALSE(concerns(parse_map("kappa,nu"), description, "ul-viscous"));  // nothing at rest
+  EXPECT_FALSE(concerns(parse_map("kappa,nu"), description, "ul-viscous"));  // no static stiffness
   EXPECT_TRUE(concerns(parse_map("kappa,step"), description, "ul-viscous"));
   EXPECT_FALSE(concerns(parse_map("step"), description, "linear-condensed"));
   EXPECT_EQ(usual_maps(description).size(), 8u);
@@ -203,7 +203,7 @@ TEST(Answers, are_computed_once) {
   for (const auto& answer : got) EXPECT_EQ(answer, got[0]);
 }
 
-/// A generator's counts of elements scaled in proportion, the smallest as requested.
+/// A generator's numbers of elements are scaled in proportion, the smallest to the requested number.
 TEST(Variations, elements_across_keep_their_proportions) {
   const auto column = std::get<BoxMesh>(with_elements_across(BoxMesh{{0.1, 0.1, 1.0}, {3, 3, 30}}, 2));
   EXPECT_EQ(column.elements, (std::array{2, 2, 20}));
@@ -212,7 +212,7 @@ TEST(Variations, elements_across_keep_their_proportions) {
   EXPECT_EQ(ellipsoid.shell_layers, 3);
 }
 
-/// Ends of every edge differ, also on unstructured meshes; a ring of three has no zigzag.
+/// Both ends of every edge differ, also on unstructured meshes; a ring of three has no zigzag.
 TEST(Variations, zigzags_change_sign_along_every_edge) {
   for (const Mesh& mesh : {box({1, 1, 1}, {3, 2, 4}), EllipsoidMesh{{1, 1, 1}, 4, 2}.build()}) {
     const auto signs = zigzag(mesh);

@@ -1,4 +1,4 @@
-/// The stable step: bounds that hold and are sharp enough.
+/// The stable step: bounds that are safe and sharp enough.
 
 #include "solve/stable_step.hpp"
 
@@ -27,8 +27,8 @@ class StableStepTest : public ::testing::Test {
     double mean = 0.0;
   };
 
-  /// The true largest eigenvalue over its bound, over many elements; displacements from `deform`. Where the
-  /// law gives way the bound must hold, but there is no stiffness to compare it with.
+  /// The true largest eigenvalue over its bound, for many elements with displacements from `deform`. Where
+  /// the law loses stiffness the bound must hold, but there is nothing to compare it with.
   template <class Deform>
   Sharpness sharpness(int samples, const Deform& deform, const HourglassSettings& settings = {}) {
     Sharpness result;
@@ -61,8 +61,8 @@ class StableStepTest : public ::testing::Test {
     };
   }
 
-  /// What the mean over deformed samples must reach: .25 costs half of the step. A bound that knows no
-  /// directions cannot see that fibres are stiff in one of them only, which may cost a tenth more, .45^2.
+  /// The required mean over deformed samples: .25 costs half of the step. A bound without directions cannot
+  /// use that fibres are stiff only along one, which may cost a tenth more, .45^2.
   static constexpr double sharp_when_deformed = is_isotropic<Law> ? 0.25 : 0.2;
 
   RandomGeometry random{17};
@@ -70,8 +70,8 @@ class StableStepTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(StableStepTest, ElasticMethodWithLawTypes, EntryName);
 
-// A bound that is safe because it is huge would pass without the second half of each test. In the mean over
-// the samples it may cost a third of the step at rest, (1/1.5)^2 = .44 in the eigenvalue, and half when
+// Without the second half of each test, a bound could pass by being huge. On average over the samples it may
+// cost a third of the step in the undeformed state, (1/1.5)^2 = .44 in the eigenvalue, and half when
 // deformed; see sharp_when_deformed.
 TYPED_TEST(StableStepTest, bound_holds_at_rest) {
   const auto sharp = this->sharpness(1000, [](const auto&) { return NodalVectors<double>{}; });
@@ -88,7 +88,7 @@ TYPED_TEST(StableStepTest, bound_holds_under_strong_compression) {
   EXPECT_GT(sharp.mean, this->sharp_when_deformed);
 }
 
-/// A user's kappa may be so large that the hourglass modes set the step.
+/// A user's kappa may be so large that hourglass modes set the step.
 TYPED_TEST(StableStepTest, bound_holds_with_a_stiff_hourglass_control) {
   for (const double kappa : {0.3, 3.0}) {
     const auto sharp = this->sharpness(
@@ -97,9 +97,9 @@ TYPED_TEST(StableStepTest, bound_holds_with_a_stiff_hourglass_control) {
   }
 }
 
-/// dt c_d / h on a cube, sqrt((lambda + 2 mu) / (3 lambda + 2 mu)): .775, .616, .585, .578. It is the true
-/// limit of one uncontrolled point; a method of more stiffness must take less, and more than half of its own
-/// true limit.
+/// dt c_d / h on a cube, sqrt((lambda + 2 mu) / (3 lambda + 2 mu)): .775, .616, .585, .578. This is the true
+/// limit of one uncontrolled point; stiffer methods must take less, and more than half of their own true
+/// limit.
 TYPED_TEST(StableStepTest, step_of_a_cube) {
   constexpr std::array<double, 4> tabulated{0.775, 0.616, 0.585, 0.578};
   const double h = 0.02;
@@ -120,7 +120,7 @@ TYPED_TEST(StableStepTest, step_of_a_cube) {
       EXPECT_NEAR(number, one_point, 1e-12);
     }
     EXPECT_LE(number, one_point * (1 + 1e-12));
-    // The truth: lumped masses of an eighth, 2 / omega of the largest eigenvalue.
+    // The true step: 2 / omega of the largest eigenvalue, with lumped masses of an eighth.
     const auto X = gather(scene.mesh.points, scene.mesh.cells[0]);
     const auto element = TypeParam::Formulation::precompute(X, law, {});
     const auto K = tangent_stiffness<typename TypeParam::Formulation>({}, element, law);
@@ -133,7 +133,7 @@ TYPED_TEST(StableStepTest, step_of_a_cube) {
   }
 }
 
-/// The step is the smallest of all elements', and the element that sets it is named.
+/// The step is the smallest of all elements, and the element that sets it is named.
 TEST(StableStep, is_that_of_the_smallest_element) {
   Mesh mesh = box({3.0, 1.0, 1.0}, {3, 1, 1});
   for (auto& point : mesh.points) {

@@ -65,7 +65,7 @@ TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) 
   const Relaxation answer = relax(model, recorder);
   ASSERT_TRUE(answer.converged);
   EXPECT_LT(answer.residual, 1e-8);
-  // The reported residual is that of the returned displacements, to the roundoff of sums in another order.
+  // The reported residual is that of the returned displacements, up to roundoff of sums in another order.
   EXPECT_NEAR(residual_of(model, answer.u), answer.residual, 1e-12);
   for (const int n : scene.sets.at("head")) EXPECT_EQ(answer.u[index(n)], d);
   for (const int n : scene.sets.at("foot")) EXPECT_EQ(answer.u[index(n)], Vector{});
@@ -78,8 +78,8 @@ TYPED_TEST(StepperTest, relaxation_ends_at_rest_with_the_imposed_displacements) 
   }
 }
 
-/// When the evaluations run out, the displacements of that moment are returned: from the first guess on they
-/// approach the answer, and with as many evaluations as the answer took they are it, bit by bit.
+/// When evaluations run out, the current displacements are returned: they approach the answer from the first
+/// guess on, and with as many evaluations as the answer took they equal it, bit by bit.
 TYPED_TEST(StepperTest, relaxation_returns_where_it_is_when_steps_run_out) {
   if (pressure_varies<TypeParam>) GTEST_SKIP() << "its steps take many evaluations each";
   Scene scene = driven_block({0.04, 0.0, 0.03});
@@ -100,8 +100,8 @@ TYPED_TEST(StepperTest, relaxation_returns_where_it_is_when_steps_run_out) {
   EXPECT_EQ(relax(model, silent).u, answer.u);
 }
 
-/// The answer does not depend on the path: other load levels end at the same displacements. Modes
-/// without energy have no answer of their own and keep what the path gave them.
+/// The answer does not depend on the path: other load levels give the same displacements. Modes without
+/// energy have no unique answer and keep the path's.
 TYPED_TEST(StepperTest, relaxed_answer_does_not_depend_on_the_settings) {
   if (zero_energy_modes<TypeParam>() > 6) return;
   Scene scene = driven_block({0.01, 0.0, 0.01});
@@ -111,7 +111,7 @@ TYPED_TEST(StepperTest, relaxed_answer_does_not_depend_on_the_settings) {
   scene.settings.relaxation.levels = 7;
   scene.settings.relaxation.check_interval = 17;
   const NodalField again = relax(Model(scene, this->method()), silent).u;
-  // A residual of 1e-10 allows errors of 1e-10 times the condition of the free block, a few hundred.
+  // A residual of 1e-10 allows errors of 1e-10 times the condition number of the free block, a few hundred.
   EXPECT_LT(largest_distance(once, again), 1e-7 * 0.01);
 }
 
@@ -129,11 +129,11 @@ TYPED_TEST(StepperTest, the_same_input_gives_the_same_bits) {
   EXPECT_EQ(motion.v, same.v);
 }
 
-/// Every sum over nodes is taken in one order, whoever computes its parts: the answer has the same bits for
-/// any number of threads. The block is long enough that elements and rows are cut up for them.
+/// Every sum over nodes has a fixed order, whichever thread computes its parts: the answer has the same bits
+/// for any number of threads. The block is long enough for its elements and rows to be divided.
 TYPED_TEST(StepperTest, relaxation_gives_the_same_bits_for_any_number_of_threads) {
   Scene scene = long_block();
-  scene.settings.relaxation.tolerance = 1e-3;  // bits that differ would do so early
+  scene.settings.relaxation.tolerance = 1e-3;  // different bits would appear early
   Observer silent;
   for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
     MethodChoice choice = this->method();
@@ -149,8 +149,8 @@ TYPED_TEST(StepperTest, relaxation_gives_the_same_bits_for_any_number_of_threads
 }
 
 /// In single precision the residual stops falling at the rounding of the forces. The run then ends and
-/// reports it, and the answer is good for as many digits as single precision gives: rounding 6e-8 in the
-/// forces of an element, times its condition K / mu = 50 and a few hundred for the block.
+/// reports it; the answer is as accurate as single precision permits: rounding of 6e-8 in an element's
+/// forces, times its condition number K / mu = 50 and a few hundred for the block.
 TYPED_TEST(StepperTest, single_precision_ends_where_its_rounding_begins) {
   if (zero_energy_modes<TypeParam>() > 6) return;
   const Scene scene = driven_block({0.04, 0.0, 0.03});
@@ -169,7 +169,7 @@ TYPED_TEST(StepperTest, single_precision_ends_where_its_rounding_begins) {
   EXPECT_LT(largest_distance(coarse.u, fine.u), 1e-4 * largest_imposed(scene));
 }
 
-/// A tolerance below the rounding of double precision is not reached, and that is not called rest.
+/// A tolerance below the rounding of double precision is not reached, and the run does not claim equilibrium.
 TYPED_TEST(StepperTest, stagnation_in_double_precision_is_not_called_rest) {
   Scene scene = driven_block({0.01, 0.0, 0.01});
   scene.settings.relaxation.tolerance = 1e-300;
@@ -191,8 +191,8 @@ TEST(Outcome, says_that_elements_are_inverted) {
             "no equilibrium after 7 evaluations, and elements are inverted");
 }
 
-/// The residual must fall below the tolerance; to reach it is not enough. With the residual of an answer for
-/// tolerance the search is the same, bit by bit, and must continue from there.
+/// The residual must fall below the tolerance, not just reach it. If the tolerance is the residual of an
+/// answer, the search is the same, bit by bit, and must continue from there.
 TYPED_TEST(StepperTest, residual_at_the_tolerance_is_not_yet_rest) {
   Scene scene = driven_block({0.04, 0.0, 0.03});
   Observer silent;
@@ -223,8 +223,8 @@ TYPED_TEST(StepperTest, step_above_the_stable_one_is_refused) {
   EXPECT_NO_THROW(integrate(Model(scene, this->method()), silent));
 }
 
-/// Compression stiffens: a step that was stable at the start is rejected later, with step and element. A
-/// linear method does not know that, and keeps its step.
+/// Compression stiffens: a step that was stable at the start is rejected later, naming step and element. A
+/// linear method does not stiffen and keeps its step.
 TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
   Scene scene = driven_block({0.0, 0.0, -0.1}, 0.3);
   scene.settings.quasi_static = false;
@@ -244,13 +244,13 @@ TYPED_TEST(StepperTest, fixed_step_is_refused_when_elements_stiffen) {
     EXPECT_TRUE(contains(error.what(), "set by element"));
     EXPECT_TRUE(contains(error.what(), "at step "));
   }
-  scene.settings.dynamics.time_step = 0.0;  // the program's own choice follows the stiffening
+  scene.settings.dynamics.time_step = 0.0;  // automatic steps follow the stiffening
   const Motion motion = integrate(Model(scene, this->method()), silent);
   EXPECT_LT(motion.smallest_step, 0.9 * stable.step);
 }
 
-/// A head pushed through the foot turns elements inside out. All nodes are driven, so that there is no way
-/// round: no number is returned, and the text helps. Steps may collapse first.
+/// A head pushed through the foot turns elements inside out. All nodes are driven, so that there is no
+/// escape: the run fails without an answer, and its message has a remedy. Steps may collapse first.
 TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   Case description = plain_case(sample_law<NeoHookean>(0.49));
   const Mesh mesh = box({0.2, 0.2, 0.1}, {2, 2, 1});
@@ -282,7 +282,7 @@ TYPED_TEST(StepperTest, inverted_elements_end_the_run_with_a_remedy) {
   }
 }
 
-/// A NaN volume is neither positive nor negative; it must not pass as healthy.
+/// A NaN volume is neither positive nor negative; it must not count as healthy.
 TEST(Health, numbers_that_are_none_are_told_from_inverted_elements) {
   const auto breakdown_of = [](const std::vector<double>& jacobians) -> std::optional<Breakdown> {
     try {
@@ -311,7 +311,7 @@ TYPED_TEST(StepperTest, an_observer_may_end_the_run) {
   EXPECT_TRUE(relaxation.interrupted);
   EXPECT_FALSE(relaxation.converged);
   EXPECT_GE(relaxation.steps, 5);
-  if (!pressure_varies<TypeParam>) {  // else a step takes many evaluations
+  if (!pressure_varies<TypeParam>) {  // otherwise a step takes many evaluations
     EXPECT_EQ(relaxation.steps, 5);
   }
   scene.settings.quasi_static = false;
@@ -334,10 +334,9 @@ TYPED_TEST(StepperTest, too_few_steps_are_told_and_not_called_rest) {
   }
 }
 
-// Invariance: the answer belongs to the body, not to its units, place or direction.
+// Invariance: the answer does not depend on units, position or direction.
 
-/// A bar of distorted elements that is bent; `size` scales lengths, `density` and `modulus` are in the same
-/// units.
+/// A bent bar of distorted elements; `size` scales lengths, `density` and `modulus` are in the same units.
 Scene bent_bar(double size, double modulus, double density, const Tensor<double>& turn, double shift) {
   Mesh mesh = box({1.0, 1.0, 3.0}, {2, 2, 6});
   const auto foot = nodes_where(mesh.points, [](const Vector& X) { return X[2] == 0.0; });
@@ -372,7 +371,7 @@ struct Answers {
   }
 };
 
-/// A short motion and, where it is determined, the state of rest: modes without energy keep roundoff there.
+/// A short motion and, if unique, the static answer: modes without energy keep roundoff there.
 template <class Method>
 Answers answers(Scene scene) {
   Observer silent;
@@ -388,7 +387,7 @@ Answers answers(Scene scene) {
   return result;
 }
 
-/// Expects answers equal to within a share of the bar's size, 0.01 m; its velocities are of the order of 1
+/// Expects answers equal to within a fraction of the bar's size, 0.01 m; its velocities are of the order of 1
 /// m/s.
 void expect_equal(const Answers& a, const Answers& b, double tolerance) {
   EXPECT_EQ(a.steps, b.steps);
@@ -398,8 +397,8 @@ void expect_equal(const Answers& a, const Answers& b, double tolerance) {
   }
 }
 
-/// Metres, kilograms, seconds against millimetres, grams, seconds, where pressure has the same number and
-/// density a millionth. An absolute length anywhere would show.
+/// Metres, kilograms and seconds against millimetres, grams and seconds, where pressures have the same values
+/// and densities a millionth. An absolute length anywhere would fail.
 TYPED_TEST(StepperTest, units_do_not_matter) {
   const auto one = identity<double>();
   const auto in_si = answers<TypeParam>(bent_bar(0.01, modulus, density, one, 0.0));
@@ -407,12 +406,12 @@ TYPED_TEST(StepperTest, units_do_not_matter) {
   const auto in_m = in_mm.mapped([](const Vector& u) {
     return Vector{u[0] / 1000, u[1] / 1000, u[2] / 1000};
   });
-  // Roundoff differs in every number and grows over the path; six digits of room for that.
+  // Roundoff differs in every number and grows along the path; six digits are allowed for that.
   expect_equal(in_si, in_m, 1e-9);
 }
 
 /// A thousand lengths from the origin coordinates have three digits less: eps * 1000 per coordinate and
-/// length, so gradients of u to about 1e-12, and the answer to that times the condition of the bar.
+/// length, so gradients of u to about 1e-12, and the answer to that times the bar's condition number.
 TYPED_TEST(StepperTest, place_does_not_matter) {
   const auto one = identity<double>();
   expect_equal(answers<TypeParam>(bent_bar(0.01, modulus, density, one, 0.0)),

@@ -17,8 +17,8 @@ class StiffeningTest : public ::testing::Test {};
 TYPED_TEST_SUITE(StiffeningTest, LawTypes, EntryName);
 
 /// A third of the mean second derivative of the isochoric energy over 2 mu, here by differences of the energy
-/// along changes of shape in a rotated frame: a trace does not depend on it. Differences of the stress and of
-/// the energy err by some 1e-5 of their sums.
+/// along changes of shape in a rotated frame, on which a trace does not depend. Differences of stress and of
+/// energy have errors of about 1e-5 of their sums.
 TYPED_TEST(StiffeningTest, is_the_mean_curvature_of_the_energy) {
   if (!TypeParam::traits.splits_volume) return;
   const double s = std::sqrt(0.5), t = std::sqrt(1.0 / 6.0), step = 1e-4;

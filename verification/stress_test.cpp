@@ -1,5 +1,4 @@
-/// Further results: stresses of elements and reactions of sets, against closed forms, nodal forces and
-/// imposed loads.
+/// Stresses of elements and reactions of sets, against closed forms, nodal forces and imposed loads.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +18,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// The stress (Pa) of an element among those of a frame.
+/// The stress (Pa) of one element in a frame.
 Tensor<double> stress_of(const Frame& frame, std::size_t element) {
   Tensor<double> sigma;
   for (std::size_t n = 0; n < 9; ++n) sigma.entries[n] = frame.stresses[9 * element + n];
@@ -32,8 +31,8 @@ double largest_entry(const Tensor<double>& tensor) {
   return largest;
 }
 
-/// sum_I f_I (x) x_I of internal forces f (N) at x = X + u (m), of small-strain theory at X: the integral of
-/// the stress over the body (J), by the theorem of the virial.
+/// sum_I f_I (x) x_I of internal forces f (N) at x = X + u (m), in small-strain theory at X: the integral of
+/// the stress over the body (J), by the virial theorem.
 Tensor<double> virial(const NodalField& force, const NodalField& X, const NodalField& u, bool small_strain) {
   Tensor<double> sum{};
   for (std::size_t n = 0; n < X.size(); ++n) {
@@ -53,7 +52,7 @@ class StressTest : public ::testing::Test {
   static inline const std::string name{Method::name};
   static constexpr bool small_strain = is_linear<Method>;
 
-  /// A patch whose inner nodes move as H says and, by a share of their distances, as they like.
+  /// A patch deformed by H, whose inner nodes also move at random, by a share `waviness` of their distances.
   static std::pair<Scene, NodalField> strained(const AnyLaw& law, double waviness) {
     const Tensor<double> H{{0.1, 0.05, -0.02, 0.04, -0.06, 0.03, 0.01, -0.07, 0.12}};
     const Mesh mesh = fitting_patch<FormulationOf<Method, NeoHookean>>();
@@ -69,10 +68,10 @@ class StressTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(StressTest, MethodTypes, EntryName);
 
-/// The stresses of the elements, times their volumes, sum up to the virial of their forces, however wavy the
-/// motion is: with the stress of a point instead of the mean, or over other volumes, they would not. Forces
-/// of hourglass controls are no stress of the material: kappa is zero, and a control that has energy
-/// nevertheless is left to the test of uniform motion.
+/// Stresses of elements, times their volumes, sum to the virial of their forces for any motion, which would
+/// fail with the stress of one point instead of the mean, or with other volumes. Hourglass forces are no
+/// stress of the material: kappa is zero here, and controls that have energy nevertheless are left to the
+/// test of uniform motion.
 TYPED_TEST(StressTest, of_the_elements_sum_up_to_the_virial_of_the_nodal_forces) {
   const auto [scene, u] = this->strained(sample_law<NeoHookean>(0.45), 0.02);
   MethodChoice choice{.method = this->name};
@@ -82,7 +81,7 @@ TYPED_TEST(StressTest, of_the_elements_sum_up_to_the_virial_of_the_nodal_forces)
   if (strain_energies(model, u).hourglass > 0.0) return;
   Tensor<double> sum{};
   for (std::size_t e = 0; e < scene.mesh.cells.size(); ++e) {
-    // What the element takes for its volume: updated elements that of its nodes, others J times the first.
+    // The volume used by the element: of its nodes if updated, else J times the undeformed one.
     NodalVectors<double> x = gather(scene.mesh.points, scene.mesh.cells[e]);
     double volume = mean_gradient(x).volume;
     if (this->name.starts_with("ul-")) {
@@ -97,7 +96,7 @@ TYPED_TEST(StressTest, of_the_elements_sum_up_to_the_virial_of_the_nodal_forces)
   EXPECT_LT(largest_entry(sum - expected), 1e-12 * largest_entry(expected));
 }
 
-/// However strong the hourglass control is, the material's stress is the same.
+/// The material's stress does not depend on the strength of the hourglass control.
 TYPED_TEST(StressTest, is_none_of_the_hourglass_control) {
   if (!method_named(this->name).takes_kappa) return;
   const auto [scene, u] = this->strained(sample_law<NeoHookean>(0.45), 0.02);
@@ -107,9 +106,8 @@ TYPED_TEST(StressTest, is_none_of_the_hourglass_control) {
   EXPECT_EQ(stresses(0.0), stresses(1.0));
 }
 
-/// Of a uniform motion the stress is the law's, in float and double, whatever control there is, and
-/// symmetric: sigma = mu J^(-5/3) dev(F F^T) + K (J - 1) of the neo-Hookean law, 2 mu dev(e) + K tr(e) of
-/// small strains.
+/// In a uniform motion the stress is the law's, in float and double, with any control, and symmetric: sigma =
+/// mu J^(-5/3) dev(F F^T) + K (J - 1) for the neo-Hookean law, 2 mu dev(e) + K tr(e) for small strains.
 TYPED_TEST(StressTest, of_a_uniform_motion_is_the_closed_form) {
   const auto law = sample_law<NeoHookean>(0.45);
   const auto [scene, u] = this->strained(law, 0.0);
@@ -121,7 +119,7 @@ TYPED_TEST(StressTest, of_a_uniform_motion_is_the_closed_form) {
       this->small_strain
           ? 2.0 * mu * deviator(e) + K * trace(e) * identity<double>()
           : mu * std::pow(J, -5.0 / 3.0) * deviator(F * transpose(F)) + K * (J - 1.0) * identity<double>();
-  // Roundoff of the strain, times the bulk modulus over the stress, about ten.
+  // Roundoff of the strain times the ratio of bulk modulus and stress, about ten.
   for (const auto& [precision, tolerance] :
        {std::pair{Precision::double_precision, 1e-13}, {Precision::single_precision, 3e-5}}) {
     const Model model(scene, {.method = this->name, .precision = precision});
@@ -133,8 +131,8 @@ TYPED_TEST(StressTest, of_a_uniform_motion_is_the_closed_form) {
   }
 }
 
-/// A law that remembers is not asked to remember more: after a step, the stress is the one whose forces the
-/// step gave, and asking twice gives the same bits.
+/// Evaluating stresses does not change the memory of a law: after a step, the stress balances the step's
+/// forces, and a second evaluation gives the same bits.
 TYPED_TEST(StressTest, of_a_law_that_remembers_is_that_of_the_last_step) {
   if constexpr (knows_law<TypeParam, Viscoelastic<NeoHookean>>) {
     const auto [scene, u] = this->strained(sample_law<Viscoelastic<NeoHookean>>(0.45), 0.0);
@@ -158,8 +156,8 @@ TYPED_TEST(StressTest, of_a_law_that_remembers_is_that_of_the_last_step) {
   }
 }
 
-/// A block between frictionless planes is stretched: one stress along it, none across, and the reaction is
-/// that stress times the area of the stretched block.
+/// A block is stretched between frictionless planes: there is one stress along it, none across, and the
+/// reaction is that stress times the area of the stretched block.
 TEST(Reactions, of_a_uniaxial_stretch_are_stress_times_area) {
   const auto law = sample_law<NeoHookean>(0.45);
   Case description = plain_case(law);
@@ -197,7 +195,7 @@ TEST(Reactions, of_a_uniaxial_stretch_are_stress_times_area) {
   }
 }
 
-/// At rest, reactions hold what is loaded: they sum to minus the loads, of nodes and of pressures.
+/// In static equilibrium reactions balance the loads: they sum to minus the loads, of nodes and of pressures.
 TEST(Reactions, sum_to_minus_the_loads) {
   Case description = plain_case(sample_law<NeoHookean>(0.45));
   description.forces.of<DeadForce>() = {{.set = "side", .total = {0.02, 0.3, 0.1}}};
@@ -214,8 +212,8 @@ TEST(Reactions, sum_to_minus_the_loads) {
   }
 }
 
-/// In motion, what drives the sets and the loads accelerate the free nodes: at every frame the rows tell the
-/// forces of the frame.
+/// In motion, reactions and loads together accelerate the free nodes: the rows of every frame have the forces
+/// at its time.
 TEST(Reactions, of_a_motion_are_those_of_its_frames) {
   const Scene scene =
       make_scene(block_between_plates(plain_case(sample_law<NeoHookean>(0.45)), false, {2, 2, 8}));

@@ -1,5 +1,5 @@
-/// Subcycling of small elements: the averaged forces belong to a symmetric operator within the stable range,
-/// so that energy is conserved; momentum, frequencies, bits.
+/// Subcycling of small elements: averaged forces form a symmetric operator within the stable range, so that
+/// energy is conserved; momentum, frequencies, bits.
 
 #include "solve/subcycling.hpp"
 
@@ -23,7 +23,7 @@ namespace {
 
 const NeoHookean soft{.young_modulus = 3000.0, .poisson_ratio = 0.3};
 
-/// Cubes of 5 cm of which the one at the origin is split in eight, and its parts again.
+/// Cubes of 5 cm, the one at the origin split into eight and its parts split again.
 RefinedMesh refined_at_the_origin(const std::array<int, 3>& cubes) {
   RefinedMesh refined(box({0.05 * cubes[0], 0.05 * cubes[1], 0.05 * cubes[2]}, cubes));
   for (int depth = 0; depth < 2; ++depth) {
@@ -42,7 +42,7 @@ RefinedMesh bar(int length) {
   return refined_at_the_origin({1, 1, length});
 }
 
-/// A moving scene on it, in which some nodes are held.
+/// A moving scene on the refined mesh, in which some nodes are held.
 Scene scene_on(const RefinedMesh& refined, Case description, const std::vector<int>& held = {}) {
   description.quasi_static = false;
   if (description.dynamics.duration == 0.0) description.dynamics.duration = 1.0;
@@ -106,22 +106,22 @@ Eigen::VectorXd eigenvalues_of(const Operator& found) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(found.matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-/// Of motion in steps, 1/s: sin(w dt / 2) = dt sqrt(eigenvalue) / 2.
+/// Frequencies of the motion in steps, 1/s: sin(w dt / 2) = dt sqrt(eigenvalue) / 2.
 Eigen::VectorXd frequencies(const Operator& found) {
   return (found.step / 2 * eigenvalues_of(found).cwiseMax(0.0).cwiseSqrt()).array().asin() * 2 / found.step;
 }
 
-/// A case whose step is so many times the stable one without subcycling.
+/// A case whose step is `times` the stable one without subcycling.
 Case subcycled_case(const RefinedMesh& refined, double times) {
   Case description = moving_case(16);
   description.dynamics.time_step = times * operator_of(scene_on(refined, moving_case(1))).step;
   return description;
 }
 
-/// With two to four small steps, wherever fine modes fall: symmetric to the rounding of sums, not negative to
-/// that of the largest eigenvalue, and below 4 / dt^2, where steps cease to be stable. Modes of small
-/// elements near a resonance have (1 + 1 / T_p(d)) / 2 < .92 of that with a stabilised polynomial, all of it
-/// without.
+/// With two to four small steps, at any position of fine modes: symmetric up to the rounding of sums, not
+/// negative up to that of the largest eigenvalue, and below the stability limit 4 / dt^2. Near a resonance,
+/// modes of small elements have (1 + 1 / T_p(d)) / 2 < .92 of that limit with a stabilised polynomial, and
+/// all of it without.
 TEST(Subcycling, averaged_forces_are_of_a_symmetric_operator_in_the_stable_range) {
   const auto check = [](Scene scene, double times) {
     scene.settings.dynamics.subcycles = 1;
@@ -141,7 +141,7 @@ TEST(Subcycling, averaged_forces_are_of_a_symmetric_operator_in_the_stable_range
   EXPECT_EQ(counts.back(), 4);
   EXPECT_TRUE(std::is_sorted(counts.begin(), counts.end()));
   for (const double times : {1.5, 2.5, 3.5}) check(scene_on(corner, moving_case(1)), times);
-  // One element of the middle size is stiff, and small for that: nodes of its neighbours hang on large ones.
+  // One middle-sized element is stiff and thus small; its neighbours' nodes hang on large elements.
   Scene scene = scene_on(corner, moving_case(1));
   scene.materials.list.push_back({NeoHookean{.young_modulus = 3e5, .poisson_ratio = 0.3}, 1000.0});
   for (const auto& cell : corner.mesh().cells) {
@@ -152,9 +152,9 @@ TEST(Subcycling, averaged_forces_are_of_a_symmetric_operator_in_the_stable_range
   for (const double times : {1.5, 2.2}) check(scene, times);
 }
 
-/// The largest eigenvalue, times dt^2 / 4, of the averaged forces of a large node and a small one. The
-/// element between them has steps of dt / share; what else the small node has gives it any frequency for
-/// which its small steps are stable.
+/// The largest eigenvalue, times dt^2 / 4, of the averaged forces of a large and a small node. The element
+/// between them has steps of dt / share; other elements at the small node may give it any frequency for which
+/// its small steps are stable.
 double largest_square(const Substeps& substeps, double share) {
   constexpr int pairs = 400, frequencies = 1000;
   const double reach = substeps.reach() * substeps.reach(), large = share * share;
@@ -180,15 +180,15 @@ double largest_square(const Substeps& substeps, double share) {
   return largest;
 }
 
-/// Nine tenths of the stable step of large elements are stable with any number of small steps, and hardly
-/// more than that with two.
+/// Nine tenths of the stable step of large elements are stable with any number of small steps; with two,
+/// little more is.
 TEST(Subcycling, takes_the_largest_share_of_the_large_step_that_is_stable) {
   for (int p = 2; p <= 64; ++p) EXPECT_LT(largest_square(Substeps(p), Substeps::share_of_large), 1.0) << p;
   EXPECT_GT(largest_square(Substeps(2), Substeps::share_of_large + 0.01), 1.0);
 }
 
-/// The bar's cubes allow nine tenths of their step, and its smallest elements, with a quarter of it, need
-/// four small steps: three would do for .71 of it.
+/// The bar's cubes allow nine tenths of their step; its smallest elements, which allow a quarter of that,
+/// need four small steps: three would suffice for .71 of it.
 TEST(Subcycling, chooses_the_step_of_large_elements) {
   const Operator large =
       operator_of(scene_on(RefinedMesh(box({0.05, 0.05, 0.05}, {1, 1, 1})), moving_case(1)));
@@ -197,7 +197,7 @@ TEST(Subcycling, chooses_the_step_of_large_elements) {
   EXPECT_NEAR(found.step, 0.9 * large.step, 1e-12 * large.step);
 }
 
-/// The first fourteen that are not rigid motions, to the .1 % that is asked for; a step that resolves the
+/// The first fourteen frequencies other than rigid motions, to the required .1 %; a step that resolves the
 /// last of them has an error of (w dt)^2 / 24 = 2e-4 itself.
 TEST(Subcycling, keeps_the_first_frequencies) {
   const RefinedMesh refined = bar(32);
@@ -206,8 +206,8 @@ TEST(Subcycling, keeps_the_first_frequencies) {
   for (Eigen::Index k = 6; k < 20; ++k) EXPECT_NEAR(found[k], exact[k], 1e-3 * exact[k]) << k;
 }
 
-/// A linear body, all of whose modes vibrate at random, keeps m v^2 / 2 + u_n f_(n+1) / 2, which leapfrog
-/// keeps for symmetric operators, to the rounding of 1e5 steps. Growth by resonance would be exponential.
+/// A linear body, all of whose modes vibrate at random, conserves m v^2 / 2 + u_n f_(n+1) / 2, as leapfrog
+/// does for symmetric operators, to the rounding of 1e5 steps. Growth by resonance would be exponential.
 TEST(Subcycling, keeps_energy_over_a_hundred_thousand_steps) {
   const RefinedMesh refined = bar(6);
   const auto held = nodes_where(refined.mesh().points, [](const Vector& X) { return X[2] > 0.299; });
@@ -260,9 +260,9 @@ Scene vibrating_bar(const RefinedMesh& refined, double times, long steps) {
   return scene_on(refined, description);
 }
 
-/// Its energy stays within the oscillation that central differences have, below (w dt)^2 of the highest mode
-/// that takes part, over 1e5 steps: under finite strain the mean forces have no potential, and all that is
-/// known is measured.
+/// Over 1e5 steps energy stays within the oscillation of central differences, (w dt)^2 of the highest mode in
+/// the motion. This is a measurement: under finite strain the averaged forces have no potential, and no
+/// theory guarantees it.
 TEST(Subcycling, a_bar_that_vibrates_keeps_its_energy) {
   const Scene scene = vibrating_bar(bar(32), 3.2, 100000);
   Recorder recorder;
@@ -273,7 +273,7 @@ TEST(Subcycling, a_bar_that_vibrates_keeps_its_energy) {
   for (const HistoryRow& row : recorder.rows) EXPECT_NEAR(total_energy(row), start, 0.005 * start);
 }
 
-/// Forces of elements add up to nothing in every small step: momentum is kept to the rounding of 1000 steps.
+/// Element forces sum to zero in every small step: momentum is constant to the rounding of 1000 steps.
 TEST(Subcycling, keeps_momentum) {
   const Scene scene = vibrating_bar(bar(6), 3.2, 1000);
   const Model model(scene, {"tl-perturbation"});
@@ -300,9 +300,9 @@ TEST(Subcycling, has_the_same_bits_for_any_number_of_threads) {
   }
 }
 
-/// A bar without driven nodes in a program of one's own, as `integrate` moves it, with a copy on the way,
-/// in steps that are too long for its small elements. Small steps are a part of the longest step there, and
-/// of one that is up to a percent shorter here.
+/// A bar without driven nodes in a program's `Simulation`, against `integrate`, with a copy half way, in
+/// steps too long for its small elements. Small steps divide the longest step in `Simulation`, and one that
+/// is up to a percent shorter in `integrate`.
 TEST(Subcycling, is_what_simulations_do_too) {
   const std::string text =
       "[case]\nname = \"bar\"\nrequirement = \"A bar vibrates.\"\nanswer = \"dynamic\"\n"
@@ -318,7 +318,7 @@ TEST(Subcycling, is_what_simulations_do_too) {
   const Motion motion = integrate(Model(scene, {"tl-perturbation"}), recorder);
   Simulation<double> simulation(arrays, text + "16\n");
   EXPECT_GT(simulation.step_size(), 3.0 * Simulation<double>(arrays, text + "1\n").step_size());
-  const double step = recorder.rows.back().step_size;  // the end of the run is a whole number of them
+  const double step = recorder.rows.back().step_size;  // the run ends after a whole number of them
   EXPECT_NEAR(step / simulation.step_size(), 1.0, 0.01);
   for (long n = 0; n < motion.steps / 2; ++n) simulation.advance(step);
   Simulation<double> copy = simulation;
@@ -331,7 +331,7 @@ TEST(Subcycling, is_what_simulations_do_too) {
   }
 }
 
-/// Where nothing is gained, nothing changes: in a mesh of equal elements, or if small elements are most.
+/// Nothing changes where subcycling does not pay: with equal elements, or if most elements are small.
 TEST(Subcycling, of_one_small_step_has_the_bits_of_none) {
   for (const bool refine : {false, true}) {
     const RefinedMesh mesh = refine ? bar(6) : RefinedMesh(box({0.05, 0.05, 0.3}, {1, 1, 6}));
@@ -346,7 +346,7 @@ TEST(Subcycling, of_one_small_step_has_the_bits_of_none) {
   }
 }
 
-/// A resumed run has the same bits, whatever its number of small steps at the checkpoint.
+/// A resumed run has the same bits for any number of small steps at the checkpoint.
 TEST(Subcycling, goes_on_from_a_checkpoint) {
   struct Keeper final : Observer {
     void resumable(const std::function<Checkpoint()>& checkpoint) override {
@@ -362,7 +362,7 @@ TEST(Subcycling, goes_on_from_a_checkpoint) {
   EXPECT_EQ(integrate(model, silent, &keeper.kept).u, u);
 }
 
-/// Features that it cannot average are rejected by name.
+/// Features whose forces cannot be averaged are rejected by name.
 TEST(Subcycling, refuses_what_depends_on_more_than_displacements) {
   const RefinedMesh refined = bar(6);
   Observer silent;

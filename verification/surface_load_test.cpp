@@ -1,4 +1,4 @@
-/// Loads that act on faces and in the body: pressures that follow, springs and dashpots, weight, and their
+/// Loads on faces and in the body: pressures that follow the surface, springs and dashpots, weight, and their
 /// curves. Exact answers.
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// Nodes where a coordinate has a value.
+/// The nodes at which a coordinate has the value `at`.
 std::vector<int> plane(const NodalField& points, std::size_t axis, double at) {
   return nodes_where(points, [=](const Vector& X) { return std::abs(X[axis] - at) < 1e-9; });
 }
@@ -45,8 +45,8 @@ NodalField answer(const Scene& scene, const MethodChoice& choice) {
   return found.u;
 }
 
-/// The sum of the forces on a closed surface is zero, and the work of a pressure of 1 Pa is the change of the
-/// volume: on hexahedra of any shape, whose faces are warped.
+/// The forces on a closed surface sum to zero, and the work of a pressure of 1 Pa is the change of the
+/// volume, for hexahedra of any shape, whose faces are warped.
 TEST(Pressure, does_the_work_of_the_volume) {
   RandomGeometry random(3);
   Mesh mesh = box({1.0, 1.0, 1.0}, {1, 1, 1});
@@ -68,7 +68,7 @@ TEST(Pressure, does_the_work_of_the_volume) {
   for (const double component : sum) EXPECT_NEAR(component, 0.0, 1e-14);
   for (std::size_t n = 0; n < 8; ++n) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const double h = 1e-3;  // the volume is cubic in all coordinates, linear in each
+      const double h = 1e-3;  // the volume is cubic in all coordinates together, linear in each
       mesh.points[n][i] += h;
       const double up = volume();
       mesh.points[n][i] -= 2.0 * h;
@@ -78,7 +78,7 @@ TEST(Pressure, does_the_work_of_the_volume) {
   }
 }
 
-/// A body under loads of every kind, whose whole surface is pressed, on springs of both kinds; displaced at
+/// A body with loads of every kind, a pressure on its whole surface, and springs of both kinds; displaced at
 /// random.
 struct Loaded {
   Mesh mesh = box({1.0, 2.0, 1.5}, {2, 2, 2});
@@ -112,7 +112,7 @@ struct Loaded {
   }
 };
 
-/// The tangent of the loads: by differences, the derivative of their potential is minus the loads.
+/// Loads are minus the derivative of their potential, by differences.
 TEST(Loads, derive_from_their_potential) {
   Loaded body;
   Loads<double> loads(body.scene, body.elements.layout());
@@ -126,15 +126,15 @@ TEST(Loads, derive_from_their_potential) {
       u = there + h;
       const double up = loads.potential(body.state.u);
       u = there - h;
-      // Of third order at most in one coordinate: rounding over h is what is left.
+      // At most of third order in one coordinate: rounding over h remains.
       EXPECT_NEAR(force[row][i], (up - loads.potential(body.state.u)) / (2.0 * h), 1e-9);
       u = there;
     }
   }
 }
 
-/// The change of the loads is the difference of their forces on a body that stays: from none before they are
-/// set, then from the last ones. Springs do not change. Forces are below 100 N: 1e-12 is a few roundings.
+/// The change of the loads is the difference of their forces on a fixed body: from zero before they are set,
+/// then from the previous ones. Springs do not change. Forces are below 100 N: 1e-12 is a few roundings.
 TEST(Loads, change_by_the_difference_of_their_forces) {
   const Loaded body(LoadCurve{{0.0, 1.0}, {0.5, 2.0}});
   Loads<double> loads(body.scene, body.elements.layout());
@@ -158,7 +158,7 @@ TEST(Loads, change_by_the_difference_of_their_forces) {
 
 template <class MethodType>
 struct PressedTest : ::testing::Test {
-  /// Whether elements resist all their modes at rest: without that a search for equilibrium rarely ends.
+  /// Whether elements resist all modes in static equilibrium: otherwise a search for it rarely succeeds.
   static bool controls() {
     const MethodEntry& method = method_named(std::string(MethodType::name));
     return method.controls_hourglass && !method.damps_only;
@@ -166,7 +166,7 @@ struct PressedTest : ::testing::Test {
 };
 TYPED_TEST_SUITE(PressedTest, MethodTypes, EntryName);
 
-/// A body under the same pressure from all sides shrinks uniformly, K (J - 1) = -p, whatever its shape.
+/// A body of any shape under the same pressure from all sides shrinks uniformly, K (J - 1) = -p.
 TYPED_TEST(PressedTest, a_body_under_pressure_shrinks_uniformly) {
   if (is_linear<TypeParam> || std::is_same_v<typename TypeParam::Kinematics, UpdatedOnePoint>) {
     GTEST_SKIP() << "of small strains, or of the path";
@@ -230,8 +230,8 @@ Mesh ball(int n, double inner, double outer) {
 }
 
 /// The pressure that inflates an incompressible neo-Hookean ball (Green and Zerna, Theoretical Elasticity,
-/// 1954): mu/2 (4/b + 1/b^4 - 4/a - 1/a^4), with stretches a and b inside and outside. Errors of the
-/// displacement inside fall with the square of the size of elements: fourfold when it is halved.
+/// 1954): mu/2 (4/b + 1/b^4 - 4/a - 1/a^4), with stretches a and b inside and outside. Elements of half the
+/// size divide the error of the displacement inside by four.
 TEST(Pressure, inflates_a_ball_as_theory_says) {
   const double inner = 1.0, outer = 2.0, a = 1.3;
   const double b = std::cbrt(1.0 + (a * a * a - 1.0) * std::pow(inner / outer, 3.0));
@@ -256,7 +256,7 @@ TEST(Pressure, inflates_a_ball_as_theory_says) {
   EXPECT_GT(errors[0], 3.0 * errors[1]);
 }
 
-/// A column under its weight between smooth walls: linear elements are exact at the nodes, as those of a bar.
+/// A column under its weight between smooth walls: as in a bar, linear elements are exact at the nodes.
 TEST(Gravity, presses_a_column_together) {
   const NeoHookean law{.young_modulus = 3000.0, .poisson_ratio = 0.3};
   Case description = plain_case(law, 800.0);
@@ -276,8 +276,8 @@ TEST(Gravity, presses_a_column_together) {
   EXPECT_LT(largest_distance(answer(scene, {"linear-condensed"}), exact), 1e-7 * 800.0 * g / modulus * H * H);
 }
 
-/// A body falls freely: u = g t^2 / 2 at all nodes, without a stress, as central differences have it. Its
-/// mesh is distorted: the weight of a node is that of its lumped mass.
+/// A body falls freely: u = g t^2 / 2 at all nodes without stress, as central differences give it. Its mesh
+/// is distorted: the weight of a node is that of its lumped mass.
 TEST(Gravity, lets_a_body_fall) {
   Mesh mesh = box({0.1, 0.1, 0.2}, {2, 2, 4});
   RandomGeometry random(9);
@@ -297,8 +297,8 @@ TEST(Gravity, lets_a_body_fall) {
   EXPECT_LT(recorder.rows.back().strain, 1e-20);
 }
 
-/// Whatever a body on springs does, they carry its weight: k times their mean displacement times the area. It
-/// is held by nothing else.
+/// Springs carry the weight of a body, which nothing else holds: k times their mean displacement times the
+/// area.
 TYPED_TEST(PressedTest, springs_carry_the_weight) {
   const MethodChoice choice{.method = std::string(TypeParam::name)};
   if (is_condensed<TypeParam>) GTEST_SKIP() << "refuses springs";
@@ -327,9 +327,9 @@ TYPED_TEST(PressedTest, springs_carry_the_weight) {
   EXPECT_NEAR(sum[2], -mass * 9.81, 1e-6 * mass * 9.81);
 }
 
-/// The energies of a motion under pressure, weight, springs and dashpots, each with its curve, balance the
-/// work done, to the second order of the step, with springs and dashpots that are stiffer than the body:
-/// without their part of the stable step it would blow up.
+/// In a motion under pressure, weight, springs and dashpots, each with its curve, the energies balance the
+/// work to second order in the step. Springs and dashpots are stiffer than the body: the motion would be
+/// unstable if the stable step ignored them.
 TEST(Loads, work_balances_the_energies_of_a_motion) {
   const auto imbalance = [](double stiffness, double damping, double fraction) {
     Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.45});
@@ -355,9 +355,9 @@ TEST(Loads, work_balances_the_energies_of_a_motion) {
   };
   const double whole = imbalance(1e5, 0.0, 0.8), half = imbalance(1e5, 0.0, 0.4);
   EXPECT_LT(whole, 0.02);
-  EXPECT_LT(half, 0.35 * whole);  // a quarter, and what the ends of the curves add
+  EXPECT_LT(half, 0.35 * whole);  // a quarter, plus the effect of the ends of curves
   EXPECT_LT(imbalance(1e7, 0.0, 0.9), 0.05);
-  // Dashpots act half a step late: of first order.
+  // Dashpots act half a step late: first order.
   EXPECT_LT(imbalance(1e5, 1e3, 0.1), 0.05);
   EXPECT_LT(imbalance(1e5, 1e5, 0.9), 0.5);
 }

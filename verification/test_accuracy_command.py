@@ -10,14 +10,14 @@ def test_the_mesh_is_refined_until_the_answer_is_near_enough(tmp_path):
     result = tmp_path / "result.h5"
     arguments = ("run", "column", "--accuracy", "0.6%", "--against", "truth", "-o", result)
     outcome = sandglass(*arguments, code=0)
-    assert "tl-mean-dilatation, double" in outcome.stdout  # the element that meshes are refined for
+    assert "tl-mean-dilatation, double" in outcome.stdout  # refined for this one
     found = re.search(
         r"error against the truth: max (\S+) %.*, on (\d+) elements instead of 270", outcome.stdout
     )
     assert 0.0 < float(found[1]) <= 0.6
     told = re.search(r"^against the truth: max (\S+) %", outcome.stdout, re.MULTILINE)
     assert 0.0 < float(told[1]) <= 0.6
-    assert "against the golden" not in outcome.stdout  # it is that of another mesh
+    assert "against the golden" not in outcome.stdout  # the golden is for another mesh
     with h5py.File(result) as file:
         assert len(file["mesh/cells"]) == int(found[2]) > 270
 

@@ -1,6 +1,6 @@
-"""sandglass bench: every variant is present, its figures are consistent, wrong input is reported.
+"""sandglass bench: all variants are present, figures are consistent, wrong input is reported.
 
-No time is judged: only that figures exist, are positive and follow from each other.
+Times are not judged: only that figures exist, are positive and follow from each other.
 """
 
 import os
@@ -16,10 +16,10 @@ operations_per_element_step bytes_per_element_step gflops fraction_of_peak gbs
 fraction_of_bandwidth stream_gbs_at_working_set roofline_fraction
 """.split()
 
-# The same program with the kernels that compute one element at a time.
+# The same program with kernels that compute one element at a time.
 SCALAR = BINARY + "-scalar"
 
-# A condensed method answers at once: it takes no steps in time.
+# A condensed method answers directly and takes no steps in time.
 WITHOUT_MOTION = {"linear-condensed"}
 OF_MOTION = ("mean_step_seconds", "seconds_per_simulated_second")
 
@@ -96,7 +96,7 @@ def test_json_tells_where_it_comes_from(tiny):
 
 
 def test_json_tells_the_width_of_packs(tiny):
-    """According to the compiler: machines of one name and "-march=native" may differ."""
+    """From the compiler: machines with the same name and "-march=native" may differ."""
     flags = tiny[1]["build_flags"]
     arch = re.search(r"-march=[^;]+", flags).group()
     macros = ran("c++", arch, "-dM", "-E", "-x", "c++", os.devnull, check=True).stdout
@@ -180,7 +180,7 @@ def test_rest(block):
         assert record["status"] == "ok" and record["method"] in outcome.stdout
         seconds = [record[f"seconds_to_{name}"] for name in ("1_percent", "0_1_percent", "rest")]
         assert 0 < seconds[0] <= seconds[1] <= seconds[2]
-        # They are shares of the evaluations.
+        # Checks and cycles are shares of the evaluations.
         for share in (seconds[0] / seconds[2], seconds[1] / seconds[2]):
             assert record["evaluations"] * share == pytest.approx(
                 round(record["evaluations"] * share)

@@ -1,6 +1,6 @@
 """Runs that are killed at any time and resumed end with the same bytes.
 
-SANDGLASS_KILLS in the environment says how often each run is killed; 5 unless told.
+SANDGLASS_KILLS in the environment is the number of kills per run, by default 5.
 """
 
 import os
@@ -26,8 +26,8 @@ RELAXING = (
 SMALL = "[2, 2, 4]"
 
 
-# Name, case, options. Each takes about a second, most of it spent on checkpoints: kills hit every
-# activity of a run: steps, writing of checkpoints, writing of results.
+# Name, case, options. Each takes about a second, most of it for checkpoints, so that kills hit all
+# activities of a run: steps, writing of checkpoints, writing of results.
 RUNS = {
     "dynamic": (
         dynamic(RELAXING.replace(SMALL, "[6, 6, 12]"), duration=1.0, frames=9),
@@ -164,7 +164,7 @@ def test_an_edited_case_is_refused(stopped):
     case, file = stopped
     case.write_text(case.read_text().replace("frames = 9", "frames = 10"))
     outcome = sandglass("run", case, "--checkpoint", file, code=2, told="input_hash")
-    assert "case_hash: " not in outcome.stderr  # the answer does not depend on what is kept of it
+    assert "case_hash: " not in outcome.stderr  # the answer does not depend on what is stored of it
 
 
 def test_another_program_is_refused(stopped, tmp_path):
@@ -204,7 +204,7 @@ def test_an_interrupted_run_goes_on(block):
 
 
 def test_a_full_disk_costs_a_warning_and_no_run(block):
-    """Without space for a checkpoint the run continues, as it does not need one."""
+    """Without space for a checkpoint the run continues, since it does not need one."""
     block.write_text(dynamic(BLOCK.replace(SMALL, "[8, 8, 16]"), duration=0.1, frames=9))
     file = block.parent / "run.checkpoint"
 

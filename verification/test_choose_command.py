@@ -73,9 +73,9 @@ def test_light_touch_takes_the_condensed_linear_answer(tmp_path):
 def test_column_takes_one_nonlinear_point(tmp_path):
     """Small-strain methods are rejected as everything rotates; one point with control suffices.
 
-    The first sufficient one is chosen in the order of costs, which are measured: which of several
-    like ones that is no test may ask. The chosen mesh may be coarser: its answer is compared at the
-    user's nodes by other means.
+    The first sufficient one in the order of costs is chosen. Costs are measured, so a test cannot
+    know which of several similar ones that is. The chosen mesh may be coarser: its answer is
+    compared at the user's nodes by other means.
     """
     case = copied("column", tmp_path)
     chosen = tmp_path / "chosen.toml"
@@ -83,7 +83,7 @@ def test_column_takes_one_nonlinear_point(tmp_path):
     rung = chosen_of(document)
     sufficient = [r for r in document["rungs"] if r["outcome"] in ("chosen", "sufficient")]
     assert sufficient[0] is rung and all(r["error"] <= 0.02 for r in sufficient)
-    # The cost of levels is known only afterwards.
+    # The cost of levels is only known afterwards.
     fixed = [r for r in sufficient if r["accuracy"] is None]
     costs = [r["seconds_per_simulated_second"] for r in fixed]
     assert costs == sorted(costs)
@@ -118,7 +118,7 @@ def test_ellipsoid_takes_the_adaptive_method_at_half_a_percent(tmp_path):
 
 
 def test_says_nothing_where_the_mesh_is_the_limit(tmp_path):
-    """No method can fix a mesh that is a percent off; a less accurate truth proves nothing."""
+    """No method can correct a mesh that is a percent off; a less accurate truth proves nothing."""
     case = copied("column", tmp_path)
     chosen = tmp_path / "chosen.toml"
     words = ("--tolerance", "0.001%", "--against", "truth", "-o", chosen)
@@ -146,7 +146,7 @@ def test_without_a_stored_golden_it_is_the_same_choice_as_with_one(block):
 
 
 def test_a_mesh_from_a_file_stays_where_it_is(block, tmp_path):
-    """The case is written to another folder, from which its mesh, the only one, is found."""
+    """The case is written to another folder and still finds its only mesh."""
     mesh = tmp_path / "mesh.h5"
     assert sandglass("mesh", block, "-o", mesh).returncode == 0
     before, rest = BLOCK.split("[mesh]")
@@ -186,7 +186,7 @@ def test_run_takes_the_method_of_the_case_unless_told(block):
 
 
 def test_a_motion_is_chosen_for_and_the_chosen_case_runs(tmp_path):
-    """Every rung that was tried has the time of its run beside the predicted one."""
+    """Every rung that was tried has the time of its run next to the predicted one."""
     case, chosen = copied("loaded-block", tmp_path), tmp_path / "chosen.toml"
     names = ("tl-perturbation", "tl-stabilization-matrix", "linear-condensed")
     outcome, document = choose(case, "--methods", *names, "-o", chosen)
@@ -216,7 +216,7 @@ def rows_of(text):
 
 @pytest.mark.parametrize("arguments", [(), ("--all",)])
 def test_what_is_printed_fits_a_terminal_and_says_what_the_file_says(tmp_path, arguments):
-    """The chosen row is marked; what was rejected is counted by reason, and shown on demand."""
+    """The chosen row is marked; rejected ones are counted by reason, and listed on request."""
     outcome, document = choose(copied("column", tmp_path), "--tolerance", "2%", *arguments)
     assert max(map(len, outcome.stdout.splitlines())) <= 100
     rows, best = rows_of(outcome.stdout), chosen_of(document)

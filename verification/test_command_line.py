@@ -1,4 +1,4 @@
-"""The command line as people and scripts use it: exit codes, messages, files.
+"""The command line for people and scripts: exit codes, messages, files.
 
 Exit codes: 0 ok, 1 a limit is broken, 2 bad usage or input, 3 the computation failed.
 """

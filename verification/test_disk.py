@@ -1,7 +1,7 @@
 """Full disks and unwritable places: reason, exit code, and no incomplete file.
 
-A place that cannot be written is wrong input (2); a disk that fills on the way ends the computation
-(3). Files that stood there before stay as they were.
+A place that cannot be written is wrong input (2); a disk that fills during a run ends the
+computation (3). Existing files stay as they were.
 """
 
 import os
@@ -21,12 +21,12 @@ def limited(size):
 
 
 def listing(folder):
-    """All files below a folder with their content."""
+    """All files below a folder with their contents."""
     files = [file for file in folder.rglob("*") if file.is_file()]
     return {str(file.relative_to(folder)): file.read_bytes() for file in files}
 
 
-# What each command writes, as arguments before the file; the file's name.
+# Arguments of each command before the file that it writes; the file's name.
 WRITERS = {
     "run": (["run", "block.toml", "-o"], "out.h5"),
     "mesh": (["mesh", "block.toml", "-o"], "out.h5"),
@@ -72,7 +72,7 @@ def test_full_disk(case, writer, size):
 
 
 def test_a_disk_that_fills_while_the_guide_is_written(case):
-    """There is space for the result but not for the XDMF file: afterwards both exist, or none."""
+    """There is space for the result but not for the XDMF file: afterwards both or neither exist."""
     folder = case.parent
     before = listing(folder)
     small = ["run", case, "-o", folder / "out.h5"]
@@ -110,7 +110,7 @@ def test_standard_output_that_takes_nothing(command):
 
 
 def mounted(folder, options):
-    """Whether a file system in memory could be mounted there; that takes root."""
+    """Whether a file system in memory could be mounted, which needs root."""
     command = ["mount", "-t", "tmpfs", "-o", options, "sandglass-test", str(folder)]
     return shutil.which("mount") and subprocess.run(command, capture_output=True).returncode == 0
 

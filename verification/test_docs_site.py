@@ -1,4 +1,4 @@
-"""The documentation: it is made without a warning, and a stranger's questions lead to answers."""
+"""The documentation builds without warnings and answers a newcomer's questions."""
 
 import importlib.util
 import re
@@ -13,11 +13,11 @@ from readme import commands, copy
 
 from common.program import ROOT
 
-# What `ci/site` puts beside the documentation.
+# Published by `ci/site` next to the documentation.
 PUBLISHED = "report/index.html"
 NEEDED = ("sphinx", "myst_parser", "breathe", "furo")
 PUBLIC = ("solver/sandglass/simulation.hpp", "solver/sandglass/batch.hpp", "solver/base/error.hpp")
-# What a stranger asks, and what the page that answers says.
+# A newcomer's questions, and a text on the page that answers.
 ANSWERS = {
     "How do I install it?": "makes a Debian package and a wheel",
     "How do I apply pressure?": 'set = "loaded" value = 300.0',
@@ -44,7 +44,7 @@ ANSWERS = {
 
 
 class Page(HTMLParser):
-    """The anchors and links of a page, its text without that of scripts, and its blocks of code."""
+    """The anchors and links of a page, its text without scripts, and its blocks of code."""
 
     def __init__(self, path):
         super().__init__()
@@ -53,7 +53,7 @@ class Page(HTMLParser):
         self.text, self.code = (" ".join(text.split()) for text in (self.text, self.code))
 
     def handle_starttag(self, tag, attributes):
-        """Keeps what a tag names and where it leads."""
+        """Keeps the id and the link of a tag."""
         named = dict(attributes)
         self.anchors |= {named[key] for key in ("id", "name") if named.get(key)}
         self.links += [named[key] for key in ("href", "src") if named.get(key)]
@@ -71,7 +71,7 @@ class Page(HTMLParser):
 
 
 def target(page, link):
-    """(path in the folder, anchor) of a link on a page, or none for one to another site."""
+    """(path in the folder, anchor) of a link on a page; none for links to other sites."""
     parts = urlsplit(link)
     if parts.scheme or parts.netloc:
         return None
@@ -82,7 +82,7 @@ def target(page, link):
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
-    """A copy of the project with its documentation, made by `ci/docs-site` with the program."""
+    """A copy of the project with its documentation, built by `ci/docs-site` with the program."""
     absent = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if absent or not shutil.which("doxygen"):
         pytest.skip("needs Sphinx and Doxygen: bash ci/setup docs")
@@ -108,7 +108,7 @@ def docs_site(tree, *words):
 
 
 def clicks(pages):
-    """Page -> how many clicks it is away from the first one."""
+    """Page -> number of clicks from the first page."""
     away, last = {"index.html": 0}, ["index.html"]
     while last:
         found = [target(name, link) for name in last for link in pages[name].links]
@@ -134,7 +134,7 @@ def test_every_page_is_there_and_no_link_leads_nowhere(tree, pages):
     made = {name for name in clicks(pages) if name not in ("genindex.html", "search.html")}
     sources = {str(path.relative_to(tree / "docs")) for path in (tree / "docs").rglob("*.md")}
     assert {re.sub(r"\.md$", ".html", name) for name in sources} <= made
-    assert {path.name for path in (tree / "build").iterdir()} == {"docs", "release"}  # no half
+    assert {path.name for path in (tree / "build").iterdir()} == {"docs", "release"}  # nothing else
 
 
 def test_commands_of_the_readmes_are_shown_as_code(tree, pages):

@@ -1,6 +1,6 @@
 """The installed library in other projects: found, built without flags, same steps as the program.
 
-Takes the build folder in which the program under test stands.
+Installs from the build folder of the program under test.
 """
 
 import json
@@ -96,7 +96,7 @@ def test_other_projects_see_the_public_headers_and_get_the_library_alone(way, tm
 
 
 def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):
-    """Other flags would give other packs of the same name; a program must contain none itself."""
+    """Other flags would give other packs of the same name; a program must not contain any."""
     (tmp_path / "only.cpp").write_text(
         "#include <sandglass/simulation.hpp>\n"
         "double time(const char* file) { return sandglass::Simulation<float>(file).time(); }\n"
@@ -109,14 +109,14 @@ def test_the_header_stands_alone_and_brings_no_kernel(prefix, tmp_path):
 
 
 def test_only_public_headers_are_installed(prefix):
-    """Kernels need the flags of the library; with others, packs of one name would differ."""
+    """Kernels need the flags of the library; with others, packs of the same name would differ."""
     headers = {str(f.relative_to(prefix / "include")) for f in (prefix / "include").rglob("*.hpp")}
     public = {"sandglass/simulation.hpp", "sandglass/batch.hpp", "sandglass/base/error.hpp"}
     assert headers == public
 
 
 def test_the_installed_program_has_its_cases(prefix, tmp_path):
-    """Also where neither the source nor a folder `cases` is available."""
+    """Even where neither the source nor a folder `cases` is available."""
     environment = {name: value for name, value in os.environ.items() if name != "SANDGLASS_CASES"}
     moved = shutil.copytree(prefix, tmp_path / "elsewhere")
     listed = run(moved / "bin" / "sandglass", "cases", cwd=tmp_path, env=environment)
@@ -182,7 +182,7 @@ int main() { std::printf("%g\\n", sum); }
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="for x86-64 compilers")
 @pytest.mark.parametrize("processor, code", [("Haswell", 0), ("Nehalem", 3)])
 def test_packages_refuse_a_processor_without_their_instructions(processor, code, tmp_path):
-    """Before initialisers that need them, which here die of them without the check."""
+    """Before initialisers that need them, which would crash here without the check."""
     (tmp_path / "main.cpp").write_text(AVX2)
     v3, all_processors = ["-O3", "-march=x86-64-v3"], ["-O3", "-march=x86-64"]
     run("c++", *v3, "-ffast-math", "-c", "main.cpp", cwd=tmp_path)

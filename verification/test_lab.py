@@ -1,4 +1,4 @@
-"""The workflow of all sweeps: what it plans, what it repeats, what is lost with a killed job."""
+"""The workflow of all sweeps: its plan, what it repeats, what a killed job loses."""
 
 import json
 import os
@@ -25,7 +25,7 @@ pytestmark = pytest.mark.skipif(
 
 LAB = ROOT / "verification/lab"
 NOTHING = "Nothing to be done"
-# Runs the program; the first that verifies a case is killed, with the shell, and the case noted.
+# Runs the program; the first run that verifies a case is killed with its shell and noted.
 KILLED_ONCE = f"""#!/bin/bash
 if [ "$1" = verify ] && mkdir "$KILLED" 2>/dev/null; then
   touch "$KILLED/$2"
@@ -35,7 +35,7 @@ if [ "$1" = verify ] && mkdir "$KILLED" 2>/dev/null; then
 fi
 exec "{BINARY}" "$@"
 """
-# Stands in for Slurm: jobs are processes, each in a session of its own, as on a node of its own.
+# In place of Slurm: jobs are processes, each in its own session as on its own node.
 SBATCH = """#!/bin/bash
 id=$$
 echo "$@" >>"$SLURM_STUB/submitted"
@@ -54,7 +54,7 @@ echo "JobId=${@: -1} JobState=$state Reason=None"
 
 
 def snakemake(folder, *arguments, profile="local", **environment):
-    """Runs the workflow in a folder; the outcome, all that it printed as its stdout."""
+    """Runs the workflow in a folder; the outcome, with all output as its stdout."""
     command = ["snakemake", "-s", LAB / "Snakefile", "--profile", LAB / "profiles" / profile]
     command += ["--directory", folder, *arguments]
     environment = {"SANDGLASS_BINARY": BINARY, "XDG_CACHE_HOME": str(folder)} | environment
@@ -76,13 +76,13 @@ def script(path, text):
 
 
 def jobs(text, rule):
-    """What the jobs of a rule were made for, in their order: their outputs."""
+    """The outputs of a rule's jobs, in order."""
     found = re.findall(r"^(?:local)?rule (\w+):\n((?:    .*\n)*)", text, re.MULTILINE)
     return [re.search(r"output: (.*)", about)[1] for name, about in found if name == rule]
 
 
 def wildcards(text, rule, place):
-    """The matches of a pattern with the outputs of a rule's jobs, each as a whole."""
+    """The wildcards of a rule's jobs: matches of a pattern with their whole outputs."""
     return [re.fullmatch(place, output)[1] for output in jobs(text, rule)]
 
 
@@ -101,12 +101,12 @@ def lab(tmp_path):
 
 
 def verdicts(folder):
-    """The cases that have verdicts of their own."""
+    """The cases that have verdicts."""
     return sorted(file.stem for file in folder.glob("build/lab/verdicts/*.json"))
 
 
 def without_times(file):
-    """A file of `sandglass verify --json` without what differs from run to run."""
+    """A file of `sandglass verify --json` without what differs between runs."""
     document = json.loads(file.read_text())
     seconds = ("ns_", "check_ns", "seconds_per", "equilibrium_sec", "motion_sec")
     keep = {
@@ -116,7 +116,7 @@ def without_times(file):
 
 
 def test_the_whole_lab_is_planned(tmp_path):
-    """A job for each case, method, patch and program that there is, by lists of their own."""
+    """A job for each case, method, patch and program, from independent lists."""
     programs = "programs=calculix=ccx febio:native=bin/febio4"
     plan = snakemake(tmp_path, "-n", "-c", 3, "--forceall", "--config", programs)
     assert plan.returncode == 0, plan.stdout[-2000:]
@@ -142,7 +142,7 @@ def test_the_whole_lab_is_planned(tmp_path):
     assert set(peers) == {
         f"{case}.{name}" for case in ours for name in ("calculix", "febio:native")
     }
-    # What is timed has the machine for itself.
+    # Jobs that are timed have the machine to themselves.
     for rule in ("curve_case", "peer"):
         found = re.findall(rf"^rule {rule}:\n(?:    .*\n)*?    threads: (.*)", text, re.MULTILINE)
         assert set(found) == {"3"}
@@ -204,7 +204,7 @@ def test_a_killed_job_is_lost_alone(lab, tmp_path):
 
 
 def test_a_job_that_is_killed_with_all_it_runs_on_slurm_is_submitted_again(lab, tmp_path):
-    """Such a job cannot tell Snakemake of its end: the profile asks Slurm."""
+    """Such a job cannot report its end to Snakemake: the profile asks Slurm."""
     stub = tmp_path / "slurm"
     stub.mkdir()
     for name, text in (("sbatch", SBATCH), ("scontrol", SCONTROL)):
@@ -215,7 +215,7 @@ def test_a_job_that_is_killed_with_all_it_runs_on_slurm_is_submitted_again(lab, 
         "VICTIM": "0",  # all processes of the session
         "SLURM_STUB": str(stub),
         "PATH": f"{stub}:{os.environ['PATH']}",
-        "CI": "true",  # Snakemake looks every second
+        "CI": "true",  # Snakemake checks every second
     }
     done = lab("verify", profile="slurm", **options)
     assert done.returncode == 0, done.stdout
@@ -227,7 +227,7 @@ def test_a_job_that_is_killed_with_all_it_runs_on_slurm_is_submitted_again(lab, 
         assert "--parsable" in line and "--mem=2000 " in line and "--exclusive" not in line
         assert "--time=240 " in line
     assert NOTHING in lab("verify", profile="slurm", **options).stdout
-    # What is timed has a node for itself; this one fails for want of a golden.
+    # Jobs that are timed have a node to themselves; this one fails because it has no golden.
     assert lab("build/lab/curves-of-a", profile="slurm", **options).returncode == 1
     line = (stub / "submitted").read_text().splitlines()[-1]
     assert "--job-name=lab-curve_case" in line and "--exclusive" in line

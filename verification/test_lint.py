@@ -1,4 +1,4 @@
-"""What clang-tidy looks at after a change, and what the scripts that check a change take."""
+"""Files that clang-tidy checks after a change, and arguments of the scripts that check changes."""
 
 from pathlib import Path
 
@@ -69,7 +69,7 @@ def clone(tmp_path):
     [
         ([], []),
         (["solver/base/both.cpp"], ["solver/base/both.cpp"]),
-        # A changed source that includes it shows what is found in a header, through others too.
+        # A changed source that includes it shows findings in a header, through others too.
         (["app/list.hpp"], ["app/main.cpp"]),
         (["app/main.cpp", "solver/base/deep.hpp"], ["app/main.cpp"]),
         # One source for two headers, although others come first in the list.
@@ -107,7 +107,7 @@ def test_all_sources_where_the_revision_is_unknown(clone, tmp_path):
 
 
 def test_the_revision_in_ci_linted_is_of_this_history():
-    """Else `ci/lint` looks at everything on each machine that has checked nothing before."""
+    """Otherwise `ci/lint` checks everything on each machine that has checked nothing before."""
     if not (ROOT / ".git").exists():
         pytest.skip("no clone")
 

@@ -1,6 +1,6 @@
-"""The mutants of verification/mutants: patches apply and the table has all; mistakes at random.
+"""The mutants of verification/mutants: patches apply and the table is complete; random mistakes.
 
-What kills them is the work of `verification/mutants/run.py`, which takes hours.
+Whether tests kill them is checked by `verification/mutants/run.py`, which takes hours.
 """
 
 import re
@@ -22,7 +22,7 @@ PATCHES = patches.read_patches()
 
 @pytest.mark.parametrize("patch", PATCHES, ids=lambda patch: patch.name)
 def test_patch_fits_this_tree(patch):
-    """A patch that does not must be updated: its mistake is still possible."""
+    """A patch that does not apply must be updated: its mistake is still possible."""
     done = ran("git", "apply", "--check", patch.path, cwd=ROOT)
     assert done.returncode == 0, done.stderr
     assert all((ROOT / name).is_file() for name in patch.files)
@@ -41,7 +41,7 @@ def test_every_mutant_is_of_one_kind_and_has_a_row():
 
 
 def test_every_test_program_is_run():
-    """They are read from the build's list, in which a program without a file is not there."""
+    """Programs are read from the build's list, which misses one without a file."""
     programs = {program.name for program in programs_of(ROOT) if not program.is_python}
     assert programs == {file.stem for file in (ROOT / "verification").glob("*_test.cpp")}
 
@@ -61,7 +61,7 @@ def test_patch_without_a_sentence_is_refused(tmp_path):
 
 
 class FakeWorker:
-    """In the place of a copy of the tree; its outcome is given."""
+    """In place of a copy of the tree, with a given outcome."""
 
     outcome = None
 
@@ -80,7 +80,7 @@ class FakeWorker:
 
 @pytest.fixture
 def call(tmp_path, monkeypatch):
-    """Runs the command line with workers of a given outcome, and a store and table of its own."""
+    """Runs the command line with workers of a given outcome and a store and table of its own."""
     (tmp_path / "RESULTS.md").write_text(outcomes.TABLE.read_text())
     monkeypatch.setattr(outcomes, "TABLE", tmp_path / "RESULTS.md")
     monkeypatch.setattr(outcomes, "STORE", tmp_path / "store")
@@ -110,7 +110,7 @@ def call(tmp_path, monkeypatch):
 def test_verdicts_are_stored_and_written(call, outcome, code, verdict):
     before = outcomes.rows_of(outcomes.TABLE.read_text())
     assert call(outcome) == (code, verdict)
-    again = outcome if code == 3 else "none is made"  # what has a verdict is finished
+    again = outcome if code == 3 else "none is made"  # mutants with a verdict are finished
     assert call(again) == call("none is made", table=True) == (code, verdict)
     after = outcomes.rows_of(outcomes.TABLE.read_text())
     assert [name for name in before if before[name] != after[name]] == [

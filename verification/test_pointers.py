@@ -1,4 +1,4 @@
-"""What Markdown texts point to is there: files, headings, functions, commands and their options."""
+"""Targets in Markdown texts exist: files, headings, functions, commands and their options."""
 
 import re
 
@@ -7,7 +7,7 @@ from command_line import ROOT, sandglass
 from readme import inline, parts
 from test_readmes import DOCUMENTS, PLACES
 
-PRESENT = [name for name in DOCUMENTS if name != "CHANGELOG.md"]  # which tells of what was there
+PRESENT = [name for name in DOCUMENTS if name != "CHANGELOG.md"]  # names former files too
 SOURCE = r"(?:\.\./)*([\w./-]+(?:\.(?:[ch]pp|py|md|cff|toml|cmake)|/))"
 LINK = re.compile(r"\]\(((?!\w+:)[^)#\s]*)(?:#([^)\s]+))?\)")
 OTHERS = {"std", "snake_case", "SBATCH_CONSTRAINT"}  # names that are not the project's own
@@ -43,7 +43,7 @@ def test_links_lead_to_files_and_headings(document):
 
 @pytest.mark.parametrize("document", PRESENT)
 def test_files_that_texts_name_are_there(document):
-    """Those that a step makes apart."""
+    """Except for files that a step makes."""
     made = {part.path for part in parts(DOCUMENTS[document]) if part.kind == "file"}
     for name in inline(DOCUMENTS[document]):
         source = re.fullmatch(SOURCE, name)
@@ -52,7 +52,7 @@ def test_files_that_texts_name_are_there(document):
 
 
 def defines(text, name):
-    """Whether a source in C++ or Python declares or defines a name, which others only use."""
+    """Whether a C++ or Python source declares or defines a name, not only uses it."""
     word = name.split("::")[-1]
     kinds = (
         rf"\b(?:class|struct|using|concept) {word}\b",
@@ -83,7 +83,7 @@ def words_of_sources():
 
 @pytest.mark.parametrize("document", PRESENT)
 def test_functions_that_texts_name_are_there(document, words_of_sources):
-    """Names with an underscore, `::` or `()`; those of steps, which add them, apart."""
+    """Names with an underscore, `::` or `()`, except for those that a step adds."""
     own = set(re.findall(r"\w+", "".join(part.text for part in parts(DOCUMENTS[document]))))
     for name in inline(DOCUMENTS[document]):
         if re.fullmatch(r"[A-Za-z]\w*(::\w+)*(\(\))?", name) and re.search(r"_|::|\(", name):

@@ -1,7 +1,7 @@
-"""Tests of runs that processes share through MPI: `mpirun -n 2 sandglass run CASE`.
+"""Runs shared by processes through MPI: `mpirun -n 2 sandglass run CASE`.
 
 They need the program built with MPI (ci/setup mpi; ci/build mpi) and are skipped without it;
-ranks_test.cpp has the same bits tested for every method with threads as ranks.
+ranks_test.cpp tests the same bits for every method with threads as ranks.
 """
 
 import os
@@ -37,10 +37,10 @@ def block_in_motion(duration):
 
 
 def under_mpirun(ranks, *command):
-    """(words, environment) that start a command on so many ranks.
+    """(words, environment) that start a command on `ranks` ranks.
 
-    As the superuser too, with more ranks and threads than processors, and bound to none of them.
-    Python may be within MPI itself, as dolfinx starts it, but mpirun refuses to run within MPI.
+    Also as root, with more ranks and threads than processors, bound to none of them. Python may be
+    within MPI itself, as started by dolfinx, but mpirun refuses to run within MPI.
     """
     words = ("mpirun", "--oversubscribe", "--bind-to", "none", "-n", ranks, *command)
     permission = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -50,7 +50,7 @@ def under_mpirun(ranks, *command):
 
 
 def start(ranks, *arguments, program=PROGRAM, bound=False):
-    """Start a run on so many ranks, each bound to one processor or to none."""
+    """Starts a run on `ranks` ranks, each bound to one processor or to none."""
     words, environment = under_mpirun(ranks, program, *arguments)
     if bound:
         words[words.index("none")] = "core"
@@ -151,13 +151,13 @@ def test_a_program_without_mpi_refuses_to_be_started_twice():
 
 
 def processes_below(pid):
-    """The numbers of the children of a process."""
+    """The process ids of the children of a process."""
     children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     return [int(child) for child in children]
 
 
 def test_a_killed_rank_ends_the_run_and_the_checkpoint_goes_on(tmp_path):
-    """On as many ranks as before or others, with the bits of a run that nobody killed."""
+    """On the same number of ranks or another, with the bits of an uninterrupted run."""
     case = tmp_path / "block.toml"
     case.write_text(block_in_motion(1.0))
     whole, result, kept = (tmp_path / name for name in ("whole.h5", "result.h5", "kept.h5"))

@@ -1,8 +1,8 @@
 """READMEs are true: steps are taken and commands run as they stand.
 
-Each document is followed from its top down in a copy of the project, with the program that is
-built; `commands.toml` lists what is not run as it stands. A step that adds a law, a control or a
-number type is followed by its test, compiled alone with what was added: half a minute each.
+Each document is followed in order in a copy of the project, with the existing build;
+`commands.toml` lists the exceptions. A step that adds a law, a control or a number type is followed
+by its test, compiled only with what was added: half a minute each.
 """
 
 import difflib
@@ -54,7 +54,7 @@ class Follower:
         }
 
     def follow(self, text):
-        """Takes steps and runs commands in their order."""
+        """Takes steps and runs commands in order."""
         folder, absent, added = self.tree, None, []
         for part in parts(text):
             if part.kind != "command":
@@ -65,7 +65,7 @@ class Follower:
             elif match := TEST.fullmatch(part.text):
                 self.run_test(match[1], added)
             elif part.text.startswith("bash ci/build ") or part.text in LISTED["long"]:
-                continue  # it has been built; it would take too long
+                continue  # already built; it would take too long
             elif part.heading != absent:
                 command = part.text
                 if not installed(command):
@@ -75,7 +75,7 @@ class Follower:
                     self.run(command, folder)
 
     def run(self, command, folder=None):
-        """Runs a command, with what `commands.toml` adds to it; what it printed."""
+        """Runs a command with the additions of `commands.toml`; returns its output."""
         done = subprocess.run(
             f"{command} {LISTED['more'].get(command, '')}",
             shell=True,
@@ -90,7 +90,7 @@ class Follower:
         return done.stdout
 
     def run_test(self, name, paths):
-        """Compiles and runs a test that needs no library, for what the steps before it added."""
+        """Compiles and runs a test that needs no library, for the additions of the steps before."""
         names = [added for path in paths for added in self.only_what_was_added(path)]
         assert names, "nothing was added to a list"
         compiler = "c++ -std=c++20 -O0 -fno-math-errno -Wno-psabi"
@@ -102,7 +102,7 @@ class Follower:
         assert int(re.search(r"PASSED\s+\] (\d+) test", self.run(f"./{name}"))[1]) >= 4
 
     def only_what_was_added(self, path):
-        """Leaves the new entry of each list of types that a step changed. Returns these entries."""
+        """Keeps only the new entry of each list of types that a step changed. Returns them."""
         file = self.tree / path
         before = type_lists((ROOT / path).read_text()) if (ROOT / path).exists() else {}
         text, entries = file.read_text(), []
@@ -120,7 +120,7 @@ def type_lists(text):
 
 
 def installed(command):
-    """Whether the program that a command needs beside this project's is there."""
+    """Whether the other program that a command needs is installed."""
     if "reference/solve.py" in command:
         return importlib.util.find_spec("dolfinx") is not None
     program = command.split()[0]
@@ -154,15 +154,15 @@ def test_a_page_has_ones_own_mesh_on_its_chart(followed):
     points = re.findall(r'\{"case":"hook","method":"tl-[^{}]*\{"max":[^{}]*\}[^{}]*\}', page)
     points = [json.loads(point) for point in points]
     near = {(p["method"], p["precision"]) for p in points if p["golden"]["max"] < 0.01}
-    # Near enough to the mixed element, with a cost; the paper's element is there, and is not.
+    # Close to the mixed element, with a cost; the paper's element is in the table, but not close.
     assert {("tl-four-point", "double"), ("tl-mean-dilatation", "float")} <= near
     assert all(point["simulated"] > 0 for point in points)
     assert ("tl-perturbation", "double") in {(p["method"], p["precision"]) for p in points} - near
-    assert list((tree / "build").glob("page.*")) == []  # nothing half-made beside it
+    assert list((tree / "build").glob("page.*")) == []  # nothing incomplete beside it
 
 
 def test_a_new_case_is_held_to_its_value(followed):
-    """Within its limit, and not beyond."""
+    """It holds within its limit, and fails beyond."""
     tree = followed("cases/README.md")
     case = tree / "cases/pulled-cube.toml"
     for value, code in (("-0.0179269", 0), ("-0.0180", 1)):
@@ -253,7 +253,7 @@ WAYS = {
 
 
 def test_what_a_new_thing_costs_is_what_contributing_says(tmp_path):
-    """Its row has, after promise and file of the steps: new files; files changed, lines added."""
+    """The row has, after promise and file of the steps: new files; changed files, added lines."""
     text = DOCUMENTS["CONTRIBUTING.md"]
     rows = re.findall(r"^\| ([^|]+) \| [^|]+ \| `([^`]+)` \| (\d) \| (\d), (\d+) \|$", text, re.M)
     assert [row[0] for row in rows] == list(WAYS)
@@ -300,7 +300,7 @@ def test_citation_and_licence_are_those_of_the_project():
 
 
 def test_bibtex_entries_are_those_of_the_citation_file():
-    """Each field of docs/questions.md against CITATION.cff, and none of its fields left out."""
+    """Each field of docs/questions.md against CITATION.cff, without missing ones."""
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     (article,) = citation["references"]
     entries = {

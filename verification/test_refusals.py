@@ -6,8 +6,8 @@ import shlex
 import pytest
 from command_line import sandglass
 
-# A command | a text of its message, or several between "&"; what is indented continues a line.
-# They run in a folder with block.toml, which has no golden.
+# A command | a text in its message, or several between "&"; indented lines continue a line.
+# Commands run in a folder with block.toml, which has no golden.
 REFUSED = r"""
 "" | a command is missing; known: cases, methods, run
 qwertz | 'qwertz' is not a command; known: cases

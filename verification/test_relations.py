@@ -1,7 +1,7 @@
-"""Runs that are interrupted at any time: no partial file is left, what was complete can be read,
-and the same command ends with the bytes of a run that nobody interrupted.
+"""Interrupted runs leave no partial file, what was complete is readable, and the same command then
+ends with the bytes of an uninterrupted run.
 
-SANDGLASS_INTERRUPTS in the environment says how many interrupts; 12 unless told.
+SANDGLASS_INTERRUPTS in the environment is the number of interrupts, by default 12.
 """
 
 import os
@@ -22,8 +22,8 @@ SEED = int(os.environ.get("SANDGLASS_SEED", "1"))
 
 
 def interrupt_at_random(call, folder, longest, sent):
-    """The exit code and the errors of a run that got a signal: while it starts, while it computes,
-    or as soon as it writes."""
+    """The exit code and the errors of a run that gets a signal while it starts, computes or
+    writes."""
     process = subprocess.Popen(
         call, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     )
@@ -59,7 +59,7 @@ def test_interrupted_runs_leave_no_partial_file(tmp_path, name):
         assert code in (0, 3, -sent), errors
         assert not list(tmp_path.glob("*.part"))
         result = tmp_path / "killed.h5"
-        if code == -sent:  # before it computed
+        if code == -sent:  # before it started computing
             assert not result.exists()
         elif code == 3:
             assert "interrupted" in errors

@@ -1,5 +1,5 @@
-"""Runs that users and random scenes brought to light: right answers are accepted, wrong ones are
-refused, and every run ends. The inputs are in reported/."""
+"""Runs reported by users or found in random scenes: right answers are accepted, wrong ones refused,
+and every run ends. The inputs are in reported/."""
 
 import re
 import signal
@@ -16,9 +16,9 @@ FOLDER = ROOT / "verification" / "reported"
 
 
 def run(name, tmp_path, *options, code=0, **replaced):
-    """A case of the folder, its lines replaced by others; its outcome and its result file.
+    """A case of the folder with some lines replaced; its outcome and its result file.
 
-    code: the exit code that it must end with; None: any.
+    code: the expected exit code; None: any.
     """
     for mesh in FOLDER.glob("*.inp"):
         (tmp_path / mesh.name).write_bytes(mesh.read_bytes())
@@ -41,7 +41,7 @@ def points(result):
 
 
 def turned(x):
-    """By 90 degrees about the x axis through the middle of the bar."""
+    """Rotated by 90 degrees about the x axis through the middle of the bar."""
     y, z = x[:, 1] - 0.05, x[:, 2] - 0.15
     return numpy.stack([x[:, 0], 0.05 - z, 0.15 + y], axis=1) - x
 
@@ -57,7 +57,7 @@ RIGID = {
 @pytest.mark.parametrize("method", ["tl-perturbation", "tl-enhanced", "tl-mean-dilatation", "t4"])
 @pytest.mark.parametrize("name", ["shift", "turn-x-90"])
 def test_a_body_that_is_moved_as_a_whole_rests(name, method, precision, digits, tmp_path):
-    """Digits: of rounding, times the number of elements and their condition."""
+    """Digits: those of rounding, times the number of elements and their condition number."""
     outcome, result = run(name, tmp_path, "--method", method, "--precision", precision)
     assert evaluations(outcome) < (400 if method == "t4" else 60)
     u, x = last_displacement(result), points(result)
@@ -74,7 +74,7 @@ def test_two_parts_that_share_no_node_rest(precision, tmp_path):
 
 
 def test_a_small_load_on_a_body_that_is_moved_is_not_taken_for_rounding(tmp_path):
-    """It moves the middle by some 1e-9 of the shift, seven orders above the shift's rounding."""
+    """It moves the middle by about 1e-9 of the shift, seven orders above the shift's rounding."""
     pushed = """
 [[force]]
 set = "middle"
@@ -96,9 +96,9 @@ on = "nodes"
     [("planar-force", 16.815492096, 1e-6, 120), ("biaxial-mooney", 29.07063936, 1e-4, 3000)],
 )
 def test_next_to_incompressible_rubber_rests(name, force, digits, most, tmp_path):
-    """K / mu up to 6e7: a stretch of 5 if no volume changed. Digits: stress over K. One element
-    took 287 evaluations where steps were combined beyond the rounding of single precision: it has
-    fewer unknowns than the steps that are remembered."""
+    """K / mu up to 6e7: a stretch of 5 without change of volume. Digits: stress over K. One element
+    took 287 evaluations when steps were combined beyond the rounding of single precision: it has
+    fewer unknowns than steps are stored."""
     outcome, result = run(name, tmp_path)
     assert f"{force:.3g}" in outcome.stdout
     right = points(result)[:, 0] == 1.0
@@ -127,7 +127,7 @@ def test_a_wrong_answer_is_not_within_the_rounding_of_single_precision(name, tmp
     [
         (2, 20000, -8.8477),  # the golden's: reference/solve.py
         (4, 20000, -8.870),  # FEniCSx on another mesh of as many elements
-        (8, 20000, -8.82),  # Land et al. 2015, to .5 % of the place, -27.32
+        (8, 20000, -8.82),  # Land et al. 2015, to .5 % of the position, -27.32
         (2, 2000, None),
         (2, 200, None),
         (4, 2000, None),
@@ -135,8 +135,8 @@ def test_a_wrong_answer_is_not_within_the_rounding_of_single_precision(name, tmp
     ],
 )
 def test_an_inflated_ventricle_rests_soon(elements, bulk, apex, tmp_path):
-    """Problem 2 of Land et al. 2015: up to 100,000 evaluations were not enough. Meshes of as many
-    elements differ by .1 % of the displacement; softer muscle gives way further."""
+    """Problem 2 of Land et al. 2015, once not solved by 100,000 evaluations. Meshes with equally
+    many elements differ by .1 % of the displacement; softer muscle deforms further."""
     sizes = {2: (6, 9, 2), 4: (12, 18, 4), 8: (24, 36, 8)}[elements]
     text = (ROOT / "cases" / "ventricle.toml").read_text().split("[[variants")[0]
     keys = zip(("core_elements", "rings", "layers"), sizes)
@@ -156,8 +156,8 @@ def test_an_inflated_ventricle_rests_soon(elements, bulk, apex, tmp_path):
 
 
 def test_a_clamped_strip_rests(tmp_path):
-    """Six elements, whose load never grew: nodes of the coarsest grid beyond all samples moved by a
-    million times too much."""
+    """Six elements, whose load never grew: nodes of the coarsest grid outside of all samples were
+    moved by a million times too much."""
     outcome, result = run("strip", tmp_path)
     assert evaluations(outcome) < 300
     u = last_displacement(result)
@@ -176,8 +176,8 @@ def test_the_largest_number_of_evaluations_is_kept_to(tmp_path):
 
 @pytest.mark.parametrize("levels", [0, 20, 50])
 def test_levels_that_forces_remember_are_solved(levels, tmp_path):
-    """Levels at equilibrium: the end moves as with many, to the 2 % that the path makes. One level
-    was accepted with a residual of 1.3, and the end moved by a quarter less."""
+    """Levels in equilibrium: the end moves as with many levels, to the 2 % of the path's influence.
+    One level was accepted with a residual of 1.3, and the end moved by a quarter less."""
     lines = {"[relaxation]": f"[relaxation]\nlevels = {levels}"}
     outcome, result = run("arc", tmp_path, "--method", "ul-perturbation", lines=lines)
     largest = numpy.linalg.norm(last_displacement(result), axis=1).max()
@@ -185,7 +185,7 @@ def test_levels_that_forces_remember_are_solved(levels, tmp_path):
 
 
 def test_the_first_load_does_not_depend_on_the_orientation(tmp_path):
-    """It comes from lengths and volumes that a rotation does not change but by rounding."""
+    """It follows from lengths and volumes, which a rotation changes only by rounding."""
     a, b = numpy.cos(0.7), numpy.sin(0.7)
     turn = numpy.array([[a, -b, 0.0], [b, a, 0.0], [0.0, 0.0, 1.0]]) @ [
         [a, 0, b],
@@ -225,7 +225,7 @@ def test_a_step_that_collapses_is_reported(tmp_path):
 
 
 def test_several_materials_conserve_energy(tmp_path):
-    """By steps of a fifth: what second order leaves. It was 4.5 % of t4-anp."""
+    """At steps of a fifth, only the second-order error remains. It was 4.5 % for t4-anp."""
     for method in ("t4-anp", "t4", "tl-four-point"):
         outcome, _ = run("layers", tmp_path, "--method", method)
         balance = re.search(r"energy balance: ([-+.e\d]+) %", outcome.stdout)
@@ -245,7 +245,7 @@ def test_equal_materials_are_one(method, tmp_path):
     one = re.sub(r"\[element_sets\]\n.*\n", "", one)
     (tmp_path / "one.toml").write_text(one)
     sandglass("run", tmp_path / "one.toml", "-o", tmp_path / "one.h5", "--method", method, code=0)
-    # Sums in another order, over some hundred steps.
+    # Sums in another order, over a few hundred steps.
     assert numpy.abs(last_displacement(tmp_path / "one.h5") - parts).max() < 1e-10
 
 
@@ -265,9 +265,9 @@ ELASTICA = {"elastica-1152": (-0.259, 0.593), "elastica-1884": (-0.877, 0.803)}
 @pytest.mark.parametrize("name", ELASTICA)
 def test_a_column_beyond_its_buckling_load_is_an_elastica(name, method, precision, tmp_path):
     """The table of Timoshenko and Gere. The search may find the straight column first. Tolerance:
-    of the mesh, two elements across; with eight points they are some 4 % stiffer in bending, as if
-    the load were as much smaller, between rows of the table that are .09 and .17 apart. In single
-    precision rounding is as large as the side force and as the least eigenvalue: it decides the
+    error of the mesh, two elements across; with eight points they are about 4 % too stiff in
+    bending, as if the load were smaller by as much, and rows of the table are .09 and .17 apart. In
+    single precision rounding is as large as the side force and the least eigenvalue: it decides the
     plane in which a column of square section bends."""
     outcome, result = run(name, tmp_path, "--method", method, "--precision", precision)
     with h5py.File(result) as file:
@@ -283,7 +283,7 @@ def test_a_column_beyond_its_buckling_load_is_an_elastica(name, method, precisio
 
 
 def test_a_column_bends_to_the_side_of_its_load(tmp_path):
-    """To where it ends in damped motion; an unstable equilibrium is found first."""
+    """Its answer is the end of a damped motion; an unstable equilibrium is found first."""
     outcome, result = run("column", tmp_path)
     assert "static equilibrium (stable, reached from an unstable one)" in outcome.stdout
     motion = """

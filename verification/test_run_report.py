@@ -1,4 +1,4 @@
-"""What `sandglass run` says: what it understood and found, what is suspect, what it refuses."""
+"""Output of `sandglass run`: what it understood and found, warnings, refusals."""
 
 import os
 import pty
@@ -17,7 +17,7 @@ FORCE = r"\((\S+), (\S+), (\S+)\) N"
 
 
 def lines_of(outcome):
-    """The lines that a run printed; it must have come to its end."""
+    """The lines that a run printed; it must have finished."""
     assert outcome.returncode == 0, outcome.stderr
     return outcome.stdout.splitlines()
 
@@ -36,7 +36,7 @@ def test_the_first_lines_are_what_was_understood(block):
 
 
 def test_separate_parts_are_counted_at_the_start_and_at_the_end(block, tmp_path):
-    """Two blocks that share no node, in a mesh of a file."""
+    """Two blocks that share no node, in a mesh from a file."""
     corners = [(x, y, z) for z in (0.0, 0.2) for y in (0.0, 0.1) for x in (0.0, 0.1)]
     points = corners + [(x + 0.3, y, z) for x, y, z in corners]
     order = (0, 1, 3, 2, 4, 5, 7, 6)
@@ -126,7 +126,7 @@ def test_the_last_lines_are_those_of_the_result(block):
                 stored, rel=6e-3, abs=2e-4 * abs(stored).max()
             )
             assert (stored == last[f"reaction/{name}"][:]).all()
-        # Nothing else holds the block.
+        # No other set holds the block.
         total = history["reaction/foot"][-1] + history["reaction/head"][-1]
         assert abs(total).max() < 1e-7 * abs(history["reaction/head"][-1]).max()
     assert "nothing stored" not in text
@@ -202,7 +202,7 @@ def test_much_hourglass_energy_is_warned_of_and_the_remedy_has_none(block):
 
 @pytest.mark.parametrize(("kappa", "warned"), [("0.12", False), ("0.14", True)])
 def test_a_kappa_far_above_the_automatic_one_is_warned_of(block, kappa, warned):
-    """That is 0.00649 at Poisson's ratio .49, and 20 times it 0.1298."""
+    """That is 0.00649 at Poisson's ratio .49, and 20 times as much 0.1298."""
     outcome = sandglass("run", block, "--method", "tl-perturbation", "--kappa", kappa, code=0)
     assert (f"kappa {kappa} is 22 times the automatic one" in outcome.stderr) == warned
 
@@ -213,14 +213,14 @@ def test_a_method_without_control_is_warned_of(block):
 
 
 def test_energy_from_nowhere_is_warned_of(block):
-    # Moved within 0.1 s and free from then on. Hourglass forces that are summed up from rates while
-    # the elements turn are no derivative of an energy.
+    # Moved within 0.1 s and free afterwards. Hourglass forces integrated from rates while the
+    # elements turn are no derivative of an energy.
     coarse = BARE.replace("[2, 2, 4]", "[1, 1, 4]")
     block.write_text(dynamic(coarse, duration=10.0, ramp_time=0.1))
     outcome = sandglass("run", block, "-m", "ul-assumed-strain")
     found = re.search(r"energy drifts: (\S+) % of the largest was gained", outcome.stderr)
     assert float(found[1]) > 5.0
-    for damping in (0.0, 3.0):  # what damping takes is accounted for
+    for damping in (0.0, 3.0):  # damping is accounted for
         block.write_text(dynamic(coarse, duration=10.0, ramp_time=0.1, damping=damping))
         assert "drifts" not in sandglass("run", block).stderr
 

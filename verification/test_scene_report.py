@@ -1,4 +1,4 @@
-"""What `run` and `mesh` say of a scene before it runs: free motions, parts, seams, sets, units."""
+"""What `run` and `mesh` report before a run: free motions, parts, seams, sets, units."""
 
 import re
 
@@ -11,7 +11,7 @@ ORDER = (1, 2, 4, 3, 5, 6, 8, 7)
 
 
 def two_cubes(gap):
-    """An input of Abaqus: a cube of .1 m on another, each with its own nodes, `gap` m apart."""
+    """An Abaqus input: a cube of .1 m on another, each with its own nodes, `gap` m apart."""
     points = CORNERS + [(x, y, z + 0.1 + gap) for x, y, z in CORNERS]
     rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(points, 1)]
     cells = [
@@ -21,7 +21,7 @@ def two_cubes(gap):
 
 
 def on_mesh(name, more=""):
-    """The block's case with the mesh of a file, and tables instead of that of its head."""
+    """The block's case with the mesh of a file, and `tables` instead of its head's."""
     start, end = BARE.index("[mesh]"), BARE.index("[material]")
     text = BARE[:start] + f'[mesh]\nfile = "{name}"\n\n' + BARE[end:]
     return text[: text.rindex("[[displacement]]")] + more if more else text
@@ -47,7 +47,7 @@ def test_a_cube_between_frictionless_plates_is_free_to_slide(tmp_path, command):
 
 
 def test_the_nodes_that_are_named_hold_the_body(tmp_path):
-    """Each of them as a set of its own, in the components named: the run then ends."""
+    """Each as a set of its own, in the components named: with them the run finishes."""
     case = tmp_path / "only-z.toml"
     text = BARE.replace("0]\n", '0]\ncomponents = "z"\n').replace("1]\n", '1]\ncomponents = "z"\n')
     case.write_text(text)
@@ -118,7 +118,7 @@ def test_a_seam_is_warned_of_and_each_part_is_held_or_named(tmp_path, gap):
 
 
 def box_mesh(rounded):
-    """A box of 2 x 2 x 3 elements, .1 x .1 x .3 m, `rounded` at every other node of its top."""
+    """A box of 2 x 2 x 3 elements, .1 x .1 x .3 m, with `rounded` added at every other top node."""
     points = [(0.05 * i, 0.05 * j, 0.1 * k) for k in range(4) for j in range(3) for i in range(3)]
     points[27:] = [(x, y, rounded(z) if n % 2 else z) for n, (x, y, z) in enumerate(points[27:])]
     rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(points, 1)]
@@ -152,7 +152,7 @@ def test_a_plane_that_was_rounded_is_selected_as_a_whole(tmp_path, rounded):
 
 
 def test_a_rule_that_cuts_a_plane_in_two_is_warned_of(tmp_path):
-    """By .1 mm, which is no rounding of a file, with elements of 50 mm."""
+    """By .1 mm, more than the rounding of a file, with elements of 50 mm."""
     (tmp_path / "cut.inp").write_text(box_mesh(lambda z: z + 1e-4))
     case = tmp_path / "cut.toml"
     case.write_text(on_mesh("cut.inp").replace("[0.2, 0.2]", "[0.3, 0.3]"))

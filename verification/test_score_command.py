@@ -1,4 +1,4 @@
-"""`sandglass score --limit`: the error that a limit holds for, exit codes, what is printed."""
+"""`sandglass score --limit`: the error that is limited, exit codes, output."""
 
 import pytest
 from command_line import BARE, documented, sandglass, write_golden
@@ -6,7 +6,7 @@ from command_line import BARE, documented, sandglass, write_golden
 
 @pytest.fixture
 def answer(block):
-    """A case with a golden, and what the paper's element finds on it."""
+    """A case with a golden, and the answer of the paper's element."""
     write_golden(block)
     result = block.parent / "answer.h5"
     assert sandglass("run", block, "-o", result).returncode == 0
@@ -21,7 +21,7 @@ def scored(answer, *arguments):
 
 
 def test_limits_just_above_and_below_the_errors(answer):
-    """Each figure has its own limit: max and rms differ, so that neither stands for the other."""
+    """Each figure has its own limit: max and rms differ, so swapping them would fail."""
     outcome, record = scored(answer)
     assert outcome.returncode == 0 and "limit" not in outcome.stdout
     largest, mean = (record["golden"][f"{name}_relative_error"] for name in ("max", "rms"))
@@ -43,7 +43,7 @@ def test_limits_just_above_and_below_the_errors(answer):
 
 
 def test_a_limit_holds_against_the_truth_where_asked():
-    """The golden of the column is no distance from itself, and about a percent from the truth."""
+    """The column's golden has no distance from itself, and about a percent from the truth."""
     score = ("score", "reference/golden/column.h5", "--case", "column", "--limit", "max=0.1%")
     assert sandglass(*score).returncode == 0
     outcome = sandglass(*score, "--against", "truth", code=1)
@@ -63,7 +63,7 @@ def test_without_a_golden_the_mean_dilatation_element_judges(block):
         first, heads, figures = outcome.stdout.splitlines()[:3]
         assert first.startswith(f"block: {result.stem}, errors")
         assert figures.startswith("against the mean-dilatation element ")
-        assert len(heads) == len(figures)  # columns end with their heads
+        assert len(heads) == len(figures)  # columns are right-aligned with their heads
     own = block.parent / "block.h5"
     own.write_bytes(twin.read_bytes())
     assert sandglass("score", own, "--case", block).stdout.startswith("block: errors in %")

@@ -36,7 +36,7 @@ def test_writes_every_cell_of_a_map(block, tmp_path):
 
 
 def test_finished_cells_are_not_computed_again(block, tmp_path):
-    """A cell with an impossible value is used as is: it was read, not computed."""
+    """A cell with an impossible value stays as it is: it was read, not computed."""
     cells, file = tmp_path / "cells", tmp_path / "maps.json"
     assert sandglass("stability", block, *FEW, "--folder", cells).returncode == 0
     before = cells_of(cells)

@@ -1,4 +1,4 @@
-"""What the program says of itself and of slips: help, manual page, completion, the nearest name."""
+"""The program about itself and about slips: help, manual page, completion, closest names."""
 
 import re
 import resource
@@ -17,9 +17,9 @@ CASES = sorted(file.stem for file in (ROOT / "cases").glob("*.toml"))
 
 
 def misspelt(names):
-    """Each name with another one, one edit away: a letter is added, left out, wrong or swapped.
+    """Each name with a misspelling one edit away: a letter is added, left out, wrong or swapped.
 
-    The edit is in the middle, as beginnings tell many names from each other.
+    The edit is in the middle, since many names have the same beginning.
     """
     kinds = [
         lambda name, k: name[:k] + "x" + name[k:],
@@ -37,7 +37,7 @@ def misspelt(names):
 
 
 def refused(*arguments, **options):
-    """What is said of wrong use."""
+    """The message about wrong use."""
     outcome = sandglass(*arguments, **options, code=2)
     assert outcome.stderr.startswith("error: ")
     return outcome.stderr
@@ -129,7 +129,7 @@ def test_memory_that_does_not_suffice_is_told_in_gigabytes(block, tmp_path):
     assert not (tmp_path / "mesh.h5").exists()
 
 
-# Help, manual page, completion: all of what the parser itself knows.
+# Help, manual page, completion: everything that the parser has.
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -153,7 +153,7 @@ def test_manual_has_all_commands_and_options_and_no_fault_in_its_markup():
         pytest.skip("needs groff")
     made = ran("groff", "-man", "-ww", "-Tutf8", input=page.stdout)
     assert made.returncode == 0 and not made.stderr
-    assert "`sandglass methods`" in made.stdout  # quotes come out as they went in
+    assert "`sandglass methods`" in made.stdout  # quotes are unchanged
 
 
 @pytest.fixture(scope="module")
@@ -164,7 +164,7 @@ def script():
 
 
 def completed(script, *words):
-    """What bash offers for the last of these words."""
+    """Bash's suggestions for the last of these words."""
     lines = [
         script,
         f"COMP_WORDS=({' '.join(repr(word) for word in words)})",

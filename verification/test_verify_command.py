@@ -8,7 +8,7 @@ ELEMENTS = 16  # of the block
 
 
 def check_step_cost(record):
-    """A simulated second takes steps and checks; of a condensed method, a thousand answers."""
+    """A simulated second has steps and checks; with a condensed method, a thousand answers."""
     second, step = record["seconds_per_simulated_second"], record["mean_step_seconds"]
     ns, checks = record["ns_per_element_step"], record["check_ns_per_element_step"]
     if record["method"] == "linear-condensed":
@@ -31,7 +31,7 @@ def test_verify_holds_and_writes_every_figure(block):
     assert [r["method"] for r in records if r["kappa_is_auto"] or r["kappa"] is None] == methods()
     for record in records:
         assert record["case"] == "block" and record["precision"] == "double"
-        if record["method"] == "ul-viscous":  # no control at rest: listed as failed, not omitted
+        if record["method"] == "ul-viscous":  # no static stiffness: listed as failed, not omitted
             assert record["finding"] in ("not at rest", "inverted")
             continue
         assert record["status"] == "ok"
@@ -96,9 +96,9 @@ PUBLISHED = (ROOT / "verification/support/published.toml.in").read_text()
 
 
 def test_published_values_in_tables_and_json(block):
-    """A bar under a stress of 1e-6 of its modulus grows by that share of its length.
+    """A bar under a stress of 1e-6 of its modulus extends by that fraction of its length.
 
-    At nu = 0 the foot holds nothing back. What is not linear is 1e-6 of that.
+    At nu = 0 the foot does not restrain it. Nonlinearity is 1e-6 of that.
     """
     text = BLOCK.replace("poisson_ratio = 0.49", "poisson_ratio = 0.0")
     text = text[: text.rindex("[[displacement]]")]

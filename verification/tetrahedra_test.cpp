@@ -1,5 +1,5 @@
-/// Tetrahedra against a second implementation, node by node: both cuts of a hexahedron by hand, and averaged
-/// nodal pressures summed over a mesh.
+/// Tetrahedra against a second implementation with nodes only: both splits of a hexahedron by hand, and
+/// averaged nodal pressures summed over a mesh.
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ T energy_by_hand(const Mesh& mesh, const Law& law, const std::vector<Triple<T>>&
   return W;
 }
 
-/// Its derivatives, exact.
+/// Exact derivatives of this energy.
 template <class Law>
 NodalField forces_by_hand(const Mesh& mesh, const Law& law, const NodalField& u, bool averaged) {
   auto dual = triples<D>(u);
@@ -85,7 +85,7 @@ NodalField forces_by_hand(const Mesh& mesh, const Law& law, const NodalField& u,
   return f;
 }
 
-/// The patch of MacNeal and Harder, and a box whose inner nodes and sides are moved.
+/// The patch of MacNeal and Harder, and a box whose inner nodes and sides are displaced.
 std::vector<Mesh> distorted_meshes() {
   Mesh distorted = box({2, 3, 2}, {2, 3, 2});
   RandomGeometry random(5);
@@ -105,7 +105,7 @@ Scene scene_of(const Mesh& mesh, const NeoHookean& law) {
   return make_scene(plain_case(law), mesh);
 }
 
-/// A large deformation and a wave on it, without inverted tetrahedra.
+/// A large deformation plus a wave, without inverted tetrahedra.
 NodalField displacements(const Model& model, RandomGeometry& random) {
   const Mesh& mesh = model.scene().mesh;
   const auto& elements = *std::get<0>(model.internal_force());
@@ -124,8 +124,8 @@ NodalField displacements(const Model& model, RandomGeometry& random) {
   return u;
 }
 
-/// Roundoff of the forces on a mesh: its displacements and coordinates are known to eps of the largest, and
-/// the largest stiffness turns that into force; summed over the eight elements at a node.
+/// Roundoff of the forces on a mesh: displacements and coordinates are rounded by eps of the largest, and the
+/// largest stiffness turns that into force; summed over the eight elements at a node.
 double roundoff(const Model& model, const NodalField& u) {
   std::vector<double> bounds(model.scene().mesh.cells.size());
   const auto& elements = *std::get<0>(model.internal_force());
@@ -138,7 +138,7 @@ double roundoff(const Model& model, const NodalField& u) {
   return 8 * 32 * eps * largest * *std::ranges::max_element(bounds);
 }
 
-/// Energies and forces of whole meshes are those of the definition; the forces are its derivative.
+/// Energies and forces of whole meshes follow the definition; the forces are its derivative.
 TEST(TetrahedraTest, energies_and_forces_of_a_mesh_are_those_of_the_definition) {
   RandomGeometry random(31);
   for (const Mesh& mesh : distorted_meshes()) {
@@ -152,10 +152,10 @@ TEST(TetrahedraTest, energies_and_forces_of_a_mesh_are_those_of_the_definition) 
         EXPECT_NEAR(strain_energies(model, u).strain / W, 1.0, 1e-12) << name;
         const NodalField exact = forces_by_hand(mesh, law, u, averaged);
         Path path(mesh, law, {name});
-        path.to(displacements(model, random));  // of which nothing may stay
+        path.to(displacements(model, random));  // no trace of which may stay
         EXPECT_LT(largest_distance(path.to(u), exact), roundoff(model, u)) << name;
       }
-      // The samples distinguish the two methods.
+      // Samples that distinguish the two methods.
       const Model own(scene, {"t4"}), averaged(scene, {"t4-anp"});
       const NodalField u = displacements(own, random);
       EXPECT_GT(largest_distance(internal_forces(averaged, u), internal_forces(own, u)),
@@ -164,12 +164,12 @@ TEST(TetrahedraTest, energies_and_forces_of_a_mesh_are_those_of_the_definition) 
   }
 }
 
-/// A unit cube whose corner at the origin alone moves, by a along x, and the volumetric part of the force on
-/// it. J = 1 + a dN/dx: 1 - a in its own tetrahedron and in that of its neighbour along x, 1 in those of its
-/// neighbours along y and z, 1 - a/2 in the inner one; half volumes 1/12, and 1/6 inside. So a/12 of volume
-/// is lost three times. Own pressures: f = K a (1/12 + 1/12 + 1/24) = 5/24 K a. Averaged: 1/8 of volume at
-/// each node loses a/12 c/4, c of the three being the node's: c = 3 at the corner, 2 2 2 and 1 1 1 elsewhere,
-/// 0 at the far end, so that J_I - 1 = -c a/6 and f = sum 1/8 K c^2 a/36 = 24/288 K a.
+/// A unit cube of which only the corner at the origin moves, by a along x, and the volumetric part of the
+/// force on it. J = 1 + a dN/dx: 1 - a in its own tetrahedron and that of its neighbour along x, 1 in those
+/// of its neighbours along y and z, 1 - a/2 in the inner one; half volumes are 1/12, and 1/6 inside. So a/12
+/// of volume is lost three times. Own pressures: f = K a (1/12 + 1/12 + 1/24) = 5/24 K a. Averaged: 1/8 of
+/// volume at each node loses a/12 c/4, where c of the three are the node's: c = 3 at the corner, 2 2 2 and 1
+/// 1 1 elsewhere, 0 at the opposite one, so that J_I - 1 = -c a/6 and f = sum 1/8 K c^2 a/36 = 24/288 K a.
 TEST(TetrahedraTest, one_corner_moved_by_hand) {
   const double a = 0.3;
   const double mu = 100.0;
@@ -181,12 +181,12 @@ TEST(TetrahedraTest, one_corner_moved_by_hand) {
     const Scene scene = scene_of(box({1, 1, 1}, {1, 1, 1}), law);
     return internal_forces(Model(scene, {method}), u)[0][0];
   };
-  // Laws of the same shear modulus differ by the volumetric part.
+  // Laws with the same shear modulus differ only in the volumetric part.
   EXPECT_NEAR(force("t4", 2000.0) - force("t4", 1000.0), 1000.0 * a * 5 / 24, 1e-10);
   EXPECT_NEAR(force("t4-anp", 2000.0) - force("t4-anp", 1000.0), 1000.0 * a / 12, 1e-10);
 }
 
-/// Rigid motion of a whole mesh gives no force; turning a deformed one turns the forces.
+/// Rigid motion of a whole mesh causes no force; turning a deformed one turns the forces.
 TEST(TetrahedraTest, forces_turn_with_the_mesh) {
   RandomGeometry random(32);
   const auto law = sample_law<NeoHookean>(0.499);
@@ -211,7 +211,7 @@ TEST(TetrahedraTest, forces_turn_with_the_mesh) {
 }
 
 /// The largest eigenvalue of M^-1 K of a whole mesh, 1/s^2: K by central differences of the forces over 1e-5
-/// of an element, whose error is 1e-10 of K.
+/// of an element, which have an error of 1e-10 of K.
 double largest_frequency_square(const Model& model, NodalField u) {
   const std::size_t size = 3 * u.size();
   const double h = 1e-5 * std::cbrt(model.element_masses()[0] / model.scene().materials.list.front().density);
@@ -232,10 +232,10 @@ double largest_frequency_square(const Model& model, NodalField u) {
   return symmetric_eigenvalues(K.data(), static_cast<int>(size)).back();
 }
 
-/// Nodal pressures couple all elements around a node: no element's tangent exists by itself, but the step
-/// from the elements' bounds is safe for the whole mesh. On boxes it is also worth having: 0.4 of the true
-/// limit and more. (Where one element is much flatter than its neighbours, which lend its nodes their mass,
-/// no bound by elements is near.)
+/// Nodal pressures couple all elements around a node: no element has a tangent of its own, but the step from
+/// the elements' bounds is safe for the whole mesh. On boxes it is also efficient: at least 0.4 of the true
+/// limit. (Where an element is much flatter than the neighbours that share the mass of its nodes, no bound
+/// from single elements is close.)
 TEST(TetrahedraTest, stable_step_holds_for_the_assembled_mesh) {
   RandomGeometry random(33);
   auto meshes = distorted_meshes();
@@ -279,11 +279,11 @@ double tip_force(const char* method, double nu, int n) {
   return sum / d;
 }
 
-/// Nearly incompressible, twice as many elements: what an element without volumetric locking has too much of
-/// stiffness falls by 4, that of linear tetrahedra hardly, for their volumes are held one by one. Between the
-/// two stand orders of convergence of 1.5 and of 0.25. The reference is known to a few per cent of itself,
-/// while t4-anp is 80 % and 23 % above it. A hundredfold bulk modulus changes t4-anp by what is left of K/mu
-/// in the continuum, below a per cent.
+/// Nearly incompressible, twice as many elements: an element without volumetric locking divides its excess
+/// stiffness by 4; linear tetrahedra hardly reduce theirs, since each keeps its own volume. Orders of
+/// convergence of 1.5 and 0.25 lie between the two. The reference has an error of a few percent of itself,
+/// while t4-anp is 80 % and 23 % above it. A hundredfold bulk modulus changes t4-anp by less than a percent,
+/// the remaining influence of K/mu in the continuum.
 TEST(TetrahedraTest, averaged_pressures_cure_volumetric_locking) {
   const double nu = 0.4999;
   const double reference = tip_force("tl-mean-dilatation", nu, 8);
@@ -294,11 +294,11 @@ TEST(TetrahedraTest, averaged_pressures_cure_volumetric_locking) {
   EXPECT_NEAR(tip_force("t4-anp", nu, 4) / tip_force("t4-anp", 0.49, 4), 1.0, 0.05);
 }
 
-/// What averaging costs, by hand. The first pass: 15 additions per component for the modes, 24 for the
+/// The operations of averaging, by hand. First pass: 15 additions per component for the modes, 24 for the
 /// corners' gradients, 6 for the inner ones; ten products of 27 and 18 operations, ten determinants of 15 and
 /// 14; weights; two sums over five tetrahedra for each of eight nodes, and their quarters; four nodes' sums
-/// with the element before, and four divisions. In the second: eight pressures, not ten, their quarters and
-/// ten sums of four.
+/// with the element before, and four divisions. Second pass: eight pressures, not ten, their quarters and ten
+/// sums of four.
 TEST(TetrahedraTest, operations_of_two_passes_by_hand) {
   const auto law = sample_law<NeoHookean>(0.49);
   const auto own = count_operations<T4::Kinematics, T4::Hourglass>(law);
@@ -311,7 +311,7 @@ TEST(TetrahedraTest, operations_of_two_passes_by_hand) {
   EXPECT_EQ(averaged.bytes, 2 * own.bytes);
 }
 
-/// A hexahedron whose Gauss points are in order may have a corner that is not. Tetrahedra refuse it by name.
+/// A hexahedron with valid Gauss points may have an inverted corner, which tetrahedra reject by name.
 TEST(TetrahedraTest, corners_without_volume_are_refused) {
   const Mesh mesh = macneal_harder_patch();
   const auto law = sample_law<NeoHookean>(0.49);

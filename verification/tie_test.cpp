@@ -1,4 +1,4 @@
-/// Tied parts with meshes that do not match: which nodes follow which, the same answer as hanging nodes,
+/// Tied parts whose meshes do not match: which nodes follow which, the same answer as with hanging nodes,
 /// wrong input.
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// A lower box and one on it, with nodes of its own.
+/// A box on top of another, with nodes of its own.
 Mesh two_boxes(const std::array<int, 3>& lower, const std::array<int, 3>& upper) {
   Mesh mesh = box({1, 1, 1}, lower);
   const Mesh other = box({1, 1, 1}, upper);
@@ -29,7 +29,7 @@ Mesh two_boxes(const std::array<int, 3>& lower, const std::array<int, 3>& upper)
   return mesh;
 }
 
-/// They are tied where they meet, held below and moved above, with further tables.
+/// Tables that tie the boxes, hold them below and move them above, followed by `more`.
 std::string tables(const std::string& more) {
   return R"(
 [sets]
@@ -65,7 +65,7 @@ Scene tied_boxes(const std::array<int, 3>& lower, const std::array<int, 3>& uppe
   return scene_of(two_boxes(lower, upper), more);
 }
 
-/// Every node of the upper part at the face, and no other, follows the face below it, as a linear field does.
+/// Nodes of the upper part on the common face, and no others, follow the face below like a linear field.
 TEST(Tie, follows_linear_fields) {
   const Scene scene = tied_boxes({2, 2, 2}, {3, 3, 3});
   ASSERT_EQ(scene.ties.size(), 16u);
@@ -83,9 +83,9 @@ TEST(Tie, follows_linear_fields) {
   }
 }
 
-/// Where the nodes of the lower face are among those of the upper one, tied parts are a refined mesh with
-/// hanging nodes: the same equilibrium, up to the residual of 1e-8 that each is left with, times ten for its
-/// condition.
+/// If the nodes of the lower face are among those of the upper one, tied parts equal a refined mesh with
+/// hanging nodes: the same equilibrium, up to the residual of 1e-8 of each, times ten for the condition
+/// number.
 TEST(Tie, has_the_answer_of_hanging_nodes) {
   const Scene scene = tied_boxes({2, 2, 2}, {4, 4, 4});
   const Scene refined = scene_of(box({1, 1, 2}, {2, 2, 4}), "[[refine]]\nelements = \"upper\"\n");
@@ -105,8 +105,8 @@ TEST(Tie, has_the_answer_of_hanging_nodes) {
   }
 }
 
-/// Parts that do not match are joined all the same: the body stores as much energy as one mesh does, up to
-/// what the upper part's finer mesh changes (.4 %); parts that are not joined store none.
+/// Parts that do not match are joined too: the body stores as much energy as one mesh does, up to the effect
+/// of the upper part's finer mesh (.4 %); unjoined parts would store none.
 TEST(Tie, joins_parts_that_do_not_match) {
   const Scene scene = tied_boxes({4, 4, 4}, {5, 5, 5});
   const Scene whole = scene_of(box({1, 1, 2}, {4, 4, 8}), "");

@@ -21,7 +21,7 @@ constexpr double oracle_tolerance = 1e-10;
 template <class Method>
 class TimeOracleTest : public ::testing::Test {
  protected:
-  /// Elements of an adaptive method keep their levels at this accuracy.
+  /// At this accuracy, elements of an adaptive method keep their levels.
   static MethodChoice choice() { return {.method = std::string(Method::name), .accuracy = 1.0}; }
 };
 
@@ -38,9 +38,9 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
   return a;
 }
 
-/// A block of distorted elements on its foot: its head is driven sideways and up, what is between starts with
-/// a velocity and a spin, and a force pulls at a side. All that a dynamic case can say takes part, `size`
-/// times.
+/// A block of distorted elements on its foot: the head is driven sideways and up, the middle starts with a
+/// velocity and a spin, and a force pulls at a side. It uses every feature of a dynamic case, all values
+/// scaled by `size`.
 Scene shaken_block(const NeoHookean& law, double damping, double size) {
   Case description = plain_case(law, density);
   description.quasi_static = false;
@@ -62,16 +62,16 @@ Scene shaken_block(const NeoHookean& law, double damping, double size) {
   return make_scene(description, mesh, sets);
 }
 
-/// Distances to the oracle's motion with steps dt, dt/2 and dt/4, and what is left of them when their linear
-/// part is taken away: with e = A dt + B dt^2 + ..., 2 e(dt/2) - e(dt) = -B dt^2 / 2 + ...
+/// Distances to the oracle's motion with steps dt, dt/2 and dt/4, and their remainder without the linear
+/// part: with e = A dt + B dt^2 + ..., 2 e(dt/2) - e(dt) = -B dt^2 / 2 + ...
 class Convergence {
  public:
   void add(std::vector<double> error) { errors_.push_back(std::move(error)); }
 
-  /// Of the error of the two finest steps.
+  /// The order of the error between the two finest steps.
   double order() const { return std::log2(norm(errors_[1]) / norm(errors_[2])); }
 
-  /// Of the error without its linear part.
+  /// The order of the error without its linear part.
   double order_beyond_first() const {
     return std::log2(norm(difference(twice(errors_[1]), errors_[0])) /
                      norm(difference(twice(errors_[2]), errors_[1])));
@@ -88,19 +88,18 @@ class Convergence {
   std::vector<std::vector<double>> errors_;
 };
 
-/// Halving the step twice. The scheme is its own mirror image in time, so that its error has even powers of
-/// the step alone; the second power is the phase error (omega dt)^2 / 24 per radian. Over 30 radians of the
-/// fastest mode that there may be, 2 / dt_stable, with omega dt = 1/8 in the middle run, it is .02 rad of
-/// that mode, and the next terms are smaller than the first by as much: they change the order by log2(1 + 3/4
-/// * .02) = .022 at most where nothing cancels. The slow modes that carry most of the motion are nearer to 2.
+/// The step is halved twice. The scheme is symmetric in time, so its error has only even powers of the step;
+/// the second power is the phase error (omega dt)^2 / 24 per radian. Over 30 radians of the fastest mode
+/// possible, 2 / dt_stable, with omega dt = 1/8 in the middle run, it is .02 rad of that mode, and the next
+/// terms are smaller than the first by as much: they change the order by log2(1 + 3/4 * .02) = .022 at most
+/// where nothing cancels. The slow modes that carry most of the motion are closer to 2.
 ///
-/// Methods that remember integrate their history with the geometry at the end of the step, as Updated
-/// Lagrangian codes do, and viscous control takes velocities half a step old: both are of first order by
+/// Methods with memory integrate their history with the geometry at the end of the step, as Updated
+/// Lagrangian codes do, and viscous control uses velocities half a step old: both are of first order by
 /// design, with a small constant. Their limit is the same system with the history integrated in time; they
-/// must reach it, and what is left of the error without its linear part must be of second order. There the
-/// third power takes part, and log2(1 + dt C / B) is .1 where it is a fifteenth of the second. The linear
-/// part of a history is of the order of strain: in a motion of a ten-thousandth it is gone, and the order
-/// is 2.
+/// must reach it, and the error without its linear part must be of second order. Here the third power
+/// matters: log2(1 + dt C / B) is .1 where it is a fifteenth of the second. The linear part of a history is
+/// of the order of strain: it vanishes in a motion of a ten-thousandth, where the order is 2.
 TYPED_TEST(TimeOracleTest, converges_to_the_semi_discrete_motion) {
   struct Kind {
     std::string name;
@@ -127,7 +126,7 @@ TYPED_TEST(TimeOracleTest, converges_to_the_semi_discrete_motion) {
       u.add(difference(flat(motion.u), reference.u));
       v.add(difference(flat(motion.v), reference.v));
     }
-    // The oracle's own error, from a hundredth of its tolerance, plays no part.
+    // The oracle's own error, estimated with a hundredth of its tolerance, is negligible.
     EXPECT_LT(norm(difference(reference.u, finer.u)), 1e-4 * u.finest());
     EXPECT_LT(norm(difference(reference.v, finer.v)), 1e-4 * v.finest());
     EXPECT_LT(u.finest(), 1e-3 * norm(reference.u));
@@ -179,8 +178,8 @@ struct Bar {
   double strain;         ///< largest
 };
 
-/// How much of the bar's mode cos(pi z / L) is in a field: its amplitude by the masses, and the norm of what
-/// is left, per node.
+/// The part of a field in the bar's mode cos(pi z / L): its amplitude by the masses, and the norm of the
+/// remainder per node.
 struct Modal {
   double amplitude;
   double rest;
@@ -199,17 +198,17 @@ Modal in_mode(const Scene& scene, double length, const std::vector<double>& mass
   return {product / square, norm(field) / std::sqrt(static_cast<double>(masses.size()))};
 }
 
-/// One period of the bar. In space: a mesh of equal elements is a chain of masses and springs, of which
-/// cos(pi z / L) is a mode with omega_h = 2 c / h sin(pi h / 2 L), slow by s = (pi h / L)^2 / 24. In time:
-/// central differences follow a mode with sin(phi / 2) = omega_h dt / 2 per step,
+/// One period of the bar. In space: a mesh of equal elements is a chain of masses and springs with the mode
+/// cos(pi z / L) and omega_h = 2 c / h sin(pi h / 2 L), slow by s = (pi h / L)^2 / 24. In time: central
+/// differences follow a mode with sin(phi / 2) = omega_h dt / 2 per step,
 ///   u_n = v0 dt sin(n phi) / sin(phi),   v_n = v0 cos(n phi),
 /// fast by (omega dt)^2 / 24, and the energy of u_n and of the product of v_n-1/2 and v_n+1/2 is constant.
-/// SUNDIALS on the same mesh tells the two apart. What is not linear enters amplitudes with the square of the
-/// strain, 3e-11, ten of which are allowed, and the rest of the field and the energy with the strain itself.
-/// A phase read from u and v is off by 3 s of itself, for in u the amplitude has an error of the same order.
+/// SUNDIALS on the same mesh separates the two errors. Nonlinearity changes amplitudes by the square of the
+/// strain, 3e-11, ten times which is allowed, and the rest of the field and the energy by the strain itself.
+/// The phase of u and v is off by 3 s of itself, since the amplitude of u has an error of the same order.
 ///
-/// Where pressures are averaged over nodes the bar is no chain: pressures of neighbours push its sides, and
-/// what is left is that the error in space is of second order, and the one in time as before.
+/// If pressures are averaged over nodes the bar is no chain, since pressures of neighbours push its sides;
+/// then the error in space must still be of second order, and the error in time as before.
 TYPED_TEST(TimeOracleTest, bar_wave_has_the_errors_of_theory) {
   constexpr bool chain = !FormulationOf<TypeParam, NeoHookean>::averages_over_nodes;
   std::array<double, 2> lag{};  // of the mesh, rad
@@ -298,16 +297,16 @@ double distance(const Vector& a, const Vector& b) {
   return size({a[0] - b[0], a[1] - b[1], a[2] - b[2]});
 }
 
-/// A distorted block flies and spins, at half the stable step. Forces of an element sum up to nothing and so
-/// do their moments about the current places, so that central differences keep two sums exactly: m v(n-1/2),
-/// and m x(n) x v(n-1/2) = m x(n-1) x v(n-1/2). Between the half steps v(n) = v(n-1/2) + dt/2 a(n), and what
-/// the accelerations at n add to either sum is nothing: the sums of what a frame holds, x and v of one time,
-/// are the scheme's own. Velocities of another time would change the second with the period of the vibration.
-/// What is left is roundoff, of either sign: sums of absolute values times eps times the root of the number
-/// of steps, times four for the roundings of a step and of these sums.
+/// A distorted block flies and spins, at half the stable step. The forces of an element sum to zero, and so
+/// do their moments about current positions, so that central differences conserve two sums exactly: m
+/// v(n-1/2), and m x(n) x v(n-1/2) = m x(n-1) x v(n-1/2). Between the half steps v(n) = v(n-1/2) + dt/2 a(n),
+/// and the accelerations at n contribute nothing to either sum: the sums over a frame, with x and v at the
+/// same time, equal the scheme's. Velocities at another time would make the second oscillate with the
+/// vibration. What remains is roundoff of either sign: sums of absolute values times eps times the root of
+/// the number of steps, times four for the roundings of a step and of these sums.
 ///
-/// Updated Lagrangian methods keep both too, as long as they fly: the turned history feeds a spinning body
-/// with energy in proportion to the step, until they break down after 10,000 to 25,000 of these steps.
+/// Updated Lagrangian methods conserve both too while they last: the turned history adds energy to a spinning
+/// body in proportion to the step, until they fail after 10,000 to 25,000 of these steps.
 TYPED_TEST(TimeOracleTest, spinning_block_keeps_its_momenta) {
   constexpr int steps = detail::path_independent<TypeParam> ? 100000 : 5000;
   const NeoHookean law = sample_law<NeoHookean>(0.45);
@@ -337,7 +336,7 @@ TYPED_TEST(TimeOracleTest, spinning_block_keeps_its_momenta) {
   for (const auto& frame : recorder.frames) {
     const Momenta now = momenta(body.masses(), scene.mesh.points, frame);
     EXPECT_LT(distance(now.linear, start.linear), roundoff * now.linear_size);
-    // Small-strain theory balances moments about the places at rest.
+    // Small-strain theory balances moments about the undeformed positions.
     if (!is_linear<TypeParam>) {
       EXPECT_LT(distance(now.angular, start.angular), roundoff * (start.angular_size + now.angular_size));
     }

@@ -1,5 +1,5 @@
-/// The estimate against the truth: its indicators, the meshes that follow from them, and its distance from
-/// stored truths.
+/// The estimated distance from the truth: its indicators, the meshes that follow from them, and its agreement
+/// with stored truths.
 
 #include "comparison/truth_estimate.hpp"
 
@@ -66,8 +66,8 @@ CaseOnMesh split(CaseOnMesh problem, std::vector<int> elements) {
   return problem;
 }
 
-/// A displacement that is linear in each material has no error, though its gradient jumps where they meet and
-/// nodes hang there.
+/// A displacement that is linear in each material has no error, although its gradient jumps between them and
+/// the interface has hanging nodes.
 TEST(ErrorIndicators, vanish_where_each_material_has_one_gradient) {
   const Scene scene = make_scene(split(two_layers(), {0, 5}));
   ASSERT_FALSE(scene.ties.empty());
@@ -81,8 +81,8 @@ TEST(ErrorIndicators, vanish_where_each_material_has_one_gradient) {
   for (const double indicator : error_indicators(scene, u)) EXPECT_LT(indicator, 1e4 * eps * eps);
 }
 
-/// u_x = x^2 / 2 on two elements in a row of length one half: their mean gradients are .25 and .75, recovered
-/// are .25, .5 and .75; each has half its corners in the middle, where the distance is .25.
+/// u_x = x^2 / 2 on two elements of length one half in a row: mean gradients are .25 and .75, recovered ones
+/// .25, .5 and .75; each element has half its corners in the middle, where the distance is .25.
 TEST(ErrorIndicators, are_the_squared_distance_from_recovered_gradients) {
   const Scene scene = make_scene(plain_case(NeoHookean{}), box({1, 1, 1}, {2, 1, 1}));
   NodalField u;
@@ -100,7 +100,7 @@ TEST(LargestShare, takes_the_fewest_elements) {
   EXPECT_TRUE(largest_share({0, 0}, 0.5).empty());
 }
 
-/// Stepwise refinement gives the same scene as the case file, with its sets, materials and ties.
+/// Stepwise refinement gives the same scene as the case file, including sets, materials and ties.
 TEST(Refined, is_the_case_with_one_more_rule) {
   const CaseOnMesh first = split(two_layers(), {1, 6});
   const Scene once = make_scene(first), twice = make_scene(split(first, {4}));
@@ -129,7 +129,7 @@ TEST(Refined, wrong_numbers_are_refused) {
   EXPECT_NE(message("numbers = [1]\ndepth = 2\n").find("depth"), std::string::npos);
 }
 
-/// The coarse field stays what it is.
+/// The field on the coarse mesh is unchanged.
 TEST(Prolonged, keeps_linear_fields) {
   const Scene coarse = make_scene(two_layers()), fine = make_scene(split(two_layers(), {2, 7}));
   const Tensor<double> H{{.1, .2, -.3, .4, .5, .6, -.7, .8, .9}};
@@ -142,7 +142,7 @@ TEST(Prolonged, keeps_linear_fields) {
             16 * eps);
 }
 
-/// From near the answer the search finds it in fewer evaluations, and from nonsense at all.
+/// A search finds the answer from a close guess in fewer evaluations, and even from a useless one.
 TEST(Relax, starts_near_a_guess) {
   const Scene scene = make_scene(split(two_layers(), {4, 5}));
   const Model model(scene, {"tl-mean-dilatation"});
@@ -153,8 +153,8 @@ TEST(Relax, starts_near_a_guess) {
   const Relaxation near = relax(model, quiet, nullptr, &guess);
   for (Vector& u : guess) u[2] *= -20.0;  // elements are inverted
   const Relaxation from_nonsense = relax(model, quiet, nullptr, &guess);
-  // A residual of 1e-8 leaves displacements of about as much of the imposed ones; ten times for its
-  // condition.
+  // A residual of 1e-8 leaves an error of about that fraction of the imposed displacements; ten times for the
+  // condition number.
   const double tolerance = 10.0 * scene.settings.relaxation.tolerance * largest_imposed(scene);
   EXPECT_TRUE(near.converged);
   EXPECT_LT(near.steps, from_rest.steps);
@@ -163,8 +163,8 @@ TEST(Relax, starts_near_a_guess) {
   EXPECT_LT(largest_distance(from_nonsense.u, from_rest.u), tolerance);
 }
 
-/// Interpolated displacements leave the volume of a split element as it was, so that the mean of its parts'
-/// pressures is its own, to the roundoff of volumes, which are in single precision.
+/// Interpolated displacements do not change the volume of a split element, so the mean of its parts'
+/// pressures is its own, up to roundoff of volumes, which are in single precision.
 TEST(MixedBody, averages_to_the_pressures_of_the_mesh_before) {
   const CaseOnMesh column = case_named("column");
   const Scene coarse = make_scene(column), fine = make_scene(split(column, {0, 5, 60}));
@@ -187,8 +187,8 @@ TEST(MixedBody, averages_to_the_pressures_of_the_mesh_before) {
     EXPECT_NEAR(after[e], before[index(element_of[e])], 1e-6 * lambda) << e;
 }
 
-/// The answer on the mesh before a split leads to the answer after it, though parts of elements would change
-/// their volumes: in less than half the evaluations that the way from rest takes.
+/// The answer before a split is a good guess for the answer after it, though parts of elements change their
+/// volumes: the search takes less than half the evaluations of one from the undeformed shape.
 TEST(Relax, starts_from_the_answer_on_the_mesh_before) {
   const CaseOnMesh column = case_named("column");
   const Scene coarse = make_scene(column);
@@ -204,8 +204,8 @@ TEST(Relax, starts_from_the_answer_on_the_mesh_before) {
             10.0 * fine.settings.relaxation.tolerance * largest_imposed(fine));
 }
 
-/// Between half and twice the error against the stored truth, largest and mean, for an accurate method and a
-/// poor one. The truths' own errors are within a third of these errors.
+/// Between half and twice the error against the stored truth, largest and mean, for an accurate and a poor
+/// method. The truths' own errors are within a third of these errors.
 TEST(TruthEstimate, is_about_the_error) {
   for (const auto* name : {"column", "twist", "stiff-core", "pressed-beam", "ellipsoid-touch"}) {
     const CaseOnMesh problem = case_named(name);
@@ -226,8 +226,8 @@ TEST(TruthEstimate, is_about_the_error) {
   }
 }
 
-/// As many refinements as the accuracy takes, none where it takes none. Against the stored truth, whose bar
-/// is 1e-4 of the unit, errors are within what was asked for; the estimate is the distance from the limit.
+/// As many refinements as the accuracy needs, or none. Against the stored truth, whose uncertainty is 1e-4 of
+/// the unit, errors are within the requested accuracy; the estimate is the distance from the limit.
 TEST(RefineUntilWithin, refines_no_more_than_is_asked) {
   const CaseOnMesh problem = case_named("column");
   const Scene scene = make_scene(problem);
@@ -246,8 +246,8 @@ TEST(RefineUntilWithin, refines_no_more_than_is_asked) {
   }
 }
 
-/// An answer that is asked for less exactly is searched for less long, and no farther from the equilibrium on
-/// its mesh than a fifth of the accuracy: the residual that is left, a tenth, moves nodes by about as much.
+/// With a lower accuracy the search ends earlier, but within a fifth of the accuracy from the equilibrium on
+/// its mesh: the residual, a tenth, leaves about that much displacement.
 TEST(RefineUntilWithin, searches_as_long_as_the_accuracy_needs) {
   const AccurateMesh found = refine_until_within(0.1, case_named("ellipsoid-touch"), 1);
   const NodalField exact = at_rest(found.scene, {"tl-mean-dilatation"}).u;

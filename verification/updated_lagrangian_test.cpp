@@ -1,5 +1,5 @@
-/// The Updated Lagrangian methods: common properties with Total Lagrangian ones, and how far apart the two
-/// may be.
+/// The Updated Lagrangian methods: properties that they share with Total Lagrangian ones, and the allowed
+/// difference between the two.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ Tensor<double> turn_about_z(double angle) {
   return {{std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1}};
 }
 
-/// Simultaneous stretch and rotation: F(s) on the path from I.
+/// Simultaneous stretch and rotation: F(s) on a path that starts at I.
 Tensor<double> on_the_way(double s) {
   const Tensor<double> stretch{{1 + 0.4 * s, 0.2 * s, 0, 0, 1 - 0.2 * s, 0.1 * s, 0, 0, 1 + 0.1 * s}};
   return turn_about_z(1.5 * s) * stretch;
@@ -55,7 +55,7 @@ NodalField turned(const NodalField& field, const Tensor<double>& R) {
   return result;
 }
 
-/// A step (s) so short that viscous controls would show: a wave needs about a tenth of a second to pass an
+/// A step (s) short enough for viscous controls to matter: a wave needs about a tenth of a second to cross an
 /// element.
 constexpr double short_step = 1e-3;
 
@@ -69,8 +69,8 @@ class UpdatedLagrangianTest : public ::testing::Test {
 
   static MethodChoice chosen() { return method(MethodType::name); }
 
-  /// Roundoff of a force on an element: as in the tests of single elements, the stiffness, viscous part
-  /// included, times what displacements are known to.
+  /// Roundoff of a force on an element: as in the tests of single elements, the stiffness, with its viscous
+  /// part, times roundoff of displacements.
   static double tolerance(const Element& element, const NodalVectors<double>& X) {
     return 256 * eps * element.stiffness_bound() * 3.0 * largest_entry(X);
   }
@@ -80,9 +80,9 @@ class UpdatedLagrangianTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(UpdatedLagrangianTest, UpdatedLagrangianTypes, EntryName);
 
-/// The patch test of a method that integrates: along an affine path of a distorted mesh no hourglass velocity
-/// arises, so that at its end the forces are those of the Total Lagrangian element, V h P^T, and the inner
-/// nodes feel none. Roundoff of 400 steps: each leaves eps of the coordinates in the resistances.
+/// The patch test of a method that integrates: an affine path of a distorted mesh has no hourglass
+/// velocities, so that in the end forces are those of the Total Lagrangian element, V h P^T, and vanish at
+/// the inner nodes. Roundoff of 400 steps: each adds eps of the coordinates to the resistances.
 TYPED_TEST(UpdatedLagrangianTest, affine_path_passes_the_patch_test) {
   const Mesh mesh = macneal_harder_patch();
   Path updated(mesh, law, this->chosen());
@@ -110,9 +110,9 @@ TYPED_TEST(UpdatedLagrangianTest, rigid_rotation_gives_no_force) {
   }
 }
 
-/// A bent element that turns by 90 degrees keeps its forces and takes them along. The spin of one step is
-/// taken at its end, sin(angle) for angle: the turn is short by angle^3/4 per step, that is by the square of
-/// the step in all. What remembers nothing must be exact: the turn of a bent element is affine too.
+/// A bent element that turns by 90 degrees keeps its forces, which turn with it. The spin of one step is
+/// evaluated at its end, sin(angle) for angle: the turn is short by angle^3/4 per step, so by the square of
+/// the step in total. Methods without memory must be exact: the turn of a bent element is affine too.
 TYPED_TEST(UpdatedLagrangianTest, resistances_turn_with_the_element) {
   const Mesh mesh = box({1, 1, 1}, {1, 1, 1});
   NodalField bent;
@@ -166,8 +166,8 @@ TYPED_TEST(UpdatedLagrangianTest, forces_balance_momentum_and_angular_momentum) 
   }
 }
 
-/// In one step from rest the resistances do the work 2 E, E what the control says it stores; the damper, at
-/// rest, none.
+/// In one step from the undeformed shape the resistances do the work 2 E, where E is the energy that the
+/// control reports; without velocity, the damper does none.
 TYPED_TEST(UpdatedLagrangianTest, stores_the_work_of_one_step) {
   for (int n = 0; n < 20; ++n) {
     const auto X = this->random.hexahedron();
@@ -206,9 +206,9 @@ TYPED_TEST(UpdatedLagrangianTest, node_ordering_does_not_matter) {
   }
 }
 
-/// The bound of the stable step at its own step: velocities are taken half a step late, so that the scheme
-/// needs lambda_max(K + 2/dt D) <= 4 m / dt^2 = bound, D the damping. The kernel on dual numbers, in one step
-/// from rest at the inverse step 2/dt, gives that sum. A bound that is huge would pass without the mean.
+/// The bound of the stable step at its own step: velocities are half a step late, so that stability requires
+/// lambda_max(K + 2/dt D) <= 4 m / dt^2 = bound, D the damping. The kernel on dual numbers, in one step from
+/// the undeformed shape with the inverse step 2/dt, gives that sum. The mean rejects bounds that are huge.
 TYPED_TEST(UpdatedLagrangianTest, bound_of_the_stable_step_holds) {
   using DualElement = SingleElement<typename TestFixture::Kernel, NeoHookean, D>;
   for (const double kappa : {0.1, 1.0}) {
@@ -241,7 +241,7 @@ TYPED_TEST(UpdatedLagrangianTest, bound_of_the_stable_step_holds) {
   }
 }
 
-/// Forces at strains of eps: geometry of the reference and of the current configuration differ by eps.
+/// Forces at strains of eps: the reference and current geometries differ by eps.
 TYPED_TEST(UpdatedLagrangianTest, forces_agree_with_total_lagrangian_to_first_order) {
   using TotalKernel = NodalForm<FormulationOf<typename TypeParam::AtSmallStrain, NeoHookean>>;
   for (int n = 0; n < 20; ++n) {
@@ -260,7 +260,7 @@ TYPED_TEST(UpdatedLagrangianTest, forces_agree_with_total_lagrangian_to_first_or
 }
 
 /// A cantilever bent far: the two formulations measure hourglass modes in the reference and in the current
-/// configuration, which is a difference of first order in strain of a small force.
+/// configuration, a difference of first order in strain of a small force.
 Scene bent_cantilever(double deflection) {
   Case description = plain_case(law);
   const Mesh mesh = box({1.0, 0.2, 0.2}, {10, 2, 2});
@@ -294,7 +294,7 @@ TEST(UpdatedLagrangian, agrees_with_total_lagrangian_to_first_order_in_strain) {
   });
 }
 
-/// At strains of tens of percent the difference is less than what kappa a quarter larger or smaller makes:
+/// At strains of tens of percent the difference is less than that of a kappa larger or smaller by a quarter:
 /// the current geometry scales the stiffness of the modes by about the square of a stretch.
 TEST(UpdatedLagrangian, differs_less_than_kappa_by_a_quarter) {
   const Scene scene = bent_cantilever(0.2);

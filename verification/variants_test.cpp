@@ -11,7 +11,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// A file with two axes; "size" stands first in the file, though last in the alphabet.
+/// A file with two axes; "size" is first in the file but last in the alphabet.
 const std::string varied =
     replaced(box_case("bar", "[1.0, 1.0, 3.0]", "[1, 1, 1]"), "poisson_ratio = 0.49\n", "") + R"([sets]
 bottom = { z = [0.0, 0.0] }
@@ -74,7 +74,7 @@ TEST(Variants, every_combination_is_a_case_with_its_own_keys) {
   EXPECT_NE(read_scene(cases[0]).case_hash, read_scene(cases[1]).case_hash);
 }
 
-/// A variant equals the case of a separate file.
+/// A variant equals the same case in a separate file.
 TEST(Variants, variant_has_the_hash_of_the_same_case_in_a_file_of_its_own) {
   const TemporaryFolder folder;
   const auto cases = read_cases(folder.write("bar.toml", varied));

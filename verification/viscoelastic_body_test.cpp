@@ -35,8 +35,8 @@ class ViscoelasticBodyTest : public ::testing::Test {
 
 TYPED_TEST_SUITE(ViscoelasticBodyTest, ViscoelasticMethodTypes, EntryName);
 
-/// A distorted element under a uniform strain, held: every method answers with f = V h P^T of the relaxing
-/// stress. An element whose points share a memory, or that takes it one step too far, fails here.
+/// A distorted element held at a uniform strain: every method has the forces V h P^T of the relaxing stress.
+/// An element whose points share a memory, or whose memory is a step ahead, fails here.
 TYPED_TEST(ViscoelasticBodyTest, uniform_strain_relaxes_as_the_law) {
   RandomGeometry random(41);
   for (int n = 0; n < 10; ++n) {
@@ -65,8 +65,7 @@ TYPED_TEST(ViscoelasticBodyTest, uniform_strain_relaxes_as_the_law) {
       const auto mean = mean_gradient(X);
       const auto exact = mean.h * (mean.volume * transpose(P));
       const NodalField force = path.to(u, dt);
-      // As in the tests of single elements: displacements known to eps of the coordinates met, times
-      // stiffness.
+      // As in the tests of single elements: displacements rounded to eps of the coordinates, times stiffness.
       const double tolerance = 512 * eps * bound[0] * 3.0 * largest_entry(X);
       for (std::size_t I = 0; I < 8; ++I) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -77,7 +76,7 @@ TYPED_TEST(ViscoelasticBodyTest, uniform_strain_relaxes_as_the_law) {
   }
 }
 
-/// Without time a law has relaxed, whatever was before: a trial that gave no numbers leaves nothing behind.
+/// In static solutions a law is fully relaxed, whatever was before: a trial that failed leaves no trace.
 TYPED_TEST(ViscoelasticBodyTest, trials_without_numbers_are_forgotten_where_time_plays_no_part) {
   using Kernel = FormulationOf<TypeParam, NeoHookean>;
   if constexpr (Kernel::remembers || Kernel::needs_increment) return;  // its control depends on the path
@@ -90,10 +89,10 @@ TYPED_TEST(ViscoelasticBodyTest, trials_without_numbers_are_forgotten_where_time
   EXPECT_EQ(spoilt.to(u), fresh.to(u));
 }
 
-/// A cube between rigid planes, thrown along z: uniaxial strain, one degree of freedom with the mass rho
-/// h^3/2 and the complex modulus M(s) = K + 4/3 mu (g_inf + sum_i g_i s tau_i / (1 + s tau_i)). With N = (1 +
-/// s tau_1)(1 + s tau_2) its motion is u = v0 sum_j m N(s_j) / D'(s_j) exp(s_j t) over the four roots of the
-/// polynomial D = (m s^2 + h M) N.
+/// A cube between rigid planes with an initial velocity along z: uniaxial strain, one degree of freedom with
+/// the mass rho h^3/2 and the complex modulus M(s) = K + 4/3 mu (g_inf + sum_i g_i s tau_i / (1 + s tau_i)).
+/// With N = (1 + s tau_1)(1 + s tau_2) its motion is u = v0 sum_j m N(s_j) / D'(s_j) exp(s_j t) over the four
+/// roots of the polynomial D = (m s^2 + h M) N.
 class DampedCube {
  public:
   DampedCube(const Law& law, double h) : law_(law), h_(h) {
@@ -121,7 +120,7 @@ class DampedCube {
  private:
   using Complex = std::complex<double>;
 
-  /// All together, by the method of Durand and Kerner.
+  /// Finds all roots together, by the method of Durand and Kerner.
   void find_roots() {
     const double size = std::pow(D_[0] / D_[4], 0.25);
     for (std::size_t j = 0; j < 4; ++j)
@@ -144,7 +143,7 @@ class DampedCube {
   std::array<Complex, 4> roots_{};
 };
 
-/// Nodes move along z only; those at z = 0 are held.
+/// Nodes move only along z; those at z = 0 are held.
 Scene sliding_bar(const Law& law, const Mesh& mesh, double speed) {
   Case description = plain_case(law, density);
   description.quasi_static = false;
@@ -162,7 +161,7 @@ TYPED_TEST(ViscoelasticBodyTest, oscillation_is_damped_as_in_closed_form) {
   const double omega = std::sqrt(2.0 * p_wave_modulus(law) / (density * h * h));
   law.time_1 = 0.3 / omega;
   law.time_2 = 3.0 / omega;
-  const double speed = 1e-6 * h * omega;  // small: the nonlinearity stays below 1e-5 of the answer
+  const double speed = 1e-6 * h * omega;  // small: nonlinearity changes less than 1e-5 of the answer
   const double duration = 8.0 / omega;
   const double exact = DampedCube(law, h).displacement(speed, duration);
   std::array<double, 3> error{};
@@ -187,7 +186,7 @@ Law quick_law() {
   return law;
 }
 
-/// A bar of four elements whose strains are uniform in each: there is nothing for the methods to differ in.
+/// A bar of four elements with uniform strains in each, for which all methods are equal.
 Scene plane_waves() {
   Scene scene = sliding_bar(quick_law(), box({0.05, 0.05, 0.2}, {1, 1, 4}), 0.5);
   const Model probe(scene, {"tl-full"});
@@ -198,19 +197,19 @@ Scene plane_waves() {
 
 TYPED_TEST(ViscoelasticBodyTest, plane_waves_are_those_of_every_method) {
   if constexpr (FormulationOf<TypeParam, Law>::averages_over_nodes)
-    return;  // pressures meet their neighbours'
+    return;  // pressures depend on those of neighbours
   const Scene scene = plane_waves();
   Observer silent;
   const Motion motion = integrate(this->model(scene), silent);
   const Motion golden = integrate(Model(scene, {"tl-mean-dilatation"}), silent);
   const double size = largest_distance(golden.u, NodalField(golden.u.size()));
   EXPECT_GT(size, 1e-4);
-  // Roundings of 2000 steps, each with eps of the displacement, swung through a few hundred radians.
+  // Roundings of 2000 steps, each eps of the displacement, over a swing of a few hundred radians.
   EXPECT_LT(largest_distance(motion.u, golden.u), 1e-10 * size);
 }
 
-/// A body left to itself loses energy, and what it stores is never negative. Central differences let the sum
-/// swing by about (omega dt)^2 / 4 of it, 1 % at a tenth of the stable step.
+/// A free body loses energy, and never stores a negative one. With central differences the sum oscillates by
+/// about (omega dt)^2 / 4 of itself, 1 % at a tenth of the stable step.
 TYPED_TEST(ViscoelasticBodyTest, free_oscillation_loses_energy) {
   const Scene scene = plane_waves();
   Recorder recorder;
@@ -225,7 +224,7 @@ TYPED_TEST(ViscoelasticBodyTest, free_oscillation_loses_energy) {
   EXPECT_LT(total_energy(recorder.rows.back()), 0.5 * start);
 }
 
-/// Single precision: as for elastic bodies eps per step and radian, and the memories' u |Q| per step, which
+/// Single precision: as for elastic bodies, eps per step and radian, plus the memory's u |Q| per step, which
 /// is below the stress.
 TYPED_TEST(ViscoelasticBodyTest, single_precision_stays_within_its_budget) {
   const Scene scene = plane_waves();
@@ -234,19 +233,19 @@ TYPED_TEST(ViscoelasticBodyTest, single_precision_stays_within_its_budget) {
   const Motion rounded = integrate(this->model(scene, Precision::single_precision), silent);
   ASSERT_EQ(exact.steps, rounded.steps);
   const double u = 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
-  const double budget = 4.0 * u * static_cast<double>(exact.steps) * 0.05;  // m, that the bar swings
+  const double budget = 4.0 * u * static_cast<double>(exact.steps) * 0.05;  // m, amplitude .05
   EXPECT_LT(largest_distance(exact.u, rounded.u), budget);
   EXPECT_GT(largest_distance(exact.u, rounded.u), 0.0);
 }
 
-/// The neo-Hookean law that the viscoelastic one is when all has relaxed.
+/// The neo-Hookean law to which the viscoelastic one relaxes.
 NeoHookean long_term_law(const Law& law) {
   const double mu = law.remaining_share() * law.shear_modulus(), K = law.bulk_modulus();
   return {.young_modulus = 9 * K * mu / (3 * K + mu), .poisson_ratio = (3 * K - 2 * mu) / (2 * (3 * K + mu))};
 }
 
-/// A control keeps its instantaneous stiffness; these kappas give it the same with both laws. None where a
-/// method takes none.
+/// A control keeps its instantaneous stiffness; with these kappas it has the same stiffness for both laws.
+/// Empty for methods without a kappa.
 struct SameStiffness {
   std::optional<double> viscoelastic;
   std::optional<double> relaxed;
@@ -262,8 +261,8 @@ SameStiffness same_stiffness(const Law& law) {
   return kappa;
 }
 
-/// Whether two laws can be compared at strains that are not uniform: not where a control follows the
-/// instantaneous moduli and nothing can be done about it.
+/// Whether two laws can be compared at strains that are not uniform: not if a control depends on the
+/// instantaneous moduli without a kappa to compensate for it.
 template <class Method>
 inline constexpr bool comparable = !Method::Hourglass::traits.active || Method::Hourglass::traits.takes_kappa;
 
@@ -277,7 +276,7 @@ Scene bent_block(const AnyLaw& law) {
   return make_scene(description, mesh, sets);
 }
 
-/// Without time, forces and energies equal the elastic body's with the relaxed shear modulus.
+/// In static solutions, forces and energies equal the elastic body's with the relaxed shear modulus.
 TYPED_TEST(ViscoelasticBodyTest, without_time_it_is_the_elastic_body_with_the_relaxed_shear_modulus) {
   if constexpr (comparable<TypeParam>) {
     const Law law = sample_law<Law>(0.45);
@@ -302,7 +301,7 @@ template <class Method>
 class LongTermBodyTest : public ::testing::Test {};
 TYPED_TEST_SUITE(LongTermBodyTest, PathIndependentMethodTypes, EntryName);
 
-/// So are quasi-static answers, where there is but one: modes without energy may come to rest anywhere.
+/// So do quasi-static answers, if unique: modes without energy may end anywhere.
 TYPED_TEST(LongTermBodyTest, comes_to_rest_where_the_elastic_body_does) {
   if constexpr (knows_law<TypeParam, Law> && comparable<TypeParam> && zero_energy_modes<TypeParam>() == 6) {
     const Law law = sample_law<Law>(0.45);
@@ -379,10 +378,10 @@ TEST(ViscoelasticCase, wrong_parameters_are_refused_with_their_line) {
   EXPECT_TRUE(contains(time, "material.time_2 = 0 must be positive, as relaxation_2 = 0.3 is"));
 }
 
-/// A block of brain tissue, held from t = 0.2 s on after a ramp about 0.1 s. Being nearly incompressible it
-/// keeps its strains while it relaxes, and so springs lose energy as the squares of the exponentials. That
-/// the strains stay the same is true to the ratio of the moduli, K / mu = 50, with which the volumetric part
-/// follows.
+/// A block of brain tissue, held from t = 0.2 s on after a ramp centred at about 0.1 s. Being nearly
+/// incompressible, it keeps its strains while it relaxes, so springs lose energy as the squares of the
+/// exponentials. Strains are constant up to the ratio of the moduli, K / mu = 50, by which the volumetric
+/// part follows.
 TEST(ViscoelasticCase, held_brain_tissue_loses_the_energy_of_its_relaxation_times) {
   const Scene scene = read_scene(std::filesystem::path(SANDGLASS_SOURCE) / "cases" / "brain-hold.toml");
   const Law law = std::get<Law>(scene.materials.list.front().law);
@@ -394,7 +393,7 @@ TEST(ViscoelasticCase, held_brain_tissue_loses_the_energy_of_its_relaxation_time
   };
   const auto& last = recorder.rows.back();
   for (const auto& row : recorder.rows) {
-    if (row.time < 0.4) continue;  // waves of the ramp run
+    if (row.time < 0.4) continue;  // waves of the ramp are still running
     EXPECT_NEAR(row.strain / last.strain, springs(row.time) / springs(last.time), 0.02) << row.time;
   }
   EXPECT_GT(springs(0.4) / springs(2.0), 1.2);

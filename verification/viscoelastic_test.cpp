@@ -26,7 +26,7 @@ class ViscoelasticTest : public ::testing::Test {
  protected:
   using Law = Viscoelastic<Elastic>;
 
-  /// A point of the law, led along a path.
+  /// A point of the law, moved along a path.
   struct Point {
     Law law;
     ViscousMemory<double> memory{};
@@ -45,14 +45,14 @@ class ViscoelasticTest : public ::testing::Test {
 
   Tensor<double> large_gradient() { return random.deformation(0.5, 1.8) - identity<double>(); }
 
-  /// P when `share` of the isochoric stress is there.
+  /// P when only `share` of the isochoric stress remains.
   static Tensor<double> stress(const Law& law, const Tensor<double>& H, double share) {
     const Elastic& instantaneous = law;
     const double p = instantaneous.pressure(jacobian_minus_one(H));
     return share * instantaneous.isochoric_piola(H) + p * cofactor(identity<double>() + H);
   }
 
-  /// Roundoff of a stress; as for elastic laws.
+  /// Roundoff of a stress, as for elastic laws.
   static double tolerance(const Law& law, const Tensor<double>& H) {
     const Elastic& instantaneous = law;
     const auto bound = tangent_bound(instantaneous, H);
@@ -72,8 +72,8 @@ TYPED_TEST(ViscoelasticTest, name_and_parameters_are_the_laws_and_its_own) {
   static_assert(law_remembers<ViscoelasticLaw> && !law_remembers<TypeParam>);
 }
 
-/// Held still, a stress relaxes as the exponentials, whatever the steps; the first one, which goes there, is
-/// a ramp: of it (1 - exp(-x)) / x is left.
+/// At a held strain the stress relaxes exponentially, with any steps; the first step is a ramp, of which (1 -
+/// exp(-x)) / x remains.
 TYPED_TEST(ViscoelasticTest, held_strain_relaxes_as_the_exponentials) {
   const auto law = this->law();
   for (int n = 0; n < 50; ++n) {
@@ -119,8 +119,8 @@ TYPED_TEST(ViscoelasticTest, ramp_is_exact) {
   }
 }
 
-/// Between, the stress is taken to be linear in each step: second order, at large strains too. The integral
-/// by parts is h_i = g_i (S - int exp(-(t-s)/tau_i) S ds / tau_i), here with Simpson's rule.
+/// In general the stress is assumed linear in each step: second order, at large strains too. The integral by
+/// parts is h_i = g_i (S - int exp(-(t-s)/tau_i) S ds / tau_i), here with Simpson's rule.
 TYPED_TEST(ViscoelasticTest, converges_with_second_order) {
   const auto law = this->law();
   const TypeParam& elastic = law;
@@ -155,13 +155,13 @@ TYPED_TEST(ViscoelasticTest, converges_with_second_order) {
     error[level] = largest_entry(P - p * cofactor(identity<double>() + H) - exact);
   }
   EXPECT_LT(error[0], 1e-2 * law.shear_modulus());
-  // The path passes the place where fibres slacken: that step's error is dt^2 times a share that depends on
-  // where within the step the stress has its kink.
+  // On the path fibres slacken: the error of that step is dt^2 times a factor that depends on where in the
+  // step the stress has its kink.
   constexpr double width = slackens<TypeParam> ? 1.0 : 0.3;
   for (std::size_t level = 0; level < 2; ++level) EXPECT_NEAR(error[level] / error[level + 1], 4.0, width);
 }
 
-/// A body that turns, each step another way, while it deforms and relaxes: its stress turns with it.
+/// A body turns differently in each step while it deforms and relaxes: its stress turns with it.
 TYPED_TEST(ViscoelasticTest, stress_does_not_depend_on_the_observer) {
   const auto law = this->law();
   typename TestFixture::Point still{law}, turning{law};
@@ -177,7 +177,7 @@ TYPED_TEST(ViscoelasticTest, stress_does_not_depend_on_the_observer) {
   }
 }
 
-/// In no time the law is the elastic one; in infinite time what relaxes is gone, stress and energy.
+/// In no time the law is the elastic one; in infinite time the relaxing part is gone, in stress and energy.
 TYPED_TEST(ViscoelasticTest, limits_are_elastic) {
   const auto law = this->law();
   const TypeParam& elastic = law;
@@ -197,8 +197,8 @@ TYPED_TEST(ViscoelasticTest, limits_are_elastic) {
   }
 }
 
-/// At small strains stored energy is that of springs: a held strain's falls with the squares of the
-/// exponentials. It is 0 at rest and never negative.
+/// At small strains stored energy is that of springs: at a held strain it decays with the squares of the
+/// exponentials. It is 0 in the undeformed state and never negative.
 TYPED_TEST(ViscoelasticTest, stored_energy_is_that_of_the_springs) {
   const auto law = this->law();
   const TypeParam& elastic = law;
@@ -226,7 +226,7 @@ TYPED_TEST(ViscoelasticTest, stored_energy_is_that_of_the_springs) {
   }
 }
 
-/// The stress for Updated Lagrangian elements: tau = P F^T, and that of the elastic law if no time passes.
+/// The stress for Updated Lagrangian elements: tau = P F^T; the elastic law's if no time passes.
 TYPED_TEST(ViscoelasticTest, kirchhoff_stress_is_that_of_the_piola_stress) {
   const auto law = this->law();
   const TypeParam& elastic = law;
@@ -280,8 +280,8 @@ TYPED_TEST(ViscoelasticTest, tangent_bound_holds) {
   }
 }
 
-/// The factors of a step, from steps that vanish to infinite ones, against long double. The difference as
-/// written, 1 - (1 - e^-x)/x, would be off by eps/x.
+/// The factors of a step, from vanishing to infinite steps, against long double. The difference as written, 1
+/// - (1 - e^-x)/x, would have an error of eps/x.
 TEST(ViscousStepTest, factors_have_all_their_digits) {
   const double share = 0.45;
   for (double x = 1e-15; x < 1e3; x *= 1.3) {
@@ -315,10 +315,10 @@ TEST(ViscoelasticParameters, have_to_fit_together) {
   EXPECT_FALSE(law.broken_rule());
 }
 
-/// What has relaxed after 100,000 steps in single precision, with a strain that is held but trembles. Each
-/// step rounds Q a few times, u |Q| each, and an error lives for tau/dt steps: the sum of |Q| over the last
-/// min(n, tau/dt) steps bounds it. Terms go from 5,000 to 5e8 steps long; the last is slower than single
-/// precision can tell from 1 in exp(-dt/tau), and yet relaxes: kept as h_i it would stand still.
+/// Relaxation after 100,000 steps in single precision, at a held strain with a small vibration. Each step
+/// rounds Q a few times by u |Q|, and an error decays within tau/dt steps: the sum of |Q| over the last
+/// min(n, tau/dt) steps bounds it. Terms are 5,000 to 5e8 steps long; for the last, exp(-dt/tau) is 1 in
+/// single precision, and yet it relaxes: stored as h_i it would not.
 TEST(ViscoelasticPrecision, does_not_drift_in_a_hundred_thousand_steps) {
   constexpr double u = 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon());
   constexpr int steps = 100000;

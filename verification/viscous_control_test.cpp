@@ -23,9 +23,9 @@ double wave_speed() {
   return std::sqrt(p_wave_modulus(law) / density);
 }
 
-/// A free cube with hourglass velocities s Gamma_a along one axis, stepped as the scheme does with velocities
-/// half a step late: c = kappa/4 rho c_d h^2 gives forces 8 c s Gamma on masses rho h^3 / 8, a rate of
-/// 16 kappa c_d / h, so that each step leaves 1 - 16 kappa c_d dt / h of the velocity. Displacements of 1e-6
+/// A free cube with hourglass velocities s Gamma_a along one axis, stepped as in the scheme with velocities
+/// half a step late: c = kappa/4 rho c_d h^2 gives forces 8 c s Gamma on masses rho h^3 / 8, a rate of 16
+/// kappa c_d / h, so that each step leaves 1 - 16 kappa c_d dt / h of the velocity. Displacements of 1e-6
 /// change the shape, and with it the rate, by as much.
 TEST(ViscousControl, hourglass_velocities_decay_at_the_derived_rate) {
   const double h = 0.02;
@@ -54,7 +54,7 @@ TEST(ViscousControl, hourglass_velocities_decay_at_the_derived_rate) {
   }
 }
 
-/// The published coefficient is `auto`.
+/// `auto` is the published coefficient.
 TEST(ViscousControl, coefficient_is_that_of_other_programs) {
   const NodalVectors<double> X = (0.5 * 0.02) * corner_signs;
   const auto by_choice = Kernel::precompute(X, law, {0.1, density});
@@ -90,7 +90,7 @@ TEST(ViscousControl, takes_energy_and_never_gives_any) {
   }
 }
 
-/// Without time there is nothing to damp: bit by bit the element without control.
+/// In static solutions there is nothing to damp: bit by bit the element without control.
 TEST(ViscousControl, does_nothing_at_rest) {
   RandomGeometry random(32);
   for (int n = 0; n < 20; ++n) {
@@ -103,7 +103,7 @@ TEST(ViscousControl, does_nothing_at_rest) {
   }
 }
 
-/// Damping costs step size: at the limit of the undamped element the scheme grows, within its own it decays.
+/// Damping shortens the step: at the undamped limit the motion grows, within the damped limit it decays.
 TEST(ViscousControl, stable_step_knows_of_the_damping) {
   const double h = 0.02;
   const double kappa = 0.3;
@@ -127,9 +127,9 @@ TEST(ViscousControl, stable_step_knows_of_the_damping) {
   EXPECT_GT(amplitude_after(2 * std::sqrt(mass / free.stiffness_bound())), 1e-8);
 }
 
-/// A block thrown sideways, as in the tests of dynamics: what the damper takes is lost, so that kinetic and
-/// strain energy never rise above what they have been by more than the oscillation of (omega dt)^2 that a
-/// conserving method shows, and in the end some is gone.
+/// A block with a sideways initial velocity, as in the tests of dynamics: the damper dissipates, so that
+/// kinetic plus strain energy never exceeds earlier values by more than the oscillation of (omega dt)^2 of a
+/// conserving method, and in the end some is gone.
 TEST(ViscousControl, thrown_block_loses_energy) {
   Case description = plain_case(law, density);
   description.quasi_static = false;

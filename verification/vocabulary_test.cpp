@@ -1,5 +1,5 @@
-/// Every number type has the functions of scalar.hpp, and laws and elements give the same values on it as on
-/// doubles. Further parts of a type (lanes, a slope, a tally) are tested where they are used.
+/// Every number type has the functions of scalar.hpp, and gives laws and elements the same values as doubles.
+/// Other parts of a type (lanes, a slope, a tally) are tested where they are used.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ class Vocabulary : public ::testing::Test {
     return result;
   }
 
-  /// In steps of 2^-18, which every number type holds, so that all compute with the same input.
+  /// Multiples of 2^-18, which every number type represents, so that all compute with the same input.
   template <int R, int C>
   static Matrix<double, R, C> coarse(Matrix<double, R, C> a) {
     for (double& x : a.entries) x = std::round(x * 0x1p18) * 0x1p-18;
@@ -41,7 +41,7 @@ class Vocabulary : public ::testing::Test {
 };
 TYPED_TEST_SUITE(Vocabulary, detail::AsTestTypes<NumberTypes>::type);
 
-/// Operators round once; roots, exponentials and logarithms end within two units in the last place.
+/// Operators round once; roots, exponentials and logarithms are within two units in the last place.
 TYPED_TEST(Vocabulary, functions_are_those_of_doubles) {
   using N = TypeParam;
   const auto expect = [&](const N& found, double exact) {
@@ -70,7 +70,7 @@ TYPED_TEST(Vocabulary, functions_are_those_of_doubles) {
   }
 }
 
-/// Small arguments keep all their digits, or nothing of a law would be left near rest.
+/// Small arguments keep all their digits; otherwise laws would lose theirs at small strains.
 TYPED_TEST(Vocabulary, nothing_is_lost_near_zero) {
   using N = TypeParam;
   for (const double x : {1e-3, -1e-6, 1e-12, -1e-30}) {
@@ -79,7 +79,7 @@ TYPED_TEST(Vocabulary, nothing_is_lost_near_zero) {
   }
 }
 
-/// Stress and energy of every law within the roundoff of its stiffness (law_test.cpp has the reason).
+/// Stress and energy of every law within the roundoff of its stiffness (see law_test.cpp).
 TYPED_TEST(Vocabulary, laws_are_those_of_doubles) {
   for_each_type(ElasticLaws{}, [&]<class Law>() {
     const Law law = sample_law<Law>(0.45);

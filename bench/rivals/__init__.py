@@ -6,5 +6,5 @@ from rivals.fenicsx import FEniCSx
 from rivals.niftysim import NiftySim
 from rivals.openradioss import OpenRadioss
 
-# By the names of their decks, or their own.
+# By the names of their decks, or by their own.
 PROGRAMS = {one.deck: one for one in (CalculiX, FEBio, FEniCSx, NiftySim, OpenRadioss)}

@@ -1,4 +1,4 @@
-"""Runs CalculiX (ccx): Newton's method at rest, central differences in motion."""
+"""Runs CalculiX (ccx): Newton's method for static answers, central differences in motion."""
 
 import math
 import re
@@ -12,7 +12,7 @@ SECONDS = r"Total CalculiX Time: *([\d.]+)"
 
 
 class CalculiX(Program):
-    """One executable, package calculix-ccx."""
+    """One executable, from the package calculix-ccx."""
 
     deck, name, package, explicit = "calculix", "CalculiX", "calculix-ccx", False
 
@@ -63,7 +63,7 @@ def read_progress(path):
         try:
             _, _, attempt, count, _, time_in_step, _ = line.split()
             iterations += int(count)
-            if not attempt.endswith("U"):  # ccx marks what did not converge
+            if not attempt.endswith("U"):  # ccx marks increments that did not converge
                 increments, reached = increments + 1, float(time_in_step)
         except ValueError as error:
             raise InputError(

@@ -1,4 +1,4 @@
-"""Runs FEBio: Newton's method at rest, central differences in motion."""
+"""Runs FEBio: Newton's method for static answers, central differences in motion."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Runs FEniCSx: the golden's element of reference/, by Newton's method; nothing moves with it."""
+"""Runs FEniCSx: the golden's element of reference/ with Newton's method; static answers only."""
 
 import re
 
@@ -8,14 +8,14 @@ from common.program import ROOT
 from common.result_file import text_of
 from rivals.program import Element, Program, Run, one_line
 
-# Elements -> load steps: those of the goldens, and one, which gives the same answer faster.
+# Elements -> load steps: those of the goldens, and a single one, which is faster.
 LOAD_STEPS = {"Q1-P0": 10, "Q1-P0-in-1-step": 1}
-# What newton.py prints of a load step.
+# The line of newton.py about a load step.
 STEP = re.compile(r"^load .*: (\d+) iterations, .*, ([\d.]+) s$", re.MULTILINE)
 
 
 class FEniCSx(Program):
-    """A Python that has FEniCSx. Its seconds are those of Newton's method, without set-up."""
+    """A Python with FEniCSx. Its seconds are those of Newton's method, without set-up."""
 
     deck, name, package, explicit, moves = "fenicsx", "FEniCSx", "python3-dolfinx", False, False
 

@@ -6,7 +6,7 @@ from rivals.program import Element, Program, Run
 
 
 class NiftySim(Program):
-    """One executable; it diverges with exit code 0 or 1, and says so."""
+    """One executable; it diverges with exit code 0 or 1 and reports it."""
 
     deck, name, precision = "niftysim", "NiftySim", "float"
 

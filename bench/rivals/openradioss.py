@@ -9,8 +9,8 @@ from rivals.program import Element, Program, Run, one_line
 
 
 class OpenRadioss(Program):
-    """Two executables, starter and engine. The engine's time counts; two lengths of run remove what
-    it takes to read the model."""
+    """Two executables, starter and engine. The engine's time counts; two lengths of run remove the
+    time that it takes to read the model."""
 
     deck, name = "openradioss", "OpenRadioss"
 
@@ -34,7 +34,7 @@ class OpenRadioss(Program):
         done = self.clocked([self.paths[1], "-i", f"{name}_0001.rad", "-nt", "1"], folder)
         said = (folder / f"{name}_0001.out").read_text(errors="replace")
         answers = sorted(folder.glob(f"{name}A[0-9][0-9][0-9]"))
-        # A motion that diverges ends early, and normally.
+        # A motion that diverges ends early, but normally.
         broken = re.search(r"ZERO OR NEGATIVE VOLUME|TIME STEP LESS OR EQUAL", said + done.output)
         if broken or "NORMAL TERMINATION" not in said or not answers:
             self.fail(broken[0].lower() if broken else one_line(said))

@@ -1,4 +1,4 @@
-"""What all programs have in common that are timed on a deck of `sandglass mesh --deck`."""
+"""The interface of all programs that are timed on a deck of `sandglass mesh --deck`."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -36,10 +36,10 @@ class Element:
 
 
 class Program(ABC):
-    """A program under a name, with what is needed to run it on one thread of one processor.
+    """A named program, with all that it needs to run on one thread of one processor.
 
     deck: its name for `sandglass mesh --deck`. explicit: whether it only integrates in time, so
-    that it finds rest by a damped motion. moves: whether it integrates in time at all.
+    that it finds static answers by a damped motion. moves: whether it can integrate in time.
     """
 
     deck: str
@@ -48,8 +48,8 @@ class Program(ABC):
     precision = "double"
 
     def __init__(self, paths, build="", about=""):
-        """paths: of its executables. build: tells builds of one program apart. about: its revision,
-        compiler and flags, in words. Before it runs, `environment` and `processor` are set."""
+        """paths: of its executables. build: tells builds of a program apart. about: its revision,
+        compiler and flags as text. Before it runs, `environment` and `processor` are set."""
         self.paths, self.build, self.about = paths, build, about
         self.environment, self.processor, self.version = {}, None, ""
         for path in paths:
@@ -69,7 +69,7 @@ class Program(ABC):
     def write_deck(self, bench, case, element, folder):
         """Writes a case for the program and one of its Elements into an empty folder.
 
-        Returns the path of the file to run. Raises InputError for what cannot be written.
+        Returns the path of the file to run. Raises InputError for unsupported features.
         """
         output = folder / f"deck{DECKS[self.deck].ENDING}"
         words = ["mesh", case, "--deck", self.deck, "--element", element.name, "-o", output]
@@ -80,10 +80,10 @@ class Program(ABC):
 
     @abstractmethod
     def elements(self, bench):
-        """The Elements to time. bench: has kappa, the hourglass stiffness that Sandglass takes."""
+        """The Elements to time. bench: has kappa, the hourglass stiffness of Sandglass."""
 
     def provenance(self):
-        """What the figures come from, for the JSON file."""
+        """The origin of its figures, for the JSON file."""
         return {
             "program": self.deck,
             "name": self.name,
@@ -102,7 +102,7 @@ class Program(ABC):
 
 
 def one_line(text):
-    """The last line of an output that tells of an error, or the last line of all."""
+    """The last line of an output that mentions an error, or else the last line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     found = [line for line in lines if "error" in line.lower()]
     return (found or lines or ["no message"])[-1]

@@ -8,7 +8,7 @@
 
 namespace sandglass {
 
-/// A beam along an arc about the z axis: it begins on the plane x = 0 and turns from y towards x.
+/// A beam along an arc about the z axis: it starts on the plane x = 0 and turns from y towards x.
 struct CurvedBeamMesh {
   static constexpr std::string_view name = "curved-beam";
   static constexpr std::string_view summary = "a beam along an arc about z, from the plane x = 0";

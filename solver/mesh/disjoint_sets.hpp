@@ -6,14 +6,14 @@
 
 namespace sandglass {
 
-/// Sets of the numbers from 0 on that are joined one after the other; the least number stands for its set.
+/// Disjoint sets of the numbers from 0 on, joined step by step; the least number represents its set.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : towards_least_(count) {
     std::iota(towards_least_.begin(), towards_least_.end(), 0);
   }
 
-  /// Paths are halved on the way.
+  /// Halves paths as it follows them.
   int least(int member) {
     for (int* next = &towards(member); *next != member; next = &towards(member))
       member = *next = towards(*next);

@@ -8,7 +8,7 @@ namespace sandglass {
 struct NodalLoad {
   int node;
   Vector force;
-  std::size_t curve = 0;  ///< which of the load curves of a scene it follows
+  std::size_t curve = 0;  ///< the number of its load curve in the scene
 };
 
 /// Nodal forces (N) of a pressure of 1 Pa on a bilinear face with corners x (m): minus the integral of N_I n

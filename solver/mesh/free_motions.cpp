@@ -17,19 +17,19 @@ namespace {
 using Eigen::Index;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The share of a motion at what is held up to which the motion is free.
+/// A motion counts as free if it moves all holds by at most this fraction of itself.
 constexpr double tolerance = 1e-5;
 
 constexpr std::size_t most_pieces = 100;
 
 using Unknowns = Eigen::Matrix<double, 6, 1>;  // of a piece: translation and rotation
 
-/// Columns that span the motions which rows (each a displacement of what is held, as a linear function of the
-/// unknowns) leave free.
+/// Columns that span the motions that all rows leave free; each row is the displacement of a hold or joint as
+/// a linear function of the unknowns.
 Eigen::MatrixXd null_space(const RowMatrix& rows) {
   const Index n = rows.cols();
   if (rows.rows() == 0) return Eigen::MatrixXd::Identity(n, n);
-  // Of many rows only the triangle of their QR decomposition is kept, which has the same singular values.
+  // Of many rows only the triangle of the QR decomposition is kept, which has the same singular values.
   RowMatrix triangle = RowMatrix::Zero(n, n);
   constexpr Index block = 512;
   for (Index first = 0; first < rows.rows(); first += block) {
@@ -42,7 +42,7 @@ Eigen::MatrixXd null_space(const RowMatrix& rows) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
   std::vector<Index> free;
   for (Index k = 0; k < n; ++k) {
-    // The root of the mean square is at most the largest, and known without another look at the rows.
+    // The root mean square is at most the largest value, and needs no second pass over the rows.
     const double mean = svd.singularValues()[k] / std::sqrt(static_cast<double>(rows.rows()));
     if (mean <= tolerance && (rows * svd.matrixV().col(k)).cwiseAbs().maxCoeff() <= tolerance)
       free.push_back(k);
@@ -50,7 +50,7 @@ Eigen::MatrixXd null_space(const RowMatrix& rows) {
   return svd.matrixV()(Eigen::all, free);
 }
 
-/// Elements that are rigid together, and how they are joined to others.
+/// Elements that are rigid together, and their joints with others.
 class Pieces {
  public:
   Pieces(const Mesh& mesh, const Ties& ties) : mesh_(mesh), sets_(mesh.cells.size()) {
@@ -67,15 +67,15 @@ class Pieces {
   std::size_t count() const { return pieces_.size(); }
   const RigidPiece& operator[](std::size_t p) const { return pieces_[p]; }
 
-  /// The piece that a node belongs to, any one of several; none for a node of no element.
+  /// A piece to which a node belongs; none for a node without elements.
   std::optional<std::size_t> of_node(int node) const {
     const int element = node_element_[at(node)];
     if (element < 0) return std::nullopt;
     return of_element(element);
   }
 
-  /// Adds to a row what a displacement in a direction at a point of a piece is of its six unknowns, which
-  /// begin at `first`.
+  /// Adds to a row the displacement in a direction at a point of a piece, as a function of its six unknowns,
+  /// which begin at `first`.
   template <class Row>
   void add(const Vector& X, const Vector& direction, double factor, std::size_t piece, Row&& row) const {
     const auto& [elements, centre, radius] = pieces_[piece];
@@ -89,7 +89,7 @@ class Pieces {
 
   std::size_t of_element(int element) const { return at(piece_of_element_[at(element)]); }
 
-  /// Points, on a line, at which two pieces move as one, by an element of each.
+  /// Points on a line at which two pieces are joined, by an element of each.
   const std::map<std::pair<int, int>, NodalField>& joints() const { return joints_; }
 
   /// Ties to nodes of several pieces.
@@ -148,7 +148,7 @@ class Pieces {
     if (low != high) joints_[{low, high}].push_back(X);
   }
 
-  /// Joins pieces whose joints are not on a line; whether there were any.
+  /// Joins pieces whose joints are not on a line; returns whether there were any.
   bool join_by_points() {
     const auto before = std::exchange(joints_, {});
     bool joined = false;
@@ -205,10 +205,10 @@ class Pieces {
   std::vector<RigidPiece> pieces_;
 };
 
-/// A linear function of the unknowns of some pieces that is zero.
+/// A linear function of the unknowns of some pieces that must be zero.
 using Equation = std::map<std::size_t, Unknowns>;
 
-/// The mean of the displacements of nodes in a direction, as an equation.
+/// Adds the mean displacement of nodes in a direction, times a factor, to an equation.
 void add_mean(const Mesh& mesh, const Pieces& pieces, const std::vector<Tie::Share>& mean_of,
               const Vector& direction, double factor, Equation& equation) {
   for (const auto& [node, weight] : mean_of) {
@@ -219,7 +219,7 @@ void add_mean(const Mesh& mesh, const Pieces& pieces, const std::vector<Tie::Sha
   }
 }
 
-/// The rows of equations in unknowns that are given by columns for each piece, side by side.
+/// The rows of equations in unknowns of which each piece has a block of columns.
 RowMatrix rows_of(const std::vector<const Equation*>& equations,
                   const std::map<std::size_t, std::pair<Index, const Eigen::MatrixXd*>>& columns,
                   Index unknowns) {
@@ -248,7 +248,7 @@ RigidMotion motion_of(const Unknowns& unknowns) {
 
 std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const std::vector<Hold>& holds) {
   const Pieces pieces(mesh, ties);
-  // What holds a piece by itself.
+  // Holds of single pieces.
   std::vector<std::vector<Unknowns>> own(pieces.count());
   std::vector<Equation> joint;
   const auto add_equation = [&](Equation equation) {
@@ -263,7 +263,7 @@ std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const st
     add_mean(mesh, pieces, hold.mean_of, hold.direction, 1.0, equation);
     add_equation(std::move(equation));
   }
-  // What joins pieces.
+  // Joints between pieces.
   for (const auto& [pair, points] : pieces.joints()) {
     const std::size_t a = pieces.of_element(pair.first), b = pieces.of_element(pair.second);
     for (const Vector& X : points) {
@@ -290,7 +290,7 @@ std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const st
       rows.row(static_cast<Index>(k)) = equations[k].transpose();
     free.push_back(null_space(rows));
   }
-  // Pieces that are not held and hang together.
+  // Groups of pieces that are joined and not held.
   DisjointSets sets(pieces.count());
   for (const Equation& equation : joint) {
     std::optional<int> first;

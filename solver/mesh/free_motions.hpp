@@ -4,10 +4,10 @@
 
 namespace sandglass {
 
-/// What holds a body, such as a constraint, a spring or a contact: the mean of the displacements of some
-/// nodes is zero, or resisted, in a direction.
+/// A constraint, spring or contact that holds a body: the mean displacement of some nodes in a direction is
+/// zero or resisted.
 struct Hold {
-  std::vector<Tie::Share> mean_of;  ///< the weights add up to one
+  std::vector<Tie::Share> mean_of;  ///< with weights that add up to one
   Vector direction;                 ///< of length one
 };
 
@@ -19,24 +19,24 @@ struct RigidMotion {
   Vector translation, rotation;
 };
 
-/// Elements that form a rigid body as long as they do not deform: those joined by faces, and what else is
-/// joined to them by nodes or ties that are not all on a line.
+/// Elements that only move together if they do not deform: joined by faces, or by nodes or ties that are not
+/// all on a line.
 struct RigidPiece {
   std::vector<int> elements;  ///< in ascending order
   Vector centre;              ///< of its bounding box, m
   double radius;              ///< half the diagonal of that, m
 };
 
-/// Pieces that are free to move without deforming, and hang together by edges, single nodes or ties.
+/// Pieces that are free to move without deforming, connected by edges, single nodes or ties.
 struct LooseBody {
   std::vector<RigidPiece> pieces;
   std::vector<std::vector<RigidMotion>> motions;  ///< a basis of these motions; each has one for every piece
 };
 
-/// All rigid motions against which nothing holds a mesh: the null space of its stiffness in the undeformed
-/// state. A motion counts as free where it moves all that is held by at most 1e-5 of what it moves the rest:
-/// files round coordinates to 5e-6 of their size at worst, and no mesh has so many elements in a row that a
-/// lever is as short as that. More than 100 pieces that hang together so, and are not held one by one, are
+/// All rigid motions that nothing prevents: the null space of the stiffness of a mesh in the undeformed
+/// state. A motion counts as free if it moves all holds by at most 1e-5 of its displacement elsewhere: files
+/// round coordinates to at worst 5e-6 of their size, and no mesh has so many elements in a row that a lever
+/// is that short. Groups of more than 100 pieces that are connected in this way and not held one by one are
 /// not examined.
 std::vector<LooseBody> free_motions(const Mesh& mesh, const Ties& ties, const std::vector<Hold>& holds);
 

@@ -40,7 +40,7 @@ bool selects(const NodeSetRule& rule, const Vector& point, double tolerance) {
          (!rule.ellipsoid || inside(*rule.ellipsoid, point, tolerance));
 }
 
-/// The set of that name; `member` is "a node" or "an element", `origins` is where its sets come from.
+/// The set of that name; `member` is "a node" or "an element", `origins` the places that define such sets.
 const std::vector<int>& named_set(const std::map<std::string, std::vector<int>>& sets,
                                   const std::string& file, const std::string& key, const std::string& name,
                                   const std::string& member, const std::string& origins) {
@@ -48,7 +48,7 @@ const std::vector<int>& named_set(const std::map<std::string, std::vector<int>>&
   const auto found = sets.find(name);
   if (found == sets.end()) {
     const auto known = names_in(sets);
-    // Readers give a name of several sets as SCOPE.NAME.
+    // If several sets of a file share a name, readers name them SCOPE.NAME.
     std::string meant;
     for (const auto& [other, members] : sets) {
       if (other.ends_with('.' + name))
@@ -90,7 +90,7 @@ std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boun
 }
 
 std::string nearest_miss(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule) {
-  // The least tolerance with which the rule would select a node; all kinds of conditions are monotonous in
+  // The smallest tolerance with which the rule would select a node; all kinds of conditions are monotonic in
   // it.
   const auto first = [&](double tolerance) -> std::optional<std::size_t> {
     for (std::size_t n = 0; n < mesh.points.size(); ++n) {

@@ -37,16 +37,16 @@ struct NodeSetRule {
   std::optional<EllipsoidRegion> ellipsoid = {};
 };
 
-/// How far (m) the coordinates of a mesh may be from what they stand for: files round them to six digits at
-/// worst, by 5e-6 of the largest coordinate. At most a thousandth of the shortest edge, so that no two planes
-/// of nodes become one, and at least 1e-9 of the diagonal, for what a generator computes.
+/// The largest rounding (m) of a mesh's coordinates: files round them to six digits at worst, by 5e-6 of the
+/// largest coordinate. At most a thousandth of the shortest edge, so that no two planes of nodes merge, and
+/// at least 1e-9 of the diagonal, for roundoff in generators.
 double rounding_of(const Mesh& mesh);
 
 /// The nodes that a rule selects, sorted; the caller decides whether the result may be empty.
 std::vector<int> select_nodes(const Mesh& mesh, const std::vector<bool>& on_boundary,
                               const NodeSetRule& rule);
 
-/// For a rule that selects no node: the one that is nearest, where it is, and the distance (m), in words.
+/// For a rule that selects no node: the nearest node, its position, and the distance (m), as text.
 std::string nearest_miss(const Mesh& mesh, const std::vector<bool>& on_boundary, const NodeSetRule& rule);
 
 /// The elements whose centres, the means of their nodes, satisfy the conditions of a rule on positions;

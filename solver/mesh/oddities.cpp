@@ -12,13 +12,13 @@ namespace sandglass {
 
 namespace {
 
-/// The nodes on both sides of the end of an interval, at `end`, that are so near to each other that they seem
-/// to be one plane, in words; empty if none are. `coordinates` are sorted.
+/// A description of the nodes on both sides of an interval's end that are so close together that they seem to
+/// be one plane; empty if there are none. `coordinates` are sorted.
 std::string cut_at(const std::vector<double>& coordinates, double end, bool selected_below, double most) {
   const auto upper = std::ranges::upper_bound(coordinates, end);
   if (upper == coordinates.begin() || upper == coordinates.end()) return "";
   auto low = upper, high = upper;
-  // From the gap in which the end lies, the neighbours that are nearer to each other than `most`.
+  // From the gap that contains the end, the neighbours that are closer to each other than `most`.
   while (low != coordinates.begin() && *std::prev(low) > *upper - most) --low;
   while (high != coordinates.end() && *high < *low + most) ++high;
   const double width = *std::prev(high) - *low;
@@ -74,7 +74,7 @@ Seam seam_of(const Mesh& mesh, const Ties& ties, const std::vector<Quadrilateral
   const double rounding = rounding_of(mesh);
   std::vector<bool> looked_at = nodes_of(boundary, mesh.points.size());
   for (const Tie& tie : ties) looked_at[at(tie.node)] = false;
-  // Nodes by the cells of a grid; those at one place are in the same cell or in neighbours.
+  // Nodes by the cells of a grid; nodes at one place are in the same cell or in adjacent ones.
   const auto number = [&](double x, int shift) {
     return static_cast<std::int64_t>(std::floor(x / (4.0 * rounding))) + shift;
   };

@@ -22,8 +22,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Independent chains: more than latency times throughput of common processors, yet, with the two factors,
-/// within 16 registers.
+/// Independent chains: more than latency times throughput of common processors, yet few enough for 16
+/// registers together with the two factors.
 constexpr std::size_t chains = 12;
 
 /// x := a x + b over and over, in every lane of every chain; the fixed point b / (1 - a) keeps numbers

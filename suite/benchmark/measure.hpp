@@ -29,7 +29,7 @@ class Candidate {
 
   virtual void step() = 0;
 
-  /// What a run does every few steps: checks that the body is healthy, and chooses the next step.
+  /// The work of a run every few steps: checks that the body is healthy, and chooses the next step.
   virtual void check() = 0;
 
   /// Throws ComputationError if the state is not valid.

@@ -12,14 +12,14 @@ namespace sandglass {
 /// The time (s) in which a shear wave crosses a scene's body; the slowest wave if materials differ.
 double crossing_time(const Scene& scene);
 
-/// The scene in motion: for a dynamic case the scene itself; for a quasi-static one a damped motion to its
-/// whole load over `own_motion_crossings` crossing times, as a program would take that computes the scene
+/// The scene in motion: a dynamic case as it is; a quasi-static one as a damped motion, during which the load
+/// grows to its full value in `own_motion_crossings` crossing times, as in a program that computes the scene
 /// step by step.
 Scene in_own_motion(const Scene& scene);
 
-/// The duration of a quasi-static case's damped motion in crossing times; its load grows all the time. It is
-/// slow enough for the body to stay near its equilibria, and for mean steps to be within 2 % of a slower
-/// motion's.
+/// The duration of a quasi-static case's damped motion in crossing times, during all of which its load grows.
+/// It is slow enough for the body to stay near its equilibria, and for mean steps to be within 2 % of a
+/// slower motion's.
 inline constexpr double own_motion_crossings = 3.5;
 
 /// The damping of this motion times the crossing time. Other programs are measured with the same value

@@ -23,7 +23,7 @@ bool has_generator(const Case& description) {
   return std::holds_alternative<AnyGenerator>(description.mesh);
 }
 
-/// A stretched set no longer turns rigidly.
+/// A set is not rigid in rotation once it is stretched.
 bool can_be_shaped(const Case& description) {
   return has_generator(description) && description.rotations.empty();
 }

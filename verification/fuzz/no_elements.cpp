@@ -1,5 +1,5 @@
-/// Readers make scenes and never compute. The kernels, minutes of compilation, stay out of the fuzzers; these
-/// are the names that the linker still asks for.
+/// Readers make scenes and never compute. Fuzzers leave out the kernels, which take minutes to compile; these
+/// functions are the ones that the linker still needs.
 
 #include <array>
 #include <stdexcept>
@@ -45,7 +45,7 @@ Kernels<Number> kernels() {
 
 namespace {
 
-/// Makes the compiler emit the kernels of all methods, which their list names.
+/// Instantiates the kernels of all methods, which the list of methods refers to.
 template <class... Method>
 auto kernels_of(TypeList<Method...> /*methods*/) {
   return std::tuple{std::array{&kernels<KernelOwner<Method>, Pack<double>>...},

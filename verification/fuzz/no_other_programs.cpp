@@ -1,4 +1,4 @@
-/// Fuzzers start no other program: to them every mesh is one of ours.
+/// Fuzzers start no other program: they treat every mesh file as one of ours.
 
 #include "base/error.hpp"
 #include "io/foreign_file.hpp"

@@ -18,7 +18,7 @@ namespace sandglass::verification {
 
 namespace {
 
-/// Takes decisions from bytes; zeros when they are used up.
+/// Makes decisions from bytes; zeros once they are used up.
 class Decisions {
  public:
   explicit Decisions(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -41,7 +41,7 @@ class Decisions {
   std::span<const std::byte> bytes_;
 };
 
-/// A type of each class that a reader could meet.
+/// A type of each class that a reader may encounter.
 hid_t type_of(std::size_t choice) {
   switch (choice) {
     case 0:
@@ -69,7 +69,7 @@ hid_t type_of(std::size_t choice) {
       H5Tinsert(type, "b", 8, H5T_STD_I64LE);
       return type;
     }
-    case 8: {  // a text of any length, with no text
+    case 8: {  // a variable-length text, null
       const hid_t type = H5Tcopy(H5T_C_S1);
       H5Tset_size(type, H5T_VARIABLE);
       return type;
@@ -107,11 +107,11 @@ std::size_t points_of(hid_t space) {
   return points < 1e15 ? static_cast<std::size_t>(points) : std::numeric_limits<std::size_t>::max();
 }
 
-/// Larger objects only claim their values.
+/// Larger objects have an extent but no values.
 constexpr std::size_t most_points_written = 256;
 
-/// Values for the objects that are small; the others keep none, as files with huge claims do. Texts and lists
-/// of any length are pointers in memory and stay empty.
+/// Values for small objects; others have none, as in files with huge extents. Variable-length texts and lists
+/// are pointers in memory and stay empty.
 std::vector<std::byte> values_for(hid_t type, hid_t space, Decisions& decide) {
   const std::size_t points = points_of(space);
   if (points > most_points_written) return {};
@@ -171,7 +171,7 @@ void replace_attribute(hid_t file, const char* name, Decisions& decide) {
   H5Tclose(type);
 }
 
-/// A link that leads to another file, to nothing, or in a circle.
+/// A link to another file, to nothing, or in a circle.
 void replace_by_link(hid_t file, const char* name, Decisions& decide) {
   H5Ldelete(file, name, H5P_DEFAULT);
   switch (decide.below(4)) {
@@ -185,11 +185,11 @@ void replace_by_link(hid_t file, const char* name, Decisions& decide) {
       H5Lcreate_hard(file, "/", file, name, H5P_DEFAULT, H5P_DEFAULT);
       break;
     default:
-      break;  // nothing there
+      break;  // a link to nothing
   }
 }
 
-/// The bytes of a file that every reader takes.
+/// The bytes of a file that every reader accepts.
 std::string good_file(const Scene& scene, const std::filesystem::path& path) {
   const std::size_t n_nodes = scene.mesh.points.size(), n_cells = scene.mesh.cells.size();
   const NodalField zero(n_nodes);

@@ -8,8 +8,8 @@
 
 namespace sandglass::verification {
 
-/// Writes what a reader of meshes and references looks for, with objects replaced as `bytes` say: other
-/// classes of type, ranks, shapes, values and links.
+/// Writes a file as readers of meshes and references expect it, except that `bytes` select objects to replace
+/// by other classes of type, ranks, shapes, values and links.
 void write_odd_file(const Scene& scene, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 }  // namespace sandglass::verification

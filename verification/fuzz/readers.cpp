@@ -22,7 +22,7 @@ void write_bytes(std::span<const std::byte> bytes, const std::filesystem::path& 
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Cuts the parameters that count elements, so that a mesh stays small.
+/// Limits the parameters that count elements, so that a mesh stays small.
 template <class Generator>
 void make_small(Generator& generator) {
   const auto cut = [](auto& value) {
@@ -42,7 +42,7 @@ void make_small(Generator& generator) {
       Generator::parameters());
 }
 
-/// One cube of 10 cm on its foot. Its hashes are words, so that the corpus outlives changes of hashes.
+/// One cube of 10 cm on its foot. Its hashes are words, so that the corpus survives changes of hashes.
 Scene cube() {
   Case description = plain_case(sample_law<NeoHookean>(0.49));
   description.displacements = {{"foot", {}}};
@@ -57,7 +57,7 @@ void read_mesh_with_scene(const std::filesystem::path& path) {
   make_scene(plain_case(sample_law<NeoHookean>(0.49)), std::move(read.mesh), std::move(read.sets));
 }
 
-/// Seals a file that has room for a seal, and reads it as a checkpoint.
+/// Seals a file that is long enough for a seal, and reads it as a checkpoint.
 void read_sealed(const Scene& scene, const std::filesystem::path& path) {
   if (std::filesystem::file_size(path) > seal_size) write_seal(path);
   read_checkpoint_file(path, {{"case_hash", scene.case_hash}}, scene.mesh.points.size(),

@@ -11,7 +11,7 @@
 
 namespace sandglass::verification {
 
-/// Feeds one input to a reader; only InputError may come back. The bytes go through a file in memory, as
+/// Passes one input to a reader, which may throw only InputError. The bytes go through a file in memory, as
 /// users' bytes go through a file.
 template <class Read>
 int feed(const Read& read, const std::uint8_t* data, std::size_t size) {

@@ -1,1 +1,1 @@
-"""Compares the solver's present figures with its accepted baseline."""
+"""Compares the solver's current figures with its accepted baseline."""

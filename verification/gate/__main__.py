@@ -19,13 +19,13 @@ from . import baseline as baselines
 from .figures import AREAS, BETTER, FAILING, NEW, VANISHED, WORSE, compare
 from .figures import read_flops, read_verdicts
 
-# What a file is made by, and read by. Broken limits of `verify` are left to ci/verify.
+# The command that makes each file, and its reader. ci/verify reports broken limits of `verify`.
 SOURCES = {
     "accuracy": (("verify", "--no-costs"), read_verdicts),
     "operations": (("flops",), read_flops),
 }
 ORIGIN = ("processor", "compiler", "build_flags")
-MOST = 40  # figures of one verdict that are listed
+MOST = 40  # figures listed for one verdict
 
 
 def find(options):
@@ -48,7 +48,7 @@ def find(options):
 
 
 def table(outcomes):
-    """The figures that are not the same, worst first, then their number by verdict."""
+    """The figures that changed, worst first, then their number by verdict."""
     rows = []
     for verdict in (WORSE, VANISHED, NEW, BETTER):
         listed = [outcome for outcome in outcomes if outcome.verdict == verdict]

@@ -1,6 +1,6 @@
 """The baseline: the accepted figures, with date and reason.
 
-One JSON file, one record a line, so that its diffs can be read.
+One JSON file with one record per line, for readable diffs.
 """
 
 import json
@@ -13,14 +13,14 @@ from common.records import entries, entry
 from .figures import AREAS, SAME, compare
 
 FORMAT = 1
-DIGITS = 6  # of errors: a thousandth of what the rules tell apart
+DIGITS = 6  # of errors: a thousandth of the differences that the rules distinguish
 
 
 @dataclass
 class Baseline:
     """Accepted figures and the history of their acceptance.
 
-    figures: of all machines, as found on `machine`, the first. machines: by name of another, the
+    figures: of all machines, as found on `machine`, the first. machines: name of another -> the
     errors that differ there: instruction sets round differently, and adaptivity raises packs.
     """
 
@@ -95,9 +95,9 @@ def write(path, baseline):
 
 
 def _accepted(outcomes, figures):
-    """A record as stored: figures that count as the same keep their old value.
+    """A record as stored: figures that count as equal keep their old value.
 
-    So errors cannot creep by less than their margin each time, and a diff shows what changed.
+    So errors cannot creep up by less than their margin each time, and a diff shows real changes.
     """
     kept = {}
     for figure, value in figures.items():
@@ -109,7 +109,7 @@ def _accepted(outcomes, figures):
 
 
 def accept(baseline, found, areas, machine, about):
-    """Makes the figures found in `areas` on a machine those of the baseline.
+    """Replaces the baseline's figures in `areas` on a machine by those found.
 
     about: date, revision and reason, for the history. Returns the changes by area, in words.
     """

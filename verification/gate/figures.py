@@ -10,8 +10,8 @@ from common.files import read_json
 from common.records import entries, entry
 
 AREAS = ("accuracy", "operations")
-# One build reproduces its errors exactly; another compiler or instruction set rounds differently,
-# and relaxation ends elsewhere. README.md states how much this was seen to change errors.
+# A build reproduces its errors exactly; other compilers or instruction sets round differently, and
+# relaxation ends elsewhere. README.md has the largest changes of errors seen.
 RELATIVE = 1e-3
 FLOOR = {"double": 2e-7, "float": 1e-4}  # fractions of the largest imposed displacement
 
@@ -107,7 +107,7 @@ def judge(area, name, figure, baseline, found):
 
 
 def compare(baseline, found):
-    """Outcomes of all figures of two dicts of figures, regressions first."""
+    """Outcomes of all figures of two dicts, regressions first."""
     outcomes = []
     for area, name in dict.fromkeys([*baseline, *found]):
         old, new = baseline.get((area, name), {}), found.get((area, name), {})
@@ -118,7 +118,7 @@ def compare(baseline, found):
             elif values[0] is None:
                 verdict = NEW, "not in the baseline: accept it"
             elif new.get("status") == "failed":
-                continue  # its status says so
+                continue  # its status shows that
             else:
                 verdict = VANISHED, "was in the baseline"
             outcomes.append(Outcome(area, name, figure, verdict[0], *values, verdict[1]))

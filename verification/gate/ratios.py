@@ -22,9 +22,9 @@ from common.program import output_of
 
 CONFIDENCE = 0.99
 FEWEST = 8  # with fewer samples even their whole range contains the median with less confidence
-# A mesh that stays in cache, so that arithmetic is compared, not the memory traffic of other
-# programs. Many short processes are better than few long ones: the placement of a program in
-# memory changes its best times by 1 %.
+# A mesh that fits into the cache, so that the comparison is of arithmetic and not of other
+# programs' memory traffic. Many short processes are better than few long ones: the placement of a
+# program in memory changes its best times by 1 %.
 BENCH = ("--elements", 600, "--threads", 1, "--repetitions", 20)
 
 
@@ -56,7 +56,7 @@ def ratios(before, after, processes):
     with tempfile.TemporaryDirectory() as folder:
         for number in range(processes):
             print(f"processes {number + 1} of {processes}", file=sys.stderr, flush=True)
-            # Each is first in turn, so that neither has the machine as the other left it.
+            # Each goes first in turn, so that the other's effect on the machine evens out.
             order = (before, after) if number % 2 else (after, before)
             timed = {program: times(program, folder) for program in order}
             for key in timed[before].keys() & timed[after].keys():

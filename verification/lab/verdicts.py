@@ -1,8 +1,8 @@
-"""Joins files of `sandglass verify --json`, one for each case, into one as of all cases.
+"""Joins files of `sandglass verify --json`, one per case, into one for all cases.
 
 Usage: /usr/bin/python3 verification/lab/verdicts.py FILE... [-o FILE]
-Prints the limits that are broken. Exit codes: 0 all limits hold, 1 one is broken (the joined file
-is written all the same), 2 an input is missing, broken or of another program or machine.
+Prints the broken limits. Exit codes: 0 all limits hold, 1 one is broken (the joined file is still
+written), 2 an input is missing, invalid, or from another program or machine.
 """
 
 import sys
@@ -17,7 +17,7 @@ from common.files import read_json, write_json
 
 
 def joined(documents):
-    """One document of many: lists are joined, and all else must be equal. Raises InputError.
+    """One document from many: lists are joined, everything else must be equal. Raises InputError.
 
     documents: path -> dict, at least one.
     """

@@ -15,7 +15,7 @@ HEAD = """# Mutants
 
 Made by `verification/mutants/run.py` on {day}, revision {revision}: {counts}.
 
-Each row names the first test that failed. `README.md` says how the mutants were chosen.
+Each row names the first test that failed. `README.md` describes how the mutants were chosen.
 
 """
 
@@ -45,7 +45,7 @@ def rows_of(text):
 
 
 def _row(patch, before):
-    """A mutant's cells, from its stored result or else from the previous table."""
+    """A mutant's cells, from its stored result or otherwise from the previous table."""
     result = stored(patch.name)
     if result is None or result["patch"] != patch.digest:
         verdict = before.get(patch.name, ["", "", "not run", "-", "-", "-"])[2:]

@@ -1,7 +1,7 @@
 """The mutants: one patch file each, NNN-short-name.patch in this folder.
 
-What stands before the diff is its head: the mistake in words, up to the first empty line; after it,
-where such a mistake was seen, or `Equivalent: ` and the proof that no test can tell.
+The text before the diff is its head: a description of the mistake, up to the first empty line; then
+where such a mistake was seen, or `Equivalent: ` and the proof that no test can notice it.
 """
 
 import hashlib

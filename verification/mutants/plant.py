@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from common.errors import InputError
 
 FOLDERS = ("solver", "suite", "app")
-# Between spaces, as clang-format leaves binary operators, and nothing else that looks like them.
+# With spaces around, as clang-format writes binary operators and nothing similar.
 OPERATOR = re.compile(r"(?<= )(?:[-+*/]=?|[<>=!]=|[<>]|&&|\|\|)(?= |$)")
 OTHER = {"+": "-", "*": "/", "<": "<=", ">": ">=", "==": "!=", "&&": "||", "+=": "-=", "*=": "/="}
 OTHER |= {there: here for here, there in OTHER.items()}
@@ -26,7 +26,7 @@ STATEMENT = re.compile(r"(\s*)(?!return|break|continue|using|}|//)\S.*;$")
 
 @dataclass(frozen=True)
 class Mistake:
-    """Lines of a file, from number `line`, before and after a mistake of a kind."""
+    """Lines of a file, from number `line` on, before and after a mistake of some kind."""
 
     file: str
     line: int
@@ -35,7 +35,7 @@ class Mistake:
     after: tuple
 
     def patch(self, text):
-        """As a patch of the file's text, with a head as in the patches of this folder."""
+        """As a patch of the file's text, with a head like the patches of this folder."""
         lines = text.splitlines(keepends=True)
         changed = lines[: self.line - 1] + [line + "\n" for line in self.after]
         changed += lines[self.line - 1 + len(self.before) :]
@@ -45,14 +45,14 @@ class Mistake:
 
 
 def mistakes_of(line):
-    """(kind, changed line) of every mistake that a line of C++ offers, each once."""
+    """(kind, changed line) of every possible mistake in a line of C++, each once."""
     if NO_CODE.match(line):
         return []
     code = re.sub(r'"(?:\\.|[^"\\])*"|//.*|\'[^\']\'', lambda text: "~" * len(text[0]), line)
 
     def changed(pattern, *makers):
         for found in pattern.finditer(code):
-            original = pattern.match(line, found.start())  # with its strings
+            original = pattern.match(line, found.start())  # including strings
             if not original or original.end() != found.end():
                 continue
             for make in makers:
@@ -102,7 +102,7 @@ def git(root, *words):
 
 
 def added_lines(root, since):
-    """{file: numbers of its lines} of the C++ lines that HEAD has and a revision has not."""
+    """{file: numbers of its lines} of the C++ lines in HEAD that a revision does not have."""
     places = [f"{folder}/*.{ending}" for folder in FOLDERS for ending in ("hpp", "cpp")]
     found, numbers = {}, set()
     for line in git(root, "diff", "-U0", "--no-renames", since, "HEAD", "--", *places).splitlines():
@@ -115,11 +115,11 @@ def added_lines(root, since):
 
 
 def plant(root, since, count, seed, globs=("*",)):
-    """{Mistake: text of its file} of so many mistakes, fewer if there are no more.
+    """{Mistake: text of its file} of `count` mistakes, or fewer if there are no more.
 
-    Only in files that match one of the patterns, in which * stands for folders as well.
-    Lines are drawn at random, then one of each line's mistakes; lines are drawn again only when
-    every line has one. The same tree, revision and seed give the same mistakes.
+    Only in files that match one of the patterns, in which * includes subfolders. Lines are drawn at
+    random, then one of each line's mistakes; lines are drawn again only when every line has one.
+    The same tree, revision and seed give the same mistakes.
     """
     texts, places = {}, []
     for file, added in sorted(added_lines(root, since).items()):

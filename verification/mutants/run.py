@@ -1,9 +1,9 @@
 """Mutation tests: does a test fail for every mistake?
 
-Each patch of this folder is applied to a copy of HEAD, built and tested until the first failure.
-Prints what killed each mutant and writes RESULTS.md. Finished mutants are kept under
-build/mutant-results and not run again while patch and tree are the same. With --random, mistakes
-are planted at random in the lines of a change instead.
+Applies each patch of this folder to a copy of HEAD, builds it and tests it until the first failure.
+Prints what killed each mutant and writes RESULTS.md. Finished mutants are stored under
+build/mutant-results and not run again while patch and tree are the same. With --random, the
+mistakes are planted at random in the lines of a change instead.
 Exit codes: 0 all killed or proven equivalent, 1 some survived, 2 bad usage, 3 interrupted, or a
 mutant without a verdict.
 """
@@ -31,7 +31,7 @@ from worker import OutOfTime, Stopped, Worker, programs_of
 
 
 def tree_digest():
-    """Of all files of HEAD that can decide a verdict: not of texts, nor of the mutants."""
+    """Of all files of HEAD that can affect a verdict: no texts, no mutants."""
     lines = [
         line
         for line in git(ROOT, "ls-tree", "-r", "HEAD").splitlines()
@@ -48,7 +48,7 @@ def result_of(worker, patch, timeout):
         return "no verdict", str(error)
     if not failure:
         return "equivalent" if patch.equivalent else "survived", ""
-    # A test that hangs would also be noticed.
+    # A test that hangs would be noticed as well.
     hangs = failure.kind == "timeout"
     return "killed" if hangs else failure.kind, failure.by + (" (timeout)" if hangs else "")
 
@@ -134,7 +134,7 @@ def run(options, stop):
 
 
 def run_until_interrupted(options):
-    """Runs the mutants until all are done or a signal comes; returns the exit code."""
+    """Runs the mutants until they finish or a signal arrives; returns the exit code."""
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())

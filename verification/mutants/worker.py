@@ -15,19 +15,19 @@ from pathlib import Path
 from affected import reached
 from common.program import ROOT
 
-# How a copy is configured: for mistakes in headers, and for those in sources alone. A precompiled
+# Configurations of a copy: for mistakes in headers, and for those in sources only. A precompiled
 # header would outlive its mutant, and make each one compile everything. Without such mistakes a
-# mutant costs one source and one library: programs that link a shared one stay as they are, and
-# ccache knows all other objects from ordinary builds.
+# mutant costs one source and one library: programs link a shared library and stay unchanged, and
+# ccache has all other objects from ordinary builds.
 FOR_HEADERS = ["--preset", "quick", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"]
 FOR_SOURCES = ["--preset", "developer", "-DBUILD_SHARED_LIBS=ON"]
 FOR_SOURCES += ["-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"]
-MEMORY = 8 << 30  # bytes that a test program may use: a mistake may allocate without end
-HANGS = 900  # s after which a program of tests is taken to hang
-# Folders of what is compiled into the program.
+MEMORY = 8 << 30  # bytes per test program, since a mistake may allocate without end
+HANGS = 900  # s after which a test program counts as hanging
+# Folders of code compiled into the program.
 COMPILED = ("solver", "suite", "app")
-# Folders of Python tests, with the folders whose modules they use and, where they run it, those of
-# the program.
+# Folders of Python tests, with the folders whose modules they use and, if they run the program, its
+# folders.
 PYTHON_FOLDERS = {
     "bench": ("bench", "common", "exchange", "reference", "results", *COMPILED),
     "common": ("common",),
@@ -51,7 +51,7 @@ class OutOfTime(Exception):
 
 @dataclass(frozen=True)
 class Failure:
-    """Where a tree fails. kind: 'killed', 'timeout', 'broken' (it does not compile), 'false alarm'.
+    """A failure of a tree. kind: 'killed', 'timeout', 'broken' (does not compile), 'false alarm'.
 
     by: the test, or the compiler's first error. program: the Program it belongs to.
     """
@@ -63,7 +63,7 @@ class Failure:
 
 @dataclass(frozen=True)
 class Program:
-    """Something that tests: a program of GoogleTest, or a folder of Python tests.
+    """A group of tests: a GoogleTest program, or a folder of Python tests.
 
     linked: needs the library. size: of its source, bytes.
     """
@@ -75,7 +75,7 @@ class Program:
 
 
 def programs_of(tree):
-    """All of them: those of kernels, then what needs the library, small sources first."""
+    """All of them: those of kernels, then those that need the library, small sources first."""
     folder = tree / "verification"
     text = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
     programs = []
@@ -89,11 +89,11 @@ def programs_of(tree):
 
 
 class Worker:
-    """Use as a context manager: the copy is gone afterwards, and what ran in it has ended.
+    """Use as a context manager: at its end the copy is deleted and its processes have ended.
 
     revision: of git, which is copied. stop: threading.Event that ends everything with Stopped.
-    jobs: of compilers side by side. tests: names of programs, in the order in which they are run;
-    all without one. sources_only: whether no mutant changes a header.
+    jobs: number of parallel compilers. tests: names of programs in the order of their runs; all if
+    empty. sources_only: whether no mutant changes a header.
     """
 
     def __init__(self, revision, stop, jobs=1, tests=(), sources_only=False):
@@ -108,7 +108,7 @@ class Worker:
         # ccache recognizes compilations of earlier runs, in other folders.
         own = {"CCACHE_BASEDIR": str(self.tree), "CCACHE_NOHASHDIR": "1"}
         own |= {"SANDGLASS_BINARY": str(self.cli), "GIT_CEILING_DIRECTORIES": str(self.folder)}
-        # Waiting threads must not spin, as there are more of them than processors.
+        # Waiting threads must not spin, as there are more threads than processors.
         own |= {"PYTHONDONTWRITEBYTECODE": "1", "OMP_WAIT_POLICY": "passive"}
         self._environment = os.environ | own
 
@@ -128,11 +128,11 @@ class Worker:
         self._temporary.cleanup()
 
     def first_failure(self, patch, seconds):
-        """Applies a Patch, then builds and runs tests, which take at most so many seconds in all.
+        """Applies a Patch, then builds and runs tests for at most `seconds` in total.
 
-        Returns the first Failure or None. Programs that noticed most of the mutants of the same
-        files before come first; what the patch cannot change is not run. A test that fails in the
-        tree without the patch as well is a 'false alarm'. Raises OutOfTime. The tree is clean again
+        Returns the first Failure or None. Programs that noticed most of the earlier mutants of the
+        same files come first; those that the patch cannot affect are not run. A test that also
+        fails without the patch is a 'false alarm'. Raises OutOfTime. The tree is clean again
         afterwards.
         """
         programs = {one.name: one for one in programs_of(self.tree)}
@@ -179,7 +179,7 @@ class Worker:
         return self._run(command, check=False)
 
     def _passes(self, failure):
-        """Whether the test of a Failure passes in the tree as it is."""
+        """Whether the test of a Failure passes in the unchanged tree."""
         status, _ = self._make(failure.program)
         try:
             return (
@@ -192,7 +192,7 @@ class Worker:
             return False
 
     def _built(self, program):
-        """When a program, or a shared library that it may link, was built last."""
+        """The time when a program, or a shared library that it may link, was last built."""
         files = [self._binary(program)]
         if program.linked:
             files += self.build.glob("solver/*.so")
@@ -216,9 +216,9 @@ class Worker:
         return Failure("killed", names[0] if names else _running(text, program), program)
 
     def _command(self, program, test=""):
-        """Of all tests of a program until one fails, or of one that failed."""
+        """The command for all tests of a program until one fails, or for one that failed."""
         if program.is_python:
-            # Whether patches apply is no question to a tree with one of them.
+            # Whether patches apply cannot be tested in a tree with one of them.
             command = [PYTHON, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
             command += [f"--ignore={self.tree}/verification/test_mutants.py"]
             return command + [self.tree / (test.partition("[")[0] or program.name)]
@@ -227,10 +227,10 @@ class Worker:
 
     @contextlib.contextmanager
     def _applied(self, patch):
-        """The tree with a patch; yields the time after which files are the mutant's."""
+        """The tree with a patch; yields the time after which files belong to the mutant."""
         before = {self.tree / name: (self.tree / name).stat() for name in patch.files}
         content = {path: path.read_bytes() for path in before}
-        time.sleep(0.05)  # clocks of file systems tick slowly
+        time.sleep(0.05)  # file systems have coarse clocks
         since = time.time() - 0.02
         try:
             self._run(["git", "apply", patch.path])
@@ -268,7 +268,7 @@ class Worker:
             if Path(str(command[0])).parent == self.build / "verification":
                 resource.prlimit(process.pid, resource.RLIMIT_AS, (MEMORY, MEMORY))
         except ProcessLookupError:
-            pass  # it has ended already
+            pass  # already ended
         try:
             while True:
                 with contextlib.suppress(subprocess.TimeoutExpired):

@@ -1,5 +1,5 @@
-/// Prints what a compiler and a processor decide: the lanes of a pack, whether products and sums are
-/// contracted to one rounding, and a hash of the bits of forces. Two programs are made of this file, the
+/// Prints properties of a compiler and a processor: the lanes of a pack, whether products and sums are
+/// contracted to one rounding, and a hash of the bits of forces. Two programs are built from this file, the
 /// second without contraction.
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ std::uint64_t hash_of_forces() {
   return hash;
 }
 
-/// Whether a b - c is one rounding: with c = a b rounded, it is what that rounding lost.
+/// Whether a b - c has a single rounding: for c = a b rounded, it then is the rounding error.
 bool contracts() {
   volatile double a = 1.0 / 3.0;
   volatile double c = a * a;

@@ -2,13 +2,13 @@
 
 #include "support/problem_maps.hpp"
 
-/// Whether two answers of a problem agree, and what explains that they do not.
+/// Whether two answers of a problem agree, and explanations if they do not.
 namespace sandglass::verification {
 
 enum class Kind { none, held, explained, open, violated };
 
-/// What became of a relation on a problem; `none` where it says nothing, `open` where it is known not to
-/// hold, though it should.
+/// The outcome of a relation on a problem; `none` if the relation does not apply, `open` if it is known not
+/// to hold, though it should.
 struct Verdict {
   Kind kind = Kind::none;
   double difference = 0.0;  ///< relative
@@ -20,7 +20,7 @@ inline Verdict held_if(bool holds, double difference, const std::string& words =
   return {holds ? Kind::held : Kind::violated, difference, words};
 }
 
-/// Whether forces have a potential, but for pressures, and nothing damps.
+/// Whether forces have a potential, except for pressures, and there is no damping.
 inline bool is_conservative(const Problem& problem) {
   const Case& d = problem.description;
   const auto remembers = [](const CaseMaterial& material) { return is_viscoelastic(material.law); };
@@ -31,8 +31,8 @@ inline bool is_conservative(const Problem& problem) {
          (d.dynamics.damping == 0.0 && std::ranges::none_of(d.forces.of<Support>(), damps));
 }
 
-/// Whether a method, or one of its levels, has points in alternate corners: which ones, mirrors and turned
-/// elements of equal edges decide otherwise (four_point.hpp).
+/// Whether a method, or one of its levels, has points in alternate corners: mirrored, or turned with equal
+/// edges, an element has them in the other ones (four_point.hpp).
 inline bool is_handed(const Problem& problem) {
   bool handed = false;
   with_named_type(Methods{}, problem.choice.method, [&]<class Method>() {
@@ -43,19 +43,19 @@ inline bool is_handed(const Problem& problem) {
   return handed;
 }
 
-/// How far answers may be apart, over the largest displacement, that differ in rounding alone. In motion each
-/// of n steps rounds forces by some 20 units of 1e-16, over the strain where coordinates are moved far away,
-/// and carries that on as n^2: 1e-8. At rest a residual of 1e-8 is asked for, and bodies here are up to a
-/// thousand times softer in bending than in tension. Levels that a method chooses err by as much as the user
-/// allows, each time anew in motion; where forces follow the path, levels of the load are solved to a tenth
-/// on the way.
+/// The allowed distance between answers that differ only in rounding, over the largest displacement. In
+/// motion each of n steps rounds forces by about 20 units of 1e-16, over the strain if coordinates are far
+/// away, and that grows as n^2: 1e-8. Static answers have a residual of 1e-8, and bodies here are up to a
+/// thousand times softer in bending than in tension. Automatic levels have errors as large as the user
+/// allows, new ones at each choice in motion; where forces follow the path, load levels on the way are solved
+/// to a tenth.
 inline double allowed_for_rounding(const Problem& problem) {
   if (problem.method().adapts()) return 5.0 * problem.choice.accuracy;
   if (!problem.at_rest()) return 1e-8;
   return follows_a_path(problem) ? 0.02 : 1e-5;
 }
 
-/// Whether elements have no stiffness against hourglass modes: no rest is the only one.
+/// Whether elements have no stiffness against hourglass modes: static equilibria are not unique.
 inline bool is_loose(const Problem& problem) {
   return problem.at_rest() && (!problem.method().controls_hourglass || problem.method().damps_only);
 }
@@ -67,8 +67,8 @@ inline bool is_at_rest(const Problem& problem, const NodalField& u, double allow
   return near.failure.empty() && largest_distance(near.u, u) <= allowed * largest_in(u);
 }
 
-/// Compares two answers of a problem, at the nodes of its mesh. At rest, two equilibria of one problem
-/// explain a difference, and one that a search missed explains its failure.
+/// Compares two answers of a problem at the nodes of its mesh. In statics, two equilibria of one problem
+/// explain a difference, and an equilibrium that a search missed explains its failure.
 inline Verdict compare(const Problem& problem, const Answer& one, const Answer& other, double allowed) {
   const auto first = [&](NodalField field) {
     field.resize(problem.mesh.points.size());
@@ -80,23 +80,23 @@ inline Verdict compare(const Problem& problem, const Answer& one, const Answer& 
     return {};
   const bool both = one.failure.empty() && other.failure.empty();
   const Answer& found = other.failure.empty() ? other : one;
-  const double next_to_nothing = 1e-9 * diagonal(problem.mesh.points);  // where loads act on what is held
+  const double next_to_nothing = 1e-9 * diagonal(problem.mesh.points);  // where loads act on held nodes
   const double unit = std::max({one.largest, other.largest, next_to_nothing});
   double difference = both ? largest_distance(first(one.u), first(other.u)) / unit : 1.0;
   const bool has_speeds = one.fastest > 0.0 && other.fastest > 0.0;
-  if (both && has_speeds && !problem.method().adapts()) {  // which promise displacements
+  if (both && has_speeds && !problem.method().adapts()) {  // which guarantee displacements only
     const double speed = std::max(one.fastest, other.fastest);
     difference = std::max(difference, largest_distance(first(one.v), first(other.v)) / speed);
   }
   if (both && unit > next_to_nothing && other.busiest > 0.0) {
-    const double work = problem.at_rest() ? 0.0 : one.work - other.work;  // at rest it depends on the levels
+    const double work = problem.at_rest() ? 0.0 : one.work - other.work;  // depends on the levels in statics
     for (const double energy : {one.energy - other.energy, work})
       difference = std::max(difference, 0.1 * std::abs(energy) / one.busiest);
   }
   if (difference <= allowed) return held_if(true, difference);
   const bool whole = problem.description.refinements.empty();
   const bool two = (both || one.failure != "refused") && whole && is_at_rest(problem, found.u, allowed);
-  // Levels are solved to a tenth, which such forces remember, and some are wrong.
+  // Path-dependent forces remember that levels are solved to a tenth; some answers are wrong.
   const bool open = problem.at_rest() && follows_a_path(problem);
   const Kind kind = two ? Kind::explained : open ? Kind::open : Kind::violated;
   return {kind, difference,
@@ -105,8 +105,8 @@ inline Verdict compare(const Problem& problem, const Answer& one, const Answer& 
                : fmt::format("{} {} / {} {}", one.failure, one.words, other.failure, other.words)};
 }
 
-/// The same for the answer of a mapped problem. A difference at rest that goes where both searches take a
-/// finer tolerance, and many levels where forces follow the path, is explained by that.
+/// The same for the answer of a mapped problem. A static difference is explained if it vanishes once both
+/// searches use a finer tolerance, and many levels where forces follow the path.
 inline Verdict compare(const Problem& problem, const Answer& own, const std::optional<Mapped>& mapped) {
   if (!mapped) return {};
   const auto mapped_back = [&](const Problem& of) {

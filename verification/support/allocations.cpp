@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <new>
 
-// Every form of new, and the forms of delete that the others come to.
+// Every form of new, and the forms of delete on which the others are based.
 namespace {
 
 std::atomic<long> calls = 0;

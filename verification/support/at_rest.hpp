@@ -6,7 +6,7 @@
 
 namespace sandglass::verification {
 
-/// The answer of a quasi-static scene by a method, which must be found.
+/// A method's answer of a quasi-static scene, which must converge.
 inline Relaxation at_rest(const Scene& scene, const MethodChoice& choice) {
   Observer quiet;
   Relaxation found = relax(Model(scene, choice), quiet);

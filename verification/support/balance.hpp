@@ -8,8 +8,8 @@
 
 namespace sandglass::verification {
 
-/// The balance of a scene's free components: displacements from `from` on, by which elements remember
-/// `histories`, with the imposed ones at a share of their final values.
+/// The balance of a scene's free components: displacements from `from` on, where elements have the memory
+/// `histories`, with imposed ones at a share of their final values.
 template <class Kernel, class Law>
 class Balance {
  public:
@@ -30,7 +30,7 @@ class Balance {
     }
   }
 
-  /// Goes on from displacements (m) with what elements remember there.
+  /// Continues from displacements (m) with the elements' memory there.
   void start_from(std::vector<double> u, Histories histories) {
     from_ = std::move(u);
     histories_ = std::move(histories);
@@ -65,7 +65,7 @@ class Balance {
     return assembly_.template force<double>(u, increment, infinite, histories);
   }
 
-  /// Their change along a direction of the free components.
+  /// The change of the forces along a direction of the free components.
   std::vector<double> derivative(const std::vector<double>& u, const std::vector<double>& direction) const {
     std::vector<D> at(u.size()), increment(u.size());
     for (std::size_t k = 0; k < u.size(); ++k) {
@@ -96,7 +96,7 @@ class Balance {
     return K;
   }
 
-  /// Free components in balance at a share of what is imposed, by Newton's method from x.
+  /// Free components in balance at a share of the imposed displacements, by Newton's method from x.
   std::vector<double> solved(const std::vector<double>& x, double share, double unit,
                              double tolerance) const {
     const Eigen::PartialPivLU<Eigen::MatrixXd> solver(tangent(displacements(x, share)));

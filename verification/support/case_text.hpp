@@ -8,8 +8,8 @@
 /// Texts of case files.
 namespace sandglass::verification {
 
-/// A quasi-static case of a box of soft tissue, as far as its material; sets and loads are the test's. `size`
-/// (m) and `elements` as in the file: "[1.0, 2.0, 3.0]".
+/// A quasi-static case of a box of soft tissue, up to its material; tests add sets and loads. `size` (m) and
+/// `elements` are as in the file: "[1.0, 2.0, 3.0]".
 inline std::string box_case(const std::string& name, const std::string& size, const std::string& elements) {
   return fmt::format(R"([case]
 name = "{}"
@@ -31,7 +31,7 @@ density = 1000.0
                      name, size, elements);
 }
 
-/// The text with the first piece `old` replaced, which must be there.
+/// The text with the first occurrence of `old` replaced, which must exist.
 inline std::string replaced(std::string text, const std::string& old, const std::string& replacement) {
   const auto at = text.find(old);
   if (at == std::string::npos) throw std::logic_error("not in the text: " + old);

@@ -7,7 +7,7 @@
 #include "math/dual.hpp"
 #include "math/matrix.hpp"
 
-/// Exact derivatives of kernels: run them on dual numbers.
+/// Exact derivatives of kernels, by running them on dual numbers.
 namespace sandglass::verification {
 
 using D = Dual<double>;
@@ -54,8 +54,8 @@ Matrix<double, R, C> gradient(const Matrix<double, R, C>& at, const Function& fu
 
 namespace detail {
 
-/// Constants of one part of an element with their number type changed. They are aggregates of numbers and
-/// nothing else, which lets any of them, also those to come, be converted without knowing their members.
+/// Constants of one part of an element, converted to another number type. Being plain aggregates of numbers,
+/// they are converted without naming their members, which includes future parts.
 template <class To, class From>
 To with_other_numbers(const From& from) {
   if constexpr (std::is_empty_v<From>) {

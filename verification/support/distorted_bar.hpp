@@ -7,10 +7,10 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-/// A small scene without symmetry that linear methods are compared on.
+/// A small scene without symmetry for comparing linear methods.
 namespace sandglass::verification {
 
-/// A bar of distorted elements between a foot and a head that moves by d; `fineness` times 3 x 3 x 8 of them.
+/// A bar of `fineness` times 3 x 3 x 8 distorted elements between a foot and a head that moves by d.
 inline CaseOnMesh distorted_bar_case(const Vector& d, std::array<bool, 3> components = {true, true, true},
                                      int fineness = 1) {
   Case description = plain_case(NeoHookean{.young_modulus = 3000.0, .poisson_ratio = 0.49});

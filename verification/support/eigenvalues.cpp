@@ -24,10 +24,10 @@ std::vector<std::pair<double, std::vector<double>>> symmetric_eigenpairs(const d
 }
 
 double largest_eigenvalue_magnitude(const double* entries, int size) {
-  // Gelfand's formula, the limit of |A^m|^(1/m), m = 2, 4, 8, ...: what the norm is above the radius, a
-  // factor of the size and the eigenvectors' angles, has its m-th root taken. (The QR iteration finds no end
-  // on some tangents of symmetric elements.) Rows for columns: a matrix and its transpose have the same
-  // eigenvalues.
+  // Gelfand's formula, the limit of |A^m|^(1/m), m = 2, 4, 8, ...: the norm exceeds the radius by a factor
+  // that depends on the size and the eigenvectors' angles, of which the m-th root is taken. (The QR iteration
+  // does not converge for some tangents of symmetric elements.) Rows serve as columns: a matrix and its
+  // transpose have the same eigenvalues.
   Eigen::MatrixXd power = Eigen::Map<const Eigen::MatrixXd>(entries, size, size);
   double log_radius = 0.0, root = 1.0;
   for (int squared = 0; squared < 34; ++squared, root *= 0.5) {

@@ -11,10 +11,10 @@ namespace sandglass::verification {
 /// Eigenvalues of a symmetric matrix given by rows, in ascending order.
 std::vector<double> symmetric_eigenvalues(const double* entries, int size);
 
-/// The same with their eigenvectors, of length one.
+/// The same with eigenvectors of length one.
 std::vector<std::pair<double, std::vector<double>>> symmetric_eigenpairs(const double* entries, int size);
 
-/// The largest absolute value of the eigenvalues, which may be complex, of any square matrix.
+/// The largest absolute value of the (possibly complex) eigenvalues of any square matrix.
 double largest_eigenvalue_magnitude(const double* entries, int size);
 
 template <int N>

@@ -6,8 +6,8 @@
 #include "math/dual.hpp"
 #include "math/matrix.hpp"
 
-/// Displacement fields of finite strain whose every derivative is known: u(X) in m on a unit cube, for any
-/// number type. Times `amplitude`, which laws that bear less set below one.
+/// Displacement fields of finite strain with known derivatives: u(X) in m on a unit cube, for any number
+/// type, times `amplitude`, which is below one for laws that bear less.
 namespace sandglass::verification {
 
 inline double sine(double x) {
@@ -28,15 +28,15 @@ Dual<T> cosine(const Dual<T>& x) {
 }
 
 /// Three waves, u = sum_m a_m sin(k_m . X + phase_m). They are almost transverse: displacement gradients
-/// reach 0.33 in their Frobenius norm while det F stays between 0.955 and 1.040, so that nearly
-/// incompressible laws bear it, too. Nothing in it is symmetric or a polynomial.
+/// reach a Frobenius norm of 0.33 while det F stays between 0.955 and 1.040, so that nearly incompressible
+/// laws bear it too. No part is symmetric or polynomial.
 struct WaveField {
   static constexpr std::string_view name = "waves";
   double amplitude = 1.0;
 
   template <class T>
   Triple<T> operator()(const Triple<T>& X) const {
-    constexpr Tensor<double> k{{2.1, 1.2, -0.9, -1.1, 1.8, 1.3, 1.4, -0.8, 2.0}};  // 1/m, a wave in each row
+    constexpr Tensor<double> k{{2.1, 1.2, -0.9, -1.1, 1.8, 1.3, 1.4, -0.8, 2.0}};  // 1/m, one wave per row
     constexpr Tensor<double> a{{0.03, -0.015, 0.06, 0.06, -0.01, 0.06, 0.03, 0.06, 0.0}};  // m
     constexpr std::array<double, 3> phase{0.3, 1.1, -0.4};
     Triple<T> u = from_double<T>(Triple<double>{});
@@ -49,8 +49,8 @@ struct WaveField {
   }
 };
 
-/// The cube bent into a part of a ring of 2 m mean radius (Rivlin's flexure): planes across x turn to planes
-/// through its axis, those across z to cylinders with r^2 = a^2 + 2 a z, so that det F = 1.
+/// The cube bent into a part of a ring of 2 m mean radius (Rivlin's flexure): planes across x become planes
+/// through its axis, those across z become cylinders with r^2 = a^2 + 2 a z, so that det F = 1.
 struct FlexureField {
   static constexpr std::string_view name = "flexure";
   double amplitude = 1.0;
@@ -63,7 +63,7 @@ struct FlexureField {
   }
 };
 
-/// manufactured_test.cpp holds every method to each of them.
+/// manufactured_test.cpp tests every method with each of them.
 using ExactFields = TypeList<WaveField, FlexureField>;
 
 }  // namespace sandglass::verification

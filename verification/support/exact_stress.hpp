@@ -3,8 +3,8 @@
 #include "element/methods.hpp"
 #include "material/small_strain.hpp"
 
-/// What a method must answer to a uniform displacement gradient: the law itself, or what small-strain theory
-/// leaves of it where the method says that it is linear.
+/// The exact stress for a uniform displacement gradient: the law itself, or its small-strain limit for linear
+/// methods.
 namespace sandglass::verification {
 
 /// (H + H^T) / 2.

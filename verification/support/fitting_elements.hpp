@@ -16,7 +16,7 @@ NodalVectors<double> fitting_hexahedron(RandomGeometry& random) {
   }
 }
 
-/// Displacements in which no integration point of the kernel is near to inversion; see
+/// Displacements in which no integration point of the kernel is close to inversion; see
 /// RandomGeometry::displacements.
 template <class Kernel, class Law>
 NodalVectors<double> fitting_displacements(RandomGeometry& random, const NodalVectors<double>& X,

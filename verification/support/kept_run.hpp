@@ -27,7 +27,7 @@ class KeepingRecorder final : public Observer {
   std::vector<RunSoFar> kept_;
 };
 
-/// The bits of all reports of a run and of its final answer. Zeros have no sign: sums over ranks lose it.
+/// The bits of all reports of a run and of its final answer. Zeros lose their sign, as in sums over ranks.
 inline std::vector<std::uint64_t> bits_of(const RunSoFar& run, const NodalField& answer) {
   std::vector<std::uint64_t> bits;
   const auto add = [&](double number) { bits.push_back(std::bit_cast<std::uint64_t>(number + 0.0)); };

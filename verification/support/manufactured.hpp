@@ -7,8 +7,8 @@
 #include "support/random_hexahedra.hpp"
 #include "support/scenes.hpp"
 
-/// Manufactured solutions: a displacement field is chosen, and the loads under which it is the exact answer
-/// follow from it by derivatives.
+/// Manufactured solutions: for a chosen displacement field, derivatives give the loads for which it is the
+/// exact answer.
 namespace sandglass::verification {
 
 /// X with the slope 1 in component j.
@@ -30,8 +30,8 @@ Tensor<T> field_gradient(const Field& field, const Triple<T>& X) {
   return H;
 }
 
-/// A field with the loads that hold it: b = -Div P in the body, t = P N on its surface. P is the stress that
-/// the method stands for, the law's or that of small strains.
+/// A field and its equilibrium loads: b = -Div P in the body, t = P N on its surface. P is the stress of the
+/// method's theory, the law's or that of small strains.
 template <class Method, class Law, class Field>
 struct ManufacturedSolution {
   Field field;
@@ -55,12 +55,12 @@ struct ManufacturedSolution {
   Vector displacement(const Vector& X) const { return field(Triple<double>{{X[0], X[1], X[2]}}).entries; }
 };
 
-/// The Gauss rule of three points on [-1, 1]: exact to degree 5. With it in each direction what integration
-/// leaves of loads and errors is of order h^6 and more.
+/// The Gauss rule of three points on [-1, 1]: exact to degree 5. In all three directions, it integrates loads
+/// and errors up to terms of order h^6 and more.
 inline constexpr std::array<double, 3> rich_points{-0.77459666924148337704, 0.0, 0.77459666924148337704};
 inline constexpr std::array<double, 3> rich_weights{5.0 / 9, 8.0 / 9, 5.0 / 9};
 
-/// A point of the rich rule in an element: shape functions, place (m) and weight (m^3).
+/// A point of this rule in an element: shape functions, position (m) and weight (m^3).
 struct RichPoint {
   std::array<double, 3> xi;
   Matrix<double, 8, 1> N;
@@ -113,7 +113,7 @@ void add_face_loads(const NodalField& points, const Quadrilateral& face, const T
 }
 
 /// The consistent nodal loads of a manufactured solution on the mesh, sorted by node: body force and, on the
-/// whole surface, tractions. What meets held nodes becomes part of their reactions.
+/// whole surface, tractions. Loads on held nodes become part of their reactions.
 template <class Solution>
 std::vector<NodalLoad> manufactured_loads(const Mesh& mesh, const Solution& solution) {
   NodalField loads(mesh.points.size(), Vector{});
@@ -136,7 +136,7 @@ std::vector<NodalLoad> manufactured_loads(const Mesh& mesh, const Solution& solu
   return result;
 }
 
-/// How far a trilinear field is from the exact one: norms over the body, relative to those of the exact one.
+/// The errors of a trilinear field: norms over the body, relative to those of the exact field.
 struct FieldErrors {
   double displacement;  ///< L2
   double gradient;      ///< H1 seminorm
@@ -170,9 +170,9 @@ FieldErrors field_errors(const Mesh& mesh, const NodalField& u, const Field& fie
           std::sqrt(nodal_distance / size)};
 }
 
-/// A unit cube of n x n x n elements whose nodes are moved by up to `share` of an edge along each axis; those
-/// of the surface stay in it. Up to 0.15 every corner of every element keeps a positive volume: the edges
-/// there are I + E with |E_ij| <= 0.3, and det(I + E) >= 0.7^3 - 3 0.7 0.3^2 - 2 0.3^3 = 0.1.
+/// A unit cube of n x n x n elements whose nodes are moved by up to `share` of an edge along each axis;
+/// surface nodes stay on the surface. Up to 0.15 every corner of every element has a positive volume: the
+/// edges there are I + E with |E_ij| <= 0.3, and det(I + E) >= 0.7^3 - 3 0.7 0.3^2 - 2 0.3^3 = 0.1.
 inline Mesh distorted_cube(int n, double share, std::uint64_t seed) {
   Mesh mesh = box({1.0, 1.0, 1.0}, {n, n, n});
   RandomGeometry random(seed);

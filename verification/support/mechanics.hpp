@@ -3,10 +3,10 @@
 #include "solve/stable_step.hpp"
 #include "support/agreement.hpp"
 
-/// Relations that mechanics demands of answers.
+/// Relations between answers that follow from mechanics.
 namespace sandglass::verification {
 
-/// A motion whose velocities are turned round goes back to where it came from, step by step.
+/// A motion with reversed velocities returns to its start, step by step.
 inline Verdict time_reversal(const Problem& given, const Answer& /*own*/, RandomGeometry& /*random*/) {
   Problem problem = given;
   Case& d = problem.description;
@@ -32,8 +32,8 @@ inline Verdict time_reversal(const Problem& given, const Answer& /*own*/, Random
   return held_if(difference <= allowed_for_rounding(problem), difference, start.words);
 }
 
-/// The work of all that acts is the energy that is there: to a percent of the largest, or, as errors are of
-/// second order, half as much with half the step.
+/// The work of all loads equals the change of energy: to a percent of the largest energy or, since errors are
+/// of second order, at least twice as closely with half the step.
 inline Verdict energy_balance(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
   const double step = problem.description.dynamics.time_step;
   if (problem.at_rest() || step == 0.0 || !own.failure.empty() || !is_conservative(problem)) return {};
@@ -55,14 +55,14 @@ inline Verdict energy_balance(const Problem& problem, const Answer& own, RandomG
   return held_if(second <= 0.5 * first, first, fmt::format("{:.3g} with half the step", second));
 }
 
-/// Each of two small loads does the same work on the way of the other (Betti). They strain by 1e-6 or so, of
-/// which the square is left; searches to 1e-10 leave a million times that where one load acts on a stiff
-/// place.
+/// Each of two small loads does the same work on the displacements of the other (Betti). Strains are about
+/// 1e-6, and the error their square; searches to 1e-10 leave a million times that where a load acts on a
+/// stiff part.
 inline Verdict reciprocity(const Problem& given, const Answer& /*own*/, RandomGeometry& random) {
   Problem problem = given;
   Case& d = problem.description;
   if (!problem.at_rest() || is_loose(problem) || !is_conservative(problem)) return {};
-  if (slackens_somewhere(problem)) return {};  // its stiffness is not one
+  if (slackens_somewhere(problem)) return {};  // no constant stiffness
   d.rotations.clear();
   d.forces.of<Pressure>().clear();
   d.forces.of<Gravity>().clear();
@@ -85,13 +85,13 @@ inline Verdict reciprocity(const Problem& given, const Answer& /*own*/, RandomGe
     return sum;
   };
   const double unit = std::sqrt(std::abs(work(f, u.u) * work(g, w.u)));
-  if (unit == 0.0) return {};  // one acts on what is held
+  if (unit == 0.0) return {};  // a load acts on held nodes
   const double difference = std::abs(work(f, w.u) - work(g, u.u)) / unit;
   return held_if(difference <= 1e-4, difference);
 }
 
-/// Linear methods: the answer to all is the sum of that to forces and imposed displacements, and that to the
-/// others.
+/// Linear methods: the answer to all loads is the sum of the answer to forces and imposed displacements and
+/// of the answer to the other loads.
 inline Verdict superposition(const Problem& problem, const Answer& own, RandomGeometry& /*random*/) {
   const Case& d = problem.description;
   if (!problem.method().is_linear || !d.rotations.empty() || !d.forces.of<Pressure>().empty()) return {};
@@ -111,8 +111,8 @@ inline Verdict superposition(const Problem& problem, const Answer& own, RandomGe
   return held_if(difference <= allowed_for_rounding(problem), difference);
 }
 
-/// A motion under the same loads, damped until it stops, stops at the answer at rest, or so near that a
-/// search from there finds it.
+/// A motion under the same loads, damped until it stops, ends at the static answer, or close enough for a
+/// search from there to stay.
 inline Verdict damping(const Problem& given, const Answer& own, RandomGeometry& /*random*/) {
   constexpr long most_steps = 10000;
   if (!given.at_rest() || given.method().is_condensed || is_loose(given) || !own.failure.empty()) return {};
@@ -122,7 +122,7 @@ inline Verdict damping(const Problem& given, const Answer& own, RandomGeometry& 
   const Model model(scene, problem.choice);
   double inertia = 0.0;
   for (std::size_t n = 0; n < own.u.size(); ++n) inertia += model.masses()[n] * std::pow(length(own.u[n]), 2);
-  const double rate = std::sqrt(2.0 * std::abs(own.energy) / inertia);  // rad/s, Rayleigh's quotient
+  const double rate = std::sqrt(2.0 * std::abs(own.energy) / inertia);  // rad/s, Rayleigh quotient
   Case& d = problem.description;
   d.quasi_static = false;
   d.dynamics = {.duration = 40.0 / rate, .ramp_time = 10.0 / rate, .damping = 1.5 * rate, .frames = 1};
@@ -137,7 +137,7 @@ inline Verdict damping(const Problem& given, const Answer& own, RandomGeometry& 
   const Answer near = answer_of(given, &moved.u);
   const bool led = near.failure.empty() && largest_distance(near.u, own.u) <= 1e-4 * own.largest;
   if (led) return {Kind::explained, difference, "it still moved"};
-  // Of several equilibria a search may find one that is unstable where it does not decide.
+  // Of several equilibria a search may find an unstable one if it does not check stability.
   return {own.stable ? Kind::violated : Kind::explained, difference, "another rest"};
 }
 

@@ -6,9 +6,9 @@
 
 namespace sandglass::verification {
 
-/// The tangent stiffness df/du of a whole mesh, exact, for any method: every element runs on dual numbers,
-/// one after the other, without layout and packs. The mesh goes from rest to u in one step; the tangent is
-/// that of a further step.
+/// The exact tangent stiffness df/du of a whole mesh for any method: every element runs on dual numbers, one
+/// after the other, without layout and packs. The mesh goes from the undeformed shape to u in one step; the
+/// tangent is that of a further step.
 template <class Kernel, class Law>
 class MeshTangent {
  public:
@@ -39,7 +39,7 @@ class MeshTangent {
     return smallest;
   }
 
-  /// df/du v (N) of a further step; v in m, the inverse step in 1/s is zero where time plays no part.
+  /// df/du v (N) of a further step; v in m, the inverse step in 1/s is zero if static.
   NodalField along(const NodalField& v, double inverse_step = 0.0) const {
     const auto dilatation = dilatations(v);
     NodalField df(v.size());
@@ -56,7 +56,7 @@ class MeshTangent {
     return df;
   }
 
-  /// All of it over the square roots of the masses (kg), M^(-1/2) K M^(-1/2), by rows, 1/s^2.
+  /// The whole tangent over the square roots of the masses (kg), M^(-1/2) K M^(-1/2), by rows, 1/s^2.
   std::vector<double> over_masses(const std::vector<double>& masses, double inverse_step = 0.0) const {
     const std::size_t size = 3 * u_.size();
     std::vector<double> K(size * size);
@@ -80,7 +80,7 @@ class MeshTangent {
     return verification::along(gather(u_, mesh_.cells[e]), gather(v, mesh_.cells[e]));
   }
 
-  /// Volume change over volume around each node; nothing where no element asks for it.
+  /// Volume change over volume around each node; zero unless elements use it.
   std::vector<D> dilatations(const NodalField& v) const {
     std::vector<D> change(u_.size()), rest(u_.size());
     if constexpr (Kernel::averages_over_nodes) {
@@ -111,7 +111,7 @@ class MeshTangent {
     return motion;
   }
 
-  /// Whether a direction reaches an element: most do not when it moves one node.
+  /// Whether a direction moves a node of an element; most elements are unaffected if it moves one node.
   static bool feels(const ElementMotion<D>& motion) {
     const auto moves = [](const D& x) { return x.slope != 0.0; };
     return std::ranges::any_of(motion.u.entries, moves) || std::ranges::any_of(motion.dilatation, moves);

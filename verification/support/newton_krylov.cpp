@@ -29,7 +29,7 @@ int evaluate_residual(N_Vector x, N_Vector result, void* data) {
     finite = std::all_of(r.begin(), r.end(), [](double value) { return std::isfinite(value); });
     fill(result, r);
   });
-  return failed != 0 || finite ? failed : 1;  // positive: a shorter step may do
+  return failed != 0 || finite ? failed : 1;  // positive: a shorter step may succeed
 }
 
 int multiply(N_Vector v, N_Vector result, N_Vector x, booleantype* /*x_is_new*/, void* data) {

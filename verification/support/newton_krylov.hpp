@@ -13,9 +13,9 @@ struct NonlinearSystem {
   std::function<Vector(const Vector& r)> precondition;  ///< approximately (dF/dx)^-1 r
 };
 
-/// A root of the system by KINSOL (SUNDIALS) with line search and flexible GMRES, from x. It ends when the
-/// largest component of the residual is below `tolerance`, or earlier when roundoff leaves no shorter one to
-/// be found: who takes the answer looks at its residual. `size` is the unit of x. Throws std::runtime_error.
+/// A root of the system from x by KINSOL (SUNDIALS) with line search and flexible GMRES. It stops when the
+/// largest component of the residual is below `tolerance`, or earlier if roundoff permits no smaller one:
+/// callers must check the residual. `size` is the unit of x. Throws std::runtime_error.
 std::vector<double> solved_by_newton_krylov(const NonlinearSystem& system, std::vector<double> x, double size,
                                             double tolerance);
 

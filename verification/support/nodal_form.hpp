@@ -4,8 +4,8 @@
 
 namespace sandglass::verification {
 
-/// A single element without history, from nodal displacements u (m) to nodal forces (N): the functions above
-/// without modes.
+/// A single element without history, from nodal displacements u (m) to nodal forces (N): the kernel's
+/// functions without modes.
 template <class Kernel>
 struct NodalForm : Kernel {
   static_assert(!Kernel::remembers && !Kernel::needs_increment && !Kernel::needs_coordinates &&

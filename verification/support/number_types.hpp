@@ -7,7 +7,7 @@
 
 namespace sandglass::verification {
 
-/// The number types that kernels run on: vocabulary_test.cpp asks of each what scalar.hpp promises.
+/// The number types of kernels; vocabulary_test.cpp tests each for the functions of scalar.hpp.
 using NumberTypes = TypeList<double, float, Pack<double>, Pack<float>, Dual<double>, Counted>;
 
 /// The plain value of a number, without its slope, tally or other lanes.

@@ -21,9 +21,9 @@ inline Mesh macneal_harder_patch() {
 
 inline constexpr int first_corner = 8;
 
-/// The same with its inner nodes moved towards those of a regular patch, by as many quarters of the way as
-/// the kernel asks for: none for hexahedra; but an element of the patch has a corner whose edges span a
-/// negative volume, which tetrahedra cannot have.
+/// The same with inner nodes moved towards a regular patch, by as many quarters of the distance as the kernel
+/// requires: none for hexahedra; but one corner of the patch has edges that span a negative volume, which
+/// tetrahedra cannot have.
 template <class Kernel>
 Mesh fitting_patch() {
   Mesh mesh = macneal_harder_patch();

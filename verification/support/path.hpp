@@ -6,16 +6,16 @@
 
 namespace sandglass::verification {
 
-/// The elements of a mesh in double precision, led along a path of displacements step by step: for methods
-/// that remember where they have been.
+/// The elements of a mesh in double precision, moved along a path of displacements step by step: for methods
+/// with memory.
 class Path {
  public:
   Path(const Mesh& mesh, const AnyLaw& law, const MethodChoice& choice, double density = 1000.0)
       : elements_(std::get<0>(make_internal_force(mesh, law, choice, density))),
         state_(elements_->undeformed()) {}
 
-  /// Goes on to displacements u (m) in some time (s), by default one so long that it plays no part, and
-  /// returns the forces there (N).
+  /// Moves to displacements u (m) in a time `step` (s), by default so long that it plays no part, and returns
+  /// the forces there (N).
   NodalField to(const NodalField& u, double step = std::numeric_limits<double>::infinity()) {
     state_.step = step;
     const Rows<double> rows = to_rows<double>(u, elements_->layout());

@@ -12,8 +12,8 @@
 
 namespace sandglass::verification {
 
-/// A second account of the assembly, as a book would write it: elements one by one, gather, force, scatter;
-/// no strips, packs or threads. On dual numbers it gives exact derivatives. Nodal values of n nodes are 3 n
+/// A second implementation of the assembly, as in a textbook: elements one by one, gather, force, scatter; no
+/// strips, packs or threads. On dual numbers it gives exact derivatives. Nodal values of n nodes are 3 n
 /// numbers, component i of node I at 3 I + i.
 template <class Kernel, class Law>
 class PlainAssembly {
@@ -21,7 +21,7 @@ class PlainAssembly {
   template <class T>
   using Histories = std::vector<typename Kernel::template History<T>>;
 
-  /// Numbers that an element remembers.
+  /// The number of values in an element's memory.
   static constexpr std::size_t history_numbers =
       Kernel::remembers ? sizeof(typename Kernel::template History<double>) / sizeof(double) : 0;
 
@@ -36,14 +36,14 @@ class PlainAssembly {
 
   std::size_t numbers() const { return 3 * mesh_.points.size(); }
 
-  /// What elements remember at rest.
+  /// The memory of undeformed elements.
   template <class T>
   Histories<T> rest() const {
     return Histories<T>(mesh_.cells.size(), typename Kernel::template History<T>{});
   }
 
-  /// The internal forces (N) at displacements u (m) to which `increment` has led in `step` seconds, infinite
-  /// where time plays no part. What elements remember goes one step on.
+  /// The internal forces (N) at displacements u (m) reached by `increment` in `step` seconds, infinite in
+  /// static solutions. Advances the elements' memory by one step.
   template <class T>
   std::vector<T> force(const std::vector<T>& u, const std::vector<T>& increment, double step,
                        Histories<T>& histories) const {
@@ -74,9 +74,9 @@ class PlainAssembly {
     return force;
   }
 
-  /// The limit of a short step: the forces of a body at u that moves with v (m/s) and remembers `histories`.
-  /// The step is so short that nothing changes in it by more than roundoff, and a power of two, so that
-  /// velocities come back from increments without any.
+  /// The limit of a short step: the forces of a body at u with velocities v (m/s) and the memory `histories`.
+  /// The step is so short that nothing changes by more than roundoff, and a power of two, so that velocities
+  /// follow from increments exactly.
   std::vector<double> force_in_motion(const std::vector<double>& u, const std::vector<double>& v,
                                       Histories<double> histories) const {
     constexpr double instant = 0x1p-64;
@@ -85,9 +85,9 @@ class PlainAssembly {
     return force<double>(u, increment, instant, histories);
   }
 
-  /// The rates (1/s) of what elements remember, exact: a step h leads from history Q to Q + h Q' + O(h^2)
-  /// with increments h v, and h is the dual number 0 + epsilon. For elastic laws: those that relax know their
-  /// step.
+  /// The exact rates (1/s) of the elements' memory: a step h leads from history Q to Q + h Q' + O(h^2) with
+  /// increments h v, and h is the dual number 0 + epsilon. For elastic laws only: viscoelastic ones store
+  /// their step.
   std::vector<double> history_rates(const std::vector<double>& u, const std::vector<double>& v,
                                     const Histories<double>& histories) const {
     static_assert(!law_remembers<Law>);

@@ -9,7 +9,7 @@
 namespace sandglass::verification {
 
 /// A generator of the list with plain parameters, set through its own declarations: lengths differ so that
-/// axes cannot be swapped unseen, counts are small.
+/// swapped axes are noticed, counts are small.
 template <class Generator>
 Generator plain_generator() {
   Generator generator;

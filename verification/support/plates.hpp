@@ -7,7 +7,7 @@
 namespace sandglass::verification {
 
 /// A block between two plates, one of which moves; `elements` along the axes. With enough of them along z it
-/// is cut up among threads and ranks.
+/// is divided among threads and ranks.
 inline CaseOnMesh block_between_plates(Case description, bool quasi_static,
                                        const std::array<int, 3>& elements) {
   const Mesh mesh = box({0.1, 0.1, 0.4}, elements);

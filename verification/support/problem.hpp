@@ -13,14 +13,14 @@
 
 namespace sandglass::verification {
 
-/// All that an answer follows from: what `make_scene` takes, and the method.
+/// All that determines an answer: the arguments of `make_scene`, and the method.
 struct Problem {
   Case description;
   Mesh mesh;
   NodeSets sets;
   ElementSets element_sets;
   MethodChoice choice;
-  long steps = 0;  ///< that a motion takes, about
+  long steps = 0;  ///< approximate number of steps of a motion
 
   Scene scene() const { return make_scene(description, mesh, sets, element_sets); }
   const MethodEntry& method() const { return method_named(choice.method); }
@@ -34,14 +34,14 @@ inline bool follows_a_path(const Problem& problem) {
   return std::visit([](const auto& elements) { return elements->needs_increment(); }, model.internal_force());
 }
 
-/// Whether the stress of a material has a kink in the undeformed body, which has no frequencies there.
+/// Whether a material's stress has a kink in the undeformed body, which then has no frequencies.
 inline bool slackens_somewhere(const Problem& problem) {
   return std::ranges::any_of(problem.description.materials, [](const CaseMaterial& material) {
     return std::visit([]<class Law>(const Law&) { return slackens<Law>; }, material.law);
   });
 }
 
-/// Calls use(curve) for every load.
+/// Calls use(curve) for the curve of every load.
 template <class Use>
 void for_each_curve(Case& description, const Use& use) {
   description.forces.for_each([&](auto& force) {
@@ -55,7 +55,7 @@ void multiply(Numbers& numbers, double factor) {
   for (double& number : numbers) number *= factor;
 }
 
-/// Of the elements of a mesh, those that start at their first corners, m.
+/// The shortest among the edges at the first corners of elements, m.
 inline double shortest_edge(const Mesh& mesh) {
   double shortest = INFINITY;
   for (const Hexahedron& cell : mesh.cells) {
@@ -70,14 +70,14 @@ inline double largest_in(const NodalField& field) {
   return largest_distance(field, NodalField(field.size()));
 }
 
-/// What a problem leads to.
+/// The outcome of a problem.
 struct Answer {
   NodalField u, v = {};                 ///< m, m/s
-  std::string failure, words;           ///< what kind of one, empty where there is none; what is said of it
-  double largest = 0.0, fastest = 0.0;  ///< m, m/s, of all frames
+  std::string failure, words;           ///< the kind of failure, empty if none; the message
+  double largest = 0.0, fastest = 0.0;  ///< m, m/s, over all frames
   double energy = 0.0, work = 0.0;      ///< J, at the end
-  double busiest = 0.0;                 ///< J, the largest energy or work of all rows
-  bool stable = false;                  ///< an equilibrium that was found to be
+  double busiest = 0.0;                 ///< J, the largest energy or work in any row
+  bool stable = false;                  ///< whether the equilibrium was found stable
 };
 
 /// Calls `act`, which returns an answer or throws an error with its message for users.
@@ -96,7 +96,7 @@ Answer attempt(const Act& act) {
   return answer;
 }
 
-/// The displacements of a scene with a method, from a checkpoint, or near displacements where there are any.
+/// The displacements of a scene with a method, from a checkpoint, or starting near given displacements.
 inline Answer run(const Scene& scene, const MethodChoice& choice, Observer& observer,
                   const Checkpoint* from = nullptr, const NodalField* near = nullptr) {
   return attempt([&]() -> Answer {
@@ -116,7 +116,7 @@ inline Answer run(const Scene& scene, const MethodChoice& choice, Observer& obse
   });
 }
 
-/// The answer with what was reported on the way; no motion takes more than thirty times its steps.
+/// The answer and its reports; a motion may take at most thirty times its steps.
 inline Answer answer_of(const Problem& problem, const NodalField* near = nullptr,
                         std::vector<HistoryRow>* rows = nullptr) {
   return attempt([&] {

@@ -10,11 +10,11 @@
 #include "support/problem.hpp"
 #include "support/random_hexahedra.hpp"
 
-/// Problems made of others whose answers must follow.
+/// Problems derived from others, whose answers are known from theirs.
 namespace sandglass::verification {
 
-/// Another problem, and where and in which units its answer shows the same body: displacements are
-/// `length` Q u, those of node n belong to node `node_of[n]` of the first problem.
+/// Another problem for the same body, and the position and units of its answer: displacements are `length` Q
+/// u, those of node n belong to node `node_of[n]` of the first problem.
 struct Mapped {
   Problem problem;
   Tensor<double> Q = identity<double>();
@@ -34,8 +34,8 @@ struct Mapped {
   std::size_t node(std::size_t n) const { return n < node_of.size() ? at(node_of[n]) : n; }
 };
 
-/// Turned or mirrored by Q about the origin, then moved. Components that are imposed alone follow a Q that
-/// maps axes to axes.
+/// Turned or mirrored by Q about the origin, then moved. If single components are imposed, Q must map axes to
+/// axes.
 inline Mapped placed(Problem problem, const Tensor<double>& Q, const Vector& shift = {}) {
   const double handed = determinant(Q);
   const auto polar = [&](Vector& v) { v = linear(Q, v); };
@@ -96,7 +96,7 @@ inline std::vector<int> shuffled(std::size_t n, RandomGeometry& random) {
   return order;
 }
 
-/// The sets when number n becomes place[n].
+/// The sets after number n becomes place[n].
 inline void renumber(std::map<std::string, std::vector<int>>& sets, const std::vector<int>& place) {
   for (auto& [name, members] : sets) {
     for (int& member : members) member = place[at(member)];
@@ -104,7 +104,7 @@ inline void renumber(std::map<std::string, std::vector<int>>& sets, const std::v
   }
 }
 
-/// Nodes have other numbers.
+/// The same with nodes in another order.
 inline Mapped with_other_node_numbers(Problem problem, RandomGeometry& random) {
   const std::vector<int> place = shuffled(problem.mesh.points.size(), random);
   Mapped mapped{std::move(problem)};
@@ -122,7 +122,7 @@ inline Mapped with_other_node_numbers(Problem problem, RandomGeometry& random) {
   return mapped;
 }
 
-/// Elements have other numbers.
+/// The same with elements in another order.
 inline Mapped with_other_cell_numbers(Problem problem, RandomGeometry& random) {
   const std::vector<int> place = shuffled(problem.mesh.cells.size(), random);
   const auto moved = [&](auto& values) {
@@ -140,7 +140,7 @@ inline Mapped with_other_cell_numbers(Problem problem, RandomGeometry& random) {
   return {std::move(problem)};
 }
 
-/// Each element's corners are listed from another one on.
+/// The same with each element's corners listed from another one on.
 inline Mapped with_turned_corners(Problem problem, RandomGeometry& random) {
   const auto orderings = proper_orderings();
   for (Hexahedron& cell : problem.mesh.cells) {
@@ -198,7 +198,7 @@ inline Mapped in_other_units(Problem problem, double L, double T, double M) {
   return mapped;
 }
 
-/// One of the materials as two that are equal; none where it has one element.
+/// With one of the materials split into two equal ones; none if it has only one element.
 inline std::optional<Mapped> with_a_split_material(Problem problem, RandomGeometry& random) {
   auto& materials = problem.description.materials;
   const std::size_t k = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(materials.size())));
@@ -226,7 +226,7 @@ inline std::optional<Mapped> with_a_split_material(Problem problem, RandomGeomet
   return Mapped{std::move(problem)};
 }
 
-/// Every load as two of the same place, of .3 and .7 of it.
+/// With every load split into two at the same place, .3 and .7 of it.
 inline Mapped with_split_loads(Problem problem) {
   const auto split = [](auto& loads, const auto& take) {
     const auto before = loads;
@@ -254,7 +254,7 @@ inline Mapped with_split_loads(Problem problem) {
   return {std::move(problem)};
 }
 
-/// Tables of two points as formulas; none where there is no table.
+/// With tables of two points replaced by formulas; none without such tables.
 inline std::optional<Mapped> with_formulas(Problem problem) {
   bool any = false;
   for_each_curve(problem.description, [&](LoadCurve& curve) {
@@ -269,7 +269,7 @@ inline std::optional<Mapped> with_formulas(Problem problem) {
   return Mapped{std::move(problem)};
 }
 
-/// The text of a case file without [mesh]; none where fibres are listed, for which it would need a file.
+/// The text of a case file without [mesh]; none if fibres are listed, which would need a file.
 inline std::optional<std::string> text_of(const Problem& problem) {
   const Case& d = problem.description;
   std::string text = fmt::format("[case]\nname = 'random'\nrequirement = '-'\nanswer = '{}'\n",

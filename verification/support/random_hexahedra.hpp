@@ -8,8 +8,8 @@
 
 namespace sandglass::verification {
 
-/// Random numbers, rotations, hexahedra and deformations, the same on every machine: the engine's bits are
-/// fixed by the standard, and the step to doubles is our own because std::uniform_real_distribution is not.
+/// Random numbers, rotations, hexahedra and deformations, equal on every machine: the standard defines the
+/// engine's bits but not std::uniform_real_distribution, which a conversion of our own replaces.
 class RandomGeometry {
  public:
   explicit RandomGeometry(std::uint64_t seed) : engine_(seed) {}
@@ -50,19 +50,19 @@ class RandomGeometry {
   }
 
   /// A distorted hexahedron: corners of a unit cube moved by up to a quarter of the edge in each direction,
-  /// then stretched, sheared, rotated, moved, and of millimetre, metre or kilometre size.
+  /// then stretched, sheared, rotated, moved, and scaled to millimetres, metres or kilometres.
   NodalVectors<double> hexahedron() {
     for (;;) {
       NodalVectors<double> X{};
       for (int I = 0; I < 8; ++I) {
         for (int i = 0; i < 3; ++i) X(I, i) = 0.5 * corner_signs(I, i) + uniform(-0.25, 0.25);
       }
-      if (smallest_measure(X) < 0.02) continue;  // a quarter can fold a corner; the rest of the cube has 1/8
+      if (smallest_measure(X) < 0.02) continue;  // a quarter can fold a corner; a cube's corner has 1/8
       return placed(X);
     }
   }
 
-  /// A parallelepiped of the same variety: the cube without the distortion.
+  /// A parallelepiped made in the same way from an undistorted cube.
   NodalVectors<double> parallelepiped() { return placed(0.5 * corner_signs); }
 
   /// Displacements of a hexahedron: a large random deformation and rotation, a translation, and independent

@@ -10,10 +10,10 @@
 
 namespace sandglass::verification {
 
-/// A problem of its own for each number: every method in turn; meshes of all generators and of two boxes that
-/// are tied, as they are or distorted, some of them refined; one to three materials of all laws; imposed
-/// displacements, rotations, forces, pressures, weight, springs, dashpots, initial velocities; at rest and in
-/// motion; strains of about 1e-3 to .3. Sets and fibres are lists, so that nothing depends on coordinates.
+/// A different problem for each number: every method in turn; meshes of all generators and of two tied boxes,
+/// distorted or not, some of them refined; one to three materials of all laws; imposed displacements,
+/// rotations, forces, pressures, weight, springs, dashpots, initial velocities; static or in motion; strains
+/// of about 1e-3 to .3. Sets and fibres are lists, so that nothing depends on coordinates.
 class RandomProblem {
  public:
   RandomProblem(long seed, long number) : random_(static_cast<std::uint64_t>(9000011 * seed + number)) {
@@ -48,7 +48,7 @@ class RandomProblem {
     return entries[index(whole(0, static_cast<int>(entries.size()) - 1))];
   }
 
-  /// Of any direction.
+  /// A vector of random direction.
   Vector vector(double length = 1.0) {
     const Tensor<double> Q = random_.rotation();
     return {length * Q(0, 0), length * Q(1, 0), length * Q(2, 0)};
@@ -89,7 +89,7 @@ class RandomProblem {
     return generate_mesh(one_of(all));
   }
 
-  /// A box on another one with other elements, to whose face its nodes are tied.
+  /// A box on another one with different elements, its nodes tied to the face below.
   Mesh tied() {
     const std::array<double, 2> section{uniform(0.04, 0.1), uniform(0.04, 0.1)};
     const double height = uniform(0.03, 0.1);
@@ -112,7 +112,7 @@ class RandomProblem {
     return mesh;
   }
 
-  /// Whether no element is nearly inverted, and there are neither too few nor too many.
+  /// Whether no element is nearly inverted, and their number is neither too small nor too large.
   bool is_decent(const Mesh& mesh) {
     for (const Hexahedron& cell : mesh.cells) {
       const NodalVectors<double> X = gather(mesh.points, cell);
@@ -122,7 +122,7 @@ class RandomProblem {
     return mesh.cells.size() >= 2 && mesh.cells.size() <= 100;
   }
 
-  /// A mesh, and its sets: the ends of its longest extent, and some faces of the boundary.
+  /// Makes a mesh and its sets: the ends of its longest extent, and some faces of the boundary.
   bool make_mesh() {
     const bool is_tied = likely(0.08);
     Mesh& mesh = problem_.mesh = is_tied ? tied() : generated();
@@ -197,7 +197,7 @@ class RandomProblem {
     return made;
   }
 
-  /// One to three, in slabs across an axis.
+  /// One to three materials, in slabs across an axis.
   void make_materials() {
     const int count = likely(0.6) ? 1 : whole(2, 3);
     const std::size_t axis = index(whole(0, 2));
@@ -297,9 +297,9 @@ class RandomProblem {
     try {
       const Scene scene = problem_.scene();
       stable = stable_step(Model(scene, problem_.choice), NodalField(scene.mesh.points.size())).step;
-      // Few levels are too few where forces follow the path.
+      // A few levels are too few where forces follow the path.
       if (likely(0.15) && !follows_a_path(problem_)) d.relaxation.levels = whole(2, 6);
-    } catch (const InputError&) {  // to be refused by every run
+    } catch (const InputError&) {  // every run will refuse it
     }
     if (d.quasi_static) return;
     problem_.steps = whole(40, 120);
@@ -314,7 +314,7 @@ class RandomProblem {
     if (chosen < 0.7) dynamics.time_step = step;
     if (chosen > 0.9) dynamics.subcycles = whole(2, 4);
     if (chosen > 0.8 && chosen < 0.9 && !slackens_somewhere(problem_)) dynamics.body_frequency = 1;
-    for_each_curve(d, [&](LoadCurve& curve) {  // made for the share of the load, which is time at rest
+    for_each_curve(d, [&](LoadCurve& curve) {  // made for the share of the load, which is time in statics
       multiply(curve.times, dynamics.duration);
     });
   }

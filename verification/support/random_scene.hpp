@@ -8,15 +8,15 @@
 
 namespace sandglass::verification {
 
-/// A whole number from the environment, or the usual one.
+/// A whole number from the environment, or the default `usual`.
 inline long from_environment(const char* name, long usual) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::atol(text) : usual;
 }
 
-/// A scene of its own for each number: boxes of up to 1500 elements, some of them distorted, and cylinders;
+/// A different scene for each number: boxes of up to 1500 elements, some of them distorted, and cylinders;
 /// Poisson's ratio up to .4999; one end is held, the other displaced by up to half the length, turned by up
-/// to half a turn, or loaded by forces that bend it as far.
+/// to half a turn, or loaded by forces that bend the body as far.
 class RandomScene {
  public:
   RandomScene(long seed, long number) : random_(static_cast<std::uint64_t>(1000003 * seed + number)) {

@@ -15,8 +15,8 @@ inline constexpr std::array<double, 4> poisson_ratios{0.25, 0.45, 0.49, 0.499};
 
 inline constexpr double sample_young_modulus = 3000.0;
 
-/// A sensible value for a parameter that a law declares: known names get numbers that give the moduli of E
-/// and nu at rest; an unknown one in Pa gets E, any other the middle of its range. A new law needs no edit
+/// A sensible value for a parameter that a law declares: known names get values that give the moduli of E and
+/// nu at small strain; an unknown one in Pa gets E, any other the middle of its range. New laws need no edit
 /// here.
 inline double sample_value(std::string_view name, std::string_view unit, const Range& range, double E,
                            double nu) {
@@ -30,14 +30,14 @@ inline double sample_value(std::string_view name, std::string_view unit, const R
   if (name == "c1") return mu / 2.0;
   if (name == "c2") return -mu / 20.0;
   if (name == "c3") return mu / 100.0;
-  // Ogden: mu = mu1 + mu2, brain tissue's exponent beside one that stiffens in stretch. With more of the
-  // former, uniform stretch of elements without hourglass control is no stable equilibrium.
+  // Ogden: mu = mu1 + mu2, brain tissue's exponent and one that stiffens in stretch. With a larger share of
+  // the former, uniform stretch of elements without hourglass control is no stable equilibrium.
   if (name == "mu1") return 0.4 * mu;
   if (name == "mu2") return 0.6 * mu;
   if (name == "alpha1") return -4.7;
   if (name == "alpha2") return 5.0;
   // Guccione: a tenth of heart muscle's exponents (Land et al. 2015), since tests stretch to five times the
-  // length, where exp(Q) would be no number any more.
+  // length, where exp(Q) would overflow.
   if (name == "b_fibre") return 0.8;
   if (name == "b_transverse") return 0.2;
   if (name == "b_shear") return 0.4;
@@ -77,7 +77,7 @@ Law sample_law(double poisson_ratio, double young_modulus = sample_young_modulus
   return law;
 }
 
-/// Young's modulus at rest (Pa) of any law.
+/// Young's modulus (Pa) of any law at small strain.
 template <class Law>
 double young_modulus_of(const Law& law) {
   const double mu = law.shear_modulus();
@@ -85,7 +85,7 @@ double young_modulus_of(const Law& law) {
   return 9.0 * K * mu / (3.0 * K + mu);
 }
 
-/// lambda + 2 mu at rest, Pa.
+/// lambda + 2 mu at small strain, Pa.
 template <class Law>
 double p_wave_modulus(const Law& law) {
   return lame_lambda(law) + 2.0 * law.shear_modulus();

@@ -35,7 +35,7 @@ inline Mesh box(const std::array<double, 3>& size, const std::array<int, 3>& ele
   return BoxMesh{size, elements}.build();
 }
 
-/// Imposes on every node of `nodes` its own displacement `field(X)`: each node is a set of its own.
+/// Imposes a displacement `field(X)` on each node of `nodes`: each node is a set of its own.
 inline void impose_field(const std::vector<int>& nodes, const NodalField& points,
                          const std::function<Vector(const Vector&)>& field, Case& scene, NodeSets& sets) {
   for (const int node : nodes) {
@@ -54,7 +54,7 @@ inline Vector linear(const Tensor<double>& H, const Vector& X) {
   return u;
 }
 
-/// A mesh of one element with its corners at X (m), and displacements H X (m) of them.
+/// A mesh of one element with corners at X (m), and their displacements H X (m).
 inline std::pair<Mesh, NodalField> one_strained_element(const NodalVectors<double>& X,
                                                         const Tensor<double>& H) {
   Mesh mesh;
@@ -86,16 +86,16 @@ class Recorder final : public Observer {
 
   std::vector<Frame> frames;
   std::vector<HistoryRow> rows;
-  long last_step = std::numeric_limits<long>::max();  ///< ask to end at the first check from here on
+  long last_step = std::numeric_limits<long>::max();  ///< stop at the first check from this step on
 };
 
-/// All that a row of history counts as stored or moving, J.
+/// All stored and kinetic energy in a row of history, J.
 inline double total_energy(const HistoryRow& row) {
   return row.kinetic + row.strain + row.hourglass;
 }
 
-/// The largest difference of the work done and the energy that is there, over all the work in the end, which
-/// must be positive.
+/// The largest difference between the work done and the total energy in any row, over the total work at
+/// the end, which must be positive.
 inline double energy_imbalance(const std::vector<HistoryRow>& rows) {
   const double work = rows.back().external_work;
   EXPECT_GT(work, 0.0);

@@ -13,9 +13,9 @@ struct MotionAt {
   std::vector<double> v;
 };
 
-/// A dynamic scene discretised in space alone, M a + c M v + f = F(t): lumped masses, imposed displacements
-/// and loads along eq. 15, f of the plain assembly with what elements remember integrated in continuous time.
-/// Nothing of it comes from the stepper or the model. For elastic laws.
+/// A dynamic scene discretised only in space, M a + c M v + f = F(t): lumped masses, imposed displacements
+/// and loads along eq. 15, f of the plain assembly with the elements' memory integrated in continuous time.
+/// No part comes from the stepper or the model. For elastic laws.
 template <class Method, class Law>
 class SemiDiscrete {
  public:
@@ -27,7 +27,7 @@ class SemiDiscrete {
         final_(assembly_.numbers(), 0.0),
         free_(assembly_.numbers(), true) {
     for (const auto& cell : scene.mesh.cells) {
-      double volume = 0.0;  // two Gauss points to an axis integrate det J of a trilinear hexahedron exactly
+      double volume = 0.0;  // two Gauss points per axis integrate det J of a trilinear hexahedron exactly
       for (const auto& xi : gauss_points()) {
         volume += determinant(parent_jacobian(gather(scene.mesh.points, cell), xi));
       }
@@ -45,8 +45,8 @@ class SemiDiscrete {
 
   const std::vector<double>& masses() const { return masses_; }
 
-  /// The motion after the scene's duration, integrated with local errors below `tolerance` times what moves.
-  /// `displacement` (m) and `frequency` (rad/s) are what that is measured in where numbers are small.
+  /// The motion after the scene's duration, integrated with local errors below `tolerance` times the values.
+  /// `displacement` (m) and `frequency` (rad/s) set the scale of errors where values are small.
   MotionAt solved(double tolerance, double displacement, double frequency) const {
     const std::size_t n = assembly_.numbers();
     std::vector<double> y(2 * n + PlainAssembly<Kernel, Law>::history_numbers * scene_.mesh.cells.size());

@@ -10,12 +10,12 @@
 #include "support/softening.hpp"
 #include "support/typed_lists.hpp"
 
-/// How near the bound of the stable step comes to the truth: the largest eigenvalue omega^2 of
-/// K v = omega^2 M v, K the tangent stiffness and M the lumped masses, over the bound (2/dt)^2. Above 1 a
-/// step would be unsafe; the step is the square root of the ratio shorter than it could be.
+/// How close the bound of the stable step is to the truth: the largest eigenvalue omega^2 of K v = omega^2 M
+/// v, K the tangent stiffness and M the lumped masses, over the bound (2/dt)^2. Above 1 a step would be
+/// unsafe; the square root of the ratio is the step over the longest possible one.
 namespace sandglass::verification {
 
-/// A mesh and where its nodes are displaced to.
+/// A mesh and the displacements of its nodes.
 struct Sample {
   Mesh mesh;
   NodalField u;
@@ -24,7 +24,7 @@ struct Sample {
 /// The shape of a sample: random, flat, or slender, one to ten.
 struct Shape {
   double thickness;  ///< of the third axis over the first
-  double width;      ///< of the second
+  double width;      ///< of the second axis
 };
 inline constexpr std::array<Shape, 3> shapes{{{1.0, 1.0}, {0.1, 1.0}, {0.1, 0.1}}};
 
@@ -37,10 +37,10 @@ struct Strain {
 inline constexpr Strain at_rest{1.0, 1.0, 0.0};
 inline constexpr Strain strongly_deformed{0.5, 2.0, 0.2};
 
-/// A random block of elements that the kernel accepts: nodes of a grid are moved by a quarter of an edge when
-/// it is one element, else by 0.15, then pressed flat, sheared, stretched and turned. Displacements in which
-/// it stays clear of inversion: nodes moved on their own by `waviness` of the edges, before all are stretched
-/// and turned.
+/// A random block of elements that the kernel accepts: nodes of a grid are moved by a quarter of an edge for
+/// a single element, otherwise by 0.15, then flattened, sheared, stretched and turned. In its displacements,
+/// which stay away from inversion, nodes move independently by `waviness` of the edges before all are
+/// stretched and turned.
 template <class Pair>
 Sample random_sample(RandomGeometry& random, const std::array<int, 3>& elements, const Shape& shape,
                      const Strain& strain) {
@@ -71,7 +71,7 @@ Sample random_sample(RandomGeometry& random, const std::array<int, 3>& elements,
     }
     const bool fits = std::ranges::all_of(sample.mesh.cells, [&](const Hexahedron& cell) {
       const auto X = gather(sample.mesh.points, cell);
-      // A quarter can fold a corner; the rest of the cube has 1/8.
+      // A quarter can fold a corner; a cube's corner has 1/8.
       return smallest_measure(X) > 0.02 * determinant(map) && Kernel::accepts(X);
     });
     if (!fits) continue;
@@ -84,9 +84,9 @@ Sample random_sample(RandomGeometry& random, const std::array<int, 3>& elements,
   }
 }
 
-/// The truth over the bound of a sample, at the bound's own step: velocities that are half a step late make a
-/// damping D count as 2/dt D, and other methods ask no time. A tangent that is not symmetric, as that of
-/// resistances which turn with the element, is measured by its largest eigenvalue's magnitude.
+/// The truth over the bound of a sample, at the bound's own step: since velocities are half a step late, a
+/// damping D counts as 2/dt D; other methods do not depend on time. If the tangent is not symmetric, as for
+/// resistances that turn with the element, its largest eigenvalue's magnitude is used.
 template <class Pair>
 double true_over_bound(const Sample& sample, const typename Pair::Law& law,
                        std::optional<double> kappa = {}) {
@@ -113,7 +113,7 @@ bool gives_way(const Sample& sample) {
 
 /// The distribution of a ratio that must not exceed 1.
 struct Distribution {
-  std::vector<double> ratios;  ///< where there is something to compare with
+  std::vector<double> ratios;  ///< where a comparison is possible
   int samples = 0;
   int unsafe = 0;  ///< of all samples; beyond the roundoff of eigenvalues, 1e-10
 

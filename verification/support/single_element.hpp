@@ -4,7 +4,7 @@
 
 namespace sandglass::verification {
 
-/// One element led along a path of nodal displacements step by step, without a mesh: any method, any number
+/// One element moved along a path of nodal displacements step by step, without a mesh: any method, any number
 /// type.
 template <class Kernel, class Law, class T = double>
 class SingleElement {
@@ -19,8 +19,8 @@ class SingleElement {
     if constexpr (Kernel::remembers) history_ = {};
   }
 
-  /// Goes on to displacements u (m) and returns the forces there (N). The inverse step (1/s) is zero where
-  /// time plays no part.
+  /// Moves to displacements u (m) and returns the forces there (N). The inverse step (1/s) is zero in static
+  /// solutions.
   NodalVectors<T> to(const NodalVectors<T>& u, double inverse_step = 0.0) {
     motion_ = {
         .u = to_modes(u), .increment = to_modes(u - u_), .X = to_modes(X_), .inverse_step = T(inverse_step)};
@@ -28,7 +28,7 @@ class SingleElement {
     return from_modes(Kernel::force(Kernel::deformation(motion_, element_), element_, history_, law_));
   }
 
-  // At the last displacements:
+  // At the last displacements.
   ElementEnergy<T> energy() const { return Kernel::energy(motion_, element_, history_, law_); }
   T mean_jacobian() const { return Kernel::mean_jacobian(motion_, element_); }
   T stiffness_bound() const { return Kernel::stiffness_bound(motion_, element_, history_, law_); }

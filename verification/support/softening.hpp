@@ -9,20 +9,20 @@
 
 namespace sandglass::verification {
 
-/// The smallest stretch at which a law's stiffness is worth comparing with a bound: `smallest`, or a
-/// twentieth above the stretch at which the law says that it gives way, where nothing is left to compare
-/// with.
+/// The smallest stretch at which a law's stiffness can be compared with a bound: `smallest`, or a twentieth
+/// above the stretch at which the law declares that it loses stiffness, below which there is nothing to
+/// compare.
 template <class Law>
 constexpr double smallest_stiff_stretch(double smallest) {
   return std::max(smallest, 1.05 * Law::traits.softening_stretch);
 }
 
-/// Whether a law has fibres that resist stretch alone: its stress has a kink where they slacken.
+/// Whether a law has fibres that resist only stretch: its stress has a kink where they slacken.
 template <class Law>
 inline constexpr bool slackens = Law::traits.slackens;
 
-/// A small displacement gradient under which nothing that resists stretch alone is slack: drawn from `sample`
-/// until fibres and sheets are stretched, if the law has such ones.
+/// A small displacement gradient without slack: drawn from `sample` until fibres and sheets are stretched, if
+/// the law has any.
 template <class Law, class Sample>
 Tensor<double> taut(const Sample& sample) {
   Tensor<double> H = sample();
@@ -32,16 +32,16 @@ Tensor<double> taut(const Sample& sample) {
   return H;
 }
 
-/// What a test of large motions multiplies its loads with: a law that gives way is one for small strains, of
-/// a few percent where its pressure is averaged (nu = .45).
+/// The factor for loads in tests of large motions: laws that lose stiffness are for small strains, of a few
+/// percent where pressure is averaged (nu = .45).
 template <class Law>
 constexpr double bearable_load() {
   return smallest_stiff_stretch<Law>(0.0) > 0.0 ? 0.1 : 1.0;
 }
 
-/// Whether a homogeneous state of large strain need not be stable although method and law are sound by
+/// Whether a homogeneous state of large strain may be unstable although method and law are sound by
 /// themselves: where a pressure is averaged that the law does not split off (see StVenantKirchhoff), and
-/// where pressed fibres may buckle into hourglass modes that nothing holds.
+/// where compressed fibres may buckle into uncontrolled hourglass modes.
 template <class Method, class Law>
 constexpr bool may_give_way() {
   if constexpr (is_adaptive<Method>) {
@@ -53,7 +53,7 @@ constexpr bool may_give_way() {
   return zero_energy_modes<Method>() > 6 && !is_isotropic<Law>;
 }
 
-/// Whether a law gives way at some Gauss point of an element with coordinates X (m) displaced by u (m).
+/// Whether a law loses stiffness at some Gauss point of an element with coordinates X (m) displaced by u (m).
 template <class Law>
 bool gives_way(const NodalVectors<double>& X, const NodalVectors<double>& u) {
   const double limit = smallest_stiff_stretch<Law>(0.0);

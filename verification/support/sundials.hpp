@@ -51,8 +51,8 @@ inline void fill(N_Vector v, const std::vector<double>& numbers) {
   std::copy(numbers.begin(), numbers.end(), N_VGetArrayPointer(v));
 }
 
-/// Runs `evaluate` for a callback in C, through which no exception may pass: it is kept for later, and the
-/// callback says that it failed for good.
+/// Runs `evaluate` for a callback in C, which must not throw: the exception is kept for later, and the
+/// callback reports permanent failure.
 template <class Evaluate>
 int guarded(std::exception_ptr& failure, const Evaluate& evaluate) {
   try {

@@ -11,7 +11,7 @@
 
 namespace sandglass::verification {
 
-/// A folder that is there for one test and gone afterwards.
+/// A folder that exists during one test.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -42,13 +42,13 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Success when `text` contains `part`.
+/// Success if `text` contains `part`.
 inline ::testing::AssertionResult contains(const std::string& text, const std::string& part) {
   if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << "'" << part << "' is not in: " << text;
 }
 
-/// The text of the InputError that `action` throws; a failure of the test when it throws none.
+/// The text of the InputError that `action` throws; the test fails if it throws none.
 template <class Action>
 std::string input_error(const Action& action) {
   try {

@@ -11,7 +11,7 @@
 
 namespace sandglass::verification {
 
-/// Ranks that are threads of one program, which share nothing but what they send, to test without MPI.
+/// Ranks as threads of one program, which share nothing but their messages, for tests without MPI.
 class ThreadRanks {
  public:
   explicit ThreadRanks(int count) : arrived_(count) {
@@ -20,7 +20,7 @@ class ThreadRanks {
     }
   }
 
-  /// Calls work(ranks) on every rank, and returns what they return.
+  /// Calls work(ranks) on every rank, and returns the results.
   template <class Work>
   auto run(const Work& work) {
     std::vector<decltype(work(std::shared_ptr<const Ranks>()))> results(ranks_.size());
@@ -33,7 +33,7 @@ class ThreadRanks {
     return results;
   }
 
-  /// What a rank sent, and how often it took part in sums and gathers.
+  /// Messages of a rank, and the number of sums and gathers in which it took part.
   Ranks::Traffic traffic(std::size_t rank) const { return ranks_[rank]->sent; }
   long collectives(std::size_t rank) const { return ranks_[rank]->collectives; }
 
@@ -84,7 +84,7 @@ class ThreadRanks {
     const Member& other(int r) const { return *all.ranks_[static_cast<std::size_t>(r)]; }
 
     static void copy(std::span<const std::byte> from, std::span<std::byte> to) {
-      if (from.size() != to.size()) std::terminate();  // ranks that do not agree
+      if (from.size() != to.size()) std::terminate();  // ranks disagree
       std::copy(from.begin(), from.end(), to.begin());
     }
 

@@ -23,7 +23,7 @@ struct MethodWithLaw {
   static std::string label() { return std::string(Method::name) + " " + std::string(Law::name); }
 };
 
-/// A pair whose force follows from the displacements of one element, so that it can be tested alone.
+/// A pair whose force depends on one element's displacements only, so that it can be tested alone.
 template <class MethodType, class LawType>
 struct ElasticMethodWithLaw : MethodWithLaw<MethodType, LawType> {
   using Formulation = NodalForm<FormulationOf<MethodType, LawType>>;
@@ -66,7 +66,7 @@ template <class Kernel>
 inline constexpr bool stands_alone =
     !Kernel::remembers && !Kernel::needs_coordinates && !Kernel::averages_over_nodes;
 
-/// The pairs that stand alone.
+/// The pairs that can be tested alone.
 template <class List>
 struct Elastic;
 template <class... Methods, class... PairedLaws>
@@ -77,8 +77,8 @@ struct Elastic<TypeList<MethodWithLaw<Methods, PairedLaws>...>> {
                                       TypeList<ElasticMethodWithLaw<Methods, PairedLaws>>, TypeList<>>...>;
 };
 
-/// Whether a method's forces follow from the displacements, not from the path to them or from its speed. The
-/// levels of an adaptive method come about on the way; adaptive_test.cpp looks after it.
+/// Whether a method's forces depend on displacements only, not on the path or its speed. An adaptive method
+/// chooses levels along the path; adaptive_test.cpp tests it.
 template <class Method>
 inline constexpr bool path_independent = !FormulationOf<Method, NeoHookean>::remembers &&
                                          !DampsOnly<typename Method::Hourglass> && !is_adaptive<Method>;
@@ -125,15 +125,15 @@ struct Stepped<TypeList<EveryMethod...>> {
 
 }  // namespace detail
 
-/// The laws whose stress follows from the deformation. Each also comes viscoelastic: what that adds is tested
-/// in viscoelastic_test.cpp.
+/// The laws whose stress depends on the deformation only. Each also has a viscoelastic form, tested in
+/// viscoelastic_test.cpp.
 using LawTypes = detail::AsTestTypes<ElasticLaws>::type;
 using MethodTypes = detail::AsTestTypes<Methods>::type;
 using GeneratorTypes = detail::AsTestTypes<Generators>::type;
 
-/// Pairs of methods and laws that are compiled for tests. Laws and methods meet in few functions, so that
-/// every method with the first law, and every law with one method of one point and one of eight, are what can
-/// go wrong in a kernel by itself; pairs_test.cpp runs the whole product through the solver.
+/// Pairs of methods and laws that are compiled for tests. Laws and methods share few functions, so that every
+/// method with the first law, and every law with one method of one point and one of eight, cover the possible
+/// errors of a single kernel; pairs_test.cpp runs the whole product in the solver.
 template <class MethodList>
 using PairsOf =
     Concatenated<typename detail::Product<MethodList, typename detail::Split<ElasticLaws>::first>::type,
@@ -147,27 +147,27 @@ using ViscoelasticMethodTypes = detail::AsTestTypes<ViscoelasticMethods>::type;
 using MethodWithLawTypes = detail::AsTestTypes<Concatenated<
     PairsOf<Methods>, detail::Product<ViscoelasticMethods, TypeList<Viscoelastic<NeoHookean>>>::type>>::type;
 
-/// What integrates its resistances in time comes to rest where the path leads it, what relaxes takes its
-/// time, and what damps loses energy; who expects one answer takes these.
+/// Methods with a unique answer: static answers of methods that integrate resistances depend on the path,
+/// relaxing ones need time, and damping ones lose energy.
 using PathIndependentMethods = detail::PathIndependent<Methods>::type;
 using PathIndependentMethodTypes = detail::AsTestTypes<PathIndependentMethods>::type;
 using PathIndependentPairTypes = detail::AsTestTypes<PairsOf<PathIndependentMethods>>::type;
 
 using UpdatedLagrangianTypes = detail::AsTestTypes<detail::Updated<Methods>::type>::type;
 
-/// Those of them that take steps, at rest or in motion: a condensed method answers at once, and refuses to
-/// move.
+/// Those of them that take steps, static or in motion: a condensed method answers directly and supports no
+/// motion.
 using SteppedMethods = detail::Stepped<PathIndependentMethods>::type;
 using SteppedMethodTypes = detail::AsTestTypes<SteppedMethods>::type;
 using SteppedPairTypes = detail::AsTestTypes<PairsOf<SteppedMethods>>::type;
 
-/// All methods that can move, whatever their answers depend on.
+/// All methods that support motion, whatever their answers depend on.
 using MovingMethodTypes = detail::AsTestTypes<detail::Stepped<Methods>::type>::type;
 
 using ElasticMethodWithLawTypes = detail::AsTestTypes<detail::Elastic<PairsOf<Methods>>::type>::type;
 
-/// How many zero eigenvalues an element at rest has. Six are the rigid motions. One point
-/// without control, or with a control of velocities alone, leaves the twelve hourglass modes.
+/// The number of zero eigenvalues of an undeformed element. Six are the rigid motions. One point without
+/// control, or with a control of velocities only, adds the twelve hourglass modes.
 template <class Method>
 constexpr int zero_energy_modes() {
   constexpr auto control = Method::Hourglass::traits;

@@ -1,5 +1,5 @@
-/// Every method on packs of doubles alone: the threaded loops do not differ between number types, and the
-/// thread sanitizer need not see minutes of kernels.
+/// All methods, only with packs of doubles: the threaded loops are the same for all number types, and the
+/// thread sanitizer need not check kernels that take minutes.
 
 #include <array>
 #include <tuple>
@@ -17,7 +17,7 @@ Kernels<Number> kernels() {
 
 namespace {
 
-/// Makes the compiler emit the kernels of all methods, which their list names.
+/// Instantiates the kernels of all methods, which the list of methods refers to.
 template <class... Method>
 auto kernels_of(TypeList<Method...> /*methods*/) {
   return std::tuple{std::array{&kernels<KernelOwner<Method>, Pack<double>>...},

@@ -1,6 +1,6 @@
-/// Races on purpose, in the ways that the solver's loops could: the thread sanitizer must report each of
-/// them, or its silence about the solver means nothing. The argument chooses; without one everything is in
-/// order.
+/// Deliberate races of the kinds that the solver's loops could have: unless the thread sanitizer reports each
+/// of them, its silence about the solver means nothing. The argument selects one; without it there is no
+/// race.
 
 #include <cstdio>
 #include <string>
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     const bool same = race == "rows" || k == 0;
     scatter_add<Pack<double>>(force, numbers_of(rows), (same ? first : last).data());  // or into one row
   });
-  in_parallel(2, 2, [&](std::size_t k) {  // what the other thread of the first loop wrote
+  in_parallel(2, 2, [&](std::size_t k) {  // the other thread's result of the first loop
     if (k == 0) sum += rows[40][1];
   });
   std::printf("%g\n", sum);

@@ -1,6 +1,6 @@
-/// Every loop that threads share, for the thread sanitizer to watch: elements of every method, the steppers'
-/// passes over rows, the preconditioner, superposition, and runs side by side on one scene. That they give
-/// the same bits as one thread is checked too: a loop that was left out would not run.
+/// Every loop that threads share, for the thread sanitizer: elements of every method, the steppers' passes
+/// over rows, the preconditioner, superposition, and simultaneous runs on one scene. The results must also
+/// have the same bits as one thread, which shows that every loop runs.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace sandglass::verification {
 namespace {
 
-/// A block long enough that it is cut up.
+/// A block long enough to be divided.
 Scene block(const AnyLaw& law, bool quasi_static) {
   Case description = plain_case(law);
   description.relaxation.max_steps = 8;

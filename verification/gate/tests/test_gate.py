@@ -1,4 +1,4 @@
-"""The gate: every rule at, below and above its line, regressions, accepting, wrong input."""
+"""The gate: every rule at, below and above its limit, regressions, acceptance, wrong input."""
 
 import copy
 import json
@@ -37,7 +37,7 @@ class Folder:
         self.flops = {"records": [names | counts]}
 
     def call(self, *more):
-        """(exit code, what is printed)."""
+        """(exit code, printed text)."""
         words = ["--baseline", str(self.path / "baseline.json"), "-o", str(self.path)]
         for option in ("verdicts", "flops"):
             file = self.path / f"{option}.json"
@@ -67,7 +67,7 @@ class Folder:
 
 @pytest.fixture
 def folder(tmp_path, capsys):
-    """Files that are the baseline."""
+    """Files equal to the baseline."""
     made = Folder(tmp_path, capsys)
     made.accept()
     return made
@@ -96,7 +96,7 @@ def count(**counts):
 
 
 def fail(folder):
-    """A run that does not come to rest; where it stopped does not matter."""
+    """A run that finds no equilibrium; the point where it stopped does not matter."""
     folder.verdicts["records"][0]["status"] = "failed: not at rest"
     folder.golden["max_relative_error"] = 0.5
 
@@ -185,7 +185,7 @@ def test_accepting_one_area_leaves_the_other(folder):
 
 
 def test_errors_cannot_creep(folder):
-    """Each step is within the margin; accepting nevertheless keeps the first figure."""
+    """Each step is within the margin; accepting it still keeps the first figure."""
     margin = RELATIVE * 0.01 + FLOOR["double"]
     before = folder.baseline["records"]
     folder.golden["max_relative_error"] = 0.01 + 0.7 * margin
@@ -196,7 +196,7 @@ def test_errors_cannot_creep(folder):
 
 
 def test_errors_of_another_machine_are_its_own(folder):
-    """Those that differ; what is new or gone, and operations, are so on all machines."""
+    """Figures that differ; new and missing ones, and operations, concern all machines."""
     before = folder.baseline["records"]
     folder.golden["max_relative_error"] = 0.02
     folder.verdicts["processor"] = "Abacus 4"
@@ -299,7 +299,7 @@ def test_a_program_that_fails_is_exit_code_3(folder, monkeypatch, capsys):
 
 
 def test_operations_of_the_program_itself(tmp_path, capsys):
-    """The one quick area: once accepted, it passes; with one more operation, it fails."""
+    """The only quick area: once accepted, it passes; with one more operation, it fails."""
     words = ["operations", "--baseline", str(tmp_path / "baseline.json"), "-o", str(tmp_path)]
     assert command.main([*words, "--accept", "--reason", "a test"]) == 0
     assert command.main(words) == 0

@@ -1,4 +1,4 @@
-"""Ratios of two programs, played by scripts whose times are known."""
+"""Ratios of two programs, here scripts with known times."""
 
 import pytest
 from gate import ratios
