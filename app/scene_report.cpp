@@ -118,7 +118,7 @@ void print_parts(const Scene& scene) {
     std::size_t elements = 0;
     double mass = 0.0;
   };
-  std::vector<Part> all(at(number_of_parts(scene.mesh, scene.ties)));
+  std::vector<Part> all(parts.empty() ? 0 : at(1 + *std::ranges::max_element(parts)));
   if (all.size() < 2) return;
   for (std::size_t n = 0; n < parts.size(); ++n)
     if (parts[n] >= 0) all[at(parts[n])].nodes.push_back(static_cast<int>(n));

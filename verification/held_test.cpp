@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <numeric>
+#include <set>
 
 #include "base/error.hpp"
 #include "mesh/node_elements.hpp"
@@ -80,14 +81,19 @@ class RandomBody {
 
   void hold() {
     const int constraints = whole(0, 6);
+    std::set<int> held;
     for (int k = 0; k < constraints; ++k) {
       const int node = whole(0, static_cast<int>(mesh_.points.size()) - 1);
-      if (std::ranges::find(tied_, node) != tied_.end()) continue;
+      if (std::ranges::find(tied_, node) != tied_.end() || !held.insert(node).second) continue;
       const std::string name = "node " + std::to_string(k);
       sets_[name] = {node};
-      const int one = whole(0, 3);  // three: all of them
-      description_.displacements.push_back(
-          {name, {}, {one == 0 || one == 3, one == 1 || one == 3, one == 2 || one == 3}});
+      const int one = whole(0, 4);  // three: all of them; four: the same by a rotation
+      if (one == 4) {
+        description_.rotations.push_back({.set = name, .axis = {0, 0, 1}, .angle = 0.1});
+      } else {
+        description_.displacements.push_back(
+            {name, {}, {one == 0 || one == 3, one == 1 || one == 3, one == 2 || one == 3}});
+      }
     }
     const auto boundary = boundary_faces(mesh_.cells);
     const int faces = whole(0, 5) - 3;
