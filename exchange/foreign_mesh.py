@@ -10,9 +10,7 @@ from exchange import orientation
 
 HEXAHEDRON = "hexahedron"
 SHOWN = 3  # of faulty items listed in a message
-LARGEST = 20.0  # m; a larger mesh was perhaps meant in millimetres
 SCOPE = 1 << 40  # numbers of instance i begin at i SCOPE, where a file has several
-ROUNDING = 1e-6  # of the diagonal: the error of coordinates in single precision or six digits
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,7 @@ class ForeignMesh:
     The scope of a name is an instance, the assembly, or the dimension of a group; "" without any.
     hint: how to make and save hexahedra with the program, for messages. element_sets: the same for
     ids of elements; those of hexahedra count. scopes: names of the instances that number their
-    nodes and elements from i SCOPE on.
+    nodes and elements from i SCOPE on. notes: what was not read, as warnings.
     """
 
     node_ids: np.ndarray
@@ -42,6 +40,7 @@ class ForeignMesh:
     hint: str = ""
     element_sets: dict = field(default_factory=dict)
     scopes: list = field(default_factory=list)
+    notes: list = field(default_factory=list)
 
     def listed(self, ids):
         """The first few numbers of nodes or elements, as the file has them."""
@@ -71,13 +70,15 @@ def to_hexahedra(mesh, path, warn):
     path: for messages. warn: called with the text of each warning. Elements of lower dimension
     serve only to define sets. Returns a HexMesh in the order of the file. Raises InputError.
     """
+    for note in mesh.notes:
+        warn(note)
     order = _checked_nodes(mesh, path)
     block = _hexahedra(mesh, path)
     cells = _rows(mesh, order, block, path)
     corners = np.sort(cells, axis=1)
     twice = block.ids[(corners[:, 1:] == corners[:, :-1]).any(axis=1)]
     _reject(mesh, path, twice, len(cells), "name a node twice; a hexahedron has eight nodes")
-    cells, outer = _oriented(mesh, block, cells, path, warn)
+    cells = _oriented(mesh, block, cells, path, warn)
     rank = np.full(len(mesh.points), -1)
     rank[cells] = 0
     if (lost := np.flatnonzero(rank < 0)).size:
@@ -87,11 +88,6 @@ def to_hexahedra(mesh, path, warn):
         )
     used = np.flatnonzero(rank == 0)
     rank[used] = np.arange(len(used))
-    points = mesh.points[used]
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    _warn_of_seams(mesh, cells, outer, ROUNDING * size, warn)
-    if size > LARGEST:
-        warn(f"the mesh is {size:.3g} m across: coordinates are read as metres")
     sets = {}
     for (scope, name), ids in mesh.sets.items():
         nodes = rank[_find(mesh, order, ids, f"{path}: set '{name}'")]
@@ -101,7 +97,9 @@ def to_hexahedra(mesh, path, warn):
     element_sets = {
         key: np.flatnonzero(np.isin(block.ids, ids)) for key, ids in mesh.element_sets.items()
     }
-    return HexMesh(points, rank[cells], _named(sets, path, warn), _named(element_sets, path))
+    return HexMesh(
+        mesh.points[used], rank[cells], _named(sets, path, warn), _named(element_sets, path)
+    )
 
 
 def _named(sets, path, warn=lambda text: None):
@@ -117,7 +115,7 @@ def _named(sets, path, warn=lambda text: None):
     for name, some in alike.items():
         same = all(np.array_equal(some[0][1], members) for _, members in some)
         for scope, members in some[:1] if same else some:
-            full = name if same else f"{scope}.{name}"
+            full = name if same else f"{scope or 'Set'}.{name}"
             plain = full.replace("/", "_")
             if plain in named:
                 raise InputError(f"{path}: two sets are named '{plain}'; names must differ")
@@ -156,10 +154,11 @@ def _hexahedra(mesh, path):
             others[block.kind] = others.get(block.kind, 0) + len(block.ids)
     if others:
         listed = ", ".join(f"{count} of type '{kind}'" for kind, count in sorted(others.items()))
+        hint = mesh.hint or "; mesh volumes with hexahedra of first order"
         raise InputError(
             f"{path}: has non-hexahedral elements: {listed}, besides "
             f"{sum(len(block.ids) for block in found)} hexahedra; only eight-node hexahedra are "
-            f"allowed, and elements of lower dimension to define sets{mesh.hint}"
+            f"allowed, and elements of lower dimension to define sets{hint}"
         )
     if not found:
         lower = sorted({block.kind for block in mesh.blocks if len(block.ids)})
@@ -204,10 +203,7 @@ def _find(mesh, order, ids, where):
 
 
 def _oriented(mesh, block, cells, path, warn):
-    """The cells with mirrored ones renumbered, and the nodes of their outer faces.
-
-    Raises InputError for tangled ones.
-    """
+    """The cells with mirrored ones renumbered. Raises InputError for tangled ones."""
     state = orientation.classify(mesh.points, cells)
     tangled = np.flatnonzero(state == orientation.TANGLED)
     if tangled.size:
@@ -233,39 +229,13 @@ def _oriented(mesh, block, cells, path, warn):
             f"{mirrored.size} of {len(cells)} elements had a mirrored node order and were "
             f"renumbered: {mesh.listed(block.ids[mirrored])}"
         )
-    pair, outer = orientation.overlap(cells)
-    if pair:
+    if pair := orientation.overlap(cells):
         first, second = (mesh.listed([block.ids[e]]) for e in pair)
         raise InputError(
             f"{path}: elements {first} and {second} lie on the same side of their common face, "
             "or share it with a third; elements must not overlap"
         )
-    return cells, outer
-
-
-def _warn_of_seams(mesh, cells, outer, distance, warn):
-    """Warns of nodes that coincide up to rounding, where the body is not connected.
-
-    Two nodes of the same element do not count: the element is that thin.
-    """
-    from scipy.spatial import cKDTree  # takes long to load
-
-    pairs = outer[cKDTree(mesh.points[outer]).query_pairs(distance, output_type="ndarray")]
-    if not len(pairs):
-        return
-    near = np.isin(cells, pairs)
-    some = cells[near.any(axis=1)]
-    joined = [(some == a).any(axis=1) & (some == b).any(axis=1) for a, b in pairs[:100]]
-    apart = [pair for pair, same in zip(pairs, joined) if not same.any()]
-    if apart:
-        number = len(np.unique(pairs[:, 1])) if len(apart) == len(joined) else len(apart)
-        gap = np.linalg.norm(mesh.points[apart[0][0]] - mesh.points[apart[0][1]])
-        first, second = (mesh.listed([mesh.node_ids[n]]) for n in apart[0])
-        how = "coincident with another" if gap == 0 else f"within {distance:.2g} m of another"
-        warn(
-            f"{_count(number, 'node')} {how}, such as {first} and {second}: "
-            "the body is not connected there"
-        )
+    return cells
 
 
 def _reject(mesh, path, ids, total, rule):
@@ -283,6 +253,31 @@ def content(path):
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         raise InputError(f"{path}: is text in UTF-16; save it as UTF-8")
     return data.removeprefix(b"\xef\xbb\xbf")
+
+
+class NotNumber(ValueError):
+    """Of a word that is no number; at: its place among the words."""
+
+    def __init__(self, word, kind, at):
+        text = word.decode("utf-8", "replace") if isinstance(word, bytes) else word
+        super().__init__(f"{text[:40]!r} is not a {'whole ' if kind[0] == 'i' else ''}number")
+        self.at = at
+
+
+def as_numbers(words, kind):
+    """Words of a text as an array (n,) of "f8" or "i8". Raises NotNumber."""
+    try:
+        return np.array(words, dtype=kind)
+    except (ValueError, OverflowError):
+        for at, word in enumerate(words):
+            try:
+                if kind[0] == "f" or abs(int(word)) < 2**63:
+                    float(word)
+                    continue
+            except ValueError:
+                pass
+            raise NotNumber(word, kind, at) from None
+        raise
 
 
 def _count(number, word):
