@@ -89,9 +89,9 @@ class Recorder final : public Observer {
   long last_step = std::numeric_limits<long>::max();  ///< ask to end at the first check from here on
 };
 
-/// All that a row of history counts as stored or moving, J.
+/// All that a row of history counts as stored or moving, or lost to friction, J.
 inline double total_energy(const HistoryRow& row) {
-  return row.kinetic + row.strain + row.hourglass;
+  return row.kinetic + row.strain + row.hourglass + row.contact + row.friction;
 }
 
 /// The largest difference of the work done and the energy that is there, over all the work in the end, which
