@@ -10,6 +10,8 @@
 #include "base/error.hpp"
 #include "comparison/comparison.hpp"
 #include "comparison/verdict.hpp"
+#include "forces/contact_force.hpp"
+#include "mesh/edges.hpp"
 #include "mesh/hexahedron.hpp"
 #include "mesh/parts.hpp"
 #include "solve/stable_step.hpp"
@@ -142,6 +144,7 @@ void HistoryReport::take(const HistoryRow& row) {
   last_ = row;
   largest_hourglass_ = std::max(largest_hourglass_, row.hourglass);
   largest_strain_ = std::max(largest_strain_, row.strain);
+  largest_depth_ = std::max(largest_depth_, row.depth);
   largest_ = std::max({largest_, row.kinetic + row.strain + row.hourglass, std::abs(row.external_work)});
 }
 
@@ -153,7 +156,8 @@ double HistoryReport::hourglass_share(bool quasi_static) const {
 
 double HistoryReport::unexplained_share(double damping) const {
   const auto explained = [](const HistoryRow& row) {
-    return row.kinetic + row.strain + row.hourglass - row.external_work - row.adaption;
+    return row.kinetic + row.strain + row.hourglass + row.contact + row.friction - row.external_work -
+           row.adaption;
   };
   const double damped = 2.0 * damping * kinetic_time_;  // the power of c m v is 2 c times the kinetic energy
   return largest_ > 0.0 ? (explained(last_) - explained(first_) + damped) / largest_ : 0.0;
@@ -215,7 +219,13 @@ void print_answer(const Scene& scene, const NodalField& u, const std::vector<dou
     fmt::print("\nenergy balance: {:+.2g} % of the largest energy{}",
                100.0 * history.unexplained_share(damping), damping > 0.0 ? ", after damping" : "");
   }
+  if (row.friction != 0.0) fmt::print(", lost to friction {:.3g}", row.friction);
   fmt::print("\n");
+  if (!contacts_of(scene.forces).empty()) {
+    const double depth = history.largest_depth();
+    fmt::print("largest depth in an obstacle {}, {:.2g} % of the shortest edge\n", length_text(depth),
+               100.0 * depth / shortest_edge(scene.mesh));
+  }
   for (const auto& [set, force] : row.reactions) fmt::print("reaction at {} {}\n", set, force_text(force));
 }
 

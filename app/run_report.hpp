@@ -32,6 +32,9 @@ class HistoryReport {
   /// Hourglass over strain energy: at the end of a quasi-static run; in a motion, the largest of each.
   double hourglass_share(bool quasi_static) const;
 
+  /// The largest depth of a node in an obstacle, m.
+  double largest_depth() const { return largest_depth_; }
+
   /// The unexplained energy (J) at the end, negative if some is missing, over the largest energy or work.
   /// `damping` is the mass damping, 1/s.
   double unexplained_share(double damping) const;
@@ -40,7 +43,8 @@ class HistoryReport {
   bool started_ = false;
   HistoryRow first_{}, last_{};
   double largest_hourglass_ = 0.0, largest_strain_ = 0.0, largest_ = 0.0;
-  double kinetic_time_ = 0.0;  // J s, the integral of the kinetic energy
+  double largest_depth_ = 0.0;  // m
+  double kinetic_time_ = 0.0;   // J s, the integral of the kinetic energy
 };
 
 /// Prints the results of a run: the largest displacement of u (m), the smallest volume ratio of an element,

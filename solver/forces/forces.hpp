@@ -6,6 +6,7 @@
 #include "base/type_list.hpp"
 #include "forces/dead_force.hpp"
 #include "forces/gravity.hpp"
+#include "forces/obstacle.hpp"
 #include "forces/pressure.hpp"
 #include "forces/support.hpp"
 
@@ -17,7 +18,7 @@ namespace sandglass {
 /// cases, if any; by_mass, whether it depends on the density; and resolve(resolver), which adds its BodyForce
 /// on a mesh. The optional `one_of` names parameters of which at least one must be given. All loads are
 /// proportional to the factor of their curve.
-using Forces = TypeList<DeadForce, Pressure, Gravity, Support>;
+using Forces = TypeList<DeadForce, Pressure, Gravity, Support, Obstacle>;
 
 /// The forces of a case: its tables of each kind, in their order.
 template <class List>

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::array history_columns{
     &HistoryRow::time,          &HistoryRow::kinetic,  &HistoryRow::strain,    &HistoryRow::hourglass,
-    &HistoryRow::external_work, &HistoryRow::residual, &HistoryRow::step_size, &HistoryRow::adaption};
+    &HistoryRow::external_work, &HistoryRow::residual, &HistoryRow::step_size, &HistoryRow::adaption,
+    &HistoryRow::contact,       &HistoryRow::friction, &HistoryRow::depth};
 static_assert(sizeof(HistoryRow) == history_columns.size() * sizeof(double) + sizeof(Reactions),
               "a column is missing");
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "forces/contact_force.hpp"
 #include "io/mesh_file.hpp"
 #include "io/text_file.hpp"
 
@@ -128,6 +129,11 @@ void ResultWriter::write_history() {
   column("residual", "-", &HistoryRow::residual);
   column("step_size", model_.scene().settings.quasi_static ? "ramp" : "s", &HistoryRow::step_size);
   column("adaption_energy", "J", &HistoryRow::adaption);
+  if (!contacts_of(model_.scene().forces).empty()) {
+    column("contact_energy", "J", &HistoryRow::contact);
+    column("friction_loss", "J", &HistoryRow::friction);
+    column("depth", "m", &HistoryRow::depth);
+  }
   write_reactions(file_, "/history", history_);
 }
 

@@ -68,6 +68,11 @@ class Elements final : public ElementLevel {
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) stiffness_[row][i] += springs_[row][i];
     }
+    for (const std::size_t row : touching_) {  // the sums of rows: D - A stays positive
+      const Row<float>& s = contact_[row];
+      const float sum = std::abs(s[0]) + std::abs(s[1]) + std::abs(s[2]);
+      for (std::size_t i = 0; i < 3; ++i) stiffness_[row][i] += std::abs(s[i]) * sum;
+    }
     layout_.gather_rows(stiffness_.data());
     layout_.gather_cells(tangents_.data());
     set_smoother(stiffness_, largest_of_all(*std::ranges::max_element(bounds)));
@@ -78,6 +83,11 @@ class Elements final : public ElementLevel {
     ties_.hand_on(y.u);
     for (std::size_t row = 0; row < springs_.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) y.u[row][i] += springs_[row][i] * x.u[row][i];
+    }
+    for (const std::size_t row : touching_) {
+      const Row<float>& s = contact_[row];
+      const float along = s[0] * x.u[row][0] + s[1] * x.u[row][1] + s[2] * x.u[row][2];
+      for (std::size_t i = 0; i < 3; ++i) y.u[row][i] += s[i] * along;
     }
   }
 

@@ -100,6 +100,16 @@ void SaddleMultigrid::update(const Rows<float>& u, const std::vector<ModelModuli
   }
 }
 
+void SaddleMultigrid::set_contact(const Rows<float>& roots) {
+  elements_->set_contact(roots);
+  for (const MeshStage& stage : meshes_) {
+    Rows<float> own(stage.layout->rows());
+    for (std::size_t row = 0; row < stage.layout->nodes; ++row)
+      own[row] = roots[at(elements_->layout().row_of_node[at(stage.layout->node_of_row[row])])];
+    stage.level->set_contact(own);
+  }
+}
+
 void SaddleMultigrid::cycle(const MixedVector& b, MixedVector& x) {
   cycle_mesh(0, *elements_, b, x, residual_);
 }

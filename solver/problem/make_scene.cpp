@@ -133,6 +133,15 @@ void add_motion(const Scene& scene, const InitialVelocity& velocity, const std::
   }
 }
 
+/// lambda + 2 mu of each element's undeformed material, Pa.
+std::vector<double> wave_moduli(const Mesh& mesh, const Materials& materials) {
+  const std::vector<double> lambdas = lame_lambdas(materials), moduli = shear_moduli(materials);
+  std::vector<double> of_elements(mesh.cells.size());
+  for (std::size_t e = 0; e < of_elements.size(); ++e)
+    of_elements[e] = lambdas[materials.of(e)] + 2.0 * moduli[materials.of(e)];
+  return of_elements;
+}
+
 /// Resolves the forces of the case and keeps their curves in the scene.
 void make_forces(const Case& description, Scene& scene, const std::vector<double>& element_masses,
                  const std::vector<double>& masses) {
@@ -141,7 +150,9 @@ void make_forces(const Case& description, Scene& scene, const std::vector<double
                          .boundary = scene.boundary,
                          .sets = scene.sets,
                          .element_masses = element_masses,
-                         .masses = masses};
+                         .masses = masses,
+                         .cells = scene.mesh.cells,
+                         .wave_moduli = wave_moduli(scene.mesh, scene.materials)};
   description.forces.for_each([&](const auto& force) { force.resolve(resolver); });
   scene.forces = resolver.all();
   scene.curves = std::move(resolver.curves);

@@ -10,7 +10,8 @@
 
 namespace sandglass {
 
-/// The forces (N) that hold or drive sets of nodes, by name; see Body::reactions_of_sets.
+/// The forces (N) that hold or drive sets of nodes, and those of obstacles, by name; see
+/// Body::reactions_of_sets.
 using Reactions = std::map<std::string, Vector>;
 
 /// One row of the dense history.
@@ -19,11 +20,14 @@ struct HistoryRow {
   double kinetic;            ///< J; zero in quasi-static runs
   double strain;             ///< J
   double hourglass;          ///< J
-  double external_work;      ///< J, done by imposed displacements and forces
+  double external_work;      ///< J, done by imposed displacements, forces and moving obstacles
   double residual;           ///< |force on free components| / |reactions and loads|, -
   double step_size;          ///< s; in quasi-static runs the increment of the load
   double adaption = 0.0;     ///< J, energy due to changes of levels in dynamic runs; see Adaption
   Reactions reactions = {};  ///< N
+  double contact = 0.0;      ///< J, stored where obstacles are touched
+  double friction = 0.0;     ///< J, dissipated on obstacles
+  double depth = 0.0;        ///< m, the largest of a node inside an obstacle
 };
 
 /// A frame of the results, in the numbering of the mesh.

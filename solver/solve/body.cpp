@@ -15,10 +15,11 @@ namespace {
 void require_divisible(const Model& model) {
   if (model.choice().ranks->count() == 1) return;
   const auto& dynamics = model.scene().settings.dynamics;
-  const char* what = !model.scene().ties.empty()    ? "ties and hanging nodes are"
-                     : dynamics.subcycles > 1       ? "dynamics.subcycles > 1 is"
-                     : dynamics.body_frequency != 0 ? "dynamics.body_frequency = 1 is"
-                                                    : nullptr;
+  const char* what = !model.scene().ties.empty()                  ? "ties and hanging nodes are"
+                     : dynamics.subcycles > 1                     ? "dynamics.subcycles > 1 is"
+                     : dynamics.body_frequency != 0               ? "dynamics.body_frequency = 1 is"
+                     : !contacts_of(model.scene().forces).empty() ? "[[obstacle]] is"
+                                                                  : nullptr;
   if (what == nullptr) return;
   throw InputError(fmt::format("{}: {} not divided among ranks; allowed: one rank with more threads",
                                model.scene().settings.file.string(), what));
@@ -46,6 +47,24 @@ void Body<Real>::gather() {
   layout().gather_rows(force_.data());
   reactions_ = constraints_.of_all(reactions_);
   loads_.gather();
+}
+
+template <class Real>
+Reactions Body<Real>::reactions_of_sets() const {
+  Reactions all = constraints_.sums_over_sets(reactions_);
+  loads_.for_each_touch([&](const Touch& touch) { all[std::string(touch.name)] = touch.force; });
+  return all;
+}
+
+template <class Real>
+Touch Body<Real>::touch() const {
+  Touch sum;
+  loads_.for_each_touch([&](const Touch& touch) {
+    sum.depth = std::max(sum.depth, touch.depth);
+    sum.stored += touch.stored;
+    sum.dissipated += touch.dissipated;
+  });
+  return sum;
 }
 
 template <class Real>

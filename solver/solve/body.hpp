@@ -36,8 +36,8 @@ class Body {
   const RowConstraints<Real>& constraints() const { return constraints_; }
 
   /// The sum of the reactions (N) of each set that the case drives: the force that holds or moves it, without
-  /// the inertia of its own nodes.
-  Reactions reactions_of_sets() const { return constraints_.sums_over_sets(reactions_); }
+  /// the inertia of its own nodes. And the force of each obstacle on the body, by its name.
+  Reactions reactions_of_sets() const;
 
   /// Evaluates the forces of the state. Afterwards the increments of constrained components are cleared, so
   /// that the update of increments can ignore constraints.
@@ -83,6 +83,14 @@ class Body {
 
   /// See Loads::potential, J.
   double load_potential() const { return loads_.potential(of_all(state_.u)); }
+
+  /// The sums over all obstacles of energies, and the largest depth, at the last evaluation.
+  Touch touch() const;
+
+  /// See Loads::set_contact_stiffness.
+  void set_contact_stiffness(Rows<float>& roots) const {
+    loads_.set_contact_stiffness(of_all(state_.u), roots);
+  }
 
   /// Adds the work of the loads since the last call.
   void add_work_of_loads() { loads_.add_work(state_.u); }

@@ -314,6 +314,7 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
   NodalField v;  // at the last check, with its energies
   StrainEnergies energies;
   double kinetic = 0.0;
+  Touch touch;
 
   const auto frame_due = [&] {  // up to the roundoff of a sum of steps
     return scheme.time() >= frames * settings.duration / settings.frames * (1.0 - 1e-12) || scheme.finished();
@@ -322,13 +323,14 @@ Motion integrate_body(const Model& model, const InternalForce<Real>& elements, O
     v = scheme.velocities();
     energies = body.energies();
     kinetic = scheme.kinetic_energy(v);
-    return watch.rises(kinetic + energies.strain + energies.hourglass,
+    touch = body.touch();
+    return watch.rises(kinetic + energies.strain + energies.hourglass + touch.stored + touch.dissipated,
                        scheme.external_work() + scheme.adaption_energy(), scheme.step_size());
   };
   const auto report = [&] {
     observer.history({scheme.time(), kinetic, energies.strain, energies.hourglass, scheme.external_work(),
-                      body.residual(), scheme.step_size(), scheme.adaption_energy(),
-                      body.reactions_of_sets()});
+                      body.residual(), scheme.step_size(), scheme.adaption_energy(), body.reactions_of_sets(),
+                      touch.stored, touch.dissipated, touch.depth});
     if (frame_due()) {
       observer.frame(frame_of(body, scheme.time(), std::move(v)));
       ++frames;

@@ -139,10 +139,8 @@ bool Equilibrium<Real>::linearized_step() {
   const double norm = mixed_.norm();
   norms_.push_back(norm);
   if (!std::isfinite(norm) || norm > 1e3 * norms_.front()) return false;
-  if (norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front() &&
-      is_healthy(body())) {
-    mixed_.linearize();
-  }
+  const bool far = norms_.size() % steps_between_updates == 0 && norm > close_enough * norms_.front();
+  if ((mixed_.contact_changed() || far) && is_healthy(body())) mixed_.linearize();
   reduced_ = mixed_.residuals();
   step_ = reduced_;
   acceleration_.combine(reduced_, step_);
@@ -304,6 +302,12 @@ double Equilibrium<Real>::extend(double load, double most) {
   begin();
   const Rows<Real> change = body().change_of_loads(load);
   body().impose(load);
+  if (may_touch()) {  // obstacles of this load, as the undisplaced body would touch them
+    const Rows<Real> imposed = body().state().u;
+    body().state().u = before;
+    mixed_.linearize();
+    body().state().u = imposed;
+  }
   const MixedVector zero = mixed_.multigrid().elements().zero();
   MixedVector x = zero, forces = zero;
   for (std::size_t row = 0; row < before.size(); ++row) {

@@ -40,6 +40,9 @@ class Equilibrium {
   /// displacement gradient would change by more than `most`. Returns the load.
   double extend(double load, double most);
 
+  /// Whether there are obstacles, so that motions before they touch do not predict those after it.
+  bool may_touch() const { return !contacts_of(body().scene().forces).empty(); }
+
   /// The factor by which `change` (m) may be scaled until an element of the current configuration is strained
   /// by `most`; infinite if laws are not known to stiffen.
   double steps_to_strain(const Rows<float>& change, double most) {

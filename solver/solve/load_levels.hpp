@@ -131,12 +131,12 @@ class LoadLevels {
 
   /// Extrapolates the search linearly from the last two load levels, and imposes this load, or a smaller one
   /// at which no element is strained by more than `largest_strain` from here: a law may stiffen a hundredfold
-  /// beyond. The first level uses the linear answer instead.
+  /// beyond. The first level uses the linear answer instead, and so do all if there are obstacles.
   void predict(Equilibrium<Real>& search) {
     Body<Real>& body = search.body();
     body.move_to(last_.state.u);
     search.pressures() = last_.pressures;
-    if (last_.load == before_.load) {
+    if (last_.load == before_.load || search.may_touch()) {
       load_ = search.extend(load_, largest_first_gradient);
       return;
     }

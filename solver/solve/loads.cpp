@@ -8,7 +8,7 @@ namespace sandglass {
 template <class Real>
 Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     : curves_(scene.curves),
-      forces_of_scene_(scene.forces),
+      contacts_(contacts_of(scene.forces)),
       ranks_(layout.team.ranks),
       place_of_node_(scene.mesh.points.size(), -1),
       all_dead_(first_not_dead(scene.forces) == nullptr),
@@ -23,6 +23,16 @@ Loads<Real>::Loads(const Scene& scene, const Layout& layout)
     owned_.push_back(layout.owns(static_cast<int>(n)));
   }
   u_ = increment_ = forces_ = forces_before_ = u_before_ = Rows<double>(rows_.size());
+  for (const auto& force : scene.forces) {
+    if (std::ranges::find(contacts_, force.get()) == contacts_.end()) loads_.push_back(force.get());
+  }
+  std::size_t remembered = 0;
+  for (const ContactForce* contact : contacts_) {
+    memory_of_.push_back(remembered);
+    remembered += contact->memory();
+  }
+  memory_ = memory_before_ = Rows<double>(remembered);
+  if (!contacts_.empty()) touching_ = u_;
   work_.resize(rows_.size());
 }
 
@@ -62,27 +72,39 @@ void Loads<Real>::subtract(const State<Real>& state, Rows<Real>& force) {
   std::fill(forces_.begin(), forces_.end(), Row<double>{});
   const Rows<double>&u = u_, &increment = increment_;
   const NodalMotion motion{by_node(u.data()), by_node(increment.data()), static_cast<double>(state.step)};
-  for (const auto& one : forces_of_scene_) one->add_forces(factors_, motion, by_node(forces_.data()));
+  for (const auto* one : loads_) one->add_forces(factors_, motion, by_node(forces_.data()));
+  std::fill(touching_.begin(), touching_.end(), Row<double>{});
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    contacts_[c]->add_contact(factors_, motion.u, memory_.data() + memory_of_[c], by_node(touching_.data()));
   // Dead forces are known on all ranks, others on ranks that know the displacements.
   if (!all_dead_) gather({numbers_of(forces_), 4 * rows_.size()});
   square_ = 0.0;
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      force[rows_[k]][i] -= static_cast<Real>(forces_[k][i]);
-      square_ += forces_[k][i] * forces_[k][i];
+  const auto take_off = [&](const Rows<double>& all) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        force[rows_[k]][i] -= static_cast<Real>(all[k][i]);
+        square_ += all[k][i] * all[k][i];
+      }
     }
-  }
+  };
+  take_off(forces_);
+  take_off(touching_);
 }
 
 template <class Real>
 Rows<Real> Loads<Real>::change_to(double time, double load_factor, const Rows<Real>& u) const {
-  std::vector<double> changes = factors_at(time, load_factor);
+  const std::vector<double> factors = factors_at(time, load_factor);
+  std::vector<double> changes = factors;
   for (std::size_t c = 0; c < changes.size(); ++c) changes[c] -= factors_[c];
   const Rows<double> there = loaded(u);
   const NodalMotion motion{by_node(there.data()), by_node(there.data()), 0.0};
   Rows<double> sums(rows_.size());
-  for (const auto& force : forces_of_scene_) {
-    if (force->traits().drives) force->add_forces(changes, motion, by_node(sums.data()));
+  for (const auto* load : loads_) {
+    if (load->traits().drives) load->add_forces(changes, motion, by_node(sums.data()));
+  }
+  for (const ContactForce* contact : contacts_) contact->add_forces(factors, motion, by_node(sums.data()));
+  for (std::size_t k = 0; k < touching_.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) sums[k][i] -= touching_[k][i];
   }
   Rows<Real> change(u.size());
   for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -95,8 +117,18 @@ template <class Real>
 double Loads<Real>::potential(const Rows<Real>& u) const {
   const Rows<double> there = loaded(u);
   double sum = 0.0;
-  for (const auto& force : forces_of_scene_) force->add_potential(factors_, by_node(there.data()), sum);
+  for (const auto* load : loads_) load->add_potential(factors_, by_node(there.data()), sum);
+  for (const auto* contact : contacts_) contact->add_potential(factors_, by_node(there.data()), sum);
   return sum;
+}
+
+template <class Real>
+void Loads<Real>::set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const {
+  const Rows<double> there = loaded(u);
+  Rows<float> own(rows_.size());
+  for (const auto* contact : contacts_)
+    contact->set_contact_stiffness(factors_, by_node(there.data()), by_node(own.data()));
+  for (std::size_t k = 0; k < rows_.size(); ++k) roots[rows_[k]] = own[k];
 }
 
 template <class Real>
@@ -119,7 +151,7 @@ template <class Real>
 double Loads<Real>::work() const {
   std::vector<double> all = work_;
   gather(all);
-  return std::accumulate(all.begin(), all.end(), 0.0);
+  return std::accumulate(all.begin(), all.end(), work_of_obstacles_);
 }
 
 template <class Real>
@@ -132,6 +164,13 @@ void Loads<Real>::add_work(const Rows<Real>& u) {
     }
   }
   forces_before_ = forces_;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Touch now = contacts_[c]->touch(memory_.data() + memory_of_[c]),
+                then = contacts_[c]->touch(memory_before_.data() + memory_of_[c]);
+    for (std::size_t i = 0; i < 3; ++i)
+      work_of_obstacles_ += 0.5 * (now.force[i] + then.force[i]) * (now.moved[i] - then.moved[i]);
+  }
+  std::copy(memory_.begin(), memory_.end(), memory_before_.begin());
 }
 
 template class Loads<double>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "assembly/internal_force.hpp"
+#include "forces/contact_force.hpp"
 #include "problem/scene.hpp"
 
 namespace sandglass {
@@ -27,7 +28,18 @@ class Loads {
   /// BodyForce::add_potential.
   double potential(const Rows<Real>& u) const;
 
-  /// Adds the work of the loads since the last call, from the mean of the forces of both states.
+  /// Sets `roots` (by row) to the stiffness of obstacles; see ContactForce::set_contact_stiffness.
+  void set_contact_stiffness(const Rows<Real>& u, Rows<float>& roots) const;
+
+  /// Calls use(touch) with how the body touched each obstacle at the last evaluation.
+  template <class Use>
+  void for_each_touch(const Use& use) const {
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      use(contacts_[c]->touch(memory_.data() + memory_of_[c]));
+  }
+
+  /// Adds the work of the loads since the last call, from the mean of the forces of both states: for
+  /// obstacles, of their own motion.
   void add_work(const Rows<Real>& u);
 
   /// The sum of all work added, J.
@@ -44,6 +56,10 @@ class Loads {
     archive("loads before", forces_before_);
     archive("loaded displacements before", u_before_);
     archive("work of loads", work_);
+    if (contacts_.empty()) return;
+    archive("memory of contacts", memory_);
+    archive("memory of contacts before", memory_before_);
+    archive("work of obstacles", work_of_obstacles_);
   }
 
  private:
@@ -63,15 +79,20 @@ class Loads {
   void gather(std::span<double> values) const;
 
   const std::vector<LoadCurve>& curves_;
-  const BodyForces& forces_of_scene_;
-  std::vector<std::size_t> rows_;  // that carry loads
-  std::vector<bool> owned_;        // by this rank, of these
+  std::vector<const BodyForce*> loads_;  // all except obstacles
+  std::vector<const ContactForce*> contacts_;
+  std::vector<std::size_t> memory_of_;  // first row of each
+  std::vector<std::size_t> rows_;       // that carry loads
+  std::vector<bool> owned_;             // by this rank, of these
   std::shared_ptr<const Ranks> ranks_;
-  std::vector<int> place_of_node_;  // among the loaded rows; -1 for others
-  bool all_dead_;                   // no force depends on the motion of the body
-  std::vector<double> factors_;     // of curves
-  Rows<double> u_, increment_;      // m, of loaded rows; zero where all are dead
-  Rows<double> forces_;             // N, of loaded rows
+  std::vector<int> place_of_node_;       // among the loaded rows; -1 for others
+  bool all_dead_;                        // no force depends on the motion of the body
+  std::vector<double> factors_;          // of curves
+  Rows<double> u_, increment_;           // m, of loaded rows; zero where all are dead
+  Rows<double> forces_;                  // N, of loaded rows, except those of obstacles
+  Rows<double> touching_;                // N, those; empty without any
+  Rows<double> memory_, memory_before_;  // of contacts
+  double work_of_obstacles_ = 0.0;       // J
   Rows<double> forces_before_, u_before_;
   std::vector<double> work_;  // J, of loaded rows
   double square_ = 0.0;

@@ -81,6 +81,7 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
       multigrid_(model.scene().mesh, model.scene().ties, model.scene().coarser, elements.layout(),
                  rounded_rows<float>(free_), stiffness_of_forces(model.scene(), elements.layout())),
       linearized_at_(free_.size()),
+      contact_(contacts_of(model.scene().forces).empty() ? 0 : free_.size()),
       p_(model.scene().mesh.cells.size()),
       defect_(p_.size()),
       pressure_force_(free_.size()),
@@ -105,7 +106,29 @@ MixedBody<Real>::MixedBody(const Model& model, const InternalForce<Real>& elemen
 }
 
 template <class Real>
+bool MixedBody<Real>::contact_changed() {
+  if (contact_.empty()) return false;
+  contact_now_.assign(free_.size(), {});
+  body_.set_contact_stiffness(contact_now_);
+  for (std::size_t row = 0; row < contact_.size(); ++row) {
+    double change = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float now = contact_now_[row][i], then = contact_[row][i];
+      change += static_cast<double>((now - then) * (now - then));
+      size += static_cast<double>(std::max(now * now, then * then));
+    }
+    if (change > hardly_changed * hardly_changed * size) return true;
+  }
+  return false;
+}
+
+template <class Real>
 void MixedBody<Real>::linearize(double penalty) {
+  const bool touches_elsewhere = contact_changed();
+  if (touches_elsewhere) {
+    contact_ = contact_now_;
+    multigrid_.set_contact(contact_);
+  }
   Rows<float> u = linear_ ? Rows<float>(free_.size()) : rounded_rows<float>(body_.state().u);
   if (penalty == linearized_penalty_) {
     if (!linearized_) update_multigrid();
@@ -113,7 +136,7 @@ void MixedBody<Real>::linearize(double penalty) {
     for (std::size_t row = 0; row < change.size(); ++row) {
       for (std::size_t i = 0; i < 3; ++i) change[row][i] -= linearized_at_[row][i];
     }
-    if (multigrid_.elements().largest_gradient(change) < hardly_changed) return;
+    if (multigrid_.elements().largest_gradient(change) < hardly_changed && !touches_elsewhere) return;
   }
   linearized_at_ = std::move(u);
   linearized_penalty_ = penalty;

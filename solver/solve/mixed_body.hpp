@@ -43,6 +43,9 @@ class MixedBody {
   /// time; no element may be inverted.
   void linearize() { linearize(INFINITY); }
 
+  /// Whether nodes have touched obstacles, or left them, since the last time.
+  bool contact_changed();
+
   /// The same with the resistance to volume changes of multipliers with this penalty.
   void linearize(double penalty);
 
@@ -134,6 +137,10 @@ class MixedBody {
     archive("evaluations", evaluations_);
     archive("linearized at", linearized_at_);
     archive("linearized with a penalty", linearized_penalty_);
+    if (!contact_.empty()) {
+      archive("linearized contact", contact_);
+      multigrid_.set_contact(contact_);
+    }
     linearized_ = false;
     body_.keep(archive);
   }
@@ -190,9 +197,10 @@ class MixedBody {
   bool pressure_varies_;
   Rows<Real> free_;
   SaddleMultigrid multigrid_;
-  Rows<float> linearized_at_;        // m
-  double linearized_penalty_ = 0.0;  // zero before the first time
-  bool linearized_ = false;          // whether the multigrid method belongs to these two
+  Rows<float> linearized_at_;          // m
+  double linearized_penalty_ = 0.0;    // zero before the first time
+  Rows<float> contact_, contact_now_;  // stiffness of obstacles, linearized and present
+  bool linearized_ = false;            // whether the multigrid method belongs to these two
   std::vector<Real> p_;
   std::vector<Real> defect_;  // R_p
   Rows<Real> pressure_force_;

@@ -371,9 +371,11 @@ class Search {
 
   void report() {
     const StrainEnergies energies = body().energies();
+    const Touch touch = body().touch();
     observer_.history({equilibrium_.evaluations() == 0 ? 0.0 : time(), 0.0, energies.strain,
                        energies.hourglass, work_ + body().work_of_loads(), equilibrium_.residual(),
-                       load_levels_.increment(), 0.0, body().reactions_of_sets()});
+                       load_levels_.increment(), 0.0, body().reactions_of_sets(), touch.stored,
+                       touch.dissipated, touch.depth});
   }
 
   const Model& model_;
@@ -401,6 +403,12 @@ class Search {
 
 Relaxation relax(const Model& model, Observer& observer, const Checkpoint* from, const NodalField* near) {
   require_held(model.scene());
+  for (const ContactForce* contact : contacts_of(model.scene().forces)) {
+    if (contact->no_rest().empty()) continue;
+    throw InputError(
+        fmt::format("{}: [[{}]] has no static equilibrium: {}; allowed: a dynamic case, or leave that out",
+                    model.scene().settings.file.string(), contact->traits().name, contact->no_rest()));
+  }
   const auto start = std::chrono::steady_clock::now();
   Relaxation result = method_named(model.choice().method).is_condensed
                           ? condensed_answer(model, observer)

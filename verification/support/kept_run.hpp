@@ -49,7 +49,7 @@ inline std::vector<std::uint64_t> bits_of(const RunSoFar& run, const NodalField&
   }
   for (const auto& row : run.history) {
     add_all(std::vector{row.time, row.kinetic, row.strain, row.hourglass, row.external_work, row.residual,
-                        row.step_size, row.adaption});
+                        row.step_size, row.adaption, row.contact, row.friction, row.depth});
     for (const auto& [set, force] : row.reactions) add_all(force);
   }
   for (const auto& [name, values] : run.point.arrays) add_all(values);

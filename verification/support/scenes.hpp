@@ -89,9 +89,9 @@ class Recorder final : public Observer {
   long last_step = std::numeric_limits<long>::max();  ///< stop at the first check from this step on
 };
 
-/// All stored and kinetic energy in a row of history, J.
+/// All stored and kinetic energy in a row of history, and what friction dissipated, J.
 inline double total_energy(const HistoryRow& row) {
-  return row.kinetic + row.strain + row.hourglass;
+  return row.kinetic + row.strain + row.hourglass + row.contact + row.friction;
 }
 
 /// The largest difference between the work done and the total energy in any row, over the total work at

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "forces/body_force.hpp"
+
+namespace sandglass {
+
+/// How a body and an obstacle touched at an evaluation.
+struct Touch {
+  std::string_view name = {};  ///< of the obstacle
+  Vector force = {};           ///< on the body, N
+  Vector moved = {};           ///< displacement of the obstacle, m
+  double depth = 0.0;          ///< the largest of a node, m
+  double stored = 0.0;         ///< energy of the contact, J
+  double dissipated = 0.0;     ///< since the start, J
+};
+
+/// Nodes that an obstacle may move back onto itself within a step.
+struct NodalPush {
+  AtNodes<Row<double>> u, increment;          ///< m
+  AtNodes<const Row<double>> inverse_masses;  ///< 1/kg, zero on constrained components
+  double gain;                                ///< s^2: a force adds gain / mass to the increment
+  Row<double>* memory;
+};
+
+/// The force of an obstacle, which acts where the body touches it. It is not linear in the factors of its
+/// curve. It keeps rows of numbers, zeros at the start, from one evaluation to the next; another evaluation
+/// of the same motion does not change them.
+class ContactForce : public BodyForce {
+ public:
+  /// The number of these rows.
+  virtual std::size_t memory() const = 0;
+
+  /// Adds its forces, N.
+  virtual void add_contact(Factors factors, NodalRows u, Row<double>* memory,
+                           AtNodes<Row<double>> forces) const = 0;
+
+  /// Moves nodes back onto it, if that is what it does instead of adding forces.
+  virtual void push_out(Factors /*factors*/, const NodalPush& /*nodes*/) const {}
+
+  /// How the body touches it, from these rows.
+  virtual Touch touch(const Row<double>* memory) const = 0;
+
+  /// Its stiffness where the body touches it now: sets the rows of these nodes to a direction, of length one,
+  /// times the root of the stiffness along it (N/m), unless they have a larger one.
+  virtual void set_contact_stiffness(Factors factors, NodalRows u, AtNodes<Row<float>> roots) const = 0;
+
+  /// Why static equilibrium is not defined with it; empty if it is.
+  virtual std::string_view no_rest() const = 0;
+
+  /// As without friction.
+  void add_forces(Factors factors, const NodalMotion& motion, AtNodes<Row<double>> forces) const final {
+    std::vector<Row<double>> rows(memory());
+    add_contact(factors, motion.u, rows.data(), forces);
+  }
+  void add_stiffness(AtNodes<Row<float>> /*diagonal*/) const final {}
+  void add_size(double /*arm*/, double& /*sum*/) const final {}
+  std::span<const NodalLoad> dead_loads() const final { return {}; }
+
+ protected:
+  using BodyForce::BodyForce;
+};
+
+/// Those among the forces on a body.
+inline std::vector<const ContactForce*> contacts_of(const BodyForces& forces) {
+  std::vector<const ContactForce*> contacts;
+  for (const auto& force : forces) {
+    if (const auto* contact = dynamic_cast<const ContactForce*>(force.get())) contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+}  // namespace sandglass

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "forces/force_resolver.hpp"
+
+namespace sandglass {
+
+/// A rigid obstacle that pushes boundary nodes out of itself, by a force in proportion to their depth, and
+/// moves along a straight line. The pressure acts on the undeformed area of the boundary, at its nodes.
+struct Obstacle {
+  static constexpr std::string_view name = "obstacle";
+  static constexpr std::string_view summary = "a rigid obstacle that the body touches";
+  static constexpr std::string_view only_in_motion{};
+  static constexpr bool by_mass = false;
+
+  enum class Shape { plane, sphere, capsule, cylinder, box };
+  friend constexpr std::array<std::string_view, 5> words_of(Shape /*type*/) {
+    return {"plane", "sphere", "capsule", "cylinder", "box"};
+  }
+
+  std::string label;
+  std::string set;
+  Shape shape = Shape::plane;
+  Vector point{};         ///< m
+  Vector end{};           ///< m
+  Vector normal{};        ///< of any length
+  double radius = 0.0;    ///< m
+  Vector half_sizes{};    ///< m
+  bool inside = false;    ///< whether the body is inside of it, as in a cavity
+  Vector displacement{};  ///< at the factor one, m
+  LoadCurve curve = {};
+  double friction = 0.0;  ///< Coulomb's coefficient
+  double penalty = 1.0;   ///< see parameters
+
+  static constexpr auto parameters() {
+    using O = Obstacle;
+    return std::tuple{
+        Parameter{&O::label, "name", "-", Range::any(), "under which its force is reported"},
+        Parameter{&O::set, "set", "-", Range::any(), "node set with the boundary faces that may touch it"},
+        Parameter{&O::shape, "shape", "-", Range::any(), "its shape"},
+        Parameter{&O::point, "point", "m", Range::any(),
+                  "a point of the plane, the centre of the sphere or box, or one end of the axis", false},
+        Parameter{&O::end, "end", "m", Range::any(),
+                  "the other end of the axis of a capsule or of a cylinder, which is infinite along it",
+                  false},
+        Parameter{&O::normal, "normal", "-", Range::any(), "of the plane, towards the body", false},
+        Parameter{&O::radius, "radius", "m", Range::at_least(0.0), "of the sphere, capsule or cylinder",
+                  false},
+        Parameter{&O::half_sizes, "half_sizes", "m", Range::at_least(0.0),
+                  "half the edge lengths of the box, along the coordinate axes", false},
+        Parameter{&O::inside, "inside", "-", Range::any(), "whether the body is inside of it, as in a cavity",
+                  false},
+        Parameter{&O::displacement, "displacement", "m", Range::any(), "how far it moves", false},
+        Parameter{&O::curve, "curve", "-", Range::any(), "factor of its displacement over time", false},
+        Parameter{&O::friction, "friction", "-", Range::at_least(0.0),
+                  "Coulomb's coefficient, in motions only", false},
+        Parameter{
+            &O::penalty, "penalty", "-", Range::positive(),
+            "pressure over (lambda + 2 mu) depth / h, with the softest material and the shortest edge h of "
+            "the elements that may touch it",
+            false}};
+  }
+  std::optional<BrokenRule> broken_rule() const;
+
+  void resolve(ForceResolver& resolver) const;
+};
+
+}  // namespace sandglass

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "mesh/mesh.hpp"
+
+/// The geometry of obstacles: for a point x (m), the distance from the surface, negative inside, and its
+/// gradient.
+namespace sandglass {
+
+/// The signed distance (m) of a point from a surface, and the direction in which it grows, of length one.
+struct Gap {
+  double distance;
+  Vector normal;
+};
+
+inline double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+inline Vector difference(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+/// a + s b.
+inline Vector sum(const Vector& a, double s, const Vector& b) {
+  return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
+}
+
+/// The direction of v; an arbitrary one if v is zero, as at the centre of a sphere.
+inline Vector direction_of(const Vector& v, double length) {
+  return length > 0.0 ? Vector{v[0] / length, v[1] / length, v[2] / length} : Vector{0.0, 0.0, 1.0};
+}
+
+/// The half-space below a plane.
+struct PlaneShape {
+  Vector point, normal;  ///< normal: of length one, to the outside
+
+  Gap at(const Vector& x) const { return {dot(normal, difference(x, point)), normal}; }
+};
+
+/// All points within a radius of a part of a line: one point, a segment, or the whole line.
+struct RoundShape {
+  Vector start, axis;  ///< the line start + t axis
+  double low, high;    ///< of t
+  double radius;       ///< m
+
+  Gap at(const Vector& x) const {
+    const Vector from = difference(x, start);
+    const double t = std::clamp(dot(from, axis) / std::max(dot(axis, axis), smallest), low, high);
+    const Vector arm = sum(from, -t, axis);
+    const double r = std::sqrt(dot(arm, arm));
+    return {r - radius, direction_of(arm, r)};
+  }
+
+ private:
+  static constexpr double smallest = 1e-300;
+};
+
+/// A box along the coordinate axes.
+struct BoxShape {
+  Vector centre, half_sizes;
+
+  Gap at(const Vector& x) const {
+    const Vector from = difference(x, centre);
+    Vector beyond{}, outside{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      beyond[i] = std::abs(from[i]) - half_sizes[i];
+      outside[i] = std::copysign(std::max(beyond[i], 0.0), from[i]);
+    }
+    const double r = std::sqrt(dot(outside, outside));
+    if (r > 0.0) return {r, direction_of(outside, r)};
+    const auto nearest = static_cast<std::size_t>(std::ranges::max_element(beyond) - beyond.begin());
+    Vector normal{};
+    normal[nearest] = std::copysign(1.0, from[nearest]);
+    return {beyond[nearest], normal};
+  }
+};
+
+using ObstacleShape = std::variant<PlaneShape, RoundShape, BoxShape>;
+
+}  // namespace sandglass

@@ -1,0 +1,426 @@
+/// Rigid obstacles: their geometry, forces, potential and stiffness; a body pressed by them in static
+/// equilibrium and in motion. Exact answers.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "assembly/method_entry.hpp"
+#include "forces/contact_force.hpp"
+#include "forces/obstacle_shape.hpp"
+#include "io/case_file.hpp"
+#include "solve/central_difference.hpp"
+#include "solve/leapfrog.hpp"
+#include "solve/relaxation.hpp"
+#include "solve/sleep.hpp"
+#include "support/allocations.hpp"
+#include "support/case_text.hpp"
+#include "support/random_hexahedra.hpp"
+#include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace sandglass::verification {
+namespace {
+
+/// Nodes where a coordinate has a value.
+std::vector<int> plane(const NodalField& points, std::size_t axis, double at) {
+  return nodes_where(points, [=](const Vector& X) { return std::abs(X[axis] - at) < 1e-9; });
+}
+
+/// A plane through the height z that faces the body below it, and moves.
+Obstacle ceiling(double z, double down) {
+  Obstacle made{.label = "plate", .set = "top", .point = {0.0, 0.0, z}, .normal = {0.0, 0.0, -2.0}};
+  made.displacement = {0.0, 0.0, -down};
+  return made;
+}
+
+/// A plane through z = 0 that faces the body above it.
+Obstacle ground() {
+  return {.label = "ground", .set = "foot", .normal = {0.0, 0.0, 1.0}};
+}
+
+/// Obstacles of every shape, seen from both sides, that the origin touches or is a little inside of.
+std::vector<Obstacle> obstacles_at_origin() {
+  using Shape = Obstacle::Shape;
+  std::vector<Obstacle> all{
+      {.shape = Shape::plane, .point = {0.1, 0.1, 0.05}, .normal = {1.0, 2.0, 2.0}},
+      {.shape = Shape::sphere, .point = {0.6, 0.0, 0.8}, .radius = 1.1},
+      {.shape = Shape::capsule, .point = {1.0, 0.5, 0.0}, .end = {-1.0, 0.5, 0.2}, .radius = 0.6},
+      {.shape = Shape::capsule, .point = {1.0, 0.5, 0.3}, .end = {3.0, 0.5, 0.2}, .radius = 1.3},
+      {.shape = Shape::cylinder, .point = {1.0, 0.5, 0.0}, .end = {2.0, 0.5, 0.2}, .radius = 0.6},
+      {.shape = Shape::box, .point = {1.0, 0.2, 0.1}, .half_sizes = {1.1, 2.0, 3.0}}};
+  for (std::size_t k = 1; k < 6; ++k) {  // the same from within
+    all.push_back(all[k]);
+    all.back().inside = true;
+    all.back().radius *= 0.8;
+    for (double& half : all.back().half_sizes) half *= 0.85;
+  }
+  for (Obstacle& one : all) {
+    one.label = "tool";
+    one.set = "all";
+    one.displacement = {0.02, 0.01, -0.03};
+  }
+  return all;
+}
+
+/// A node of which the neighbourhood is pressed by an obstacle: a cube of one element around the origin.
+struct Touched {
+  Mesh mesh = box({0.2, 0.2, 0.2}, {1, 1, 1});
+  std::vector<Quadrilateral> boundary = boundary_faces(mesh.cells);
+  NodeSets sets{{"all", {0, 1, 2, 3, 4, 5, 6, 7}}};
+  std::vector<double> element_masses{1.0}, masses = std::vector<double>(8, 0.125);
+  std::vector<int> places = std::vector<int>(8);
+  std::vector<double> factors;
+  std::shared_ptr<const BodyForce> force;
+  const ContactForce* contact;
+
+  /// `away` (m) keeps the undeformed body out of the obstacle.
+  explicit Touched(Obstacle obstacle, const Vector& away) {
+    for (Vector& X : mesh.points) {
+      for (std::size_t i = 0; i < 3; ++i) X[i] += away[i] - 0.1;
+    }
+    std::iota(places.begin(), places.end(), 0);
+    ForceResolver resolver{"a.toml", mesh.points, boundary, sets, element_masses, masses};
+    resolver.cells = mesh.cells;
+    resolver.wave_moduli = {1000.0};
+    obstacle.resolve(resolver);
+    force = resolver.all().back();
+    contact = contacts_of({force}).front();
+    factors.assign(resolver.curves.size(), 1.0);
+  }
+
+  NodalRows at_nodes(const Rows<double>& rows) const { return {rows.data(), places}; }
+  Rows<double> forces(const Rows<double>& u) const {
+    Rows<double> sum(8), memory(contact->memory());
+    contact->add_contact(factors, at_nodes(u), memory.data(), {sum.data(), places});
+    return sum;
+  }
+  double potential(const Rows<double>& u) const {
+    double sum = 0.0;
+    force->add_potential(factors, at_nodes(u), sum);
+    return sum;
+  }
+};
+
+/// Displacements that bring the cube back to the origin, at random within 2 cm.
+Rows<double> back_again(const Vector& away, RandomGeometry& random) {
+  Rows<double> u(8);
+  for (Row<double>& row : u) {
+    for (std::size_t i = 0; i < 3; ++i) row[i] = -away[i] + 0.02 * random.uniform(-1.0, 1.0);
+  }
+  return u;
+}
+
+/// Where the undeformed body may be: far along the normal at the origin, or for cavities near their middle.
+Vector start_of(const Obstacle& obstacle) {
+  if (obstacle.shape == Obstacle::Shape::plane) return {1.0, 2.0, 2.0};
+  if (!obstacle.inside) return {-3.0, -3.0, -3.0};
+  Vector middle = obstacle.point;
+  if (obstacle.shape == Obstacle::Shape::capsule) {
+    for (std::size_t i = 0; i < 3; ++i) middle[i] += 0.3 * (obstacle.end[i] - obstacle.point[i]);
+  }
+  return middle;
+}
+
+/// Forces are minus the derivative of the potential: for every shape, from both sides. The stiffness along
+/// the normal is the derivative of the force. Differences over h of functions that bend within centimetres
+/// are accurate to h^2 times 1/cm^2.
+TEST(Contact, derives_from_its_potential) {
+  RandomGeometry random(5);
+  for (const Obstacle& obstacle : obstacles_at_origin()) {
+    const Vector away = start_of(obstacle);
+    const Touched body(obstacle, away);
+    int pressed = 0;
+    for (int trial = 0; trial < 20; ++trial) {
+      Rows<double> u = back_again(away, random);
+      const Rows<double> forces = body.forces(u);
+      Rows<float> roots(8);
+      body.contact->set_contact_stiffness(body.factors, body.at_nodes(u), {roots.data(), body.places});
+      for (std::size_t n = 0; n < 8; ++n) {
+        Vector from_potential{};
+        const double h = 1e-6;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double there = u[n][i];
+          u[n][i] = there + h;
+          const double up = body.potential(u);
+          u[n][i] = there - h;
+          from_potential[i] = (body.potential(u) - up) / (2.0 * h);
+          u[n][i] = there;
+        }
+        const Vector force{forces[n][0], forces[n][1], forces[n][2]},
+            root{roots[n][0], roots[n][1], roots[n][2]};
+        const double size = length(force), k = dot(root, root);
+        EXPECT_LT(distance(force, from_potential), 1e-4 * size + 1e-6);
+        if (size < 1e-3) continue;
+        ++pressed;
+        const Vector normal = direction_of(root, length(root));
+        EXPECT_NEAR(dot(force, normal), size, 1e-6 * size);
+        for (std::size_t i = 0; i < 3; ++i) u[n][i] += h * normal[i];
+        const Rows<double> moved = body.forces(u);
+        for (std::size_t i = 0; i < 3; ++i) {
+          EXPECT_NEAR((forces[n][i] - moved[n][i]) / h, k * normal[i], 1e-4 * k);
+          u[n][i] -= h * normal[i];
+        }
+      }
+    }
+    EXPECT_GT(pressed, 10) << static_cast<int>(obstacle.shape) << obstacle.inside;
+  }
+}
+
+/// Distances are exact on the surface and beyond: of a plane, along the axis and at the ends of a capsule,
+/// and of the faces, edges and corners of a box.
+TEST(Contact, measures_distances) {
+  const auto expect = [](const auto& shape, const Vector& x, double d, const Vector& normal) {
+    const Gap gap = shape.at(x);
+    EXPECT_NEAR(gap.distance, d, 1e-14);
+    EXPECT_LT(distance(gap.normal, normal), 1e-14);
+  };
+  expect(PlaneShape{{0.0, 0.0, 1.0}, {0.0, 0.0, -1.0}}, {3.0, 4.0, 1.5}, -0.5, {0.0, 0.0, -1.0});
+  const RoundShape capsule{{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, 0.0, 1.0, 0.5};
+  expect(capsule, {1.0, 3.0, 4.0}, 4.5, {0.0, 0.6, 0.8});
+  expect(capsule, {5.0, 0.0, 4.0}, 4.5, {0.6, 0.0, 0.8});
+  expect(capsule, {-3.0, 4.0, 0.0}, 4.5, {-0.6, 0.8, 0.0});
+  expect(RoundShape{{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, -INFINITY, INFINITY, 0.5}, {5.0, 0.0, 0.4}, -0.1,
+         {0.0, 0.0, 1.0});
+  const BoxShape box{{1.0, 1.0, 1.0}, {1.0, 2.0, 3.0}};
+  expect(box, {1.5, 1.0, 1.0}, -0.5, {1.0, 0.0, 0.0});
+  expect(box, {1.0, -1.5, 1.0}, 0.5, {0.0, -1.0, 0.0});
+  expect(box, {-2.0, 1.0, 8.0}, std::sqrt(20.0), {-2.0 / std::sqrt(20.0), 0.0, 4.0 / std::sqrt(20.0)});
+}
+
+/// A column on a fixed foot.
+struct Column {
+  Mesh mesh;
+  NodeSets sets;
+  Case description;
+
+  Column(const std::array<double, 3>& size, const std::array<int, 3>& elements, const AnyLaw& law)
+      : mesh(box(size, elements)),
+        sets{{"foot", plane(mesh.points, 2, 0.0)},
+             {"side", plane(mesh.points, 0, 0.0)},
+             {"back", plane(mesh.points, 1, 0.0)},
+             {"top", plane(mesh.points, 2, size[2])}},
+        description(plain_case(law)) {}
+
+  Scene scene() const { return make_scene(description, mesh, sets); }
+};
+
+/// A plate pressed by D onto a column of the length L without lateral strain, pressure = E (D - d) / L = E /
+/// h d, so that the depth is D / (1 + L / h). Forces are exact to the residual.
+TEST(Contact, presses_a_column_as_derived) {
+  const double L = 3.0, D = 0.1, E = 3000.0;
+  Column column({1.0, 2.0, L}, {2, 2, 4}, NeoHookean{.young_modulus = E, .poisson_ratio = 0.0});
+  column.description.displacements = {{"foot", {}}};
+  for (const double gap : {0.0, 0.05}) {
+    column.description.forces.of<Obstacle>() = {ceiling(L + gap, D + gap)};
+    Recorder recorder;
+    const Scene scene = column.scene();
+    const Relaxation found = relax(Model(scene, {"linear"}), recorder);
+    EXPECT_TRUE(found.converged);
+    const double h = 0.5, depth = D / (1.0 + L / h), force = E * depth / h * 2.0;
+    const HistoryRow& last = recorder.rows.back();
+    EXPECT_NEAR(last.depth, depth, 1e-6 * depth);
+    EXPECT_NEAR(last.reactions.at("plate")[2], -force, 1e-6 * force);
+    EXPECT_NEAR(last.reactions.at("foot")[2], force, 1e-6 * force);
+    EXPECT_NEAR(last.contact, 0.5 * E / h * 2.0 * depth * depth, 1e-5 * force * depth);
+  }
+}
+
+/// Reactions of constraints and obstacles add up to zero in static equilibrium, to the residual: a capsule
+/// pressed into a block, at small and large strains and Poisson's ratio up to 0.49, and in both precisions.
+TEST(Contact, balances_the_other_reactions) {
+  for (const double ratio : {0.3, 0.49}) {
+    for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
+      Column block({1.0, 1.0, 0.6}, {8, 8, 5}, NeoHookean{.young_modulus = 3000.0, .poisson_ratio = ratio});
+      block.description.displacements = {{"foot", {}}};
+      Obstacle tool{
+          .label = "tool", .set = "top", .shape = Obstacle::Shape::capsule, .point = {0.5, 0.2, 0.8}};
+      tool.end = {0.6, 0.7, 0.82};
+      tool.radius = 0.15;
+      tool.displacement = {0.0, 0.0, -0.2};
+      block.description.forces.of<Obstacle>() = {tool};
+      Recorder recorder;
+      const Scene scene = block.scene();
+      const Relaxation found = relax(Model(scene, {"tl-perturbation", {}, precision}), recorder);
+      EXPECT_TRUE(in_equilibrium(found)) << outcome(found, precision);
+      const Reactions& reactions = recorder.rows.back().reactions;
+      const double size = length(reactions.at("tool"));
+      EXPECT_LT(reactions.at("tool")[2], 0.0);
+      EXPECT_GT(size, 1.0);
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(reactions.at("tool")[i] + reactions.at("foot")[i], 0.0,
+                    (precision == Precision::double_precision ? 1e-6 : 1e-3) * size);
+    }
+  }
+}
+
+/// The weight of a block is carried by the ground that it stands on, although nothing else holds it up.
+TEST(Contact, carries_a_block_at_rest) {
+  Column block({1.0, 1.0, 1.0}, {3, 3, 3}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
+  block.description.displacements = {{"side", {}, {true, false, false}}, {"back", {}, {false, true, false}}};
+  block.description.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}}};
+  block.description.forces.of<Obstacle>() = {ground()};
+  Recorder recorder;
+  const Scene scene = block.scene();
+  const Relaxation found = relax(Model(scene, {"tl-perturbation"}), recorder);
+  EXPECT_TRUE(found.converged);
+  EXPECT_NEAR(recorder.rows.back().reactions.at("ground")[2], 1e4, 1e-3);
+}
+
+/// A bar flies onto a wall (SDNV100 of Code_Aster): it is stopped by a wave of the stress rho c v, and leaves
+/// after 2 L / c with its velocity reversed. The scheme rings, so that means count.
+TEST(Contact, stops_a_bar_as_derived) {
+  const double L = 0.2, a = 0.02, E = 2e11, rho = 8000.0, v = 100.0, gap = 0.002;
+  const double c = std::sqrt(E / rho), touch = gap / v, lasts = 2.0 * L / c, force = rho * c * v * a * a;
+  Column bar({a, a, L}, {2, 2, 20}, NeoHookean{.young_modulus = E, .poisson_ratio = 0.0});
+  bar.description.materials.front().density = rho;
+  bar.description.quasi_static = false;
+  bar.description.velocities = {{.set = "", .value = {0.0, 0.0, -v}}};
+  Obstacle wall = ground();
+  wall.point = {0.0, 0.0, -gap};
+  bar.description.forces.of<Obstacle>() = {wall};
+  bar.description.dynamics.duration = touch + 1.5 * lasts;
+  bar.description.dynamics.check_interval = 1;
+  Recorder recorder;
+  const Scene scene = bar.scene();
+  const Model model(scene, {"linear"});
+  const Motion motion = integrate(model, recorder);
+  double impulse = 0.0, plateau = 0.0, time = 0.0;
+  const double start = total_energy(recorder.rows.front());
+  for (std::size_t n = 1; n < recorder.rows.size(); ++n) {
+    const HistoryRow &row = recorder.rows[n], &before = recorder.rows[n - 1];
+    const double f = row.reactions.at("ground")[2], step = row.time - before.time;
+    EXPECT_LE(total_energy(row), 1.002 * start);
+    impulse += 0.5 * step * (f + before.reactions.at("ground")[2]);
+    if (row.time > touch + 0.2 * lasts && row.time < touch + 0.8 * lasts) {
+      plateau += step * f;
+      time += step;
+    }
+  }
+  const double mass = rho * L * a * a;
+  EXPECT_NEAR(plateau / time, force, 0.02 * force);
+  EXPECT_NEAR(impulse, 2.0 * mass * v, 0.01 * 2.0 * mass * v);
+  double momentum = 0.0;
+  for (std::size_t n = 0; n < motion.v.size(); ++n) momentum += model.masses()[n] * motion.v[n][2];
+  EXPECT_NEAR(momentum, mass * v, 0.01 * mass * v);
+}
+
+/// A block rests under gravity: energy is neither gained nor lost in 1e5 steps, and nothing drifts sideways.
+TEST(Contact, lets_a_block_rest) {
+  Column block({1.0, 1.0, 1.0}, {2, 2, 2}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
+  block.description.quasi_static = false;
+  block.description.forces.of<Gravity>() = {{{0.0, 0.0, -10.0}, {{0.0, 1.0}, {1.0, 1.0}}}};
+  block.description.forces.of<Obstacle>() = {ground()};
+  block.description.dynamics.check_interval = 100;
+  const Scene at_rest = block.scene();
+  block.description.dynamics.time_step = 0.005;
+  block.description.dynamics.duration = 500.0;
+  const Scene scene = block.scene();
+  Recorder recorder;
+  const Model model(scene, {"tl-perturbation"});
+  const Motion motion = integrate(model, recorder);
+  EXPECT_EQ(motion.steps, 100000);
+  EXPECT_EQ(motion.repeated, 0);
+  double largest = 0.0;
+  for (const HistoryRow& row : recorder.rows) largest = std::max(largest, row.strain + row.contact);
+  EXPECT_GT(largest, 1.0);
+  for (const HistoryRow& row : recorder.rows)
+    EXPECT_NEAR(total_energy(row), row.external_work, 0.02 * largest) << row.time;
+  double sideways = 0.0;  // of the centre of mass
+  for (std::size_t n = 0; n < motion.u.size(); ++n) sideways += model.masses()[n] * motion.u[n][0] / 1000.0;
+  EXPECT_NEAR(sideways, 0.0, 1e-10);
+}
+
+/// A plate that moves into a block works on it, and what it works is there; taken back, it leaves the block
+/// without a force.
+TEST(Contact, works_as_it_moves) {
+  Column block({1.0, 1.0, 1.0}, {3, 3, 3}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.45});
+  block.description.quasi_static = false;
+  block.description.displacements = {{"foot", {}}};
+  Obstacle plate = ceiling(1.02, 0.2);
+  plate.curve = {{0.0, 0.3, 0.6}, {0.0, 1.0, 0.0}};
+  block.description.forces.of<Obstacle>() = {plate};
+  block.description.dynamics.duration = 0.3;
+  block.description.dynamics.check_interval = 5;
+  Recorder pressed;
+  const Scene scene = block.scene();
+  integrate(Model(scene, {"tl-perturbation"}), pressed);
+  EXPECT_LT(energy_imbalance(pressed.rows), 0.01);
+  EXPECT_GT(pressed.rows.back().contact, 0.0);
+  block.description.dynamics.duration = 0.6;
+  Recorder released;
+  const Scene longer = block.scene();
+  integrate(Model(longer, {"tl-perturbation"}), released);
+  EXPECT_EQ(released.rows.back().reactions.at("plate"), Vector{});
+  EXPECT_EQ(released.rows.back().contact, 0.0);
+}
+
+/// Steps allocate nothing, and have the same bits for any number of threads.
+TEST(Contact, takes_steps_like_any_force) {
+  Column block({1.0, 1.0, 1.0}, {4, 4, 4}, NeoHookean{.young_modulus = 1e5, .poisson_ratio = 0.3});
+  block.description.quasi_static = false;
+  block.description.dynamics.duration = 0.1;
+  Obstacle wall = ground();
+  wall.friction = 0.3;
+  block.description.velocities = {{.set = "", .value = {0.5, 0.0, -1.0}}};
+  block.description.forces.of<Obstacle>() = {wall};
+  const Scene scene = block.scene();
+  const Model model(scene, {"tl-perturbation"});
+  const auto& elements = *std::get<std::unique_ptr<InternalForce<double>>>(model.internal_force());
+  Leapfrog<double> leapfrog(model, elements, 0.0);
+  leapfrog.set_initial_velocities(scene.initial_velocities);
+  const auto step = [&] { leapfrog.advance(1e-3, [](Body<double>& body) { body.impose(1.0, 0.0); }); };
+  step();
+  const long before = allocations();
+  for (int k = 0; k < 20; ++k) step();
+  EXPECT_EQ(allocations(), before);
+  EXPECT_GT(leapfrog.body().touch().stored, 0.0);
+  const auto moved = [&](int threads) {
+    Recorder silent;
+    return integrate(Model(scene, {"tl-perturbation", {}, Precision::double_precision, threads}), silent).u;
+  };
+  EXPECT_EQ(moved(1), moved(2));
+}
+
+TEST(Contact, rejects_wrong_input) {
+  const TemporaryFolder folder;
+  const std::string base =
+      box_case("pressed", "[1.0, 1.0, 1.0]", "[2, 2, 2]") +
+      "[sets]\nfoot = { z = [0.0, 0.0] }\ntop = { z = [1.0, 1.0] }\n\n[[displacement]]\nset = "
+      "\"foot\"\nvalue = [0.0, 0.0, 0.0]\n\n";
+  const auto expect = [&](const std::string& table, const std::string& said) {
+    const auto path = folder.write("pressed.toml", base + table);
+    const std::string text = input_error([&] { read_scene(path); });
+    EXPECT_NE(text.find(said), std::string::npos) << text;
+  };
+  const std::string head = "[[obstacle]]\nname = \"tool\"\nset = \"top\"\nshape = ";
+  expect(head + "\"plane\"\npoint = [0, 0, 2]\n",
+         "normal is needed for shape = 'plane' and must have a length");
+  expect(head + "\"sphere\"\npoint = [0.0, 0.0, 2.0]\n",
+         "radius is needed for shape = 'sphere' and must be positive");
+  expect(head + "\"capsule\"\npoint = [0.0, 0.0, 2.0]\nend = [0.0, 0.0, 2.0]\nradius = 0.1\n",
+         "must differ from point");
+  expect(head + "\"box\"\nhalf_sizes = [1.0, 1.0, 0.0]\n", "half_sizes is needed for shape = 'box'");
+  expect(head + "\"sphere\"\nradius = 0.1\nnormal = [0.0, 0.0, 1.0]\n",
+         "normal has no meaning for shape = 'sphere'");
+  expect(head + "\"ball\"\n", "plane");
+  expect(head + "\"sphere\"\npoint = [0.5, 0.5, 1.2]\nradius = 0.3\n",
+         "at (0.5, 0.5, 1) m is 0.1 m inside of it at the start");
+  expect(head + "\"sphere\"\npoint = [0.5, 0.5, 0.5]\nradius = 0.6\ninside = true\n",
+         "allowed: a body that is within of it");
+  const std::string sphere = head + "\"sphere\"\npoint = [0.5, 0.5, 2.0]\nradius = 0.3\n";
+  expect(sphere + sphere, "another obstacle has the same name");
+  std::string other = sphere;
+  expect(other.replace(other.find("tool"), 4, "foot"), "a node set has the same name");
+  const auto path = folder.write("pressed.toml", base + sphere + "friction = 0.2\n");
+  const Scene rubbing = read_scene(path);
+  Recorder silent;
+  const auto at_rest = input_error([&] { relax(Model(rubbing, {"tl-perturbation"}), silent); });
+  EXPECT_NE(at_rest.find("friction depends on the path"), std::string::npos) << at_rest;
+  const auto asleep = input_error([&] { relax_awake(rubbing, {"tl-perturbation"}, 0.01, silent); });
+  EXPECT_NE(asleep.find("allowed: a case without [[obstacle]]"), std::string::npos) << asleep;
+}
+
+}  // namespace
+}  // namespace sandglass::verification
