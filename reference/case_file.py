@@ -11,6 +11,7 @@ from common.files import read_toml
 from common.records import NUMBER, entries, entry
 from laws import LAWS, VOLUMES, parameters
 from load_curve import CURVE, factor_and_curve
+from obstacles import SHAPES, Obstacle, shape_keys
 
 
 # The solver checks the directions of fibres and writes the resulting axes.
@@ -128,7 +129,8 @@ class Motion:
 class Case:
     """A case: name, materials in the order of the file, imposed motions and loads.
 
-    gravity: (3,) m/s^2. motion: a Motion, or None for a quasi-static case.
+    gravity: (3,) m/s^2. motion: a Motion, or None for a quasi-static case. obstacles: tuple of
+    Obstacle, in the limit of high penalties.
     """
 
     name: str
@@ -140,6 +142,7 @@ class Case:
     supports: tuple = ()
     gravity: tuple = (0.0, 0.0, 0.0)
     motion: Motion | None = None
+    obstacles: tuple = ()
 
 
 def read_tables(path):
@@ -184,8 +187,9 @@ def read_case(path, name=None):
 
     displacements = read_all("displacement", _displacement)
     rotations, supports = read_all("rotation", _rotation), read_all("support", _support)
-    if not (displacements or rotations or supports or moving):
-        tables = "[[displacement]], [[rotation]] or [[support]]"
+    obstacles = read_all("obstacle", _obstacle, moving)
+    if not (displacements or rotations or supports or obstacles or moving):
+        tables = "[[displacement]], [[rotation]], [[support]] or [[obstacle]]"
         raise InputError(f"{path}: has no {tables}; at least one table is required")
     if "materials" in tables:
         materials = read_all("materials", _material)
@@ -201,6 +205,7 @@ def read_case(path, name=None):
         supports=supports,
         gravity=tuple(map(sum, zip((0.0, 0.0, 0.0), *read_all("gravity", _gravity)))),
         motion=_motion(path, tables, read_all("velocity", _velocity)) if moving else None,
+        obstacles=obstacles,
     )
 
 
@@ -326,6 +331,22 @@ def _support(where, table):
     return Support(
         *_read(where, table, "damping", set=str, stiffness=0.0, only_normal=False).values()
     )
+
+
+def _obstacle(where, table, moving):
+    """An [[obstacle]] table as an Obstacle."""
+    if moving or table.get("friction"):
+        raise InputError(f"{where}: contact in motion or with friction is not supported here")
+    shape = entry(where, table, "shape", str)
+    if shape not in SHAPES:
+        raise InputError(f"{where}.shape = {shape!r} is not known; {suggestion(shape, SHAPES)}")
+    own = {key: float if key == "radius" else tuple for key in shape_keys(shape)}
+    others = (*CURVE, "name", "shape", "penalty", "method", "friction")
+    zero = (0.0, 0.0, 0.0)
+    found = _read(where, table, *others, set=str, displacement=zero, inside=False, **own)
+    factor, _ = factor_and_curve(where, table, moving)
+    name, moved, inside = (found.pop(key) for key in ("set", "displacement", "inside"))
+    return Obstacle(name, shape, found, tuple(factor * v for v in moved), inside)
 
 
 def _read(where, table, *others, **keys):

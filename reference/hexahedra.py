@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from common.hexahedron import LEXICOGRAPHIC, boundary_faces
+from obstacles import Obstacle
 
 # The 27 nodes of a cell split into eight, and the positions of its vertices among them, x fastest.
 SPLIT_POINTS = [(i, j, k) for k in range(3) for j in range(3) for i in range(3)]
@@ -86,6 +87,14 @@ class Surface:
 
 
 @dataclass(frozen=True)
+class Touching:
+    """Nodes, (n,) bool, of boundary faces that may touch an Obstacle, as of a Traction."""
+
+    nodes: np.ndarray
+    obstacle: Obstacle
+
+
+@dataclass(frozen=True)
 class HexMesh:
     """Trilinear hexahedra, the displacements imposed on their nodes, the tractions on faces.
 
@@ -94,7 +103,7 @@ class HexMesh:
     each element's material, or None if there is only one. surfaces: tuple of Surface. gravity:
     (3,) m/s^2 at full load. axes: (m, 3, 3) material axes of each element by rows, or None. ties:
     (tied, of, weights) of k pairs of a tied node and one whose displacement it follows with that
-    weight, or None.
+    weight, or None. touching: tuple of Touching.
     """
 
     points: np.ndarray
@@ -106,6 +115,7 @@ class HexMesh:
     gravity: tuple = (0.0, 0.0, 0.0)
     axes: np.ndarray | None = None
     ties: tuple | None = None
+    touching: tuple = ()
 
     def imposed(self, load=1.0):
         """All conditions at a load factor: (prescribed (n, 3) bool, values (n, 3) m, else zero)."""
@@ -219,6 +229,9 @@ def refine(mesh):
         slots = [SPLIT_POINTS.index(tuple(offset)) for offset in offsets]
         children.append(local_to_global[:, slots][:, LEXICOGRAPHIC])
 
+    def with_sets(loads):
+        return tuple(dataclasses.replace(one, nodes=extend(one.nodes, np.all)) for one in loads)
+
     def extend_turn(turn):
         return turn and Turn(turn.angle, extend(turn.versine, np.mean), extend(turn.sine, np.mean))
 
@@ -228,12 +241,21 @@ def refine(mesh):
         )
         for c in mesh.conditions
     )
-    tractions = tuple(dataclasses.replace(t, nodes=extend(t.nodes, np.all)) for t in mesh.tractions)
     cells = np.stack(children, axis=1).reshape(-1, 8)
     materials, axes = (
         None if of_cells is None else np.repeat(of_cells, 8, axis=0)
         for of_cells in (mesh.materials, mesh.axes)
     )
-    surfaces = tuple(dataclasses.replace(s, nodes=extend(s.nodes, np.all)) for s in mesh.surfaces)
     points = extend(mesh.points, np.mean)
-    return HexMesh(points, cells, conditions, tractions, materials, surfaces, mesh.gravity, axes)
+    return dataclasses.replace(
+        mesh,
+        points=points,
+        cells=cells,
+        conditions=conditions,
+        tractions=with_sets(mesh.tractions),
+        surfaces=with_sets(mesh.surfaces),
+        touching=with_sets(mesh.touching),
+        materials=materials,
+        axes=axes,
+        ties=None,
+    )

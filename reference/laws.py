@@ -142,6 +142,18 @@ def energy(law, volume, F, p, **parameters):
     return isochoric + K * (ufl.diff(u, theta) * (ufl.det(F) - theta) + u)
 
 
+def p_wave_modulus(law, parameters):
+    """lambda + 2 mu of a law near the undeformed state, Pa; of one with fibres, across them."""
+
+    def isochoric(stretch):
+        F = ufl.as_matrix([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, stretch]])
+        return LAWS[law](F, **parameters)[0](())
+
+    h = 1e-4
+    second = (isochoric(1 + h) - 2 * isochoric(1.0) + isochoric(1 - h)) / h**2
+    return second + LAWS[law](ufl.Identity(3), **parameters)[1]
+
+
 def parameters(law):
     """A law's parameters as named in a case file's `[material]`: name -> whether it is required."""
     arguments = inspect.getfullargspec(LAWS[law])

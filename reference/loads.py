@@ -1,4 +1,5 @@
-"""Loads on the mixed problem in FEniCSx: dead tractions, follower pressures, springs, weight."""
+"""Loads on the mixed problem in FEniCSx: dead tractions, follower pressures, springs, weight,
+contact."""
 
 import basix
 import dolfinx
@@ -7,15 +8,21 @@ import scipy.sparse
 import ufl
 from dolfinx import fem
 
+from contact import Contact
+from laws import p_wave_modulus
+
 # Another process may be compiling the same form: wait for it rather than fail.
 JIT_OPTIONS = {"timeout": 600, "cffi_extra_compile_args": ["-O3", "-g0"]}
 
 
-# Nodes of a cell -> those of its faces: hexahedra of 8 nodes, and tetrahedra of 10, whose 6 edges
-# have a node each after the vertices.
-_OF_TETRAHEDRON = basix.topology(basix.CellType.tetrahedron)
+# Nodes of a cell -> those of its edges and faces: hexahedra of 8 nodes, and tetrahedra of 10, whose
+# 6 edges have a node each after the vertices.
+_OF_HEXAHEDRON, _OF_TETRAHEDRON = (
+    basix.topology(kind) for kind in (basix.CellType.hexahedron, basix.CellType.tetrahedron)
+)
+EDGES = {8: np.array(_OF_HEXAHEDRON[1]), 10: np.array(_OF_TETRAHEDRON[1])}
 FACE_NODES = {
-    8: basix.topology(basix.CellType.hexahedron)[2],
+    8: _OF_HEXAHEDRON[2],
     10: [
         face + [4 + number for number, edge in enumerate(_OF_TETRAHEDRON[1]) if {*edge} <= {*face}]
         for face in _OF_TETRAHEDRON[2]
@@ -26,20 +33,22 @@ FACE_NODES = {
 class Loads:
     """The loads of a HexMesh on the displacement dofs (N,) of a function.
 
-    mesh: HexMesh. displacement: dolfinx function, m. cell_nodes: (m, 8 or 10) node numbers in the
-    space's order of cells and nodes. densities: (m,) of the cells in the order of the space,
-    kg/m^3. degree: of the quadrature.
+    mesh: HexMesh. materials: list of Material. displacement: dolfinx function, m. cell_nodes: (m,
+    8 or 10) node numbers in the space's order of cells and nodes. degree: of the quadrature.
+    Attributes: densities (m,) of the cells in the order of the space, kg/m^3; contacts, a Contact
+    for each obstacle; symmetric (whether the tangent is).
     """
 
-    def __init__(self, mesh, displacement, cell_nodes, densities, degree):
+    def __init__(self, mesh, materials, displacement, cell_nodes, degree):
         space = displacement.function_space
         domain, test = space.mesh, ufl.TestFunction(space)
+        self.densities = _per_cell(domain, mesh, [m.density for m in materials])
         self._dead = []  # (forces (N,), curve)
         for traction in mesh.tractions:
             measure = _measure(domain, traction.nodes, cell_nodes, degree)
             self._dead.append((_traction_forces(traction, test, measure), traction.curve))
         if any(mesh.gravity):
-            self._dead.append((_weight(mesh.gravity, densities, space, test, degree), None))
+            self._dead.append((_weight(mesh.gravity, self.densities, space, test, degree), None))
         self._factors = []  # (constant, curve) of each pressure
         F = ufl.Identity(3) + ufl.grad(displacement)
         normal = ufl.FacetNormal(domain)
@@ -60,6 +69,18 @@ class Loads:
                     fem.Constant(domain, surface.stiffness) * ufl.inner(moved, test) * measure
                 )
         self.symmetric = not any(surface.pressure for surface in mesh.surfaces)
+        self._displacement, self.contacts = displacement, []
+        for touching in mesh.touching:
+            faces, cells = _faces(domain, touching.nodes, cell_nodes)
+            areas = _areas(test, _on_faces(domain, faces, degree))
+            if len(cell_nodes[0]) == 10:  # integrals over quadratic triangles need no vertices
+                areas[space.dofmap.list.array.reshape(-1, 10)[:, :4]] = 0.0
+            ends = mesh.points[cell_nodes[cells][:, EDGES[len(cell_nodes[0])]]]
+            edge = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2).min()
+            moduli = [p_wave_modulus(m.law, m.parameters) for m in materials]
+            modulus = _per_cell(domain, mesh, moduli)[cells].min()
+            places = space.tabulate_dof_coordinates()
+            self.contacts.append(Contact(touching.obstacle, places, areas, modulus, edge))
         # Each with its own measure, which a common form cannot have.
         trial = ufl.TrialFunction(space)
         self._forms = [
@@ -76,13 +97,22 @@ class Loads:
         factor_of: function from a load's curve (None: that of the case) to its factor.
         """
         self._set(factor_of)
-        dead = sum((factor_of(curve) * forces for forces, curve in self._dead), 0.0)
-        return sum((fem.assemble_vector(vector).array for vector, _ in self._forms), -dead)
+        total = sum((-factor_of(curve) * forces for forces, curve in self._dead), 0.0)
+        for contact in self.contacts:
+            total = total + contact.forces(self._displacement.x.array, factor_of(None))
+        return sum((fem.assemble_vector(vector).array for vector, _ in self._forms), total)
 
     def tangent(self, factor_of):
         """The derivative (N, N) of forces() by the displacement, N/m; 0 if they are constant."""
         self._set(factor_of)
-        return sum((assembled(matrix) for _, matrix in self._forms), 0)
+        u, load = self._displacement.x.array, factor_of(None)
+        touching = sum((contact.tangent(u, load) for contact in self.contacts), 0)
+        return sum((assembled(matrix) for _, matrix in self._forms), touching)
+
+    def augment(self, factor_of):
+        """The largest Contact.augment() of all contacts."""
+        u, load = self._displacement.x.array, factor_of(None)
+        return max((contact.augment(u, load) for contact in self.contacts), default=0.0)
 
     def _set(self, factor_of):
         for factor, curve in self._factors:
@@ -102,20 +132,42 @@ def assembled(form, matrix=None):
     return scipy.sparse.csr_matrix((data, indices, indptr), shape=size)
 
 
+def _per_cell(domain, mesh, values):
+    """Values of the materials of a HexMesh for each of its cells (m,), in dolfinx's order."""
+    numbers = np.zeros(len(mesh.cells), dtype=int) if len(values) == 1 else mesh.materials
+    return np.array(values)[numbers[np.asarray(domain.topology.original_cell_index)]]
+
+
 def _measure(domain, nodes, cell_nodes, degree):
     """The measure on the boundary faces whose nodes all lie in a set. nodes: (n,) bool."""
+    return _on_faces(domain, _faces(domain, nodes, cell_nodes)[0], degree)
+
+
+def _faces(domain, nodes, cell_nodes):
+    """Those boundary faces, in ascending order, and the cells that they belong to."""
     domain.topology.create_connectivity(2, 3)
     domain.topology.create_connectivity(3, 2)
-    facets = []
+    found = []
     for facet in dolfinx.mesh.exterior_facet_indices(domain.topology):
         (cell,) = domain.topology.connectivity(2, 3).links(facet)
         local = list(domain.topology.connectivity(3, 2).links(cell)).index(facet)
         if nodes[cell_nodes[cell, FACE_NODES[len(cell_nodes[cell])][local]]].all():
-            facets.append(facet)
-    facets = np.sort(np.array(facets, dtype=np.int32))
+            found.append((facet, cell))
+    return np.array(sorted(found), dtype=np.int32).reshape(-1, 2).T
+
+
+def _on_faces(domain, facets, degree):
+    """The measure on faces in ascending order."""
     tags = dolfinx.mesh.meshtags(domain, 2, facets, np.ones_like(facets))
     data = {"quadrature_rule": "default", "quadrature_degree": degree}
     return ufl.Measure("ds", domain=domain, subdomain_data=tags, metadata=data)(1)
+
+
+def _areas(test, measure):
+    """The integral (n,) in m^2 of each node's shape function over faces."""
+    one = fem.Constant(measure.ufl_domain(), (1.0, 0.0, 0.0))
+    form = fem.form(ufl.inner(one, test) * measure, jit_params=JIT_OPTIONS)
+    return fem.assemble_vector(form).array.reshape(-1, 3)[:, 0].copy()
 
 
 def _traction_forces(traction, test, measure):

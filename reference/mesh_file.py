@@ -13,7 +13,7 @@ from common.errors import InputError, suggestion
 from common.program import ROOT, binary, output_of
 from common.result_file import text_of
 from common.hexahedron import boundary_faces
-from hexahedra import Condition, HexMesh, Surface, traction, turn_about
+from hexahedra import Condition, HexMesh, Surface, Touching, traction, turn_about
 
 
 TIES = ("node", "of", "weight")  # datasets of nodes that hang
@@ -142,11 +142,14 @@ def load_case_mesh(case, mesh_path):
         )
         for one in case.supports
     )
-    started = case.motion and case.motion.velocities
-    if not (mesh.largest_imposed() or tractions or case.pressures or any(case.gravity) or started):
+    touching = tuple(
+        Touching(_loaded(mesh_path, file, "obstacle", one.set_name), one) for one in case.obstacles
+    )
+    pushed = tractions or case.pressures or touching or any(case.gravity)
+    if not (mesh.largest_imposed() or pushed or case.motion and case.motion.velocities):
         raise InputError(f"{mesh_path}: case {case.name!r} moves no node: nothing to solve")
     loads = {"tractions": tuple(tractions), "surfaces": surfaces, "gravity": case.gravity}
-    return dataclasses.replace(mesh, **loads), file
+    return dataclasses.replace(mesh, **loads, touching=touching), file
 
 
 def initial_velocity(case, mesh_path):

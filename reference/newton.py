@@ -11,6 +11,7 @@ from petsc4py import PETSc
 from common.errors import ComputationError
 
 MAX_ITERATIONS = 20
+MAX_AUGMENTATIONS = 50
 # A load step need only reach the basin of convergence of the next; the last is exact to round-off.
 STEP_TOLERANCE = 1e-3
 SMALLEST_STEP = 1 / 4096
@@ -62,6 +63,14 @@ class Problem:
         """Values (in m) of the prescribed unknowns at a load factor."""
         return self._mesh.imposed(load)[1][self._prescribed]
 
+    def multipliers(self):
+        """The arrays of contact's multipliers, which augment() changes."""
+        return ()
+
+    def augment(self):
+        """Improves the multipliers of contact. Returns the largest change as a length, m."""
+        return 0.0
+
     def node_dofs(self):
         """The numbers (n, 3) of the displacement unknowns of the HexMesh's nodes."""
         return self._dofs
@@ -95,16 +104,15 @@ def solve(problem, load_steps, tolerance, guessed=False):
     Outcome. Raises ComputationError if halving does not help.
     """
     scale = problem.scale
-    state = (problem.displacement.x.array, problem.pressure.x.array)
+    state = (problem.displacement.x.array, problem.pressure.x.array, *problem.multipliers())
     balanced = [np.zeros_like(array) for array in state]  # the last equilibrium: undeformed
     load, steps, iterations = 0.0, 0, 0
     step = 1.0 if guessed else 1 / load_steps
     while load < 1:
         target = 1.0 if load + step > 1 - 1e-9 else load + step
         started = time.perf_counter()
-        converged, count, residual, correction = equilibrate(
-            problem, target, scale, tolerance if target == 1 else STEP_TOLERANCE
-        )
+        limit = tolerance if target == 1 else STEP_TOLERANCE
+        converged, count, residual, correction = _settle(problem, target, scale, limit)
         iterations += count
         _report(target, converged, count, residual, correction, time.perf_counter() - started)
         if converged:
@@ -121,6 +129,20 @@ def solve(problem, load_steps, tolerance, guessed=False):
                 f"steps of {2 * step:.1e} of it"
             )
     return Outcome(steps, iterations, residual, correction)
+
+
+def _settle(problem, load, scale, tolerance):
+    """As equilibrate(), until the multipliers of contact change no more."""
+    iterations = 0
+    for _ in range(MAX_AUGMENTATIONS):
+        converged, count, residual, correction = equilibrate(problem, load, scale, tolerance)
+        iterations += count
+        if not converged:
+            break
+        change = problem.augment() / (scale or np.abs(problem.displacement.x.array).max() or 1.0)
+        if change < tolerance:
+            return converged, iterations, residual, correction
+    return False, iterations, residual, correction
 
 
 def equilibrate(problem, load, scale, tolerance):

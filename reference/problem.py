@@ -56,9 +56,8 @@ class MixedProblem(Problem):
         self._vertex_block[cell_nodes] = space.dofmap.list.array.reshape(n_cells, 8)
         dofs = 3 * self._vertex_block[:, None] + np.arange(3)
         self.impose(mesh, dofs, self.displacement.x.array.size)
-        self._densities = densities_of(domain, mesh, materials)
-        self._loads = Loads(mesh, self.displacement, cell_nodes, self._densities, QUADRATURE)
-        self.symmetric = self._loads.symmetric
+        self.loads = Loads(mesh, materials, self.displacement, cell_nodes, QUADRATURE)
+        self.symmetric = self.loads.symmetric
 
     def start_from(self, coarse):
         """Interpolate displacement and pressure from a problem on the mesh before refine().
@@ -93,7 +92,7 @@ class MixedProblem(Problem):
         measure = ufl.dx(metadata={"quadrature_degree": QUADRATURE})
         volumes = fem.assemble_vector(fem.form(test * measure, jit_params=JIT_OPTIONS)).array
         masses = np.zeros(len(self._vertex_block))
-        of_cells = (self._densities * volumes / 8)[:, None]
+        of_cells = (self.loads.densities * volumes / 8)[:, None]
         np.add.at(masses, space.dofmap.list.array.reshape(len(volumes), 8), of_cells)
         return np.repeat(masses, 3)
 
@@ -102,6 +101,14 @@ class MixedProblem(Problem):
         dofs = np.zeros((self.displacement.x.array.size // 3, 3))
         dofs[self._vertex_block] = nodal
         return dofs.ravel()
+
+    def multipliers(self):
+        """See newton.Problem."""
+        return [contact.multipliers for contact in self.loads.contacts]
+
+    def augment(self):
+        """See newton.Problem."""
+        return self.loads.augment(self.factor_of)
 
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the HexMesh, in its numbering."""
@@ -127,7 +134,7 @@ class MixedProblem(Problem):
         increment of the same Newton step.
         """
         uu, up, pp = map(self._assemble_matrix, ("uu", "up", "pp"))
-        uu = uu + self._loads.tangent(self.factor_of)
+        uu = uu + self.loads.tangent(self.factor_of)
         return condensed((uu, up, up.T, pp), *self.mixed_residual())
 
     def mixed_residual(self):
@@ -135,7 +142,7 @@ class MixedProblem(Problem):
 
         The forces are the internal forces minus the loads at the current factor.
         """
-        forces = self._assemble_vector("u") + self._loads.forces(self.factor_of)
+        forces = self._assemble_vector("u") + self.loads.forces(self.factor_of)
         return forces, self._assemble_vector("p")
 
     def _assemble_matrix(self, name):
@@ -143,13 +150,6 @@ class MixedProblem(Problem):
 
     def _assemble_vector(self, name):
         return fem.assemble_vector(self._forms["vectors"][name]).array
-
-
-def densities_of(domain, mesh, materials):
-    """Densities (m,) in kg/m^3 of the cells of a HexMesh, in dolfinx's order of cells."""
-    numbers = np.zeros(len(mesh.cells), dtype=int) if len(materials) == 1 else mesh.materials
-    of_cells = numbers[np.asarray(domain.topology.original_cell_index)]
-    return np.array([material.density for material in materials])[of_cells]
 
 
 def compile_forms(u, p, mesh, materials, degree):

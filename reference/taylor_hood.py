@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from loads import Loads, assembled
 from newton import Problem, Unknown
-from problem import compile_forms, densities_of
+from problem import compile_forms
 from tetrahedra import EDGES
 
 # Of the quadrature. Elements that fold at an edge invert at points near their faces first: with
@@ -52,9 +52,8 @@ class TaylorHoodProblem(Problem):
         ones = np.ones(len(dofs))
         self._of_cells = scipy.sparse.csr_matrix((ones, (dofs, number.ravel())))
         self._place = used  # of each pressure unknown: node + nodes * material
-        densities = densities_of(domain, mesh, materials)
-        self._loads = Loads(mesh, self.function, self._cells, densities, DEGREE)
-        self.symmetric = self._loads.symmetric
+        self.loads = Loads(mesh, materials, self.function, self._cells, DEGREE)
+        self.symmetric = self.loads.symmetric
         self._n = self.function.x.array.size
         self.displacement = Unknown(self._n + len(used))
         self.pressure = Unknown(0)
@@ -63,6 +62,14 @@ class TaylorHoodProblem(Problem):
         forms = self._forms["matrices"]
         uu, pp = assembled(forms["uu"]), self._of_cells.T @ assembled(forms["pp"]) @ self._of_cells
         self._stiffness = np.sqrt(-uu.diagonal().mean() / pp.diagonal().mean())
+
+    def multipliers(self):
+        """See newton.Problem."""
+        return [contact.multipliers for contact in self.loads.contacts]
+
+    def augment(self):
+        """See newton.Problem."""
+        return self.loads.augment(self._factor)
 
     def nodal_displacement(self):
         """Displacement (n, 3) in m at the nodes of the mesh, in its numbering."""
@@ -99,7 +106,7 @@ class TaylorHoodProblem(Problem):
         """Unbalanced forces (N,) in N of all unknowns, and an empty row."""
         self._move()
         vectors = self._forms["vectors"]
-        forces = fem.assemble_vector(vectors["u"]).array + self._loads.forces(self._factor)
+        forces = fem.assemble_vector(vectors["u"]).array + self.loads.forces(self._factor)
         dilatation = fem.assemble_vector(vectors["p"]).array
         dilatation = self._stiffness * (self._of_cells.T @ dilatation)
         return np.concatenate([forces, dilatation]), np.empty(0)
@@ -108,7 +115,7 @@ class TaylorHoodProblem(Problem):
         """See MixedProblem.linearize: nothing is eliminated here."""
         residual, _ = self.mixed_residual()
         forms, follow = self._forms["matrices"], self._stiffness * self._of_cells
-        uu = assembled(forms["uu"]) + self._loads.tangent(self._factor)
+        uu = assembled(forms["uu"]) + self.loads.tangent(self._factor)
         up, pp = assembled(forms["up"]) @ follow, follow.T @ assembled(forms["pp"]) @ follow
         tangent = scipy.sparse.bmat([[uu, up], [up.T, pp]], format="csr")
         return tangent, residual, lambda _: np.empty(0)

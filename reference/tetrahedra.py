@@ -82,6 +82,7 @@ def cut(mesh):
         conditions=conditions,
         tractions=tuple(map(with_set, mesh.tractions)),
         surfaces=tuple(map(with_set, mesh.surfaces)),
+        touching=tuple(map(with_set, mesh.touching)),
         materials=None if mesh.materials is None else mesh.materials[cell],
         axes=None if mesh.axes is None else mesh.axes[cell],
         ties=None,

@@ -52,6 +52,15 @@ class TiedProblem:
         """See MixedProblem.values_at."""
         return self._problem.values_at(load)[self._of_fixed]
 
+    def multipliers(self):
+        """See newton.Problem."""
+        return self._problem.multipliers()
+
+    def augment(self):
+        """See newton.Problem."""
+        self._move()
+        return self._problem.augment()
+
     def nodal_displacement(self):
         """See MixedProblem.nodal_displacement."""
         self._move()
