@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from blocks import ELEMENTS, distorted_block, with_hanging_nodes
+from blocks import ELEMENTS, distorted_block
 from case_file import Material, read_case
 from common.errors import InputError
+from common.hexahedron import CUBE
 from hexahedra import Condition, HexMesh, Touching, refine
 from newton import solve
 from obstacles import SHAPES, Obstacle
 from problem import MixedProblem
-from tied_problem import TiedProblem
 
 PLACE = np.array([0.1, -0.2, 0.3])
 PARAMETERS = {
@@ -33,7 +33,7 @@ def _difference(function, x, h=1e-5):
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_normals_and_curvatures_are_derivatives_of_the_distance(name):
-    x = np.random.default_rng(1).uniform(-1.5, 1.5, (400, 3))
+    x = np.random.default_rng(1).uniform(-0.8, 0.8, (2000, 3))
 
     def distance(x):
         return SHAPES[name](x, **PARAMETERS[name])
@@ -103,15 +103,155 @@ def test_a_column_is_pressed_by_a_plate(make):
     solve(problem, 2, 1e-10)
     u = problem.nodal_displacement()[: len(mesh.points)]
     assert np.abs(u - mesh.points * [0, 0, -0.2]).max() < 1e-9
-    (contact,) = problem.loads.contacts
-    gap, pressure, normal = contact.state(problem_function(problem), 1.0)
-    exact = -E * (0.8**2 - 1) / 2 * 0.8
+    gap, pressure, force = _at_plate(problem)
+    exact = E * (1 - 0.8**2) / 2 * 0.8
     assert np.abs(pressure / exact - 1).max() < 1e-8 and np.abs(gap).max() < 1e-10
+    assert np.abs(force - [0, 0, -exact]).max() < 1e-8 * exact
+
+
+@ELEMENTS
+def test_a_penalty_gives_way(make):
+    """The modulus lambda + 2 mu is E here, and the shortest edge 1/3."""
+    mesh = _pressed(0.2, {"penalty": 2.0}, distortion=0.0)
+    problem = make(mesh, COLUMN)
+    solve(problem, 2, 1e-10)
+    gap, pressure, force = _at_plate(problem)
+    assert np.ptp(gap) < 1e-10
+    stretch = 0.8 - gap[0]
+    exact = E * (1 - stretch**2) / 2 * stretch
+    assert np.abs(pressure / exact - 1).max() < 1e-8
+    assert np.abs(pressure / (2.0 * E * -gap / (1 / 3)) - 1).max() < 1e-7
+    assert np.abs(force - [0, 0, -exact]).max() < 1e-8 * exact
+
+
+def test_the_softest_material_and_the_shortest_edge_count():
+    """Of the elements that touch, not of those below them."""
+    stiff, soft = ({"young_modulus": e, "poisson_ratio": 0.25} for e in (9e3, 5e3))
+    materials = [Material("neo-hookean", one) for one in (stiff, soft)]
+    mesh = _pressed(0.1, {"penalty": 1.0}, n=2, distortion=0.0)
+    points = mesh.points * [2.0, 0.5, 1.0]
+    top = points[mesh.cells].mean(axis=1)[:, 2] > 0.5
+    for number, of_top, modulus in ((0, 1, 5e3), (1, 0, 9e3)):
+        of_cells = np.where(top, of_top, number)
+        problem = MixedProblem(
+            dataclasses.replace(mesh, points=points, materials=of_cells), materials
+        )
+        problem.displacement.x.array.reshape(-1, 3)[:] = [0, 0, 0.01]
+        _, pressure, _ = _at_plate(problem)
+        # lambda + 2 mu = 1.2 E for nu = 1/4
+        assert np.allclose(pressure, 1.2 * modulus * 0.11 / 0.25, rtol=1e-6)
+
+
+def test_an_obstacle_does_not_hold_back():
+    """A plate that retreats, or does not arrive, leaves the column as it is."""
+    mesh = _pressed(-0.05)
+    problem = MixedProblem(mesh, COLUMN)
+    solve(problem, 2, 1e-10)
+    assert not problem.nodal_displacement().any()
+    problem.loads.contacts[0].multipliers[:] = 100.0
+    assert problem.augment() > 0 and not problem.loads.contacts[0].multipliers.any()
+
+
+def test_meshes_that_are_split_touch_with_all_their_nodes():
+    mesh = _pressed(0.2, n=2)
+    problem = MixedProblem(refine(mesh), COLUMN)
+    solve(problem, 2, 1e-10)
+    gap, _, force = _at_plate(problem)
+    assert len(gap) == 25 and abs(force[2] / (E * 0.18 * 0.8) + 1) < 1e-8
+
+
+# A rigid ball of radius R is pressed by d = a^2 / R into a half-space with E / (1 - nu^2) = E*:
+# F = 4/3 E* a^3 / R, pressure 2 E* a / (pi R) sqrt(1 - r^2 / a^2). Strains are small: a = R / 100.
+HERTZ = {"young_modulus": 1.40625e7, "poisson_ratio": 0.25}
+E_STAR, RADIUS, CONTACT = 1.5e7, 10.0, 0.1
+
+
+def _ball(size, across):
+    """A quarter of a block under a ball, with so many elements across the contact.
+
+    Elements are cubes there and double their edges further out. size: about that of the block, m.
+    """
+    h = 2 * CONTACT / across
+    ticks = list(h * np.arange(across + 1))
+    while ticks[-1] < size:
+        ticks.append(ticks[-1] + 2 * (ticks[-1] - ticks[-2]))
+    n = len(ticks)
+    i, j, k = np.meshgrid(*[np.arange(n)] * 3, indexing="ij")
+    points = np.stack([np.array(ticks)[i], np.array(ticks)[j], -np.array(ticks)[k]], axis=-1)
+    first = np.stack([i, j, k], axis=-1)[:-1, :-1, :-1].reshape(-1, 1, 3)
+    # The third axis points down, so that it takes the other order of corners.
+    cells = (first + CUBE[[4, 5, 6, 7, 0, 1, 2, 3]]) @ [n * n, n, 1]
+    points = points.reshape(-1, 3)
+    base, top = points[:, 2] == -ticks[-1], points[:, 2] == 0
+    zero = np.zeros_like(points)
+    planes = (Condition(points[:, axis] == 0, (axis,), zero) for axis in (0, 1))
+    ball = {"point": (0.0, 0.0, RADIUS), "radius": RADIUS}
+    down = (0.0, 0.0, -(CONTACT**2) / RADIUS)
+    touching = (Touching(top, Obstacle("top", "sphere", ball, down)),)
+    return HexMesh(points, cells, (Condition(base, (0, 1, 2), zero), *planes), touching=touching)
+
+
+def test_hertz():
+    """The block is 200 contact radii high: a half-space gives way by a fraction of a percent more."""
+    problem = MixedProblem(_ball(20.0, 8), [Material("neo-hookean", HERTZ)])
+    solve(problem, 2, 1e-9)
+    (contact,) = problem.loads.contacts
+    _, pressure, normal = contact.state(problem.displacement.x.array, 1.0)
+    shares = contact.areas * pressure
+    force = -4 * shares @ normal[:, 2]
+    x = problem.displacement.function_space.tabulate_dof_coordinates()[contact.nodes]
+    r2 = (x**2).sum(axis=1)
+    radius = np.sqrt(2.5 * (shares @ r2) / shares.sum())  # the mean of r^2 is 2/5 a^2
+    exact = 4 / 3 * E_STAR * CONTACT**3 / RADIUS
+    assert abs(force / exact - 1) < 0.01
+    assert abs(radius / CONTACT - 1) < 0.02
+    assert abs(pressure[r2.argmin()] / (2 * E_STAR * CONTACT / np.pi / RADIUS) - 1) < 0.03
+
+
+def test_obstacles_of_a_case(tmp_path):
+    path = tmp_path / "press.toml"
+    text = """
+case = { name = "press" }
+material = { law = "neo-hookean", young_modulus = 1.0, poisson_ratio = 0.3 }
+[[obstacle]]
+name = "tool"
+set = "top"
+shape = "capsule"
+point = [0, 0, 1]
+end = [1, 0, 1]
+radius = 0.5
+displacement = [0.0, 0.0, -2.0]
+times = [0.0, 2.0]
+factors = [0.0, 1.0]
+penalty = 7.0
+[[obstacle]]
+set = "all"
+shape = "ellipsoid"
+inside = true
+point = [0, 0, 0]
+half_sizes = [3, 2, 1]
+"""
+    path.write_text(text)
+    tool, room = read_case(path).obstacles
+    ends = {"point": (0.0, 0.0, 1.0), "end": (1.0, 0.0, 1.0), "radius": 0.5}
+    assert tool == Obstacle("top", "capsule", ends, (0.0, 0.0, -1.0))
+    assert room.inside and room.parameters["half_sizes"] == (3.0, 2.0, 1.0)
+    for wrong, told, error in (
+        ("capsule", "cone", "shape = 'cone' is not known"),
+        ("radius = 0.5", "", "radius"),
+        ("penalty", "friction", "friction"),
+        ("inside", "outside", "unknown key"),
+        ('name = "press"', 'name = "press", answer = "dynamic"', "motion"),
+    ):
+        path.write_text(text.replace(wrong, told))
+        with pytest.raises(InputError, match=error):
+            read_case(path)
+
+
+def _at_plate(problem):
+    """Gaps (k,) in m, pressures (k,) in Pa and the force (3,) in N at full load."""
+    u = getattr(problem, "function", problem.displacement).x.array
+    (contact,) = problem.loads.contacts
     assert abs(contact.areas.sum() - 1) < 1e-12
-    force = contact.forces(problem_function(problem), 1.0).reshape(-1, 3).sum(axis=0)
-    assert np.abs(force - [0, 0, exact]).max() < 1e-7 * exact
-
-
-def problem_function(problem):
-    """The displacement of the nodes as Loads has it."""
-    return getattr(problem, "function", problem.displacement).x.array
+    gap, pressure, normal = contact.state(u, 1.0)
+    return gap, pressure, (contact.areas * pressure) @ normal

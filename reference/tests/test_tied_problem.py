@@ -1,13 +1,16 @@
 """Nodes that hang: a linear field is an answer, in FEniCSx and in SfePy, and forces are kept."""
 
+import dataclasses
 import itertools
 
 import numpy as np
 import pytest
 
 from blocks import MATERIALS, affine, distorted_block
-from hexahedra import Condition, HexMesh, refine
+from case_file import Material
+from hexahedra import Condition, HexMesh, Touching, refine
 from newton import solve
+from obstacles import Obstacle
 from problem import MixedProblem
 from tied_problem import TiedProblem
 
@@ -70,3 +73,28 @@ def test_forces_are_handed_on(block):
     assert (of_nodes[mesh.ties[0]] == 0).all() and (of_nodes[~inside] != 0).all()
     # Internal forces keep momentum.
     np.testing.assert_allclose(of_nodes.sum(axis=0), 0.0, atol=1e-10 * np.abs(forces).max())
+
+
+def test_an_obstacle_presses_hanging_nodes(block):
+    """On the side where the mesh is fine: the stress is uniform, (1 - s^2)/2 s, s the stretch."""
+    mesh, _, _ = block
+    side = round(mesh.points[mesh.cells[0]].mean(axis=0)[2])
+    sign = 2 * side - 1
+    plate = {"point": (0, 0, side), "normal": (0, 0, -sign)}
+    obstacle = Obstacle("side", "plane", plate, (0, 0, -0.2 * sign))
+    ends = {0: (0.0, 0), 1: (0.0, 1), 2: (1.0 - side, 2)}
+    held = tuple(
+        Condition(mesh.points[:, axis] == end, (axis,), np.zeros_like(mesh.points))
+        for end, axis in ends.values()
+    )
+    touching = (Touching(mesh.points[:, 2] == side, obstacle),)
+    mesh = dataclasses.replace(mesh, conditions=held, touching=touching)
+    material = Material("st-venant-kirchhoff", {"young_modulus": 1.0, "poisson_ratio": 0.0})
+    problem = MixedProblem(mesh, [material])
+    tied = TiedProblem(problem, mesh.ties)
+    solve(tied, 2, 1e-10)
+    height = sign * (mesh.points[:, 2] - (1 - side))
+    assert np.abs(tied.nodal_displacement()[:, 2] + 0.2 * sign * height).max() < 1e-9
+    (contact,) = problem.loads.contacts
+    _, pressure, _ = contact.state(problem.displacement.x.array, 1.0)
+    assert abs(contact.areas @ pressure - (1 - 0.8**2) / 2 * 0.8) < 1e-8
