@@ -130,7 +130,7 @@ class Case:
     """A case: name, materials in the order of the file, imposed motions and loads.
 
     gravity: (3,) m/s^2. motion: a Motion, or None for a quasi-static case. obstacles: tuple of
-    Obstacle, in the limit of high penalties.
+    Obstacle, which nothing penetrates.
     """
 
     name: str
@@ -341,12 +341,12 @@ def _obstacle(where, table, moving):
     if shape not in SHAPES:
         raise InputError(f"{where}.shape = {shape!r} is not known; {suggestion(shape, SHAPES)}")
     own = {key: float if key == "radius" else tuple for key in shape_keys(shape)}
-    others = (*CURVE, "name", "shape", "penalty", "method", "friction")
-    zero = (0.0, 0.0, 0.0)
-    found = _read(where, table, *others, set=str, displacement=zero, inside=False, **own)
+    others = (*CURVE, "name", "shape", "method", "friction", *own)
+    keys = {"displacement": (0.0, 0.0, 0.0), "inside": False, "penalty": 1.0}
+    name, moved, *rest = _read(where, table, *others, set=str, **keys).values()
     factor, _ = factor_and_curve(where, table, moving)
-    name, moved, inside = (found.pop(key) for key in ("set", "displacement", "inside"))
-    return Obstacle(name, shape, found, tuple(factor * v for v in moved), inside)
+    own = _read(where, table, *table, **own)
+    return Obstacle(name, shape, own, tuple(factor * v for v in moved), *rest)
 
 
 def _read(where, table, *others, **keys):

@@ -12,8 +12,8 @@ class Contact:
 
     A node with the area A of its shape function on the faces has the force A p n, p >= 0 the
     pressure on the undeformed area and n the obstacle's normal where the node is:
-    p = max(0, multiplier - stiffness * gap). With the obstacle's own penalty the multiplier is
-    zero. In the limit it is that of the constraint gap >= 0: augment() improves it.
+    p = max(0, multiplier - stiffness * gap). Without penetration the multiplier is that of the
+    constraint gap >= 0: augment() improves it. With a penalty it is zero.
 
     obstacle: Obstacle. points: (n, 3) m, undeformed nodes in the order of the displacement. areas:
     (n,) m^2. modulus: smallest P-wave modulus of the touching elements, Pa. edge: their shortest,
@@ -25,7 +25,8 @@ class Contact:
         self.areas = areas[self.nodes]
         self.multipliers = np.zeros(len(self.nodes))
         self._obstacle, self._points = obstacle, points[self.nodes]
-        self._stiffness = (obstacle.penalty or LIMIT_PENALTY) * modulus / edge
+        penalty = LIMIT_PENALTY if obstacle.limit else obstacle.penalty
+        self._stiffness = penalty * modulus / edge
         self._size = 3 * len(points)
 
     def state(self, u, load):
@@ -52,12 +53,12 @@ class Contact:
         return scipy.sparse.csr_matrix(entries, shape=(self._size, self._size))
 
     def augment(self, u, load):
-        """In the limit, makes the present pressures the multipliers.
+        """Makes the present pressures the multipliers, unless a penalty decides.
 
         Returns the largest change over the stiffness, m: a penetration, or how far a multiplier
         acted at a distance.
         """
-        if self._obstacle.penalty:
+        if not self._obstacle.limit:
             return 0.0
         pressure = self._state(u, load)[1]
         change = np.abs(pressure - self.multipliers).max() / self._stiffness

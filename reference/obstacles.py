@@ -114,8 +114,8 @@ class Obstacle:
     """A rigid obstacle that the faces within a node set may touch, without friction.
 
     shape: a name in SHAPES. parameters: of its function. displacement: (3,) m, at full load.
-    inside: whether the body is inside of it. penalty: the stiffness over P-wave modulus / edge, or
-    None for the limit of stiff obstacles, without any penetration.
+    inside: whether the body is inside of it. penalty: the stiffness over P-wave modulus / edge.
+    limit: whether nothing penetrates it, whatever the penalty.
     """
 
     set_name: str
@@ -123,7 +123,8 @@ class Obstacle:
     parameters: dict
     displacement: tuple = (0.0, 0.0, 0.0)
     inside: bool = False
-    penalty: float | None = None
+    penalty: float = 1.0
+    limit: bool = True
 
     def gap(self, x, load):
         """Signed distances (k,) of points (k, 3), m, at a load factor, and their derivatives.

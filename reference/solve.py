@@ -4,6 +4,7 @@ Usage: /usr/bin/python3 reference/solve.py golden|motion CASE.toml --mesh mesh.h
 Exit codes: 0 solved, 2 bad usage or input, 3 no equilibrium or motion found.
 """
 
+import dataclasses
 import logging
 import math
 import sys
@@ -78,6 +79,9 @@ def run(options):
     case = read_case(options.case, options.variant)
     if (kind == MOTION) != bool(case.motion):
         raise InputError(f"{options.case}: a dynamic case has a golden of motion and no other")
+    if options.penalty:
+        soft = (dataclasses.replace(one, limit=False) for one in case.obstacles)
+        case = dataclasses.replace(case, obstacles=tuple(soft))
     mesh, file = load_case_mesh(case, options.mesh)
     if mesh.ties and (kind != "golden" or refinements):
         raise InputError(
@@ -155,6 +159,11 @@ main = command_line(
         metavar="N",
         help="split every hexahedron into 8, N times; the difference to N-1 is stored as the "
         "estimate of the discretisation error (default 0: no estimate)",
+    ),
+    option(
+        "--penalty",
+        action="store_true",
+        help="obstacles give way by their penalty (default: nothing penetrates them)",
     ),
     option(
         "--load-steps",
