@@ -9,6 +9,7 @@ from blocks import ELEMENTS, distorted_block
 from case_file import Material, read_case
 from common.errors import InputError
 from common.hexahedron import CUBE
+from contact import Contact
 from hexahedra import Condition, HexMesh, Touching, refine
 from newton import solve
 from obstacles import SHAPES, Obstacle
@@ -158,6 +159,21 @@ def test_meshes_that_are_split_touch_with_all_their_nodes():
     solve(problem, 2, 1e-10)
     gap, _, force = _at_plate(problem)
     assert len(gap) == 25 and abs(force[2] / (E * 0.18 * 0.8) + 1) < 1e-8
+
+
+@pytest.mark.parametrize("name, inside", [("sphere", False), ("ellipsoid", True)])
+def test_the_tangent_is_the_derivative_of_the_forces(name, inside):
+    """Of the pressure and of the turning normal."""
+    random = np.random.default_rng(2)
+    x = random.uniform(-0.6, 0.6, (60, 3)) + PLACE
+    obstacle = Obstacle("a", name, PARAMETERS[name], (0.1, 0.0, -0.1), inside)
+    contact = Contact(obstacle, x, random.uniform(0.5, 2.0, len(x)), 30.0, 0.1)
+    contact.multipliers[:] = random.uniform(0.0, 500.0, len(x))
+    u = random.normal(scale=0.01, size=x.size)
+    change = random.normal(scale=1e-6, size=x.size)
+    moved = contact.forces(u + change, 0.5) - contact.forces(u - change, 0.5)
+    expected = 2 * contact.tangent(u, 0.5) @ change
+    assert expected.any() and np.abs(moved - expected).max() < 1e-8 * np.abs(expected).max()
 
 
 # A rigid ball of radius R is pressed by d = a^2 / R into a half-space with E / (1 - nu^2) = E*:
