@@ -116,8 +116,8 @@ def check(path):
         raise InputError(f"{path}: errors: those to {', '.join(sorted(score.errors))} are required")
     for reference, figures in score.errors.items():
         for figure, value in figures.items():
-            told = entry["errors"][reference].get(figure)
-            if told is None or abs(told - value) > SAME * max(1.0, abs(value)):
+            kept = entry["errors"][reference].get(figure)
+            if kept is None or abs(kept - value) > SAME * max(1.0, abs(value)):
                 raise InputError(
-                    f"{path}: errors.{reference}.{figure} = {told}: its displacements score {value}"
+                    f"{path}: errors.{reference}.{figure} = {kept}: its displacements score {value}"
                 )

@@ -3,8 +3,8 @@
 Usage: /usr/bin/python3 results/submit.py ANSWER --case CASE --program P --version V --element E
        --precision double --build FLAGS --machine CPU --by NAME [--ns N] [--step S] [--seconds S]
        /usr/bin/python3 results/submit.py --peers peers.json --answers FOLDER --by NAME
-The second form makes an entry of every row that `ci/peers CASE --json --answers` measured at rest.
-Exit codes: 0 done, 2 bad usage or input, 3 scoring failed.
+The second form makes an entry of every row that `ci/peers CASE --json --answers` measured in static
+equilibrium. Exit codes: 0 done, 2 bad usage or input, 3 scoring failed.
 """
 
 import datetime
@@ -59,7 +59,7 @@ def of_peers(path, answers):
     found = read_json(path, "ci/peers --json")
     steps = {_key(row): row for row in found["in_motion"] if not row["failure"]}
     programs = {(one["name"], one["build"]): one for one in found["programs"]}
-    for row in found["at_rest"]:
+    for row in found["static"]:
         if row["failure"]:
             continue
         about = programs.get((row["program"], row["build"] or ""))

@@ -102,7 +102,7 @@ support = [{ set = "b", stiffness = 5.0, damping = 2.0, only_normal = true }]
     assert case.pressures[0].value == 1.5 and case.gravity == (3.0, 1.0, 2.0)
     assert dataclasses.astuple(case.supports[0]) == ("b", 5.0, True)
     assert case.materials[0].density == 7.0
-    for wrong, told in (("stiffness = 5.0", "stiffness = 'a'"), ("value = 3.0", "valu = 3.0")):
-        path.write_text(text.replace(wrong, told))
+    for wrong, new in (("stiffness = 5.0", "stiffness = 'a'"), ("value = 3.0", "valu = 3.0")):
+        path.write_text(text.replace(wrong, new))
         with pytest.raises(InputError, match="support|pressure"):
             read_case(path)

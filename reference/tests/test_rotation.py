@@ -47,7 +47,7 @@ def test_nodes_stay_on_their_circles(load):
 
 
 @ELEMENTS
-def test_a_turned_body_is_at_rest(make):
+def test_a_turned_body_is_in_equilibrium(make):
     mesh = _turned_block(4.0)
     problem = make(mesh, MATERIALS)
     newton_solve(problem, 20, 1e-10)

@@ -135,7 +135,7 @@ def _error_panel(name, subject, lines, reference):
 
 
 def _is_golden(line, subject):
-    """Whether an answer other than the golden cannot be told from it by eye."""
+    """Whether an answer other than the golden cannot be distinguished from it by eye."""
     if line.name in ("golden", "truth") or subject.golden is None:
         return False
     distances = relative_distances(

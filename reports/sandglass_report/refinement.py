@@ -68,11 +68,11 @@ def refinement_plate(records):
             way: min((p for p in points if p["way"] == way), key=lambda p: p["error_max"])
             for way in dict.fromkeys(p["way"] for p in points)
         }
-        told = ", ".join(
+        text = ", ".join(
             f"{way}: {100 * p['error_max']:.2g} % in {p['seconds']:.2g} s"
             for way, p in best.items()
         )
-        return Panel(f"refinement.{name}", name, f"{name}: {told}", draw, 420, 320)
+        return Panel(f"refinement.{name}", name, f"{name}: {text}", draw, 420, 320)
 
     names = dict.fromkeys(found["case"] for found in records)
     note = (

@@ -126,10 +126,10 @@ def _name_missing(axes, subject, reference, untimed):
     untimed: the number of runs with a figure but without a time.
     """
     missing = [r.method for r in subject.runs if r.is_main and getattr(r, reference) is None]
-    told = ["failed: " + ", ".join(missing)] if missing else []
-    told += [f"{untimed} not timed"] if untimed else []
-    if told:
-        words = "; ".join(told)
+    remarks = ["failed: " + ", ".join(missing)] if missing else []
+    remarks += [f"{untimed} not timed"] if untimed else []
+    if remarks:
+        words = "; ".join(remarks)
         axes.text(
             1.0,
             1.02,

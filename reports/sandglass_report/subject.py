@@ -272,14 +272,14 @@ def _require_same_runs(subject, files):
     for run, path in files:
         u = subject.displacements[run.method, None if run.is_main else run.kappa]
         for kind in REFERENCES:
-            reference, told = getattr(subject, kind), getattr(run, kind)
-            if reference is None or told is None:
+            reference, given = getattr(subject, kind), getattr(run, kind)
+            if reference is None or given is None:
                 continue
             found = accuracy(u, reference.displacement, subject.unit_of(reference), profile)
-            if abs(found.max - told.max) > AGREEMENT * max(1.0, told.max):
+            if abs(found.max - given.max) > AGREEMENT * max(1.0, given.max):
                 raise InputError(
                     f"{path}: its largest error against the {kind} is {found.max:.6g}, but the "
-                    f"verdicts say {told.max:.6g}: they come from different runs; run verify again"
+                    f"verdicts say {given.max:.6g}: they come from different runs; run verify again"
                 )
 
 

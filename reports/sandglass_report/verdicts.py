@@ -24,7 +24,7 @@ class Run:
     golden: Accuracy | None
     truth: Accuracy | None
     operations: int  # per element and step
-    stable_step: float  # s, at rest
+    stable_step: float  # s, undeformed
     residual: float
     hourglass_energy_ratio: float  # of the strain energy
     step_remark: str  # about steps of single states; mostly empty

@@ -45,12 +45,12 @@ def _case(subject):
     """Surface, answers and colour limits of a case."""
     faces, owners = _faces(subject.cells)
     nodes, local = np.unique(faces, return_inverse=True)
-    at_rest = volumes(subject.points, subject.cells)
+    undeformed = volumes(subject.points, subject.cells)
     main = {m: u for (m, kappa), u in subject.displacements.items() if kappa is None}
     answers = {m: u for m, u in main.items() if np.isfinite(u).all()}
     if subject.golden is not None:
         answers = {GOLDEN: subject.golden.displacement} | answers
-    fields = {name: _fields(subject, name, u, at_rest) for name, u in answers.items()}
+    fields = {name: _fields(subject, name, u, undeformed) for name, u in answers.items()}
     limits = _limits(fields)
     view = view_of(subject.points)
     return {
@@ -83,9 +83,9 @@ def _faces(cells):
     return faces, np.array([element[tuple(face)] for face in np.sort(faces, axis=1).tolist()])
 
 
-def _fields(subject, name, u, at_rest):
+def _fields(subject, name, u, undeformed):
     """Values by name: error at nodes (fractions), the rest of elements."""
-    found = {"volume": volumes(subject.points + u, subject.cells) / at_rest}
+    found = {"volume": volumes(subject.points + u, subject.cells) / undeformed}
     if subject.golden is not None:
         golden = subject.golden.displacement
         found["error"] = relative_distances(u, golden, subject.unit_of(subject.golden))

@@ -110,21 +110,21 @@ class DataSet:
         path.write_text(json.dumps(document), encoding="utf-8")
 
     @staticmethod
-    def rung(method, seconds, error, **changed):
+    def row(method, seconds, error, **changed):
         """A row of `sandglass choose --all --json` on the case's own mesh, in double."""
         own = {"rung": f"{method} {changed}", "method": method, "seconds": seconds, "error": error}
         own["seconds_per_simulated_second"] = 1e3 * seconds
-        return RECORDS["rung"] | own | changed
+        return RECORDS["row"] | own | changed
 
     @staticmethod
-    def ladder(rungs, reference="golden", tolerance=0.01, case="column"):
+    def choices(rows, reference="golden", tolerance=0.01, case="column"):
         """The document of `sandglass choose --all --json`."""
         return {
             "revision": "abc",
             "case": case,
             "tolerance": tolerance,
             "reference": {"name": reference},
-            "rungs": rungs,
+            "rungs": rows,
         }
 
     @staticmethod

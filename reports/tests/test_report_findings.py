@@ -63,7 +63,7 @@ def test_a_caption_counts_findings_and_limits(data):
     assert "1 of the case’s 2 limits BROKEN." in words
 
 
-def test_a_golden_far_from_the_truth_is_said(data):
+def test_a_golden_far_from_the_truth_is_reported(data):
     assert "from the truth" not in found(data)
     data.write_reference("truth", data.answer * [1.0, 1.0, 1.5], element="P2-P1")
     assert "The golden is 40 % from the truth" in found(data)  # 0.5 * 0.4 m over 0.5 m

@@ -16,7 +16,7 @@ def read(data):
 
 def test_what_is_absent_is_named_with_its_command(data):
     found = read(data)
-    assert not (found.rungs or found.steps or found.counts or found.maps)
+    assert not (found.candidates or found.steps or found.counts or found.maps)
     assert all(source.facts is None for source in found.sources)
     commands = " ".join(source.command for source in found.sources)
     for word in ("bench --threads", "flops", "reports/curves", "stability CASE"):
@@ -66,7 +66,7 @@ def a_map(case, revision="abc"):
     return {"case": case, "limit": 0.01, "revision": revision, "maps": []}
 
 
-def test_kept_maps_stand_in_for_cases_that_were_not_swept_anew(data):
+def test_kept_maps_stand_in_for_missing_ones(data):
     data.write("maps/column.json", a_map("column", "new"))
     data.write("kept-maps/column.json", a_map("column", "old"))
     data.write("kept-maps/twist.json", a_map("twist", "old"))
@@ -89,8 +89,8 @@ def test_kept_maps_stand_in_for_cases_that_were_not_swept_anew(data):
 def test_what_is_broken_is_refused_with_file_and_key(data, capsys, name, document, words):
     data.write(name, document)
     assert main(data.arguments) == 2
-    told = capsys.readouterr().err
-    assert told.startswith("error: ") and told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith("error: ") and message.count("\n") == 1
     for word in (name, *words):
-        assert word in told
+        assert word in message
     assert not data.page.exists()

@@ -104,7 +104,7 @@ def test_the_step_of_another_state_is_noticed():
 
 
 def test_a_stiff_body_may_have_short_steps():
-    """Steel in elements of a millimetre; its steps at rest say so."""
+    """Steel in elements of a millimetre; its undeformed steps are short."""
     stiff = {"stable_step": 2e-7} | timed(23.0, 1.5e-7)
     slow = stiff | {"simulated": 3e6, "step": 3e6 * 1.5e-7, "checks": 0.0}
     for changed in (stiff, slow):
@@ -183,18 +183,18 @@ def test_an_error_to_another_reference_is_noticed(data, capsys):
     for record in data.records:
         record["truth"] = record["golden"] | {"max_relative_error": 0.05}
     data.write_verdicts()
-    rungs = [data.rung("tl-full", 1e-6, 0.05, precision="float")]
-    rungs += [data.rung("tl-full", 1e-6, 0.05, mesh="coarser"), data.rung("tl-full", 1e-6, None)]
-    data.write("curves/a.json", data.ladder([*rungs, data.rung("tl-full", 1e-6, 0.002)]))
+    rows = [data.row("tl-full", 1e-6, 0.05, precision="float")]
+    rows += [data.row("tl-full", 1e-6, 0.05, mesh="coarser"), data.row("tl-full", 1e-6, None)]
+    data.write("curves/a.json", data.choices([*rows, data.row("tl-full", 1e-6, 0.002)]))
     data.make()
-    data.write("curves/a.json", data.ladder([*rungs, data.rung("tl-full", 1e-6, 0.05)]))
+    data.write("curves/a.json", data.choices([*rows, data.row("tl-full", 1e-6, 0.05)]))
     data.page.unlink()
     assert main(data.arguments) == 2
-    told = "column, tl-full, double, own mesh: error to the golden 0.002, but choose has 0.05"
-    assert told in capsys.readouterr().err
-    data.write("curves/a.json", data.ladder([data.rung("tl-full", 1e-6, 0.05)], "truth"))
+    message = "column, tl-full, double, own mesh: error to the golden 0.002, but choose has 0.05"
+    assert message in capsys.readouterr().err
+    data.write("curves/a.json", data.choices([data.row("tl-full", 1e-6, 0.05)], "truth"))
     data.make()
-    other = data.ladder([data.rung("tl-full", 1e-6, 0.05)]) | {"revision": "another"}
+    other = data.choices([data.row("tl-full", 1e-6, 0.05)]) | {"revision": "another"}
     data.write("curves/a.json", other)
     data.make()
 
@@ -225,10 +225,10 @@ def test_a_page_of_sound_records_is_made(data):
 def test_a_page_that_cannot_be_true_is_not_made(data, capsys):
     measured_in(data, mean_step_seconds=1e-17, seconds_per_simulated_second=1e32)
     assert main(data.arguments) == 2
-    told = capsys.readouterr().err
-    assert told.startswith("error: ") and told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith("error: ") and message.count("\n") == 1
     for words in ("column, tl-none, double, own mesh", "1e-17 s", "at least 1e-6 s", "1e+32 s"):
-        assert words in told
+        assert words in message
     assert not data.page.exists()
 
 

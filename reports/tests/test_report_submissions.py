@@ -51,7 +51,7 @@ def test_the_cheapest_of_ours_that_is_as_accurate_is_the_one_to_compare_with(tmp
         tmp_path,
         ENTRY,
         ours("cheap", 0.02, 5.0),
-        ours("dear", 0.0001, 40.0),
+        ours("costly", 0.0001, 40.0),
         ours("right", 0.0104, 20.0, seconds_to_rest=0.5),
         ours("elsewhere", 0.0001, 1.0, machine="another"),
         ours("another case", 0.0001, 1.0, case="twist"),
@@ -63,7 +63,7 @@ def test_the_cheapest_of_ours_that_is_as_accurate_is_the_one_to_compare_with(tmp
     assert nearest.in_words().startswith("6.0 times per step, 3.0 times per simulated second")
     assert [s.label for s in found[1:5]] == [
         "Sandglass cheap",
-        "Sandglass dear",
+        "Sandglass costly",
         "Sandglass elsewhere",
         "Sandglass right",
     ]

@@ -54,8 +54,8 @@ def answer(tmp_path_factory):
 
 def submitted(answer, folder, **changed):
     """The exit code, and the path of the entry of a stranger; an option of None is left out."""
-    told = (STRANGER | changed).items()
-    words = [word for pair in told for word in pair if None not in pair]
+    options = (STRANGER | changed).items()
+    words = [word for pair in options for word in pair if None not in pair]
     code = submit.main([str(answer), *words, "--folder", str(folder)])
     return code, next(iter(entry_files(folder)), None)
 
@@ -113,7 +113,7 @@ def break_schema(path, entry):
 
 
 @pytest.mark.parametrize(
-    "spoil, told",
+    "spoil, message",
     [
         (spoil_displacement, "errors.golden.rms = .*: its displacements score"),
         (spoil_file, "has another SHA-256: it was changed"),
@@ -124,28 +124,28 @@ def break_schema(path, entry):
         (break_schema, "time_step: -1.0 is less than"),
     ],
 )
-def test_wrong_entries_are_refused(answer, tmp_path, capsys, spoil, told):
+def test_wrong_entries_are_refused(answer, tmp_path, capsys, spoil, message):
     _, path = submitted(answer, tmp_path)
     entry = json.loads(path.read_text())
     spoil(path, entry)
     path.write_text(json.dumps(entry))
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         check.check(path)
     assert check.main([str(path)]) == 1
     assert capsys.readouterr().err.startswith(f"error: {path}: ")
 
 
 @pytest.mark.parametrize(
-    "changed, told",
+    "changed, message",
     [
         ({"--case": None}, "missing: --case"),
         ({"--case": "colunm"}, "did you mean 'column'"),
         ({"--ns": "-1"}, "ns_per_element_step: -1.0 is less than"),
     ],
 )
-def test_wrong_submissions(answer, tmp_path, capsys, changed, told):
+def test_wrong_submissions(answer, tmp_path, capsys, changed, message):
     assert submitted(answer, tmp_path, **changed) == (2, None)
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_nodes_that_are_not_those_of_the_case(answer, tmp_path, capsys):
@@ -172,7 +172,7 @@ def test_entries_of_a_comparison(answer, tmp_path):
         "programs": [
             {"name": "NiftySim", "build": "native", "version": "", "about": "2.5; GCC -O3"}
         ],
-        "at_rest": [
+        "static": [
             rival | more,
             own | more,
             rival | more | {"element": "H9", "failure": "diverged"},
