@@ -24,17 +24,17 @@ class Candidate:
 
     case: str
     reference: str  # golden or truth
-    stands_in: bool  # for the golden stands its own element among the methods
-    tolerance: float  # that was asked for, a fraction
+    stands_in: bool  # the golden's own element stands in for it
+    tolerance: float  # as requested, a fraction
     method: str
-    kappa: float | None  # None: as it comes
-    accuracy: float | None  # asked of an adaptive method, a fraction
+    kappa: float | None  # None: default
+    accuracy: float | None  # requested of an adaptive method, a fraction
     precision: str
     mesh: str
     elements: int
     step_size: float | None  # s, mean of the motion; None where nothing moves
     error: float | None  # largest of all nodes, a fraction of the imposed displacement
-    reason: str  # why it is not enough; empty where it is
+    reason: str  # why it is not enough; empty if it is
     step_remark: str  # about steps of single states; mostly empty
     facts: dict  # of its file: machine and revision
     name: str = key("rung")  # of method, kappa or accuracy, precision and mesh
@@ -119,7 +119,7 @@ def read_measured(bench, flops, curves, maps, kept_maps):
 
 
 def _files(folder, command, sources):
-    """The JSON files of a folder; if there are none, that is recorded."""
+    """The JSON files of a folder; their absence is recorded."""
     found = sorted(Path(folder).glob("*.json"))
     if not found:
         sources.append(Source(f"{folder}/*.json", command, None))

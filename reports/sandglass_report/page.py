@@ -71,7 +71,7 @@ class PaperSection:
 def with_hard_spaces(html):
     """HTML in whose text no line ends between a number and its %. Scripts and tags stay."""
     parts = re.split(r"(<(script|style)\b.*?</\2>|<[^>]*>)", html, flags=re.DOTALL)
-    # Of each three: text, what is between texts, the name of a script or style.
+    # Groups of three: text, markup between texts, the name of a script or style.
     parts[::3] = [re.sub(r"(?<=\d) %", "\u00a0%", text) for text in parts[::3]]
     del parts[2::3]
     return "".join(parts)

@@ -1,4 +1,4 @@
-"""Whether the marks of the chart can be true: a page with a mark that cannot is not made.
+"""Plausibility of the chart's marks: no page is made with an impossible one.
 
 Each rule below is a function of Marks that yields a complaint for every mark that breaks it; its
 docstring is the rule. A cost of another loop, a step of another state or a value in another unit
@@ -15,11 +15,11 @@ from sandglass_report.provenance import elsewhere
 from sandglass_report.style import FLOOR
 
 # Soft bodies of millimetres and more: a wave of 10 m/s takes 0.1 ms through an element of 1 mm. A
-# hundredth of that is another quantity. A stiff body has short steps even when undeformed, and the
+# hundredth of that is a mistake. A stiff body has short steps even when undeformed, and the
 # mean of its motion is not far below them.
 LEAST_STEP = 1e-6  # s
 LEAST_SHARE = 0.01  # of the undeformed step
-# Eleven days for a second: nobody waited for it.
+# Eleven days for a second: nobody waits for that.
 MOST_WALL = 1e6  # s per simulated second
 # Two measurements of one loop on one machine, of which one may have been busy.
 BENCH_AGREES = 1.3
@@ -29,13 +29,13 @@ OPERATIONS_AGREE = 2.0
 ADAPTIVE, EIGHT_POINTS = "tl-adaptive", "tl-mean-dilatation"
 AS_IT_COMES = OWN_MESH, "double", None, None  # mesh, numbers, kappa and accuracy of a candidate
 COUNTED = "kernel", "element"  # form and part of the flop table
-# One division, or one relaxation to 1e-8 of the forces: what differs is rounded to be read.
+# One division, or one relaxation to 1e-8 of the forces: differences are those of printed digits.
 SAME = 0.01
 
 
 @dataclass(frozen=True)
 class Marks:
-    """What the rules look at.
+    """The data that the rules check.
 
     points: of the main chart. steps: of bench, and candidates: of choose, if of the same origin.
     table: method -> operations of an element and step in the flop table. loaded: cases with
@@ -49,7 +49,7 @@ class Marks:
     loaded: frozenset = frozenset()
 
     def own(self):
-        """The points of the methods as they come, on the cases' own meshes, in double."""
+        """The points of the methods with default settings, on the cases' own meshes, in double."""
         return [
             p
             for p in self.points
@@ -57,7 +57,7 @@ class Marks:
         ]
 
     def least_step(self, case):
-        """The shortest mean step, s, that the body of a case can have."""
+        """The shortest possible mean step of a case's body, s."""
         undeformed = [p.stable_step for p in self.points if p.case == case and p.stable_step]
         return min(LEAST_STEP, LEAST_SHARE * min(undeformed, default=1.0))
 

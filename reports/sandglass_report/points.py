@@ -19,7 +19,7 @@ MESHES = ("all", "own")
 PRECISIONS = ("all", "double")
 VERIFY = "sandglass verify"
 CHOOSE = "sandglass choose"
-# What a Point has as its Run or its Candidate has it.
+# Fields that a Point shares with its Run or its Candidate.
 OF_RUN = "case method kappa precision ok ns mean_step step_remark simulated operations".split()
 OF_CANDIDATE = "case method kappa accuracy precision mesh elements".split()
 
@@ -35,15 +35,15 @@ class Point:
     case: str
     method: str
     kappa: float | None
-    as_it_comes: bool  # not a point of a kappa curve
-    accuracy: float | None  # asked of an adaptive method
+    as_it_comes: bool  # default settings, not a point of a kappa curve
+    accuracy: float | None  # requested of an adaptive method
     precision: str
     mesh: str
     elements: int | None
     finding: str
     ok: bool
     golden: dict = field(default_factory=dict)
-    golden_is: str | None = None  # the method that stands for a golden that is not stored
+    golden_is: str | None = None  # the method that replaces a missing golden
     truth: dict = field(default_factory=dict)
     ns: float | None = None  # per element and step
     step: float | None = None
@@ -57,7 +57,7 @@ class Point:
     stable_step: float | None = None  # s, undeformed
     measured_by: str = VERIFY
     elsewhere: str = ""  # machine and revision of its times if they are not those of the page
-    group: str | None = None  # what its switch is called, if not by its method
+    group: str | None = None  # the name of its switch, if not the method
     judged: dict = field(default_factory=dict)  # (reference, tolerance) -> why it is not enough
 
     @property
@@ -146,7 +146,7 @@ def _of_mesh(ns, elements):
 
 
 def _of_candidate(candidate):
-    """The point of a candidate that has no run; it is not ok until a candidate brings an answer."""
+    """The point of a candidate without a run; it is ok once a candidate has an answer."""
     same = {name: getattr(candidate, name) for name in OF_CANDIDATE}
     return Point(**same, as_it_comes=candidate.kappa is None, finding="", ok=False, measured_by="")
 

@@ -54,7 +54,7 @@ def _panel(subject, palette, reference, figure, limits, costs):
         helpers.percent_scale(axes.yaxis, limits)
         axes.set_xlabel(COST.title)
         axes.figure.canvas.draw()  # the layout must be final before labels are pushed apart
-        labels = []  # x, y, colour, text, and the part of it that is kept if names do not fit
+        labels = []  # x, y, colour, text, and the part of it to keep if names do not fit
         for method in dict.fromkeys(run.method for run in timed):
             of_method = [run for run in timed if run.method == method]
             labels += _draw_method(axes, of_method, palette, reference, figure, limits)

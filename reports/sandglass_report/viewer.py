@@ -17,7 +17,7 @@ STOPS = 32  # of a colour scale; the page draws the nearest one
 LEAST_ERROR = 1e-5  # fractions; the logarithmic scale of errors begins here
 GOLDEN = "golden"
 
-# The colourings of faces: words, unit, scale and colour map (readable for colour-blind readers).
+# The colourings of faces: words, unit, scale and colour map (distinguishable when colour-blind).
 COLOURS = {
     "error": ("distance from the golden", "% of the imposed displacement", "log", "viridis"),
     "volume": ("volume ratio, det F", "deformed over undeformed", "linear", "PuOr"),
@@ -84,7 +84,7 @@ def _faces(cells):
 
 
 def _fields(subject, name, u, undeformed):
-    """Values by name: error at nodes (fractions), the rest of elements."""
+    """Values by name: errors of nodes (fractions), other values of elements."""
     found = {"volume": volumes(subject.points + u, subject.cells) / undeformed}
     if subject.golden is not None:
         golden = subject.golden.displacement

@@ -90,7 +90,7 @@ class DataSet:
 
     @staticmethod
     def tip(method, ratio, variant="short", status="ok", to_truth=None, programs=()):
-        """A record of a run with a published value, -2, of which other programs may be known."""
+        """A record of a run with a published value, -2, perhaps with values of other programs."""
         value = {"source": "a book", "ratio": ratio, "ratio_to_truth": to_truth, "published": -2.0}
         value |= {"set": "tip", "component": "z", "programs": list(programs)}
         value["computed"] = None if ratio is None else -2.0 * ratio
@@ -185,7 +185,7 @@ class DataSet:
 
 
 class Axes:
-    """Notes what is plotted."""
+    """Records the plotted data."""
 
     def __init__(self):
         self.lines = []

@@ -73,7 +73,7 @@ def test_everything_is_drawn_without_messages_on_the_console(browser):
     assert browser.complaints == []
 
 
-def test_nothing_is_asked_for_beyond_the_page(browser):
+def test_the_page_requests_nothing(browser):
     assert [url for url in browser.requests if not url.startswith(("file:", "data:"))] == []
     assert len([url for url in browser.requests if url.startswith("file:")]) == 1
 
@@ -255,7 +255,7 @@ def test_without_scripts_the_static_pictures_show(page):
             node = plain._call("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
             try:
                 return plain._call("DOM.getBoxModel", nodeId=node)["model"]["height"]
-            except AssertionError:  # what is not displayed has no box
+            except AssertionError:  # hidden elements have no box
                 return 0
 
         assert height("details.static svg") > 100
@@ -292,7 +292,7 @@ def test_a_link_opens_what_is_folded_below_its_heading(page):
 
 
 def test_the_chart_begins_on_the_first_screen(page):
-    """What is asked stands above it; the rest of the menu is folded, also after a click."""
+    """The question stands above it; the rest of the menu is folded, also after a click."""
     with Browser(width=1280, height=800) as screen:
         screen.open(page)
         screen.until(DRAWN)
@@ -315,7 +315,7 @@ def test_texts_that_scripts_make_keep_numbers_and_percent_signs_together(browser
 
 
 def test_on_paper_there_is_no_menu_and_nothing_is_cut(page):
-    """A4 less its margins is 703 px wide; what the reader opened stays open, and closes after."""
+    """A4 within its margins is 703 px wide; parts that printing opens are closed afterwards."""
     with Browser(width=703) as paper:
         paper.open(page)
         paper.until(DRAWN)

@@ -1,4 +1,4 @@
-"""Files of other commands: what is read, what may be absent, and what is rejected."""
+"""Files of other commands: those that are read, may be absent, or are rejected."""
 
 import pytest
 
@@ -14,7 +14,7 @@ def read(data):
     return read_measured(*(data.folder / name for name in names))
 
 
-def test_what_is_absent_is_named_with_its_command(data):
+def test_missing_files_are_named_with_their_commands(data):
     found = read(data)
     assert not (found.candidates or found.steps or found.counts or found.maps)
     assert all(source.facts is None for source in found.sources)
@@ -86,7 +86,7 @@ def test_kept_maps_stand_in_for_missing_ones(data):
         ("kept-maps/a.json", {"case": "c"}, ("limit", "missing")),
     ],
 )
-def test_what_is_broken_is_refused_with_file_and_key(data, capsys, name, document, words):
+def test_broken_data_are_refused_with_file_and_key(data, capsys, name, document, words):
     data.write(name, document)
     assert main(data.arguments) == 2
     message = capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""The whole report from a tiny data set: what the page contains, and what not."""
+"""The whole report from a tiny data set: contents of the page."""
 
 import re
 from html.parser import HTMLParser

@@ -35,7 +35,7 @@ def test_a_run_is_a_point_with_its_costs_in_seconds(data):
     assert point.golden["max"] == 0.2 and point.truth == {}
 
 
-def test_a_run_that_failed_says_so_and_has_no_time_to_equilibrium(data):
+def test_a_failed_run_is_marked_and_has_no_time_to_equilibrium(data):
     point = points_of(data)[0]["tl-full"]
     assert not point.ok and point.equilibrium is None and point.finding == "failed: <inverted>"
 
@@ -50,7 +50,7 @@ def test_a_method_without_a_step_has_a_simulated_second_alone(data):
     assert point.simulated == data.records[0]["seconds_per_simulated_second"]
 
 
-def test_only_points_of_kappa_curves_do_not_come_so(data):
+def test_only_points_of_kappa_curves_are_not_default(data):
     _, points = points_of(data)
     assert [(p.kappa, p.as_it_comes) for p in points if p.method == "tl-perturbation"] == [
         (0.0065, True),
@@ -78,7 +78,7 @@ def test_costs_are_never_scaled_to_those_of_others(data):
 
 
 @pytest.mark.parametrize("fact", ["revision", "processor"])
-def test_times_of_another_machine_or_revision_say_so_and_lead_nothing(data, fact):
+def test_times_of_another_machine_or_revision_are_marked_and_lead_nothing(data, fact):
     choices = data.choices([data.row("t4", 1e-9, 0.001)]) | {fact: "another"}
     _, points = points_of(data, choices)
     (t4,) = (p for p in points if p.method == "t4")
@@ -104,7 +104,7 @@ def test_the_golden_elements_answer_counts_as_the_golden(data):
     assert "golden_is" not in point.as_record()  # the case has one
 
 
-def test_what_stands_for_a_golden_that_is_not_there_is_named(data):
+def test_the_replacement_of_a_missing_golden_is_named(data):
     for record in data.records:
         record["golden"] = None
     data.write_verdicts()
@@ -114,7 +114,7 @@ def test_what_stands_for_a_golden_that_is_not_there_is_named(data):
     assert record["finding"].endswith("(tl-mean-dilatation)")
 
 
-def test_a_refusal_names_the_tolerance_that_it_is_for(data):
+def test_a_refusal_names_its_tolerance(data):
     locks = data.row("t4", 1e-6, 0.5, reason="it locks")
     strict = data.choices([locks, data.row("linear", 1e-6, 0.5)], tolerance=0.002)
     loose = data.choices([locks | {"reason": ""}], tolerance=0.04)

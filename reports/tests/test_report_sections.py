@@ -1,4 +1,4 @@
-"""The sections of the page from synthetic data: what each shows, or says when it cannot."""
+"""The sections of the page from synthetic data: their contents, or the reason for a gap."""
 
 import json
 import re
@@ -36,7 +36,7 @@ def test_without_optional_files_the_page_names_the_commands(data):
 
 
 def test_a_case_shows_the_errors_of_its_run_where_the_golden_is_no_single_field(data):
-    """As in motion: the verdict has the errors, and the page reads no golden of motion."""
+    """Such as in motion: errors come from the verdict, and the page reads no golden of motion."""
     (data.folder / "reference/golden/column.h5").unlink()
     cases = section(data.make(), "cases")
     assert 'data-value="0.002"' in cases
@@ -257,7 +257,7 @@ def test_each_link_of_the_navigation_leads_to_a_heading(data):
 
 
 def test_numbers_on_the_page_begin_with_a_digit():
-    """.3 beside 0.3 looks like another kind: in what the page says and in stored notes."""
+    """.3 beside 0.3 looks inconsistent, in the page's texts and in stored notes."""
     sources = ROOT / "reports/sandglass_report"
     texts = [path for path in sources.rglob("*.j2") if "style" not in path.name]
     texts += [*sources.glob("*.py"), *sources.rglob("*.js"), *(ROOT / "cases").glob("*.toml")]
