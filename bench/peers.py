@@ -30,8 +30,8 @@ from rest_search import RestSearch
 from rivals import PROGRAMS
 
 METHODS = ("tl-perturbation", "tl-four-point", "tl-mean-dilatation", "tl-full")
-AT_REST = (*METHODS, "tl-energy-sampling")
-IN_MOTION = (*METHODS, "ul-perturbation")
+STATIC_METHODS = (*METHODS, "tl-energy-sampling")
+MOTION_METHODS = (*METHODS, "ul-perturbation")
 # Methods that are also computed in single precision, like programs that use it.
 IN_FLOAT = ("tl-perturbation", "tl-mean-dilatation")
 NEWTON, RELAXATION, EXPLICIT = "Newton", "search for rest", "central differences"
@@ -115,7 +115,7 @@ def static_rows(bench, programs, options):
         else:
             runs = {"answer": peer_runs.run_of(bench, program, element, bench.path)}
             rows.append(Row(program.name, str(element), NEWTON, runs, **more))
-    for method in options.methods or AT_REST:
+    for method in options.methods or STATIC_METHODS:
         step = step_of(bench, method) if "motion" in options.solves else None
         for precision in precisions_of(method):
             own = (bench, method, precision, bench.path, peer_runs.EVALUATIONS)
@@ -200,7 +200,7 @@ def elements_of(bench, programs, options):
 
 def motion_methods(options):
     """The methods of Sandglass to compare in motion; always includes the golden's."""
-    return list(dict.fromkeys([*(options.methods or IN_MOTION), MEAN_DILATATION]))
+    return list(dict.fromkeys([*(options.methods or MOTION_METHODS), MEAN_DILATATION]))
 
 
 def static_records(bench, rows):
